@@ -10,6 +10,7 @@
 mod calls;
 mod leaves;
 mod merge;
+mod order;
 mod powers;
 mod side;
 pub(crate) use merge::canonical;
@@ -468,25 +469,6 @@ impl Graph {
             sum = self.add(sum, product);
         }
         sum
-    }
-
-    /// All nodes that the roots are made of, children before parents.
-    pub fn reachable(&self, roots: &[Edge]) -> Vec<NodeId> {
-        let ends = roots.iter().map(|root| root.node());
-        let count = ends.clone().max().map_or(0, |last| last + 1);
-        let mut seen = vec![false; count as usize];
-        for id in ends {
-            seen[id as usize] = true;
-        }
-        // Children are older than what they are in.
-        for id in (0..count as usize).rev() {
-            if seen[id] {
-                for child in self.nodes[id].children() {
-                    seen[child.node() as usize] = true;
-                }
-            }
-        }
-        (0..count).filter(|&id| seen[id as usize]).collect()
     }
 }
 

@@ -3,6 +3,7 @@
 pub use super::external::Component;
 pub use super::function::Function;
 use super::function::Law;
+use std::ops::Range;
 
 /// Index of a node.
 pub type NodeId = u32;
@@ -78,18 +79,22 @@ pub enum Node {
 
 impl Node {
     /// The children, in order.
-    pub fn children(self) -> impl DoubleEndedIterator<Item = Edge> {
-        let list = match self {
-            Node::Constant(_) | Node::Symbol(_) => [None; 3],
-            Node::Apply(_, a) | Node::External(_, a) => [Some(a), None, None],
+    pub fn children(self) -> Children {
+        let none = Edge(0);
+        let (list, count) = match self {
+            Node::Constant(_) | Node::Symbol(_) => ([none; 3], 0),
+            Node::Apply(_, a) | Node::External(_, a) => ([a, none, none], 1),
             Node::Add(a, b)
             | Node::Mul(a, b)
             | Node::Div(a, b)
             | Node::Atan2(a, b)
-            | Node::Listed(a, b) => [Some(a), Some(b), None],
-            Node::Select(c, a, b) => [Some(c), Some(a), Some(b)],
+            | Node::Listed(a, b) => ([a, b, none], 2),
+            Node::Select(c, a, b) => ([c, a, b], 3),
         };
-        list.into_iter().flatten()
+        Children {
+            list,
+            left: 0..count,
+        }
     }
 
     /// Whether it is a square root.
@@ -112,6 +117,33 @@ impl Node {
         }
     }
 }
+
+/// The children of a node, in order.
+#[derive(Clone, Debug)]
+pub struct Children {
+    list: [Edge; 3],
+    left: Range<usize>,
+}
+
+impl Iterator for Children {
+    type Item = Edge;
+
+    fn next(&mut self) -> Option<Edge> {
+        self.left.next().map(|place| self.list[place])
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.left.size_hint()
+    }
+}
+
+impl DoubleEndedIterator for Children {
+    fn next_back(&mut self) -> Option<Edge> {
+        self.left.next_back().map(|place| self.list[place])
+    }
+}
+
+impl ExactSizeIterator for Children {}
 
 /// A symbol: its name and the class of inputs that it belongs to, one bit each.
 #[derive(Clone, Debug)]

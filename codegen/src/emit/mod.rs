@@ -158,7 +158,7 @@ impl<'a> Emitter<'a> {
             Vec::new()
         };
         let roots: Vec<Edge> = function.outputs.iter().chain(&guards).copied().collect();
-        let nodes = crate::program::schedule::body(&self.program.graph, &roots);
+        let nodes = self.program.graph.varying(&roots);
         Spec {
             name: self.names.functions[index].clone(),
             public: true,

@@ -1,9 +1,7 @@
 //! Exact operation counts of straight-line code.
 
-use super::schedule::body;
 use crate::algebra::function::Cost;
 use crate::algebra::graph::{Edge, Graph, Node, NodeId};
-use rustc_hash::FxHashMap;
 
 /// Operations of a function at run time; negation is free, parameters are hoisted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,7 +34,7 @@ impl Count {
 
 /// The operations that the roots need at run time.
 pub fn count(graph: &Graph, roots: &[Edge]) -> Count {
-    count_nodes(graph, &body(graph, roots))
+    count_nodes(graph, &graph.varying(roots))
 }
 
 /// The operations of a list of nodes.
@@ -72,19 +70,4 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
     calls.dedup();
     count.other += calls.len();
     count
-}
-
-/// The longest chain of run-time operations that depend on one another.
-pub fn depth(graph: &Graph, roots: &[Edge]) -> usize {
-    let mut depths: FxHashMap<NodeId, usize> = FxHashMap::default();
-    for id in body(graph, roots) {
-        let below = graph
-            .node(id)
-            .children()
-            .filter_map(|child| depths.get(&child.node()))
-            .max();
-        let depth = 1 + below.copied().unwrap_or(0);
-        depths.insert(id, depth);
-    }
-    depths.values().copied().max().unwrap_or(0)
 }

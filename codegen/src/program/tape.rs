@@ -4,7 +4,7 @@
 //! what machine code is made of.
 
 use super::places::{Place, Places, Time};
-use super::schedule::{Schedule, body};
+use super::schedule::Schedule;
 use super::statements::{Body, Operation, statements};
 use super::together::together;
 use super::{Argument, Cause, Function, FunctionId, Program};
@@ -206,7 +206,7 @@ impl Tapes {
                 return Ok(tape);
             }
             let roots = [&function.outputs, guards].concat();
-            call(&body(&program.graph, &roots), &function.outputs, guards)
+            call(&program.graph.varying(&roots), &function.outputs, guards)
         });
         let pivots = Lowering {
             places: &places,

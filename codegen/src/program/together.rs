@@ -1,7 +1,6 @@
 //! ξ̇ and [A B] computed together: [A B] contains nearly all that ξ̇ is made from.
 
 use super::count::count_nodes;
-use super::schedule::body;
 use super::{FunctionId, Program};
 use crate::algebra::graph::{Edge, NodeId};
 
@@ -38,7 +37,7 @@ pub fn together(program: &Program) -> Option<Together> {
         let more = rates.guards.iter();
         guards.extend(more.filter(|&guard| !slopes.guards.contains(guard)));
     }
-    let roots = |lists: &[&[Edge]]| body(&program.graph, &lists.concat());
+    let roots = |lists: &[&[Edge]]| program.graph.varying(&lists.concat());
     let nodes = roots(&[xi_dot, &slopes.outputs, &guards]);
     let alone = roots(&[&slopes.outputs, &slopes.guards]);
     let [both, alone] = [&nodes, &alone].map(|nodes| count_nodes(&program.graph, nodes).weight());

@@ -5,7 +5,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::resubstitute::resubstitute;
 use crate::derive::care::Care;
 use crate::model::Model;
-use crate::program::count::{Count, count, depth};
+use crate::program::count::{Count, count};
 use crate::syntax::ast::Axes;
 
 /// The chosen computation of ξ̇.
@@ -49,7 +49,7 @@ impl Acceleration {
         Acceleration {
             other: None,
             count: count(&graph, &roots),
-            depth: depth(&graph, &roots),
+            depth: graph.depth(&roots),
             graph,
             xi_dot,
             pivots,
@@ -178,7 +178,7 @@ fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
     let polished = Acceleration {
         loss: care.loss(&graph, xi_dot, pivots),
         count: count(&graph, &varying),
-        depth: depth(&graph, &varying),
+        depth: graph.depth(&varying),
         route: chosen.route.clone(),
         other: None,
         xi_dot: xi_dot.to_vec(),

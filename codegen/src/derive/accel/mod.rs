@@ -20,7 +20,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::derive::care::Care;
 use crate::derive::inertia;
 use crate::model::Model;
-use crate::program::count::{count, depth};
+use crate::program::count::count;
 use crate::syntax::ast::Axes;
 pub use best::Acceleration;
 use best::{Best, Family};
@@ -159,7 +159,7 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
             let varying = |edge: &&Edge| !graph.is_free(edge.node());
             let mut roots = solution.xi_dot.clone();
             roots.extend(pivots.iter().filter(varying));
-            let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
+            let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
             let loss = care.loss(&graph, &solution.xi_dot, &pivots);
             let cost = (loss, count.weight(), depth);
             if best.as_ref().is_some_and(|(best, _)| best.cost() <= cost) {
@@ -278,7 +278,7 @@ fn attempt(
     let pivots = hybrid::pivots(&setting.model, solution.pivots);
     let mut roots = xi_dot.clone();
     roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
-    let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
+    let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
     let mut route = route(traced, &plan.order, variant);
     if setting.back.is_some() {
         route = route.replacen("traced", "traced in its own twist", 1);

@@ -14,7 +14,7 @@ use crate::algebra::transplant::rebuild;
 use crate::derive::calculus::Calculus;
 use crate::derive::normal::{Collected, NormalForms, collect, variable_node};
 use crate::model::Model;
-use crate::program::count::{count, depth};
+use crate::program::count::count;
 use crate::syntax::ast::Axes;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -246,7 +246,7 @@ impl System {
     ) -> Acceleration {
         let mut roots = xi_dot.clone();
         roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
-        let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
+        let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
         let modulo = if self.reduced { " modulo φ" } else { "" };
         Acceleration {
             other: None,
