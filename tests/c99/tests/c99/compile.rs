@@ -57,35 +57,41 @@ pub fn run(folder: &Path, line: &str) -> Result<String, String> {
 /// What is wrong with a few cases in one source.
 pub fn faults(name: &str, cases: &[Case]) -> Vec<String> {
     let folder = folder(name);
-    let mut faults = Vec::new();
-    for (precision, file) in [(Precision::Double, "double"), (Precision::Float, "float")] {
-        std::fs::write(folder.join(format!("{file}.c")), source(cases, precision))
-            .expect("written");
-        let optimised = if *EVERYTHING { "-O1" } else { "-O0" };
-        let mut lines = vec![format!(
-            "gcc -std=c99 {optimised} {STRICT} {file}.c -lm -o {file}"
-        )];
-        if *EVERYTHING && installed("g++") {
-            lines.push(format!(
-                "g++ -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
-            ));
-        }
-        if *EVERYTHING && installed("clang") {
-            lines.push(format!("clang -std=c99 -fsyntax-only {STRICT} {file}.c"));
-            lines.push(format!(
-                "clang -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
-            ));
-        }
-        let built: Vec<_> = lines.iter().map(|line| run(&folder, line)).collect();
-        let failed = built.iter().filter_map(|result| result.clone().err());
-        faults.extend(failed);
-        if built[0].is_err() {
-            continue;
-        }
-        match run(&folder, &folder.join(file).display().to_string()) {
-            Ok(printed) => faults.extend(compared(&printed, cases, precision)),
-            Err(error) => faults.push(error),
-        }
+    let (mut double, float) = rayon::join(
+        || faults_in(&folder, Precision::Double, cases),
+        || faults_in(&folder, Precision::Float, cases),
+    );
+    double.extend(float);
+    double
+}
+
+/// The same in one precision.
+fn faults_in(folder: &Path, precision: Precision, cases: &[Case]) -> Vec<String> {
+    let file = precision.name();
+    std::fs::write(folder.join(format!("{file}.c")), source(cases, precision)).expect("written");
+    let optimised = if *EVERYTHING { "-O1" } else { "-O0" };
+    let mut lines = vec![format!(
+        "gcc -std=c99 {optimised} {STRICT} {file}.c -lm -o {file}"
+    )];
+    if *EVERYTHING && installed("g++") {
+        lines.push(format!(
+            "g++ -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
+        ));
+    }
+    if *EVERYTHING && installed("clang") {
+        lines.push(format!("clang -std=c99 -fsyntax-only {STRICT} {file}.c"));
+        lines.push(format!(
+            "clang -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
+        ));
+    }
+    let built: Vec<_> = lines.iter().map(|line| run(folder, line)).collect();
+    let mut faults: Vec<String> = built.iter().filter_map(|line| line.clone().err()).collect();
+    if built[0].is_err() {
+        return faults;
+    }
+    match run(folder, &folder.join(file).display().to_string()) {
+        Ok(printed) => faults.extend(compared(&printed, cases, precision)),
+        Err(error) => faults.push(error),
     }
     faults
 }
