@@ -103,8 +103,8 @@ impl Compiled {
         Compiled::made(tapes, false)
     }
 
-    /// The same for tests of this crate: Cranelift verifies what it is given, which takes as long as making code of it, and
-    /// says what is wrong where the code would only compute something else.
+    /// The same for tests of this crate: Cranelift first verifies what it is given, and says what is wrong where code would
+    /// only compute something else. That takes its time.
     pub fn verified(tapes: Tapes) -> Self {
         Compiled::made(tapes, true)
     }

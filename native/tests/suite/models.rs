@@ -6,6 +6,7 @@ use hamel_codegen::algebra::rounding::rounded;
 use hamel_codegen::generate::{Generated, from_file};
 use hamel_codegen::model::states::states;
 use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::program::tape::Tapes;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_codegen::render::render;
 use hamel_native::Compiled;
@@ -147,8 +148,8 @@ fn code_of_models_gives_what_their_graphs_give() {
         let of = generated(&path);
         let program = &of.program;
         let functions: Vec<&Function> = program.functions.iter().collect();
-        let code = match Compiled::new(program, &functions) {
-            Ok(code) => code,
+        let code = match Tapes::new(program, &functions) {
+            Ok(tapes) => Compiled::verified(tapes),
             // It has a function in Rust.
             Err(foreign) => {
                 assert!(!foreign.name.is_empty(), "{path:?}");

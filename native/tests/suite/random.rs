@@ -368,10 +368,7 @@ fn long_tapes_are_several_functions_with_the_same_bits() {
         pivots: Vec::new(),
         functions: vec![long_tape(&mut random, steps)],
     };
-    let code = match everything() {
-        true => Compiled::verified(tapes.clone()),
-        false => Compiled::of(tapes.clone()),
-    };
+    let code = Compiled::verified(tapes.clone());
     assert_eq!(code.interpreted_because(), None);
     let steps = Compiled::interpreted(tapes);
     let paired = Paired::new(&code).expect("code for two lanes");
