@@ -4,8 +4,10 @@
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
+use std::ffi::OsStr;
 use std::fmt::Write;
 use std::ops::Range;
+use std::path::Path;
 
 /// The errors of a description that has to have some.
 fn errors(text: &str) -> Vec<Diagnostic> {
@@ -17,8 +19,16 @@ fn errors(text: &str) -> Vec<Diagnostic> {
 
 #[test]
 fn messages() {
-    insta::glob!("../wrong", "*.eom", |path| {
-        let text = std::fs::read_to_string(path).expect("readable");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wrong");
+    let entries = std::fs::read_dir(&folder).expect("a folder");
+    let files = entries.map(|entry| entry.expect("an entry").path());
+    let mut files: Vec<_> = files
+        .filter(|path| path.extension() == Some(OsStr::new("eom")))
+        .collect();
+    files.sort();
+    assert!(!files.is_empty(), "{} is empty", folder.display());
+    for path in files {
+        let text = std::fs::read_to_string(&path).expect("readable");
         let name = path.file_name().expect("a name").to_string_lossy();
         let errors = errors(&text);
         for error in &errors {
@@ -39,10 +49,10 @@ fn messages() {
             assert!(rendered.contains(&place), "{rendered}\nhas no {place}");
         }
         let whole = RENDERED.contains(&&*name);
-        insta::with_settings!({omit_expression => true, prepend_module_to_snapshot => true}, {
+        insta::with_settings!({omit_expression => true, snapshot_suffix => &*name, input_file => &path}, {
             insta::assert_snapshot!(if whole { rendered } else { listed });
         });
-    });
+    }
 }
 
 /// Descriptions whose messages are locked as users see them, underlined in the text: one and many, of one line and of

@@ -11,8 +11,15 @@ const FEW: usize = 6;
 
 /// A product of powers of variables. Its derived `Ord` is a fixed total order for use as a map key,
 /// not a monomial order; see [`super::order::Order`].
-#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
+#[derive(PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
 pub struct Monomial(SmallVec<[(Var, u32); FEW]>);
+
+/// One copy of memory, where what is derived would push the powers one by one.
+impl Clone for Monomial {
+    fn clone(&self) -> Self {
+        Monomial(SmallVec::from_slice(&self.0))
+    }
+}
 
 impl Monomial {
     /// 1.

@@ -3,6 +3,7 @@
 
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::poly::monomial::{Monomial, Var};
+use crate::algebra::poly::order::Order;
 use crate::algebra::poly::polynomial::Poly;
 use crate::algebra::topoly::OPAQUE;
 use crate::model::layout::Block;
@@ -53,26 +54,35 @@ pub fn shortened(polynomial: Poly<BigRational>, pairs: &[(Var, Var)]) -> Poly<Bi
             if best.terms().len() > MOST_TERMS {
                 return best;
             }
-            let replaced = replaced(&best, square, other);
-            if replaced.terms().len() < best.terms().len() {
-                best = replaced;
+            match replaced(&best, square, other) {
+                Some(replaced) if replaced.terms().len() < best.terms().len() => best = replaced,
+                _ => (),
             }
         }
     }
     best
 }
 
-/// Every square² replaced by 1 − other².
-fn replaced(polynomial: &Poly<BigRational>, square: Var, other: Var) -> Poly<BigRational> {
+/// Every square² replaced by 1 − other²; `None` where there is none.
+fn replaced(polynomial: &Poly<BigRational>, square: Var, other: Var) -> Option<Poly<BigRational>> {
+    let squares = |monomial: &Monomial| monomial.exponent(square) / 2;
+    if polynomial.terms().iter().all(|term| squares(&term.0) == 0) {
+        return None;
+    }
     let circle = Poly::one().sub(&Poly::var(other).pow(2));
-    let mut sum = Poly::zero();
+    let mut terms = Vec::new();
     for (monomial, c) in polynomial.terms() {
-        let exponent = monomial.exponent(square);
+        let squares = squares(monomial);
+        if squares == 0 {
+            terms.push((monomial.clone(), c.clone()));
+            continue;
+        }
         let rest = monomial.powers().iter().copied();
         let rest = rest.filter(|&(var, _)| var != square);
-        let rest = Monomial::from_powers(rest.chain([(square, exponent % 2)]));
-        let term = Poly::from_terms(polynomial.order(), vec![(rest, c.clone())]);
-        sum = sum.add(&term.mul(&circle.pow(exponent / 2)));
+        let rest = Monomial::from_powers(rest.chain([(square, monomial.exponent(square) % 2)]));
+        let power = circle.pow(squares);
+        let products = power.terms().iter();
+        terms.extend(products.map(|(factor, sign)| (rest.mul(factor), sign * c)));
     }
-    sum
+    Some(Poly::from_terms(Order::default(), terms))
 }
