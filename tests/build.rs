@@ -64,7 +64,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let text = std::fs::read_to_string(format!("models/{stem}.eom"))?;
         let (body, _) = text.rsplit_once('}').ok_or("a system ends with a brace")?;
         let path = PathBuf::from(&out_dir).join(format!("linear_{stem}.eom"));
-        std::fs::write(&path, format!("{body}    generate all, linearize;\n}}\n"))?;
+        // The tops are those whose energy and momenta are asked for beside it.
+        let all = if stem.starts_with("heavy_top") {
+            "all, "
+        } else {
+            ""
+        };
+        std::fs::write(&path, format!("{body}    generate {all}linearize;\n}}\n"))?;
         linear.push_str(&format!(
             "/// Generated from `{stem}.eom`, linearised.\n{LINTS}pub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/linear_{stem}.rs\"));\n}}\n"
         ));
