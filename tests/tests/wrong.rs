@@ -1,10 +1,14 @@
 //! Wrong descriptions, `wrong/*.eom`, and the exact messages that they get: every message has a
 //! place in the text and says what to do. And descriptions that look alike but are right.
 
+#[path = "../../codegen/tests/suite/common/models.rs"]
+#[allow(dead_code, reason = "the files of a folder alone are asked for")]
+mod models;
+
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
-use std::ffi::OsStr;
+use models::models;
 use std::fmt::Write;
 use std::ops::Range;
 use std::path::Path;
@@ -19,15 +23,9 @@ fn errors(text: &str) -> Vec<Diagnostic> {
 
 #[test]
 fn messages() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wrong");
-    let entries = std::fs::read_dir(&folder).expect("a folder");
-    let files = entries.map(|entry| entry.expect("an entry").path());
-    let mut files: Vec<_> = files
-        .filter(|path| path.extension() == Some(OsStr::new("eom")))
-        .collect();
-    files.sort();
-    assert!(!files.is_empty(), "{} is empty", folder.display());
-    for path in files {
+    let paths = models(&Path::new(env!("CARGO_MANIFEST_DIR")).join("wrong"));
+    assert!(!paths.is_empty());
+    for path in paths {
         let text = std::fs::read_to_string(&path).expect("readable");
         let name = path.file_name().expect("a name").to_string_lossy();
         let errors = errors(&text);
