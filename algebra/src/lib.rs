@@ -4,7 +4,9 @@
 
 pub mod bend;
 pub mod blocks;
+pub mod closest;
 pub mod degree;
+pub mod dense;
 pub mod derivation;
 pub mod double;
 pub mod dual;
@@ -19,6 +21,7 @@ pub mod jets;
 mod jumps;
 pub mod lane;
 pub mod linear;
+pub mod newton;
 pub mod node;
 pub mod numbers;
 pub mod numeric;

@@ -2,8 +2,10 @@
 
 mod bend;
 mod blocks;
+mod closest;
 mod common;
 mod degree;
+mod dense;
 mod double;
 mod echelon;
 mod external;

@@ -6,11 +6,11 @@
 use super::State;
 use super::given::{Given, places};
 use super::ties::{Ties, symbols};
+use hamel_codegen::algebra::closest::closest;
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::sizes::relative;
 use hamel_codegen::generate::Generated;
-use hamel_codegen::model::assembly::nearest;
 use hamel_codegen::model::closest::Constraints;
 use hamel_codegen::model::closure::{Closure, Open, normalise};
 use hamel_codegen::model::opening::Opening;
@@ -307,7 +307,7 @@ impl Completion<'_> {
             sizes: Vec::new(),
         }
         .measured();
-        let mut found = nearest(&problem, x)?;
+        let mut found = closest(&problem, x)?;
         for &alpha in &problem.given {
             found[alpha] = x[alpha];
         }

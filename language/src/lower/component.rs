@@ -1,15 +1,15 @@
 //! The component of X on which the start is, where the user's constraints have several and no factor tells them
 //! apart: a parallelogram of bars folds into a crossed one, x² = y² are two lines.
 //!
-//! Points of X are followed from the start in small steps, parameters moving along. Equations of low degree that
+//! Points of X are followed from the start in small steps, parameters moving along. Newton of low degree that
 //! hold at all of them, but not everywhere on X, join the constraints, so that the points of the proofs are on that
 //! component. What holds near the start alone, as x = 2 y where x = 2 y + z²⁰, ceases to hold little by little on the
 //! way from there; at a crossing of components it ceases at once. Emitted are the constraints as they were written.
 
 use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::newton::Newton;
 use crate::model::class;
-use crate::model::nearest::Equations;
 use crate::model::points::Points;
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -47,7 +47,7 @@ type Term = Vec<usize>;
 
 /// Adds the equations that tell the component of the start from others; `near` are the numbers of the start.
 pub fn separate(points: &mut Points, phi: &[(Edge, String)], near: &[f64]) {
-    let equations = Equations::new(points, phi);
+    let equations = points.equations(phi);
     let (coordinates, parameters) = symbols(points);
     let mut walk = Walk {
         equations: &equations,
@@ -137,7 +137,7 @@ fn values(terms: &[Term], at: &[f64]) -> Vec<f64> {
 
 /// Steps on X.
 struct Walk<'a> {
-    equations: &'a Equations,
+    equations: &'a Newton,
     /// The first of the coordinates, and how many there are.
     coordinates: (usize, usize),
     parameters: &'a [usize],

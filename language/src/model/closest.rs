@@ -1,12 +1,15 @@
 //! Configurations nearest to a guess: of loops in the metric of M, of the description's own constraints in that of
 //! the coordinates, where velocities are not yet known.
 
-use super::assembly::{Assembly, backward, cholesky, cholesky_with, forward};
 use super::closure::{Closure, normalise};
 use super::layout::Block;
 use super::way::{chart_rate, way};
+use crate::algebra::closest::Equations;
+use crate::algebra::dense::{
+    apply, backward, cholesky, cholesky_with, dot, forward, gram, least_norm, product,
+};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::numeric::{evaluate, least_norm};
+use crate::algebra::numeric::evaluate;
 use crate::algebra::sizes::{beside, sizes};
 use crate::algebra::slopes::slopes;
 
@@ -55,14 +58,7 @@ impl<'c, 'a> Loops<'c, 'a> {
         let n = self.closure.n;
         let factor = root(mass)?;
         let rates = self.chart_rates(self.guess);
-        let gram: Vec<Vec<f64>> = (0..n)
-            .map(|i| {
-                (0..n)
-                    .map(|j| rates.iter().map(|c| c[i] * c[j]).sum())
-                    .collect()
-            })
-            .collect();
-        let gram = cholesky(&gram)?;
+        let gram = cholesky(&gram(&rates, n))?;
         let columns = rates.iter().map(|c| backward(&gram, &forward(&gram, c)));
         let columns: Vec<Vec<f64>> = columns.collect();
         let entry = |i: usize, column: &[f64]| (i..n).map(|k| factor[k][i] * column[k]).sum();
@@ -100,7 +96,7 @@ impl<'c, 'a> Loops<'c, 'a> {
     }
 }
 
-impl Assembly for Loops<'_, '_> {
+impl Equations for Loops<'_, '_> {
     fn directions(&self) -> usize {
         self.free.len()
     }
@@ -146,18 +142,7 @@ impl Assembly for Loops<'_, '_> {
         let Some(weight) = &self.weight else {
             return (apart, slopes);
         };
-        let weighed = |column: &dyn Fn(usize) -> f64, row: &[f64]| -> f64 {
-            row.iter().enumerate().map(|(k, s)| s * column(k)).sum()
-        };
-        let far = weight
-            .iter()
-            .map(|row| weighed(&|k| apart[k], row))
-            .collect();
-        let bent = weight.iter().map(|row| {
-            let columns = 0..self.free.len();
-            columns.map(|i| weighed(&|k| slopes[k][i], row)).collect()
-        });
-        (far, bent.collect())
+        (apply(weight, &apart), product(weight, &slopes))
     }
 
     fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
@@ -222,7 +207,7 @@ impl Constraints<'_> {
     }
 }
 
-impl Assembly for Constraints<'_> {
+impl Equations for Constraints<'_> {
     fn directions(&self) -> usize {
         self.guess.len()
     }
@@ -287,9 +272,7 @@ pub fn velocities(
     let across: Vec<Vec<f64>> = rows.iter().map(|(row, _)| forward(&factor, row)).collect();
     let mut xi = guess.to_vec();
     for _ in 0..3 {
-        let residual = |(row, shift): &(Vec<f64>, f64)| -> f64 {
-            -shift - row.iter().zip(&xi).map(|(b, v)| b * v).sum::<f64>()
-        };
+        let residual = |(row, shift): &(Vec<f64>, f64)| -> f64 { -shift - dot(row, &xi) };
         let target: Vec<f64> = rows.iter().map(residual).collect();
         let step = backward(&factor, &least_norm(&across, &target)?);
         xi.iter_mut().zip(step).for_each(|(xi, h)| *xi += h);
@@ -302,7 +285,7 @@ pub fn velocities(
 fn root(mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let scale = (0..mass.len()).map(|i| mass[i][i]).fold(0.0, f64::max);
     let raised = LEAST * if scale > 0.0 { scale } else { 1.0 };
-    cholesky_with(mass, |i, pivot| match pivot <= LEAST * mass[i][i] {
+    cholesky_with(mass, &|i, pivot| match pivot <= LEAST * mass[i][i] {
         true => raised,
         false => pivot,
     })

@@ -4,14 +4,15 @@
 //! start of a description the identity and rest. Where everything is given it only has to hold, but for
 //! rounding.
 
-use super::assembly::nearest;
 use super::closest::{Loops, velocities};
 use super::layout::{Block, blocks};
 use super::pfaffian::{Kind, Pfaffian};
 use super::{Clock, Coordinate, Model};
+use crate::algebra::closest::closest;
+use crate::algebra::dense::{dot, least_norm};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
-use crate::algebra::numeric::{evaluate, least_norm};
+use crate::algebra::numeric::evaluate;
 use crate::algebra::sizes::{beside, sizes};
 use crate::algebra::slopes::slopes;
 
@@ -138,7 +139,7 @@ impl<'a> Closure<'a> {
         let mut found = None;
         for _ in 0..JUDGED {
             let loops = Loops::new(self, mass, x, given, &sizes);
-            found = nearest(&loops, x);
+            found = closest(&loops, x);
             let Some(there) = found.as_ref().filter(|x| !self.is_closed(x)) else {
                 break;
             };
@@ -192,7 +193,7 @@ impl<'a> Closure<'a> {
             (0..b.len()).filter(|&row| matches!(self.constraints[row].kind, Kind::Drive { .. }));
         let drives: Vec<usize> = drives.collect();
         let free: Vec<usize> = (0..self.n).filter(|&i| !fixed[i]).collect();
-        let speed = |row: usize| b[row].iter().zip(&*xi).map(|(b, v)| b * v).sum::<f64>();
+        let speed = |row: usize| dot(&b[row], xi);
         let target: Vec<f64> = drives
             .iter()
             .map(|&row| -shifts[row] - speed(row))
@@ -312,9 +313,8 @@ impl<'a> Closure<'a> {
         let shifts: Vec<Edge> = self.constraints.iter().map(|c| c.shift).collect();
         let shifts = evaluate(self.graph, &shifts, &self.numbers(x));
         let speeds = |xi: &[f64]| -> Vec<f64> {
-            let moved = |row: &[f64]| row.iter().zip(xi).map(|(b, v)| b * v).sum::<f64>();
             let rows = b.chunks(n.max(1)).zip(&shifts);
-            rows.map(|(row, shift)| moved(row) + shift).collect()
+            rows.map(|(row, shift)| dot(row, xi) + shift).collect()
         };
         // A speed of 1, or those that there are.
         let sizes = |xi: &[f64]| -> Vec<f64> {
@@ -408,13 +408,19 @@ impl<'a> Closure<'a> {
     }
 
     pub(super) fn numbers(&self, x: &[f64]) -> Vec<f64> {
-        let mut numbers = vec![std::f64::consts::PI];
-        numbers.extend(self.params.iter().chain(x));
+        let mut numbers = vec![0.0; self.graph.symbols().len()];
+        let mut place = 0;
+        let mut fill = |given: &[f64]| {
+            numbers[place..place + given.len()].copy_from_slice(given);
+            place += given.len();
+        };
+        fill(&[std::f64::consts::PI]);
+        fill(self.params);
+        fill(x);
         if let Some(inputs) = self.inputs {
-            numbers.extend(vec![0.0; self.n]);
-            numbers.extend(inputs);
+            fill(&vec![0.0; self.n]);
+            fill(inputs);
         }
-        numbers.resize(self.graph.symbols().len(), 0.0);
         numbers
     }
 }

@@ -1,7 +1,6 @@
 //! A mechanical system in terms of a graph: configuration, kinematics, inertia, loads, as expressions with their
 //! points on X. What a description means, once it is read.
 
-pub mod assembly;
 pub mod charts;
 pub mod closest;
 pub mod closure;

@@ -5,6 +5,7 @@ use super::layout::{Block, sample};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::{Lane, Roots};
+use crate::algebra::newton::Newton;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
 use crate::algebra::poly::monomial::Var;
@@ -61,6 +62,12 @@ impl Points {
             radicals: Vec::new(),
             roots: Roots::default(),
         }
+    }
+
+    /// φ(x) = 0, to be solved in numbers.
+    pub fn equations(&self, phi: &[(Edge, String)]) -> Newton {
+        let rows: Vec<Edge> = phi.iter().map(|(row, _)| *row).collect();
+        Newton::new(&self.free, &rows, self.first, self.dimension())
     }
 
     /// The places of the symbols of x.

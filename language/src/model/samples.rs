@@ -1,7 +1,6 @@
 //! Real points of X, at which expressions with square roots are told apart.
 
 use super::layout::Block;
-use super::nearest::Equations;
 use super::points::Points;
 use crate::algebra::fp::Random;
 use crate::algebra::graph::Edge;
@@ -35,7 +34,7 @@ pub fn sample(
     near: Option<&[f64]>,
 ) -> Vec<Reals> {
     let mut random = Random::new(seed ^ 0x7ea1);
-    let equations = (!points.constraints.is_empty()).then(|| Equations::new(points, phi));
+    let equations = (!points.constraints.is_empty()).then(|| points.equations(phi));
     let mut all = vec![[Real::UNKNOWN; SAMPLES]; points.symbols];
     for sample in 0..SAMPLES {
         let mut values = one(points, &mut random, sample);

@@ -3,7 +3,6 @@
 
 use super::Model;
 use super::layout::Block;
-use super::nearest::Equations;
 use crate::algebra::fp::Random;
 
 /// States at random.
@@ -16,7 +15,7 @@ pub fn states(model: &Model) -> Vec<Vec<f64>> {
     let mut random = Random::new(0x57a7e);
     let mut all = vec![numbers(model, model.start_x.clone(), &mut random)];
     let equations =
-        (!model.points.constraints.is_empty()).then(|| Equations::new(&model.points, &model.phi));
+        (!model.points.constraints.is_empty()).then(|| model.points.equations(&model.phi));
     // Off a loop that is overconstrained its rows contradict one another.
     let zero = model.graph.zero();
     let looped = model

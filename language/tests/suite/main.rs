@@ -1,6 +1,5 @@
 //! Laws of the language, one module for each file of `src`; a module alone: `cargo test -p hamel-language --test suite syntax::`.
 
-mod assembly;
 mod axes;
 mod charts;
 mod functions;

@@ -1,5 +1,8 @@
 //! Words that C, C++ and their headers want for themselves.
 
+use std::collections::HashSet;
+use std::sync::LazyLock;
+
 /// Keywords of C up to C23 and of C++ up to C++20 beyond those of Rust, names of the headers that generated text
 /// includes, and what common systems define as macros; in lines of words.
 const RESERVED: &[&str] = &[
@@ -25,15 +28,15 @@ const RESERVED: &[&str] = &[
     "errno far huge i386 interface linux memcpy near small stderr stdin stdout unix",
 ];
 
+/// The same, to look names up.
+static WORDS: LazyLock<HashSet<&str>> =
+    LazyLock::new(|| RESERVED.iter().flat_map(|line| line.split(' ')).collect());
+
 /// Another name in the place of a reserved one.
 pub fn legal(name: String) -> String {
-    let is_reserved = |wanted: &str| {
-        let mut words = RESERVED.iter().flat_map(|line| line.split(' '));
-        words.any(|word| word == wanted)
-    };
     // `sinf` beside `sin`.
-    let of_float = name.strip_suffix('f').is_some_and(is_reserved);
-    match is_reserved(&name) || of_float {
+    let of_float = |name: &str| name.strip_suffix('f').is_some_and(|f| WORDS.contains(f));
+    match WORDS.contains(name.as_str()) || of_float(&name) {
         true => format!("{name}_"),
         false => name,
     }

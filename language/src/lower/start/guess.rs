@@ -1,6 +1,7 @@
 //! Guesses, `start q ~ 1.2;`: what they may be about, and the start that is nearest to them.
 
 use super::Start;
+use crate::algebra::closest::closest;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
@@ -8,7 +9,6 @@ use crate::lower::rate::Kinematics;
 use crate::lower::reader::Dynamics;
 use crate::lower::time;
 use crate::model::Frame;
-use crate::model::assembly::nearest;
 use crate::model::closest::Constraints;
 use crate::model::layout::{Block, constraint};
 use crate::model::twists::Moving;
@@ -127,7 +127,7 @@ pub fn assembled(
         sizes: Vec::new(),
     }
     .measured();
-    let mut found = nearest(&problem, &start.x)?;
+    let mut found = closest(&problem, &start.x)?;
     for &alpha in &problem.given {
         found[alpha] = start.x[alpha];
     }

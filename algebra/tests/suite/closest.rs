@@ -1,6 +1,6 @@
-//! Assemblies nearest to a guess: found where there is one, and nowhere else.
+//! Points nearest to a guess: found where there is one, and nowhere else.
 
-use hamel_language::model::assembly::{Assembly, nearest};
+use hamel_algebra::closest::{Equations, closest};
 
 /// A point on the circle of radius r about the origin, with its distance in a diagonal metric.
 struct Circle {
@@ -9,7 +9,7 @@ struct Circle {
     weights: [f64; 2],
 }
 
-impl Assembly for Circle {
+impl Equations for Circle {
     fn directions(&self) -> usize {
         2
     }
@@ -32,7 +32,7 @@ impl Assembly for Circle {
 /// Against the least of many points of the circle.
 #[test]
 fn the_nearest_point_of_a_circle_is_found() {
-    let mut random = hamel_language::algebra::fp::Random::new(11);
+    let mut random = hamel_algebra::fp::Random::new(11);
     let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
     for _ in 0..50 {
         let circle = Circle {
@@ -40,7 +40,7 @@ fn the_nearest_point_of_a_circle_is_found() {
             guess: [2.0 * number(), 2.0 * number()],
             weights: [1.0 + number().abs(), 1.0 + 2.0 * number().abs()],
         };
-        let x = nearest(&circle, &circle.guess).expect("a point");
+        let x = closest(&circle, &circle.guess).expect("a point");
         let distance = |x: &[f64]| circle.apart(x).0.iter().map(|e| e * e).sum::<f64>().sqrt();
         let least = (0..5_000)
             .map(|k| {
@@ -61,7 +61,7 @@ fn the_nearest_point_of_a_circle_is_found() {
 #[test]
 fn where_there_is_no_solution_none_is_found() {
     struct Nowhere;
-    impl Assembly for Nowhere {
+    impl Equations for Nowhere {
         fn directions(&self) -> usize {
             1
         }
@@ -78,5 +78,5 @@ fn where_there_is_no_solution_none_is_found() {
             vec![x[0] + step[0]]
         }
     }
-    assert_eq!(nearest(&Nowhere, &[0.4]), None);
+    assert_eq!(closest(&Nowhere, &[0.4]), None);
 }

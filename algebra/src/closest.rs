@@ -1,8 +1,8 @@
-//! The configuration nearest to a guess among those that satisfy equations: Newton's method to one of them, then
-//! descent along all of them, and the same from a few neighbours of the guess, of which the nearest end counts.
+//! The point nearest to a guess among those that satisfy equations: Newton's method to one of them, then descent along
+//! all of them, and the same from a few neighbours of the guess, of which the nearest end counts.
 
-use crate::algebra::fp::Random;
-use crate::algebra::numeric::least_norm;
+use super::dense::{backward, cholesky, dot, forward, gram, largest, least_norm};
+use super::fp::Random;
 
 /// Steps of Newton's method.
 const STEPS: usize = 100;
@@ -31,8 +31,8 @@ const AWAY: f64 = 3.0;
 /// What is added to the metric, relative to its largest entry, so that it is positive definite.
 const REGULAR: f64 = 1e-9;
 
-/// Equations for a configuration, and its distance from a guess. Directions are the rates along which it may move.
-pub trait Assembly {
+/// Equations for a point, and its distance from a guess. Directions are the rates along which it may move.
+pub trait Equations {
     /// How many directions there are.
     fn directions(&self) -> usize;
     /// What has to be 0.
@@ -41,12 +41,12 @@ pub trait Assembly {
     fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>>;
     /// e(x), whose length is the distance from the guess, and its slopes along the directions.
     fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>);
-    /// The configuration a step away.
+    /// The point a step away.
     fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64>;
 }
 
 /// The solution nearest to the guess; `None` where none was found.
-pub fn nearest(problem: &impl Assembly, guess: &[f64]) -> Option<Vec<f64>> {
+pub fn closest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
     if largest(&problem.residuals(guess)) <= SOLVED {
         return Some(guess.to_vec());
     }
@@ -77,7 +77,7 @@ pub fn nearest(problem: &impl Assembly, guess: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// Newton's method with the shortest steps in the metric, to the last digit.
-fn close(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn close(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut residuals = problem.residuals(&x);
     for _ in 0..STEPS {
         let step = step(problem, &x, &residuals, false);
@@ -111,7 +111,7 @@ fn close(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
 }
 
 /// Along the solutions to where the distance is least.
-fn descend(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn descend(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut before = distance(problem, &x);
     for _ in 0..DESCENT {
         let step = step(problem, &x, &problem.residuals(&x), true)?;
@@ -160,7 +160,7 @@ fn descend(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
 
 /// The rest of the descent. Near its end distances differ by less than their rounding, while half of the digits are still
 /// missing; the steps tell more, which are taken as long as they become shorter.
-fn settle(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn settle(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let ahead = |x: &[f64]| step(problem, x, &problem.residuals(x), true);
     let mut step = ahead(&x)?;
     let mut factor = 1.0;
@@ -199,17 +199,11 @@ fn shortened<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> Op
 }
 
 /// The step h with φ + B h = 0 that is shortest in the metric EᵀE or, towards the guess, has the shortest e + E h.
-fn step(problem: &impl Assembly, x: &[f64], residuals: &[f64], towards: bool) -> Option<Vec<f64>> {
+fn step(problem: &dyn Equations, x: &[f64], residuals: &[f64], towards: bool) -> Option<Vec<f64>> {
     let (apart, slopes) = problem.apart(x);
     let count = problem.directions();
     let column = |i: usize| slopes.iter().map(move |row| row[i]);
-    let mut metric: Vec<Vec<f64>> = (0..count)
-        .map(|i| {
-            (0..count)
-                .map(|j| column(i).zip(column(j)).map(|(a, b)| a * b).sum())
-                .collect()
-        })
-        .collect();
+    let mut metric = gram(&slopes, count);
     let scale = (0..count)
         .map(|i| metric[i][i])
         .fold(f64::MIN_POSITIVE, f64::max);
@@ -241,75 +235,12 @@ fn step(problem: &impl Assembly, x: &[f64], residuals: &[f64], towards: bool) ->
     Some(backward(&factor, &u))
 }
 
-/// L with L Lᵀ = M; `None` where M is not positive definite.
-pub fn cholesky(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    cholesky_with(m, |_, pivot| pivot)
-}
-
-/// The same with other pivots, by their places and values.
-pub(super) fn cholesky_with(
-    m: &[Vec<f64>],
-    mut pivot: impl FnMut(usize, f64) -> f64,
-) -> Option<Vec<Vec<f64>>> {
-    let n = m.len();
-    let mut l = vec![vec![0.0; n]; n];
-    for i in 0..n {
-        for j in 0..=i {
-            let sum = m[i][j] - dot(&l[i][..j], &l[j][..j]);
-            l[i][j] = if i == j {
-                pivot(i, sum).sqrt()
-            } else {
-                sum / l[j][j]
-            };
-        }
-        if !(l[i][i] > 0.0 && l[i][i].is_finite()) {
-            return None;
-        }
-    }
-    Some(l)
-}
-
-/// L⁻¹ b.
-pub fn forward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
-    let mut y = b.to_vec();
-    for i in 0..y.len() {
-        y[i] = (y[i] - dot(&l[i][..i], &y[..i])) / l[i][i];
-    }
-    y
-}
-
-/// L⁻ᵀ b.
-pub fn backward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
-    let mut y = b.to_vec();
-    for i in (0..y.len()).rev() {
-        let sum: f64 = (i + 1..y.len()).map(|k| l[k][i] * y[k]).sum();
-        y[i] = (y[i] - sum) / l[i][i];
-    }
-    y
-}
-
-fn distance(problem: &impl Assembly, x: &[f64]) -> f64 {
+fn distance(problem: &dyn Equations, x: &[f64]) -> f64 {
     square(&problem.apart(x).0).sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// |a|², infinite where an entry is no number.
 fn square(a: &[f64]) -> f64 {
     let sum = dot(a, a);
     if sum.is_nan() { f64::INFINITY } else { sum }
-}
-
-/// max |a|, infinite where an entry is no number.
-fn largest(a: &[f64]) -> f64 {
-    let worst = |most: f64, a: &f64| {
-        if a.is_nan() {
-            f64::INFINITY
-        } else {
-            most.max(a.abs())
-        }
-    };
-    a.iter().fold(0.0, worst)
 }
