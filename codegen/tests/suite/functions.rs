@@ -176,9 +176,16 @@ fn a_function_without_a_call_is_a_warning() {
     );
 }
 
-/// Chains of calls and calls that double end with an error, soon and without an overflow.
+/// Chains of calls and calls that double end with an error, soon and without an overflow of the stack that build scripts and
+/// the command line have.
 #[test]
 fn what_functions_write_out_is_bounded() {
+    let deep = std::thread::Builder::new().stack_size(8 << 20);
+    let thread = deep.spawn(chains_and_doubling_end).expect("a thread");
+    thread.join().expect("bounded");
+}
+
+fn chains_and_doubling_end() {
     let system = |functions: &str, first: &str| {
         format!(
             "system S {{ coord x; velocity v; rate x = v; kinetic v^2 / 2; {functions} potential {first}(x)^2; }}"

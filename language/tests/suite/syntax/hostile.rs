@@ -21,8 +21,15 @@ fn message(expression: &str) -> String {
     }
 }
 
+/// With the stack that build scripts and the command line have.
 #[test]
 fn deep_nesting_is_refused() {
+    let deep = std::thread::Builder::new().stack_size(8 << 20);
+    let thread = deep.spawn(nesting_ends_at_64).expect("a thread");
+    thread.join().expect("refused");
+}
+
+fn nesting_ends_at_64() {
     for (open, close) in [
         ("(", ")"),
         ("[", "]"),
