@@ -109,32 +109,16 @@ pub fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
 /// h = Jᵀ (J Jᵀ + ε I)⁻¹ r and one refinement. `None` where a number is not finite.
 pub fn least_norm(jacobian: &[Vec<f64>], r: &[f64]) -> Option<Vec<f64>> {
     let (m, n) = (r.len(), jacobian.first().map_or(0, Vec::len));
-    let mut gram: Vec<Vec<f64>> = jacobian
-        .iter()
-        .map(|a| jacobian.iter().map(|b| dot(a, b)).collect())
-        .collect();
+    let mut gram: Vec<Vec<f64>> = jacobian.iter().map(|row| apply(jacobian, row)).collect();
     let scale = (0..m).map(|i| gram[i][i]).fold(f64::MIN_POSITIVE, f64::max);
     for (i, row) in gram.iter_mut().enumerate() {
         row[i] += 1e-12 * scale;
     }
-    // Cholesky.
-    let mut l = vec![vec![0.0; m]; m];
-    for i in 0..m {
-        for j in 0..=i {
-            let sum = gram[i][j] - dot(&l[i][..j], &l[j][..j]);
-            l[i][j] = if i == j { sum.sqrt() } else { sum / l[j][j] };
-        }
-    }
+    let l = cholesky(&gram)?;
     let mut h = vec![0.0; n];
     for _ in 0..2 {
-        let mut y: Vec<f64> = (0..m).map(|i| r[i] - dot(&jacobian[i], &h)).collect();
-        for i in 0..m {
-            y[i] = (y[i] - dot(&l[i][..i], &y[..i])) / l[i][i];
-        }
-        for i in (0..m).rev() {
-            let sum: f64 = (i + 1..m).map(|k| l[k][i] * y[k]).sum();
-            y[i] = (y[i] - sum) / l[i][i];
-        }
+        let left: Vec<f64> = (0..m).map(|i| r[i] - dot(&jacobian[i], &h)).collect();
+        let y = backward(&l, &forward(&l, &left));
         for (row, y) in jacobian.iter().zip(&y) {
             h.iter_mut().zip(row).for_each(|(h, a)| *h += a * y);
         }

@@ -408,19 +408,14 @@ impl<'a> Closure<'a> {
     }
 
     pub(super) fn numbers(&self, x: &[f64]) -> Vec<f64> {
-        let mut numbers = vec![0.0; self.graph.symbols().len()];
-        let mut place = 0;
-        let mut fill = |given: &[f64]| {
-            numbers[place..place + given.len()].copy_from_slice(given);
-            place += given.len();
-        };
-        fill(&[std::f64::consts::PI]);
-        fill(self.params);
-        fill(x);
+        let mut numbers = vec![std::f64::consts::PI];
+        numbers.extend_from_slice(self.params);
+        numbers.extend_from_slice(x);
         if let Some(inputs) = self.inputs {
-            fill(&vec![0.0; self.n]);
-            fill(inputs);
+            numbers.resize(numbers.len() + self.n, 0.0);
+            numbers.extend_from_slice(inputs);
         }
+        numbers.resize(self.graph.symbols().len(), 0.0);
         numbers
     }
 }
