@@ -57,8 +57,8 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// An empty graph; `seed` chooses the points, `free_class` the run-time constants.
-    pub fn new(seed: u64, free_class: u8) -> Self {
+    /// An empty graph, in which symbols of `free_class` are constant at run time.
+    pub fn new(free_class: u8) -> Self {
         let mut graph = Graph {
             nodes: Vec::new(),
             values: Vec::new(),
@@ -66,7 +66,7 @@ impl Graph {
             by_value: FxHashMap::default(),
             constants: Vec::new(),
             symbols: Vec::new(),
-            lane: Lane::new(seed),
+            lane: Lane::new(),
             shadow: Shadow::default(),
             contents: FxHashMap::default(),
             copied: Fp::ZERO,
@@ -83,7 +83,7 @@ impl Graph {
 
     /// An empty graph at the same points, for some of the symbols.
     pub fn fresh(&self) -> Self {
-        let mut graph = Graph::new(0, self.free_class);
+        let mut graph = Graph::new(self.free_class);
         graph.lane = self.lane.fresh();
         graph.externals = self.externals.clone();
         graph

@@ -1,5 +1,9 @@
 //! One point of the variety in each of the two fields: the values of all symbols, and of sin, cos, exp, √.
 //!
+//! The value of a function follows from that of its argument, in the same way at every point: two points differ in the values
+//! of symbols alone. So a number, such as √(sin² 1 + sin² 2), has one image modulo p. If images differed, a root of such a sum
+//! would be one of the two roots here and the other one there, and what holds between numbers at one point would fail at others.
+//!
 //! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
 //! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
 //! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
@@ -43,12 +47,10 @@ pub enum Roots {
     Anything,
 }
 
-/// A point: values of symbols, and a seed from which the values of functions follow. Values of
-/// functions depend on values of arguments alone, so that two graphs agree at the same point; those in
-/// one field do not depend on what is in the other.
-#[derive(Clone, Debug)]
+/// A point: values of symbols. Values of functions depend on values of arguments alone, so that two graphs agree at the same
+/// point; those in one field do not depend on those in the other.
+#[derive(Clone, Debug, Default)]
 pub struct Lane {
-    seed: u64,
     symbols: Vec<Fp>,
     /// In which field a square root was asked of a non-square: the point should be chosen anew there.
     stuck: [bool; 2],
@@ -60,21 +62,15 @@ pub struct Lane {
 
 impl Lane {
     /// A point without symbols yet.
-    pub fn new(seed: u64) -> Self {
-        Lane {
-            seed,
-            symbols: Vec::new(),
-            stuck: [false; 2],
-            roots: Roots::default(),
-            written: FxHashMap::default(),
-        }
+    pub fn new() -> Self {
+        Lane::default()
     }
 
     /// The same functions, without symbols.
     pub fn fresh(&self) -> Self {
         Lane {
             roots: self.roots,
-            ..Lane::new(self.seed)
+            ..Lane::new()
         }
     }
 
@@ -180,10 +176,8 @@ impl Lane {
         _: Part<K>,
     ) -> Option<Residue<K>> {
         let anything = || {
-            (self.roots == Roots::Anything).then(|| {
-                self.draw(Function::Sqrt as u64, argument, Residue::ZERO)
-                    .residue()
-            })
+            (self.roots == Roots::Anything)
+                .then(|| Lane::draw(Function::Sqrt as u64, argument, Residue::ZERO).residue())
         };
         let Some((_, factor)) = form.first() else {
             return argument.sqrt().or_else(anything);
@@ -199,8 +193,8 @@ impl Lane {
     pub fn opaque(&self, function: Function, a: Fp, b: Fp) -> Fp {
         let tag = function as u64;
         Fp(
-            self.draw(tag, a.0, b.0).residue(),
-            self.draw(tag, a.1, b.1).residue(),
+            Lane::draw(tag, a.0, b.0).residue(),
+            Lane::draw(tag, a.1, b.1).residue(),
         )
     }
 
@@ -225,8 +219,8 @@ impl Lane {
             return if n > 0 { Fp::ONE } else { Fp::ZERO };
         }
         Fp(
-            self.draw(POSITIVE, a.0, Residue::ONE).residue(),
-            self.draw(POSITIVE, a.1, Residue::ONE).residue(),
+            Lane::draw(POSITIVE, a.0, Residue::ONE).residue(),
+            Lane::draw(POSITIVE, a.1, Residue::ONE).residue(),
         )
     }
 
@@ -235,9 +229,9 @@ impl Lane {
         self.positive(a) - self.positive(-a)
     }
 
-    /// A random stream that belongs to a tag and two values.
-    fn draw<const K: usize>(&self, tag: u64, a: Residue<K>, b: Residue<K>) -> Random {
-        let mut seed = self.seed ^ (K as u64) << 63;
+    /// The random stream that belongs to a tag and two values.
+    fn draw<const K: usize>(tag: u64, a: Residue<K>, b: Residue<K>) -> Random {
+        let mut seed = (K as u64) << 63;
         for part in [tag, a.bits(), b.bits()] {
             seed = Random::new(seed ^ part.wrapping_mul(0x2545_f491_4f6c_dd1d)).bits();
         }
@@ -258,7 +252,7 @@ impl Lane {
                     1 if base == pi => (twelfth(), count),
                     1 if base == -pi => (twelfth(), -count),
                     _ => {
-                        let mut random = self.draw(64 + parts, base, Residue::ONE);
+                        let mut random = Lane::draw(64 + parts, base, Residue::ONE);
                         (circle_residue(&mut random), count)
                     }
                 };
@@ -274,8 +268,7 @@ impl Lane {
                 if base.is_zero() {
                     return total;
                 }
-                let magnitude = self
-                    .draw(96 + parts, base, Residue::ONE)
+                let magnitude = Lane::draw(96 + parts, base, Residue::ONE)
                     .residue::<K>()
                     .pow(count.unsigned_abs());
                 total

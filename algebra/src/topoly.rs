@@ -26,12 +26,12 @@ pub const HIGHEST_DEGREE: u32 = 100;
 /// Products and sums of terms of a linear form whose powers are kept.
 const LONGEST_BASE: usize = 100;
 
-/// a b, unless it has too many terms or too high a degree.
-fn product<F: Field>(a: &Poly<F>, b: &Poly<F>) -> Option<Poly<F>> {
+/// a b, unless it has more than `most` terms or too high a degree.
+fn product<F: Field>(a: &Poly<F>, b: &Poly<F>, most: usize) -> Option<Poly<F>> {
     if a.degree() + b.degree() > HIGHEST_DEGREE {
         return None;
     }
-    a.mul_limited(b, MOST_TERMS)
+    a.mul_limited(b, most)
 }
 
 /// Polynomials over Q of nodes; remembers what it has expanded.
@@ -39,6 +39,8 @@ pub struct Expander {
     memo: FxHashMap<NodeId, Option<Poly<BigRational>>>,
     /// Products and sums of terms that may still be made.
     work: usize,
+    /// Largest number of terms of a polynomial, intermediate ones included.
+    most_terms: usize,
     /// Linear forms that are variables, where powers are kept.
     bases: Option<FxHashSet<NodeId>>,
 }
@@ -56,8 +58,15 @@ impl Expander {
         Expander {
             memo: FxHashMap::default(),
             work,
+            most_terms: MOST_TERMS,
             bases: None,
         }
+    }
+
+    /// Gives up on expressions with an intermediate polynomial of more terms than this.
+    pub fn of_terms(mut self, most: usize) -> Self {
+        self.most_terms = most;
+        self
     }
 
     /// The same, with linear forms as variables whose third or a higher power is taken.
@@ -135,11 +144,11 @@ impl Expander {
             Node::Add(a, b) => {
                 let (a, b) = (self.signed(a)?, self.signed(b)?);
                 let sum = a.add(&b);
-                (sum.terms().len() <= MOST_TERMS).then_some(sum)
+                (sum.terms().len() <= self.most_terms).then_some(sum)
             }
             Node::Mul(a, b) => {
                 let (a, b) = (self.signed(a)?, self.signed(b)?);
-                product(&a, &b)
+                product(&a, &b, self.most_terms)
             }
             _ => Some(Poly::var(OPAQUE + id)),
         }
@@ -181,7 +190,7 @@ pub fn polynomial_at(
             Node::Symbol(index) if unknown(index as usize) => Poly::var(index),
             Node::Symbol(index) => Poly::constant(*values.get(index as usize)?),
             Node::Add(a, b) => read(&memo, a)?.add(&read(&memo, b)?),
-            Node::Mul(a, b) => product(&read(&memo, a)?, &read(&memo, b)?)?,
+            Node::Mul(a, b) => product(&read(&memo, a)?, &read(&memo, b)?, MOST_TERMS)?,
             Node::Div(a, b) => {
                 let divisor = read(&memo, b)?.as_constant()?.inv()?;
                 read(&memo, a)?.scale(&divisor)

@@ -10,7 +10,7 @@ use hamel_algebra::tape::Tape;
 #[test]
 fn rows_are_the_mixed_derivatives_of_jets() {
     let mut random = Random::new(11);
-    let mut graph = Graph::new(1, 0);
+    let mut graph = Graph::new(0);
     let [a, b, c] = ["a", "b", "c"].map(|name| graph.symbol(name, 2, random.element()));
     let product = graph.mul(a, b);
     let mut sum = graph.sub(c, product);
@@ -29,8 +29,9 @@ fn rows_are_the_mixed_derivatives_of_jets() {
             .collect()
     };
     let mut found = 0;
-    for seed in 0..60 {
-        let mut lane = Lane::new(seed);
+    // Both roots have values in both fields at one point in sixteen.
+    for _ in 0..240 {
+        let mut lane = Lane::new();
         (0..first + 3).for_each(|_| lane.push_symbol(random.element()));
         for k in 0..3 {
             let seeds = Seeds {

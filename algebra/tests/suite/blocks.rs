@@ -8,7 +8,7 @@ use hamel_algebra::linear::multiply;
 
 /// A graph with (c, s) on the circle, a parameter l and a free coordinate x.
 fn graph() -> (Graph, [Edge; 4]) {
-    let mut graph = Graph::new(5, 1);
+    let mut graph = Graph::new(1);
     let mut random = Random::new(11);
     let point = circle_point(&mut random);
     let c = graph.symbol("c", 2, point.0);

@@ -6,7 +6,7 @@ use hamel_algebra::graph::{Function, Graph};
 
 #[test]
 fn degrees_are_those_of_the_functions() {
-    let mut graph = Graph::new(5, 1);
+    let mut graph = Graph::new(1);
     let mut random = Random::new(6);
     let [a, b, c] = ["a", "b", "c"].map(|name| graph.symbol(name, 2, random.element()));
     let product = graph.mul(a, b);

@@ -10,7 +10,7 @@ use hamel_algebra::walk::evaluate;
 
 fn graph() -> (Graph, [Edge; 2], [Fp; 2]) {
     let mut random = Random::new(9);
-    let mut graph = Graph::new(3, 1);
+    let mut graph = Graph::new(1);
     graph.set_externals(vec![External {
         name: "f".into(),
         arguments: vec!["a".into(), "b".into()],
@@ -73,7 +73,7 @@ fn slopes_go_by_the_chain_rule() {
 }
 
 fn at(values: [Fp; 2]) -> Lane {
-    let mut lane = Lane::new(3);
+    let mut lane = Lane::new();
     values.into_iter().for_each(|value| lane.push_symbol(value));
     lane
 }

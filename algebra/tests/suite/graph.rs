@@ -20,7 +20,7 @@ const COORD: u8 = 2;
 
 /// A graph with two parameters, two free coordinates and a point of the circle.
 fn graph() -> (Graph, [Edge; 6]) {
-    let mut graph = Graph::new(7, PARAM);
+    let mut graph = Graph::new(PARAM);
     let mut random = Random::new(11);
     let mut free = |graph: &mut Graph, name: &str, class: u8| {
         let value = random.element();

@@ -5,7 +5,7 @@ use hamel_algebra::graph::{Edge, Function, Graph, NodeId};
 
 fn made() -> (Graph, [Edge; 4]) {
     let mut random = Random::new(17);
-    let mut g = Graph::new(2, 1);
+    let mut g = Graph::new(1);
     let symbols = [("p", 1), ("a", 2), ("b", 2), ("d", 2)]
         .map(|(name, class)| g.symbol(name, class, random.element()));
     (g, symbols)

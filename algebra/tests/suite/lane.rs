@@ -8,7 +8,7 @@ use num_rational::BigRational;
 /// What is 0 at a point is 0 for functions, and like terms of what is written out are one.
 #[test]
 fn forms_are_collected() {
-    let mut lane = Lane::new(4);
+    let mut lane = Lane::new();
     let [a, b, zero] = [Fp::new(7), Fp::new(5), Fp::ZERO];
     let rational = |n: i64, d: i64| BigRational::new(n.into(), d.into());
     // b = −2/3 a, so that a/3 − b/3 = 5/9 a.
@@ -27,7 +27,7 @@ fn forms_are_collected() {
 /// Sines and cosines of twelfths of π are the roots that they are, in both fields.
 #[test]
 fn twelfths_of_a_turn_are_exact() {
-    let mut lane = Lane::new(3);
+    let mut lane = Lane::new();
     let mut at = |function, n: i64| {
         let form = vec![(Fp::PI, BigRational::new(n.into(), 12.into()))];
         lane.function(function, Fp::ZERO, &form)

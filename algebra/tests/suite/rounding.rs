@@ -8,7 +8,7 @@ use num_rational::BigRational;
 /// (1 + d) − 1 with d = 1e-9 / 7, which keeps half of its digits.
 #[test]
 fn cancellation_is_seen() {
-    let mut graph = Graph::new(1, 1);
+    let mut graph = Graph::new(1);
     let pi = graph.symbol("pi", 0, hamel_algebra::fp::Fp::PI);
     let x = graph.symbol("x", 2, hamel_algebra::fp::Random::new(3).element());
     let small = graph.rational(&BigRational::new(

@@ -8,7 +8,7 @@ use hamel_algebra::sizes::{relative, sizes};
 #[test]
 fn a_circle_is_as_large_as_its_radius() {
     let mut random = Random::new(5);
-    let mut graph = Graph::new(1, 1);
+    let mut graph = Graph::new(1);
     graph.symbol("pi", 0, hamel_algebra::fp::Fp::PI);
     let [r, x, z] = ["r", "x", "z"].map(|name| graph.symbol(name, 2, random.element()));
     let squares = [x, z, r].map(|a| graph.mul(a, a));

@@ -10,7 +10,7 @@ use hamel_algebra::slopes::slopes;
 #[test]
 fn slopes_are_the_numbers_of_symbolic_derivatives() {
     let mut random = Random::new(7);
-    let mut graph = Graph::new(1, 0);
+    let mut graph = Graph::new(0);
     let [a, b] = ["a", "b"].map(|name| graph.symbol(name, 2, random.element()));
     let product = graph.mul(a, b);
     let sum = graph.sub(product, b);

@@ -6,7 +6,7 @@ use hamel_algebra::text::short;
 
 #[test]
 fn parentheses_stand_where_they_are_needed() {
-    let mut graph = Graph::new(3, 1);
+    let mut graph = Graph::new(1);
     let value = |seed: u64| Random::new(seed).element();
     let a = graph.symbol("a", 2, value(11));
     let b = graph.symbol("b", 2, value(23));

@@ -8,7 +8,7 @@ use hamel_algebra::topoly::Expander;
 #[test]
 fn powers_of_linear_forms_are_kept_where_that_is_asked_for() {
     let mut random = Random::new(7);
-    let mut graph = Graph::new(1, 0);
+    let mut graph = Graph::new(0);
     let [x, y, a] = ["x", "y", "a"].map(|name| {
         let value = random.element();
         graph.symbol(name, 2, value)
@@ -42,7 +42,7 @@ fn powers_of_linear_forms_are_kept_where_that_is_asked_for() {
 #[test]
 fn an_expansion_ends_with_its_work() {
     let mut random = Random::new(5);
-    let mut graph = Graph::new(1, 0);
+    let mut graph = Graph::new(0);
     let symbols: Vec<_> = (0..6)
         .map(|i| {
             let value = random.element();

@@ -5,7 +5,7 @@ use super::calculus::{Calculus, into_frame};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{apply3, cross};
-use crate::algebra::numeric::evaluate;
+use crate::algebra::numeric::{evaluate, rank};
 use crate::diagnostics::Diagnostic;
 use crate::model::closure::normalise;
 use crate::model::twists::Moving;
@@ -13,6 +13,10 @@ use crate::model::{Body, Model, Particle};
 
 /// Pivots that are no larger than this part of the diagonal are rounding of zero.
 const ROUNDING: f64 = 1e-13;
+/// Models with more velocities are looked at in numbers alone.
+const MOST_EXACT: usize = 8;
+/// Pivots up to this part of the diagonal may be rounding of zero, if they were computed in another way.
+const DOUBTFUL: f64 = 1e-11;
 /// The same where nothing is exact: what is larger is none, whatever was rounded.
 const CERTAIN: f64 = 1e-9;
 
@@ -116,8 +120,12 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
         .collect()
 }
 
-/// Whether M is not positive definite at the start, with the default parameters; in numbers alone.
+/// Whether constraints have to carry velocities without inertia: M is singular on all of X, or so close to singular at the start,
+/// with the default parameters, that rounding may decide.
 pub fn is_singular(model: &Model) -> bool {
+    if model.n() <= MOST_EXACT && has_idle_directions(model) {
+        return true;
+    }
     let numbers = numbers(model, &model.start_x);
     let first = 1 + model.defaults.len();
     let moving = Moving {
@@ -127,14 +135,34 @@ pub fn is_singular(model: &Model) -> bool {
         velocity: first + model.x.len(),
         n: model.n(),
     };
-    let inertia = (&model.bodies[..], &model.particles[..], model.kinetic);
-    let mass = moving.mass(&model.frames, inertia, &numbers).concat();
-    let more = model.kinetic_terms.iter();
-    let more = more.flat_map(|terms| evaluate(&model.graph, &terms.mass.concat(), &numbers));
-    let more: Vec<f64> = more.collect();
-    let all = mass.iter().enumerate();
-    let all = all.map(|(i, entry)| entry + more.get(i).unwrap_or(&0.0));
-    failing_pivot(&all.collect::<Vec<_>>(), model.n(), ROUNDING).is_some()
+    let terms = model.kinetic_terms.as_ref();
+    let kinetic = terms.map_or(model.kinetic, |_| model.graph.zero());
+    let inertia = (&model.bodies[..], &model.particles[..], kinetic);
+    let mut mass = moving.mass(&model.frames, inertia, &numbers).concat();
+    if let Some(terms) = terms {
+        let more = evaluate(&model.graph, &terms.mass.concat(), &numbers);
+        mass.iter_mut()
+            .zip(more)
+            .for_each(|(sum, more)| *sum += more);
+    }
+    failing_pivot(&mass, model.n(), DOUBTFUL).is_some()
+}
+
+/// Whether M has a lower rank than it has rows at a random point of X and of the parameters.
+fn has_idle_directions(model: &Model) -> bool {
+    let mut model = model.clone();
+    let mut calculus = Calculus::new(&model);
+    let terms = model.kinetic_terms.take();
+    if terms.is_some() {
+        model.kinetic = model.graph.zero();
+    }
+    let mut mass = mass_matrix(&mut model, &mut calculus);
+    if let Some(terms) = terms {
+        accumulate(&mut model.graph, &mut mass, &terms.mass);
+    }
+    let value = |entry: &Edge| model.graph.value(*entry);
+    let rows = mass.iter().map(|row| row.iter().map(value).collect());
+    rank(rows.collect()) < model.n()
 }
 
 /// The numbers of the start, but for x.
@@ -244,8 +272,42 @@ pub fn positive_definite(
     .help("every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it").about_inverse())
 }
 
-/// The first pivot of Cholesky's factorisation that is not larger than `least`, relative to the diagonal.
+/// The first velocity whose pivot in Cholesky's factorisation is not larger than `least`, relative to the diagonal; `None`
+/// where none fails in an elimination that takes the largest pivot first.
+///
+/// The order of elimination decides how far rounding hides that a pivot is 0: with the largest first, what is left for the last
+/// one is a few units of the diagonal.
 fn failing_pivot(m: &[f64], n: usize, least: f64) -> Option<usize> {
+    let idle = without_pivots(m, n, least);
+    if idle.is_empty() {
+        return None;
+    }
+    first_failing(m, n, least).or(idle.first().copied())
+}
+
+/// The velocities that are left, in ascending order, when no pivot is larger than `least`, relative to the diagonal; the largest
+/// of these ratios is taken first.
+fn without_pivots(m: &[f64], n: usize, least: f64) -> Vec<usize> {
+    let mut rest = m.to_vec();
+    let mut left: Vec<usize> = (0..n).collect();
+    let ratio = |rest: &[f64], i: usize| rest[i * n + i] / m[i * n + i].abs();
+    while let Some(place) = (0..left.len())
+        .filter(|&place| ratio(&rest, left[place]) > least)
+        .max_by(|&a, &b| ratio(&rest, left[a]).total_cmp(&ratio(&rest, left[b])))
+    {
+        let k = left.remove(place);
+        let pivot = rest[k * n + k];
+        for &i in &left {
+            for &j in &left {
+                rest[i * n + j] -= rest[i * n + k] * rest[k * n + j] / pivot;
+            }
+        }
+    }
+    left
+}
+
+/// The first pivot in the order of the velocities that is not larger than `least`, relative to the diagonal.
+fn first_failing(m: &[f64], n: usize, least: f64) -> Option<usize> {
     let mut l = vec![0.0; n * n];
     for i in 0..n {
         for j in 0..=i {

@@ -28,8 +28,10 @@ use crate::program::count::count;
 const MOST_EXPANDED: usize = 8;
 /// Entries with more terms are not expanded.
 const MOST_TERMS: usize = 40;
+/// Intermediate polynomials with more terms are not expanded: what cancels modulo φ leaves a tenth of them, or more.
+const MOST_INTERMEDIATE_TERMS: usize = 400;
 /// Products and sums of terms after which the expansion is given up: the traced entries stand.
-const MOST_WORK: usize = 1_000_000;
+const MOST_WORK: usize = 200_000;
 
 /// ξ̇ = F as edges of a graph that grew from the model's.
 pub struct ForwardDynamics<'a> {
@@ -365,7 +367,9 @@ fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
 
 /// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
 fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
-    let mut forms = NormalForms::within(&model.points, MOST_WORK).keeping_powers();
+    let mut forms = NormalForms::within(&model.points, MOST_WORK)
+        .of_terms(MOST_INTERMEDIATE_TERMS)
+        .keeping_powers();
     let mut source = explicit.graph.clone();
     let mut polynomials = Vec::new();
     for &edge in explicit.rows.iter().flatten() {

@@ -92,6 +92,12 @@ impl NormalForms {
         }
     }
 
+    /// Gives up on expressions with an intermediate polynomial of more terms than this.
+    pub fn of_terms(mut self, most: usize) -> Self {
+        self.expander = self.expander.of_terms(most);
+        self
+    }
+
     /// The same with powers of linear forms as they are: digits of (x − c)³ near c.
     pub fn keeping_powers(mut self) -> Self {
         self.expander = self.expander.keeping_powers();

@@ -24,6 +24,7 @@ mod inerter;
 mod joints;
 mod language;
 mod loops;
+mod massless;
 #[path = "common/models.rs"]
 mod models;
 mod mounts;
@@ -51,6 +52,7 @@ mod seeds;
 #[path = "common/some.rs"]
 mod some;
 mod tetrahedron;
+mod tilted;
 #[path = "common/tree/mod.rs"]
 mod tree;
 mod trees;

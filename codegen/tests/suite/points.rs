@@ -9,7 +9,7 @@ mod included;
 
 #[test]
 fn too_few_points_are_no_agreement() {
-    let lane = |number| Some(Lane::new(number));
+    let lane = |_| Some(Lane::new());
     let some = |most: u64| move |_: &Lane, number| (number <= most).then_some(Ok::<(), ()>(()));
     assert_eq!(at_fresh_points(lane, some(POINTS)), Ok(()));
     assert_eq!(

@@ -56,7 +56,7 @@ impl<'a> Ground<'a> {
         let reals = |graph: &mut Graph| {
             graph.set_reals(samples::anywhere(graph.symbols().len(), seed));
         };
-        let graph = Graph::new(own, class::PARAM);
+        let graph = Graph::new(class::PARAM);
         Ground::read(system, names, true, graph, &mut next, reals, report)
     }
 
@@ -76,7 +76,7 @@ impl<'a> Ground<'a> {
             graph.set_reals(samples::sample(&variety.points, &variety.phi, seed, near));
             graph.watch(near.is_some() && variety.complete);
         };
-        let mut graph = Graph::new(seed, class::PARAM);
+        let mut graph = Graph::new(class::PARAM);
         graph.set_roots(variety.points.roots);
         Ground::read(system, names, false, graph, &mut next, reals, report)
     }

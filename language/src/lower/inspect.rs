@@ -58,7 +58,7 @@ struct Setting<'a> {
 impl<'a> Setting<'a> {
     fn new(system: &'a System, names: &'a symbols::Resolved<'a>) -> Result<Self, Vec<Diagnostic>> {
         let mut random = Random::new(7);
-        let mut graph = Graph::new(7, class::PARAM);
+        let mut graph = Graph::new(class::PARAM);
         let mut scope = Scope::new(system, &names.symbols, true);
         let mut report = Report::new();
         let mut next = |_: &mut Graph| random.element();

@@ -176,7 +176,7 @@ impl Variety {
     pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Fp> {
         self.seed = seed;
         let mut random = Random::new(seed ^ 0x5eed);
-        let mut point = |points: &Points| points.choose(&mut random, seed);
+        let mut point = |points: &Points| points.choose(&mut random);
         if let Some(point) = point(&self.points) {
             return point;
         }

@@ -26,7 +26,7 @@ impl Model {
         build: impl FnOnce(&Graph, &mut Graph, &[Edge]) -> Vec<Edge>,
     ) -> Model {
         let mut model = Model {
-            graph: Graph::new(0, 0),
+            graph: Graph::new(0),
             ..self.clone()
         };
         let mut edges = Vec::new();

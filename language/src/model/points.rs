@@ -17,8 +17,6 @@ use std::ops::Range;
 
 /// Points tried until all square roots have values; each root halves the chance.
 const TRIES: usize = 4000;
-/// At so many seeds roots of numbers have to have values: where it is a matter of chance, one of them has none.
-const SEEDS: u64 = 16;
 /// Those after which roots of non-squares are allowed.
 const STRICT_TRIES: usize = 300;
 /// With more independent roots the tries would be too many.
@@ -80,12 +78,10 @@ impl Points {
         self.blocks.iter().map(|block| block.len()).sum()
     }
 
-    /// Values of all symbols at a random point of X, where functions have the values of the lane
-    /// with this seed; `None` where no point was found.
-    pub fn choose(&self, random: &mut Random, seed: u64) -> Option<Vec<Fp>> {
+    /// Values of all symbols at a random point of X; `None` where no point was found.
+    pub fn choose(&self, random: &mut Random) -> Option<Vec<Fp>> {
         self.choose_where(
             random,
-            seed,
             TRIES,
             &[&(|_: &mut Vec<Fp>| Some(())) as &Change<'_>; 2],
         )
@@ -96,7 +92,6 @@ impl Points {
     fn choose_where(
         &self,
         random: &mut Random,
-        seed: u64,
         tries: usize,
         [before, after]: &[&Change<'_>; 2],
     ) -> Option<Vec<Fp>> {
@@ -110,7 +105,7 @@ impl Points {
             }
             if !self.constraints.is_empty() {
                 // Functions of parameters in the constraints may lack a value here.
-                let Some(system) = self.system(&values, seed) else {
+                let Some(system) = self.system(&values) else {
                     continue;
                 };
                 let Some(solution) = self.solve(&system, random) else {
@@ -127,7 +122,7 @@ impl Points {
             if after(&mut values).is_none() {
                 continue;
             }
-            let stuck = self.stuck(&values, seed);
+            let stuck = self.stuck(&values);
             for (place, stuck) in found.iter_mut().zip(stuck) {
                 if !stuck && place.is_none() {
                     *place = Some(values.clone());
@@ -158,11 +153,11 @@ impl Points {
     }
 
     /// In which of the fields square roots have no value.
-    fn stuck(&self, values: &[Fp], seed: u64) -> [bool; 2] {
+    fn stuck(&self, values: &[Fp]) -> [bool; 2] {
         if self.radicals.is_empty() {
             return [false; 2];
         }
-        let mut lane = self.lane_of(values, seed);
+        let mut lane = self.lane_of(values);
         match evaluate_at(&self.free, &self.radicals, &mut lane) {
             Some(_) => [false; 2],
             None if lane.is_stuck() => lane.stuck(),
@@ -193,29 +188,24 @@ impl Points {
                 continue;
             }
             self.roots = roots;
-            let mut found = |seed| {
+            let mut found = || {
                 let anything = |_: &mut Vec<Fp>| Some(());
-                self.choose_where(
-                    &mut random,
-                    seed,
-                    STRICT_TRIES,
-                    &[&anything as &Change<'_>; 2],
-                )
-                .is_some()
+                let anything = [&anything as &Change<'_>; 2];
+                self.choose_where(&mut random, STRICT_TRIES, &anything)
+                    .is_some()
             };
-            let steady = fixed.is_empty() || (0..SEEDS).all(|seed| self.keeps(&fixed, seed));
-            if steady && found(1) && found(2) {
+            if (fixed.is_empty() || self.keeps(&fixed)) && found() && found() {
                 return;
             }
         }
         self.roots = Roots::Anything;
     }
 
-    /// Whether roots of numbers have values for functions with this seed. No choice of a point helps where log 9 is
-    /// no square: its root is outside of F_p, and x + √log 9 is no square of F_p for any x.
-    fn keeps(&self, fixed: &[Edge], seed: u64) -> bool {
+    /// Whether roots of numbers have values. No choice of a point helps where log 9 is no square: its root is outside of F_p,
+    /// and x + √log 9 is no square of F_p for any x.
+    fn keeps(&self, fixed: &[Edge]) -> bool {
         let values = self.unconstrained(&mut Random::new(0));
-        let mut lane = self.lane_of(&values, seed);
+        let mut lane = self.lane_of(&values);
         let inside = |value: &Fp| value.0.is_prime() && value.1.is_prime();
         let found = evaluate_at(&self.free, fixed, &mut lane);
         found.is_some_and(|found| self.roots != Roots::OfSquares || found.iter().all(inside))
@@ -238,10 +228,10 @@ impl Points {
     }
 
     /// The user's constraints as polynomials in the coordinates.
-    fn system(&self, values: &[Fp], seed: u64) -> Option<Vec<Poly<Fp>>> {
+    fn system(&self, values: &[Fp]) -> Option<Vec<Poly<Fp>>> {
         let constraints = self.constraints.iter();
         constraints
-            .map(|&constraint| self.polynomial(constraint, values, seed))
+            .map(|&constraint| self.polynomial(constraint, values))
             .collect()
     }
 
@@ -288,7 +278,7 @@ impl Points {
 
     /// The polynomial in the coordinates that a constraint is, all other symbols having values;
     /// what is free of coordinates is evaluated, functions of parameters included.
-    fn polynomial(&self, edge: Edge, values: &[Fp], seed: u64) -> Option<Poly<Fp>> {
+    fn polynomial(&self, edge: Edge, values: &[Fp]) -> Option<Poly<Fp>> {
         let graph = &self.free;
         let nodes = graph.reachable(&[edge]);
         let moves = |id: u32| graph.class(id) & class::COORD != 0;
@@ -297,7 +287,7 @@ impl Points {
             .filter(|&&id| !moves(id))
             .map(|&id| Edge::of(id))
             .collect();
-        let numbers = evaluate_at(graph, &fixed, &mut self.lane_of(values, seed))?;
+        let numbers = evaluate_at(graph, &fixed, &mut self.lane_of(values))?;
         let constants = fixed
             .iter()
             .zip(numbers)
@@ -350,26 +340,26 @@ impl Points {
             Some(())
         };
         let before = |values: &mut Vec<Fp>| {
-            let imposed = imposed(self.lane_of(values, seed), graph, set)?;
+            let imposed = imposed(self.lane_of(values), graph, set)?;
             move_in(values, imposed)
         };
         let after = |values: &mut Vec<Fp>| {
-            let moved = moved(self.lane_of(values, seed))?;
+            let moved = moved(self.lane_of(values))?;
             move_in(values, moved)
         };
         let random = &mut Random::new(seed ^ 0x0b5e);
-        let values = self.choose_where(random, seed, TRIES, &[&before as &Change<'_>, &after])?;
-        Some(self.lane_of(&values, seed))
+        let values = self.choose_where(random, TRIES, &[&before as &Change<'_>, &after])?;
+        Some(self.lane_of(&values))
     }
 
     /// A lane at a fresh point.
     pub fn lane(&self, seed: u64) -> Option<Lane> {
-        let values = self.choose(&mut Random::new(seed ^ 0x0b5e), seed)?;
-        Some(self.lane_of(&values, seed))
+        let values = self.choose(&mut Random::new(seed ^ 0x0b5e))?;
+        Some(self.lane_of(&values))
     }
 
-    fn lane_of(&self, values: &[Fp], seed: u64) -> Lane {
-        let mut lane = Lane::new(seed);
+    fn lane_of(&self, values: &[Fp]) -> Lane {
+        let mut lane = Lane::new();
         // What follows from other values may lie outside F_p, and what is added to it is no square there.
         let outside = |value: &Fp| !(value.0.is_prime() && value.1.is_prime());
         lane.roots = match self.roots {

@@ -15,7 +15,7 @@ fn canonical_velocities_of_the_tangents_are_units() {
         Block::Rotation,
     ] {
         let mut random = Random::new(7);
-        let mut graph = Graph::new(7, 1);
+        let mut graph = Graph::new(1);
         let point = sample(block, &mut random);
         let x: Vec<Edge> = (0..block.len())
             .map(|i| graph.symbol("x", 2, point[i]))

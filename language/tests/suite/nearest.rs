@@ -9,7 +9,7 @@ use hamel_language::model::points::Points;
 
 /// max |φ| where φ are these constants, or NaN: no start helps.
 fn largest(list: &[f64]) -> Nearest {
-    let mut graph = Graph::new(7, 1);
+    let mut graph = Graph::new(1);
     let phi: Vec<_> = (list.iter().enumerate())
         .map(|(k, _)| graph.symbol(&format!("c{k}"), class::PARAM, Fp::from_i64(3)))
         .map(|edge| (edge, "c".to_owned()))

@@ -34,7 +34,7 @@ fn motion(model: &Model, lane: &Lane, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     let (chosen, _) = accel(model, &Care::default()).expect("M is regular");
     let graph = &model.graph;
     let places = symbols(graph, &model.xi);
-    let mut moved = Lane::new(lane_seed());
+    let mut moved = Lane::new();
     for index in 0..graph.symbols().len() {
         let own = places.iter().position(|&place| place == index);
         moved.push_symbol(own.map_or_else(|| lane.symbol(index), |place| xi[place]));
@@ -50,10 +50,6 @@ fn motion(model: &Model, lane: &Lane, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     }
     let duals = tangent_at(graph, &model.rate, &mut moved, &direction).expect("a value");
     (rate, duals.into_iter().map(|dual| dual.1).collect())
-}
-
-fn lane_seed() -> u64 {
-    0xadf1
 }
 
 #[test]

@@ -191,8 +191,15 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
                     size if size > second.1 => [top, (k, size)],
                     _ => [top, second],
                 });
+            // A rate that is prescribed is no result of the constraints, where they can give another velocity or a multiplier.
+            let alone = (0..rows[i].len())
+                .filter(|&j| rows[i][j] != zero && !is_time(j))
+                .count()
+                == 1;
+            let driven = |j: usize| !alone && model.accelerated.iter().any(|given| given.0 == j);
             for (j, &entry) in rows[i].iter().enumerate() {
-                if entry == zero || is_time(j) || stays(j) || !graph.is_free(entry.node()) {
+                let unfit = entry == zero || is_time(j) || stays(j) || driven(j);
+                if unfit || !graph.is_free(entry.node()) {
                     continue;
                 }
                 let beside = if j == top.0 { second.1 } else { top.1 };

@@ -88,14 +88,14 @@ impl Samples {
 /// A random state at the constants of a seed.
 fn lane(model: &Model, seed: u64, state: u64) -> Option<Lane> {
     let random = &mut Random::new(seed.wrapping_mul(0x6a09_e667) ^ (state << 32));
-    let mut values = model.points.choose(random, seed)?;
+    let mut values = model.points.choose(random)?;
     let frozen = &mut Random::new(seed ^ 0x3c6e_f372);
     for (value, symbol) in values.iter_mut().zip(model.graph.symbols()) {
         if symbol.class == class::PARAM && *value != Fp::PI {
             *value = frozen.element();
         }
     }
-    let mut lane = Lane::new(seed);
+    let mut lane = Lane::new();
     lane.roots = model.points.roots;
     values.into_iter().for_each(|value| lane.push_symbol(value));
     Some(lane)

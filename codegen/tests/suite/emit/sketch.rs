@@ -21,7 +21,7 @@ pub struct Declared<'a> {
 /// A program without functions, and its symbols: parameters, x, ξ, u, ξ̇.
 pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
     let mut random = Random::new(7);
-    let mut graph = Graph::new(11, class::PARAM);
+    let mut graph = Graph::new(class::PARAM);
     let mut symbol = |graph: &mut Graph, name: &str, class: u8| {
         let value = random.element();
         graph.symbol(name, class, value)
