@@ -134,7 +134,7 @@ fn normal(
         .collect();
     let oblique = |&(x, y): &(Edge, Edge)| x.abs() != zero || y.abs() != zero;
     for (x, y) in directions.into_iter().filter(oblique) {
-        let (c, s) = direction(graph, x, y, safe)?;
+        let (c, s) = direction(graph, x, y)?;
         if safe.is_sharp(graph, &[c, s]) {
             return Some((c, s));
         }
@@ -142,7 +142,7 @@ fn normal(
     let arms = children.iter().map(|&j| links[j].position);
     for p in arms.filter(|p| p[0] != zero && p[1] != zero) {
         if numeric(graph, &p[..2]) && safe.has_direction(graph, &p[..2]) {
-            let (c, s) = direction(graph, p[0], p[1], safe)?;
+            let (c, s) = direction(graph, p[0], p[1])?;
             if safe.is_sharp(graph, &[c, s]) {
                 return Some((c, s));
             }
@@ -152,7 +152,7 @@ fn normal(
 }
 
 /// (x, y) / √(x² + y²); `None` where that is no turn at all.
-fn direction(graph: &mut Graph, x: Edge, y: Edge, safe: &Safe) -> Option<(Edge, Edge)> {
+fn direction(graph: &mut Graph, x: Edge, y: Edge) -> Option<(Edge, Edge)> {
     let zero = graph.zero();
     if y.abs() == zero {
         return None;
@@ -160,7 +160,7 @@ fn direction(graph: &mut Graph, x: Edge, y: Edge, safe: &Safe) -> Option<(Edge, 
     if x.abs() == zero {
         return Some((zero, graph.one()));
     }
-    let length = hypotenuse(graph, x, y, safe);
+    let length = hypotenuse(graph, x, y);
     Some((graph.div(x, length)?, graph.div(y, length)?))
 }
 
@@ -248,26 +248,20 @@ fn tilt(graph: &mut Graph, z: Vec3, safe: &Safe) -> Option<[Turn; 2]> {
         return Some([about(2, zero, graph.one()), about(0, w, x)]);
     }
     if safe.has_direction(graph, &[x, y]) {
-        let length = hypotenuse(graph, x, y, safe);
+        let length = hypotenuse(graph, x, y);
         let (c, s) = (-graph.div(y, length)?, graph.div(x, length)?);
         if safe.is_sharp(graph, &[c, s]) {
             return Some([about(2, c, s), about(0, w, length)]);
         }
     }
-    let length = hypotenuse(graph, y, w, safe);
+    let length = hypotenuse(graph, y, w);
     let (c, s) = (graph.div(w, length)?, -graph.div(y, length)?);
     Some([about(0, c, s), about(1, length, x)])
 }
 
-/// √(x² + y²); the number whose square that is, where there is one: it is known which of e and −e is
-/// positive.
-fn hypotenuse(graph: &mut Graph, x: Edge, y: Edge, safe: &Safe) -> Edge {
+/// √(x² + y²); the number whose square that is, where there is one.
+fn hypotenuse(graph: &mut Graph, x: Edge, y: Edge) -> Edge {
     let (a, b) = (graph.mul(x, x), graph.mul(y, y));
     let square = graph.add(a, b);
-    let known = graph.known_root(square);
-    match known.filter(|root| numeric(graph, &[*root])) {
-        Some(root) if safe.is_negative(graph, root) => -root,
-        Some(root) => root,
-        None => graph.apply(Function::Sqrt, square),
-    }
+    graph.apply(Function::Sqrt, square)
 }

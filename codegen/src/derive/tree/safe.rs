@@ -53,12 +53,6 @@ impl Safe {
             .sqrt()
     }
 
-    /// Whether a number is below 0.
-    pub fn is_negative(&self, graph: &Graph, number: Edge) -> bool {
-        let known = bounded(graph, &[number], &self.numbers);
-        known.iter().all(|number| number.value < 0.0)
-    }
-
     /// Whether an origin may be moved by a distance.
     pub fn is_near(&self, graph: &Graph, distance: Edge) -> bool {
         self.length(graph, &[distance]) <= REACH * self.size
