@@ -15,7 +15,7 @@ use hamel_codegen::syntax::{self, ast::System};
 use hamel_codegen::urdf;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The path of standard input in messages.
 const STDIN: &str = "<stdin>";
@@ -30,8 +30,8 @@ pub struct Source {
     pub text: String,
     /// The robot that the description is made from, if it is.
     pub robot: Option<Robot>,
-    /// Whether the warnings were shown.
-    warned: AtomicBool,
+    /// How many of the warnings were shown: those of reading come first, then those of deriving.
+    warned: AtomicUsize,
     /// Whether functions in Rust have to have values, by their stand-ins.
     evaluated: bool,
     /// Whether all frames are results.
@@ -45,7 +45,7 @@ impl Source {
             path,
             text,
             robot: None,
-            warned: AtomicBool::new(false),
+            warned: AtomicUsize::new(0),
             evaluated: false,
             shows_frames: false,
         }
@@ -253,7 +253,7 @@ impl Source {
             path: self.path.clone(),
             text,
             robot: None,
-            warned: AtomicBool::new(true),
+            warned: AtomicUsize::new(usize::MAX),
             evaluated: self.evaluated,
             shows_frames: self.shows_frames,
         }
@@ -282,10 +282,12 @@ impl Source {
 
     /// Derives what is asked for by name, whatever the description's `generate` says.
     pub fn derive_asked(&self, asked: &Asked) -> Result<Generated, Failure> {
-        self.derived(|mut model| {
+        let generated = self.derived(|mut model| {
             model.asked = asked.clone();
             Generated::of(model, 0)
-        })
+        })?;
+        self.warn(&generated.model);
+        Ok(generated)
     }
 
     /// What is derived of the model, with its warnings.
@@ -312,6 +314,7 @@ impl Source {
             model.asked = asked.clone();
             Generated::available(model, 0)
         })?;
+        self.warn(&generated.model);
         self.left_out(singular);
         Ok(generated)
     }
@@ -384,13 +387,14 @@ impl Source {
             model.asked = Asked::everything();
             Generated::available(model, 0)
         })?;
+        self.warn(&generated.model);
         self.left_out(singular);
         Ok(generated)
     }
 
     /// Derives all functions, the linearisation and the slopes of outputs, whatever the description's `generate` says.
     pub fn derive_linearized(&self) -> Result<Generated, Failure> {
-        self.derived(|mut model| {
+        let generated = self.derived(|mut model| {
             model.asked = Asked::everything();
             model.asked.functions.push(FunctionId::Linearize);
             // Rates of functions in Rust have no slopes.
@@ -401,14 +405,21 @@ impl Source {
             });
             model.asked.slopes = smooth.map(|(name, _)| name.clone()).collect();
             Generated::of(model, 0)
-        })
+        })?;
+        self.warn(&generated.model);
+        Ok(generated)
     }
 
-    /// Shows the warnings on standard error, once. The text of a robot is the importer's, not the user's.
+    /// Shows the warnings on standard error, each once. The text of a robot is the importer's, not the user's.
     fn warn(&self, model: &Model) {
-        if self.robot.is_none() && !self.warned.swap(true, Ordering::Relaxed) {
-            failure::mark(&model.warnings, false);
-            failure::warn(&warnings(&model.warnings, &self.path, &self.text, true));
+        if self.robot.is_some() {
+            return;
+        }
+        let all = &model.warnings;
+        let shown = self.warned.fetch_max(all.len(), Ordering::Relaxed);
+        if let Some(new) = all.get(shown..).filter(|new| !new.is_empty()) {
+            failure::mark(new, false);
+            failure::warn(&warnings(new, &self.path, &self.text, true));
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::algebra::graph::{Function, Graph, Node};
 use crate::derive;
 use crate::derive::assemble::assemble;
-use crate::derive::reduction::reduce;
+use crate::derive::reduction::{reduce, warnings};
 use crate::derive::regressor::Regressor;
 use crate::diagnostics::Diagnostic;
 use crate::emit::NotRust;
@@ -189,8 +189,16 @@ impl Generated {
         generated.map_err(|errors| origins.located_all(errors))
     }
 
-    fn proved(model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
+    fn proved(mut model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
         let reduction = reduce(&model).map_err(|error| vec![error])?;
+        let dropped = reduction.iter().flat_map(|reduction| &reduction.dropped);
+        for &row in dropped.clone() {
+            model.constraints[row].redundant = true;
+        }
+        let dropped: Vec<usize> = dropped.copied().collect();
+        let warnings = warnings(&model.constraints, &dropped);
+        let warnings = model.origins.located_all(warnings);
+        model.warnings.extend(warnings);
         let regressor = regressor(&model).map_err(|error| vec![error])?;
         let program = assemble(&model, reduction.as_ref(), regressor.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;

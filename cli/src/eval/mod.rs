@@ -16,6 +16,7 @@ use crate::state::joints::{joints, rows};
 use clap::Args;
 use geometry::Geometry;
 use hamel::System;
+use hamel_codegen::derive::undetermined::undetermined;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
@@ -37,7 +38,8 @@ const MOST_SHOWN: usize = 64;
 /// loops or constraints by itself is refused. Of a list of samples, as `hamel simulate --out` writes it to a .json
 /// file, the last is taken. Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k]
 /// is Γ_ijk. A, γ, M and Γ are those of all velocities, which `frame` names; forces, bias and accel are of those that
-/// constraints leave, which `velocities` names.
+/// constraints leave, which `velocities` names. `undetermined` names the rows of `constraints` whose forces are not unique: what
+/// stands for them is one of many solutions.
 ///
 /// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3,
 /// "root_joint": {"position": […], "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […],
@@ -212,15 +214,22 @@ fn motion(
         ("outputs", Json::object(outputs)),
     ];
     if let Some(force) = constraint_force {
-        // The rows, as they are written, and the velocities whose rates are given.
+        // The rows that say something, as they are written, and the velocities whose rates are given.
         let model = &generated.model;
-        let rows = model.constraints.iter().map(|row| row.written.clone());
+        let rows = model.constraints.iter().filter(|row| !row.redundant);
+        let rows = rows.map(|row| row.label());
         let names = names::velocities(model);
         let driven = model.accelerated.iter();
         let driven = driven.filter_map(|&(velocity, _)| names.get(velocity).cloned());
         let rows: Vec<String> = rows.chain(driven).collect();
+        let free = undetermined(model).into_iter().zip(&rows);
+        let free = free.filter(|(free, _)| *free).map(|(_, row)| row.clone());
+        let free: Vec<String> = free.collect();
         members.push(("constraints", Json::texts(&rows)));
         members.push(("constraint_force", force));
+        if !free.is_empty() {
+            members.push(("undetermined", Json::texts(&free)));
+        }
     }
     Ok(members)
 }

@@ -1,6 +1,7 @@
 //! Velocities that follow from constraints: a state has no place for them.
 
 use crate::names;
+use hamel_codegen::derive::undetermined::undetermined;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 
@@ -18,9 +19,13 @@ pub fn shown(constraint: &Pfaffian, text: &str) -> String {
         Kind::Inactive => format!("inactive {}", constraint.written),
         _ => constraint.written.clone(),
     };
+    let entry = match constraint.entry.as_str() {
+        "" => String::new(),
+        entry => format!(", entry {entry}"),
+    };
     match line {
-        Some(line) => format!("the constraint on line {line}, `{written}`"),
-        None => format!("the constraint `{written}`"),
+        Some(line) => format!("the constraint on line {line}, `{written}`{entry}"),
+        None => format!("the constraint `{written}`{entry}"),
     }
 }
 
@@ -53,9 +58,20 @@ pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
             },
         );
     }
+    let free = undetermined(full);
+    let said = full.constraints.iter().filter(|row| !row.redundant);
+    let free = said.zip(free).filter(|(_, free)| *free);
+    let free: Vec<(String, _)> = free
+        .map(|(row, _)| (row.label(), row.span.range()))
+        .collect();
     for row in &active.constraints {
         let shown = shown(row, text);
-        lines.push(format!("multiplier of {shown}"));
+        let place = (row.label(), row.span.range());
+        let which = match free.contains(&place) {
+            true => ": not determined, as rows depend on it",
+            false => "",
+        };
+        lines.push(format!("multiplier of {shown}{which}"));
     }
     lines
 }

@@ -55,3 +55,51 @@ fn errors_come_without_warnings() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(!said.contains("warning"), "{said}");
 }
+
+/// Rows that hold by their form are known when a description is read, rows that follow from others when it is derived: both are
+/// said once by every command that derives it.
+#[test]
+fn rows_that_say_nothing_are_warned_of_once() {
+    let weld = "system Weld {
+        joint a: revolute [0, 0, 1] moves A; joint b: revolute [0, 0, 1] on A at [1, 0, 0] moves B;
+        joint c: revolute [0, 0, 1] at [1.5, 0, 0] moves C; joint d: revolute [0, 0, 1] on C at [0, 1, 0] moves D;
+        body on B { mass 1; com [0.5, 0, 0]; inertia diag(1, 1, 1) / 10 about com; }
+        body on A { mass 1; com [0.5, 0, 0]; inertia diag(1, 1, 1) / 10 about com; }
+        body on C { mass 1; com [0, 0.5, 0]; inertia diag(1, 1, 1) / 10 about com; }
+        joint e: revolute [0, 0, 1] on B at [0.8, 0, 0] moves E { armature 0.1; }
+        loop position(E) = position(D), E.R = D.R;
+        start a = 1, b ~ -1, c ~ 0.1;
+    }";
+    for command in ["check", "ops", "emit", "eval", "linearize"] {
+        let output = hamel(&[command, "-"], weld);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{command}: {said}");
+        for part in [
+            "entry [3] of this loop always holds, and is left out",
+            "entries [1, 3], [2, 3], [3, 1], [3, 2], [3, 3] of this loop always hold, and are left out",
+            "entries [2, 1], [2, 2] of this loop follow from the other rows, and are left out",
+        ] {
+            assert_eq!(said.matches(part).count(), 1, "{command}: {said}");
+        }
+    }
+    let printed = hamel(&["eval", "-"], weld);
+    let all: serde_json::Value = serde_json::from_slice(&printed.stdout).expect("JSON");
+    assert_eq!(
+        all["constraints"][1],
+        "position(E) = position(D), entry [2]"
+    );
+    assert_eq!(all["constraint_force"].as_array().map(Vec::len), Some(4));
+    assert_eq!(
+        all["undetermined"],
+        serde_json::json!(["E.R = D.R, entry [1, 1]", "E.R = D.R, entry [1, 2]"])
+    );
+    let printed = hamel(&["check", "-"], weld);
+    let lines = text(&printed.stdout);
+    assert_eq!(
+        lines
+            .matches(": not determined, as rows depend on it")
+            .count(),
+        2,
+        "{lines}"
+    );
+}

@@ -202,10 +202,7 @@ pub fn augmented(
     right: &[Edge],
 ) -> Option<(Vec<Vec<Edge>>, Vec<Edge>)> {
     let n = mass.len();
-    let diagonal: Vec<Edge> = (0..n).map(|i| mass[i][i]).collect();
-    let (entries, trace) = (rows.concat(), graph.sum(&diagonal));
-    let squares = graph.dot(&entries, &entries);
-    let weight = graph.div(trace, squares)?;
+    let weight = weight(graph, mass, rows)?;
     let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
     let weighed: Vec<Vec<Edge>> = (0..n)
         .map(|i| {
@@ -219,6 +216,14 @@ pub fn augmented(
     });
     let force = weighed.iter().map(|column| graph.dot(column, right));
     Some((sum, force.collect()))
+}
+
+/// w = tr M / tr BᵀB.
+pub fn weight(graph: &mut Graph, mass: &[Vec<Edge>], rows: &[Vec<Edge>]) -> Option<Edge> {
+    let diagonal: Vec<Edge> = (0..mass.len()).map(|i| mass[i][i]).collect();
+    let (entries, trace) = (rows.concat(), graph.sum(&diagonal));
+    let squares = graph.dot(&entries, &entries);
+    graph.div(trace, squares)
 }
 
 /// M, in a graph with the model's symbols, has to be positive definite at the start, or near one that nobody has chosen, with

@@ -20,6 +20,7 @@
 //! | `regressor` | forces as linear functions of inertial parameters, and base parameters | |
 //! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `program`, `assemble` | the program of all generated functions | |
+//! | `multipliers`, `undetermined` | λ of constraints, and which of them are not determined | |
 //! | `quantity` | momenta and energies that claims of constancy are about | |
 //! | `further` | momenta, the linearisation and invariants as functions | |
 //! | `structure` | whether a system splits into free motion and kicks; which method fits | |
@@ -59,3 +60,4 @@ pub mod tables;
 // Open to tests, which compare the recursions with derivations that know no trees.
 #[doc(hidden)]
 pub mod tree;
+pub mod undetermined;

@@ -40,7 +40,7 @@ pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (
 }
 
 /// λ in the graph of the program, in order of the constraints, then the forces of drives whose rates are given; from the
-/// residuals of the velocities that were solved for and of those that are driven. That of a redundant row is 0.
+/// residuals of the velocities that were solved for and of those that are driven. Rows that were dropped have none.
 pub fn multipliers(
     full: &Model,
     reduction: &Reduction,
@@ -97,8 +97,13 @@ pub fn multipliers(
             })
         })
         .collect();
-    multipliers.extend(drives);
-    Some(multipliers)
+    let rows = full.constraints.iter().zip(multipliers);
+    let rows = rows.filter(|(constraint, _)| !constraint.redundant);
+    Some(
+        rows.map(|(_, multiplier)| multiplier)
+            .chain(drives)
+            .collect(),
+    )
 }
 
 /// The expressions with ξ̇ₐ put in for its symbols.

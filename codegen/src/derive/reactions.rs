@@ -6,6 +6,7 @@ use super::candidates::Candidates;
 use super::multipliers::{multipliers, residuals};
 use super::program::Builder;
 use super::reduction::Reduction;
+use super::undetermined::undetermined;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
 use crate::model::{Model, entry};
@@ -26,11 +27,14 @@ impl Builder<'_> {
         rebuild(&self.model.graph, &mut self.graph, &residuals)
     }
 
-    /// λ of all constraints, then the forces of drives whose rates are given; an overconstrained mechanism has no unique
-    /// ones.
+    /// λ of all constraints that say something, then the forces of drives whose rates are given. Where they are not unique, those
+    /// of a solution; the docs name them. Where they depend on one another and rates are given, there are none.
     pub(super) fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
-        let rows = full.constraints.len() + full.accelerated.len();
-        if self.model.overconstrained || rows == 0 {
+        let constraints = || full.constraints.iter().filter(|row| !row.redundant);
+        let rows = constraints().count() + full.accelerated.len();
+        // Beside rows that depend on one another, a rate that is given holds exactly, which leaves λ none that balances.
+        let driven = self.model.overconstrained && !full.accelerated.is_empty();
+        if driven || rows == 0 {
             return;
         }
         let solved = reduction.solved.iter().map(|&(_, velocity)| velocity);
@@ -67,18 +71,32 @@ impl Builder<'_> {
         let guards = self.guards();
         self.push_guarded(FunctionId::ConstraintForce, outputs, guards);
         // Which is which.
-        let rows = full.constraints.iter().map(|row| row.written.clone());
+        let rows = constraints().map(|row| (row.written.clone(), row.entry.clone()));
         let drives = full.accelerated.iter();
-        let drives =
-            drives.map(|&(velocity, _)| format!("rate({})", entry(&full.velocities, velocity)));
-        let docs = rows.chain(drives).enumerate().map(|(row, text)| {
+        let drives = drives.map(|&(velocity, _)| {
+            let name = entry(&full.velocities, velocity);
+            (format!("rate({name})"), String::new())
+        });
+        let unique = undetermined(full).into_iter().map(|free| !free);
+        let all = rows.chain(drives).zip(unique.clone()).enumerate();
+        let docs = all.map(|(row, ((text, entry), unique))| {
             let shown: String = text.chars().take(SHOWN).collect();
             let more = if shown.len() < text.len() { " …" } else { "" };
-            format!("- {}: `{shown}{more}`", row + 1)
+            let entry = match entry.as_str() {
+                "" => String::new(),
+                entry => format!(", entry {entry}"),
+            };
+            let free = if unique { "" } else { "; not determined" };
+            format!("- {}: `{shown}{more}`{entry}{free}", row + 1)
         });
         if let Some(function) = self.functions.last_mut() {
             function.docs.push(String::new());
             function.docs.extend(docs);
+            if unique.clone().any(|unique| !unique) {
+                function.docs.push(String::new());
+                let text = "Rows that depend on one another share a force that motion does not tell apart: only its sum Bᵀ λ is determined.";
+                function.docs.push(text.into());
+            }
         }
     }
 

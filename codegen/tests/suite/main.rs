@@ -42,6 +42,7 @@ mod proofs;
 mod proved;
 mod recognise;
 mod recursions;
+mod redundant;
 mod regressions;
 mod reuse;
 mod roots;

@@ -93,7 +93,9 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
                 model.points.require_roots(&model.graph);
                 let strange = strange::warnings(described, &model);
                 let corners = corners::warnings(described, &model);
+                let idle = std::mem::take(&mut model.warnings);
                 model.warnings = unused::warnings(described, &(&names.used | used));
+                model.warnings.extend(idle);
                 model.warnings.extend(strange);
                 model.warnings.extend(corners);
                 let negative = negative::warnings(system, &model);
@@ -191,7 +193,7 @@ fn read_at(
     let joints = joints::read(system, graph, scope, errors);
     let armature = joints::armature(system, graph, scope, declared, &mut dynamics, errors);
     let invariants = invariants::read(system, graph, scope, &frames, declared, errors);
-    let (mut constraints, closures) =
+    let (mut constraints, closures, idle) =
         pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), errors);
     let (drives, prescribed, accelerated) = prescribe::read(
         system,
@@ -323,7 +325,7 @@ fn read_at(
         asked: dynamics.asked,
         span: system.name.span,
         origins: Origins::default(),
-        warnings: Vec::new(),
+        warnings: idle,
     };
     match externals::misplaced(&model, &called) {
         Some(error) => Err((vec![error], None)),

@@ -17,7 +17,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Expr, ExprKind, ItemKind, Span, System};
 use crate::syntax::written::{equation, written};
 
-/// Reads all rows, in the order of the text, and the points that loops bring together.
+/// Reads all rows, in the order of the text, the points that loops bring together, and warnings about rows that say nothing.
 pub fn read(
     system: &System,
     graph: &mut Graph,
@@ -25,7 +25,7 @@ pub fn read(
     declared: &Declared,
     kinematics: Option<&Kinematics>,
     report: &mut Report,
-) -> (Vec<Pfaffian>, Vec<(Vec3, Vec3)>) {
+) -> (Vec<Pfaffian>, Vec<(Vec3, Vec3)>, Vec<Diagnostic>) {
     let mut all = Vec::new();
     let mut closures: Vec<Sides> = Vec::new();
     let mut reader = Reader {
@@ -33,6 +33,7 @@ pub fn read(
         declared,
         kinematics,
         sides: None,
+        idle: Vec::new(),
     };
     for item in &system.items {
         match &item.kind {
@@ -73,8 +74,10 @@ pub fn read(
             _ => {}
         }
     }
+    let idle = reader.idle;
     let closures = closures.into_iter().filter(Sides::meet);
-    (all, closures.map(|sides| sides.points).collect())
+    let closures = closures.map(|sides| sides.points).collect();
+    (all, closures, idle)
 }
 
 /// Two points of space, of which loops bring together some of the components.
@@ -97,6 +100,8 @@ struct Reader<'a> {
     kinematics: Option<&'a Kinematics>,
     /// Both sides of the equation that was read last, where they are points of space or the same component of two.
     sides: Option<Sides>,
+    /// Warnings about rows that say nothing.
+    idle: Vec<Diagnostic>,
 }
 
 impl Reader<'_> {
@@ -131,6 +136,8 @@ impl Reader<'_> {
                 residual: graph.zero(),
                 stabilized: None,
                 written: written(expr),
+                entry: String::new(),
+                redundant: false,
                 span: expr.span,
             });
         }
@@ -143,10 +150,10 @@ impl Reader<'_> {
         right: &Expr,
         stabilized: Option<&Expr>,
     ) -> Option<Vec<Pfaffian>> {
-        let (span, entries, stabilized) = self.equation(left, right, stabilized)?;
+        let (span, difference, stabilized) = self.equation(left, right, stabilized)?;
         let graph = &mut *self.evaluator.graph;
-        let mut rows = Vec::new();
-        for edge in entries {
+        let (mut rows, mut idle) = (Vec::new(), Vec::new());
+        for (edge, entry) in difference.entries().into_iter().zip(names(&difference)) {
             // B ξ = b(x, t): the term without a velocity goes with ξ⁰.
             let edge = time::linear(graph, self.declared, edge);
             let affine = Affine::of(graph, edge, &self.declared.xi);
@@ -174,10 +181,8 @@ impl Reader<'_> {
                     .error(Diagnostic::new(span, message).help(help));
             }
             if row.iter().all(|&entry| entry == graph.zero()) {
-                return self.evaluator.error(
-                    Diagnostic::new(span, "this nonholonomic constraint always holds")
-                        .help("remove it: no velocity is left in the difference of its sides"),
-                );
+                idle.push(entry);
+                continue;
             }
             rows.push(Pfaffian {
                 kind: Kind::Nonholonomic,
@@ -186,8 +191,14 @@ impl Reader<'_> {
                 residual: graph.zero(),
                 stabilized,
                 written: equation(left, right),
+                entry,
+                redundant: false,
                 span,
             });
+        }
+        if !idle.is_empty() {
+            let warning = holding(span, "nonholonomic constraint", &idle, rows.is_empty());
+            self.idle.push(warning);
         }
         Some(rows)
     }
@@ -198,8 +209,9 @@ impl Reader<'_> {
         right: &Expr,
         stabilized: Option<&Expr>,
     ) -> Option<Vec<Pfaffian>> {
-        let (span, entries, stabilized) = self.equation(left, right, stabilized)?;
+        let (span, difference, stabilized) = self.equation(left, right, stabilized)?;
         let graph = &mut *self.evaluator.graph;
+        let entries = difference.entries();
         let class = entries
             .iter()
             .fold(0, |class, edge| class | graph.class(edge.node()));
@@ -216,9 +228,10 @@ impl Reader<'_> {
         self.evaluator.continuous(&value, span, "a loop")?;
         let kinematics = self.kinematics?;
         let graph = &mut *self.evaluator.graph;
-        let mut rows = Vec::new();
-        for edge in entries {
+        let (mut rows, mut idle) = (Vec::new(), Vec::new());
+        for (edge, entry) in entries.into_iter().zip(names(&difference)) {
             if edge.abs() == graph.zero() {
+                idle.push(entry);
                 continue;
             }
             let row: Vec<Edge> = (0..self.declared.xi.len())
@@ -240,32 +253,32 @@ impl Reader<'_> {
                 residual: edge,
                 stabilized,
                 written: equation(left, right),
+                entry,
+                redundant: false,
                 span,
             });
         }
-        if rows.is_empty() {
-            return self.evaluator.error(
-                Diagnostic::new(span, "this loop is always closed")
-                    .help("remove it: both sides are the same expression"),
-            );
+        if !idle.is_empty() {
+            let warning = holding(span, "loop", &idle, rows.is_empty());
+            self.idle.push(warning);
         }
         Some(rows)
     }
 
-    /// The place, left − right entry by entry, and λ of a constraint.
+    /// The place, left − right, and λ of a constraint.
     fn equation(
         &mut self,
         left: &Expr,
         right: &Expr,
         stabilized: Option<&Expr>,
-    ) -> Option<(Span, Vec<Edge>, Option<Edge>)> {
-        let entries = self.difference(left, right);
+    ) -> Option<(Span, Value, Option<Edge>)> {
+        let difference = self.difference(left, right);
         let stabilized = self.rate_of_decay(stabilized)?;
-        Some((left.span.to(right.span), entries?, stabilized))
+        Some((left.span.to(right.span), difference?, stabilized))
     }
 
     /// left − right, entry by entry.
-    fn difference(&mut self, left: &Expr, right: &Expr) -> Option<Vec<Edge>> {
+    fn difference(&mut self, left: &Expr, right: &Expr) -> Option<Value> {
         let (a, b) = (self.evaluator.value(left), self.evaluator.value(right));
         let (a, b) = (a?, b?);
         self.sides = self.component(left, right, (&a, &b));
@@ -273,7 +286,7 @@ impl Reader<'_> {
         // `… = 0` is meant entry by entry.
         let is_zero = matches!(b, Value::Scalar(edge) if edge.abs() == graph.zero());
         if is_zero {
-            return Some(a.entries());
+            return Some(a);
         }
         if !a.same_shape(&b) {
             return self.evaluator.miss();
@@ -284,7 +297,7 @@ impl Reader<'_> {
                 closed: [true; 3],
             });
         }
-        Some(a.zip(&b, |x, y| graph.sub(x, y)).entries())
+        Some(a.zip(&b, |x, y| graph.sub(x, y)))
     }
 
     /// The points of `a[1] = b[1]`, where both have three components.
@@ -316,4 +329,38 @@ impl Reader<'_> {
         }
         Some((edge.abs() != self.evaluator.graph.zero()).then_some(edge))
     }
+}
+
+/// The names of all entries of the difference of two sides, in their order; that of a single one is empty.
+fn names(difference: &Value) -> Vec<String> {
+    let matrix = |rows: usize, columns: usize, of: &str| -> Vec<String> {
+        let places = (0..rows).flat_map(|i| (0..columns).map(move |j| (i + 1, j + 1)));
+        places.map(|(i, j)| format!("{of}[{i}, {j}]")).collect()
+    };
+    let vector = |entries: usize, of: &str| -> Vec<String> {
+        (1..=entries).map(|i| format!("{of}[{i}]")).collect()
+    };
+    match difference {
+        Value::Scalar(_) => vec![String::new()],
+        Value::Vector(entries) => vector(entries.len(), ""),
+        Value::Matrix(rows) => matrix(rows.len(), rows.first().map_or(0, Vec::len), ""),
+        Value::Pose(..) => [vector(3, "p"), matrix(3, 3, "R")].concat(),
+    }
+}
+
+/// The warning about entries of an equation whose sides are equal by their form.
+fn holding(span: Span, what: &str, entries: &[String], all: bool) -> Diagnostic {
+    if all {
+        return Diagnostic::new(span, format!("this {what} always holds, and is left out"))
+            .help("remove it: both sides are equal wherever the system is");
+    }
+    let message = match entries {
+        [entry] => format!("entry {entry} of this {what} always holds, and is left out"),
+        _ => format!(
+            "entries {} of this {what} always hold, and are left out",
+            entries.join(", ")
+        ),
+    };
+    Diagnostic::new(span, message)
+        .help("write the other entries one by one, as in `a[1] = b[1], a[2] = b[2]`")
 }

@@ -312,6 +312,8 @@ fn driven(
         residual: residual.unwrap_or(graph.zero()),
         stabilized: None,
         written: format!("{} = {}", written(target), shown(expr)),
+        entry: String::new(),
+        redundant: false,
         span: target.span(),
     }
 }

@@ -125,7 +125,7 @@ fields!(Particle { mass, position; });
 fields!(Wrench { at, force, torque; frame, axes });
 fields!(FullFrame { images; full, active });
 fields!(KineticTerms { mass, bias; });
-fields!(Pfaffian { row, shift, residual, stabilized; kind, written, span });
+fields!(Pfaffian { row, shift, residual, stabilized; kind, written, entry, redundant, span });
 fields!(Completion { y, pivots, constants; independent });
 fields!(Observed { rotation, position, point, value; quantity });
 fields!(Spring { stiffness, length, along, wrenches; });

@@ -33,13 +33,25 @@ pub struct Pfaffian {
     /// λ (1/s), at which a violation decays: d/dt (B ξ) = −λ B ξ, or −2 λ B ξ − λ² φ of a loop. Nothing is added where
     /// absent.
     pub stabilized: Option<Edge>,
-    /// As it was written.
+    /// The equation that it is of, as it was written.
     pub written: String,
+    /// Which entry of that equation it is, such as `[3]` or `[1, 2]`; empty where there is a single one.
+    pub entry: String,
+    /// Whether it follows from the others everywhere, so that it says nothing and has no multiplier.
+    pub redundant: bool,
     /// Where it was written.
     pub span: Span,
 }
 
 impl Pfaffian {
+    /// The row by its equation and its entry.
+    pub fn label(&self) -> String {
+        match self.entry.as_str() {
+            "" => self.written.clone(),
+            entry => format!("{}, entry {entry}", self.written),
+        }
+    }
+
     /// B ξ + b.
     pub fn speed(&self, graph: &mut Graph, xi: &[Edge]) -> Edge {
         let moved = graph.dot(&self.row, xi);

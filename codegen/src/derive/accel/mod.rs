@@ -170,13 +170,20 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
                 route(&traced, &order, &variant)
             );
             let projections = saddle::projections(&mut graph, &traced, &factored);
+            let multipliers = match raising.filter(|_| traced.augmented) {
+                None => solution.multipliers,
+                Some(_) => {
+                    let weight = inertia::weight(&mut graph, &parts.mass, &rows)?;
+                    saddle::plain(&mut graph, weight, (&rows, &right), &solution)
+                }
+            };
             let acceleration = Acceleration {
                 other: None,
                 graph,
                 xi_dot: hybrid::exact(&setting.model, solution.xi_dot),
                 pivots,
                 twist: false,
-                multipliers: solution.multipliers,
+                multipliers,
                 projections: Some(projections),
                 loss,
                 count,

@@ -178,6 +178,24 @@ impl Factored {
     }
 }
 
+/// λ of M ξ̇ = f + Bᵀ λ where ξ̇ was solved for with w BᵀB added to M and w Bᵀ b to f: λ' − w (B ξ̇ − b). The last part vanishes
+/// where the rows do not contradict one another.
+pub fn plain(
+    graph: &mut Graph,
+    weight: Edge,
+    (rows, right): (&[Vec<Edge>], &[Edge]),
+    solution: &Saddle,
+) -> Vec<Edge> {
+    let rows = rows.iter().zip(right).zip(&solution.multipliers);
+    rows.map(|((row, &right), &multiplier)| {
+        let reached = graph.dot(row, &solution.xi_dot);
+        let left = graph.sub(reached, right);
+        let part = graph.mul(weight, left);
+        graph.sub(multiplier, part)
+    })
+    .collect()
+}
+
 /// What leads back to the constraints.
 #[derive(Clone, Debug)]
 pub struct Projections {

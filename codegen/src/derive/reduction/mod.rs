@@ -9,6 +9,7 @@
 
 mod carrier;
 mod kinetic;
+mod redundant;
 mod rows;
 
 pub use kinetic::drift;
@@ -21,7 +22,10 @@ use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::{FullFrame, Model};
 use crate::syntax::ast::Span;
 use carrier::Carrier;
-use rows::{independent, keep, redundant, start_numbers};
+pub use redundant::warnings;
+use redundant::{contradicting, redundant};
+pub use rows::{independent, unit};
+use rows::{keep, start_numbers};
 use std::sync::Arc;
 
 /// A factor is no pivot where another one of its row, or of its velocity in other rows, is so many times larger at the start:
@@ -48,6 +52,8 @@ pub struct Reduction {
     pub solved: Vec<(usize, usize)>,
     /// Rows that are kept, by their places among the constraints.
     pub kept: Vec<usize>,
+    /// Rows that follow from the others everywhere and are left out, by their places among the constraints.
+    pub dropped: Vec<usize>,
     /// ξ = C ξₐ + c, in the graph below.
     pub section: Section,
     /// The graph of the full model, with C and c.
@@ -63,13 +69,17 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         return Ok(None);
     }
     let mut full = model.clone();
-    let (rows, solved) = eliminate(&mut full)?;
+    let Echelon {
+        rows,
+        solved,
+        mut dropped,
+    } = eliminate(&mut full)?;
     let n = full.n();
     let active: Vec<usize> = (0..n)
         .filter(|&i| model.clock.is_none_or(|clock| clock.xi != i))
         .filter(|&i| solved.iter().all(|&(_, velocity)| velocity != i))
         .collect();
-    let (kept, rank) = keep(&full, &rows, &solved)?;
+    let (kept, rank) = keep(&full, &rows, &solved, &mut dropped)?;
     accelerated(&full, &rows, &kept, &active)?;
     let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
     let driven = model.constraints.iter().any(drives);
@@ -143,12 +153,19 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         active,
         solved,
         kept,
+        dropped,
         section,
     }))
 }
 
-/// B in echelon form by constant pivots, and the pivots: (row, velocity).
-type Echelon = (Vec<Vec<Edge>>, Vec<(usize, usize)>);
+/// B in echelon form by constant pivots.
+struct Echelon {
+    rows: Vec<Vec<Edge>>,
+    /// The pivots: (row, velocity).
+    solved: Vec<(usize, usize)>,
+    /// Rows of which nothing is left.
+    dropped: Vec<usize>,
+}
 
 fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     let numbers = start_numbers(model);
@@ -238,9 +255,14 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
         }
         solved.push((row, velocity));
     }
+    let mut dropped = Vec::new();
     for (i, row) in rows.iter().enumerate() {
         if row.iter().all(|&entry| entry == zero) {
-            return Err(redundant(&constraints, i, ""));
+            if matches!(constraints[i].kind, Kind::Drive { .. }) {
+                return Err(redundant(&constraints, i, ""));
+            }
+            dropped.push(i);
+            continue;
         }
         if (0..row.len()).all(|j| row[j] == zero || is_time(j)) {
             return Err(contradicting(&constraints, i));
@@ -249,7 +271,11 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
             impossible(model, &model.graph, (row, &constraints[i]))?;
         }
     }
-    Ok((rows, solved))
+    Ok(Echelon {
+        rows,
+        solved,
+        dropped,
+    })
 }
 
 /// Whether runs are led back to a constraint, which takes its multiplier: to those that are stabilised, and to loops that are
@@ -329,24 +355,4 @@ fn accelerated(
         return Err(error.help("prescribe the rate of a velocity that the constraints, and the rates that are prescribed before it, leave free"));
     }
     Ok(())
-}
-
-/// A row over its length; a row of zeros as it is.
-fn unit(row: &[f64]) -> Vec<f64> {
-    let length = row.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let divided = row.iter().map(|v| v / length);
-    if length > 0.0 {
-        divided.collect()
-    } else {
-        row.to_vec()
-    }
-}
-
-fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
-    let message = "this row contradicts the others: it asks for another velocity than they leave";
-    let error = Diagnostic::new(constraints[row].span, message).help("remove one of them");
-    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
-        Some((_, other)) => error.note(other.span, "one of the others"),
-        None => error,
-    }
 }

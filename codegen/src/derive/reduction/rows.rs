@@ -1,11 +1,12 @@
-//! Which rows that were not solved are kept: all but those of loops that say nothing new.
+//! Which rows that were not solved are kept: all but those that say nothing new.
 
+use super::redundant::{contradicting, redundant};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::{evaluate, rank};
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
-use crate::model::pfaffian::{Kind, Pfaffian};
+use crate::model::pfaffian::Kind;
 
 /// Rows whose part across those before is smaller than this, relative to the largest, are redundant.
 const REDUNDANT: f64 = 1e-8;
@@ -18,13 +19,14 @@ const ENOUGH: f64 = 8.0;
 
 /// The rows to keep, and how many of them are independent at the start, the largest first. A loop may
 /// have rows that depend on others where it is closed (an overconstrained mechanism); a nonholonomic
-/// constraint may not. Rows of loops that depend on others wherever the tree is say nothing new, as long as what they are
+/// constraint may not. Rows that depend on others wherever the tree is say nothing new and are dropped, as long as what they are
 /// multiples of does not vanish where the loop is closed: of cos u du = 0 and sin u du = 0 the first one counts where u is
 /// zero.
 pub fn keep(
     model: &Model,
     rows: &[Vec<Edge>],
     solved: &[(usize, usize)],
+    dropped: &mut Vec<usize>,
 ) -> Result<(Vec<usize>, usize), Diagnostic> {
     let time = model.clock.map(|clock| clock.xi);
     // The entries of a row but that of ξ⁰.
@@ -34,13 +36,28 @@ pub fn keep(
         entries.map(|(_, entry)| *entry).collect()
     };
     let left = (0..rows.len()).filter(|&i| solved.iter().all(|&(row, _)| row != i));
-    let (loops, mut open): (Vec<usize>, Vec<usize>) =
+    let left = left.filter(|i| !dropped.contains(i));
+    let (loops, others): (Vec<usize>, Vec<usize>) =
         left.partition(|&i| model.constraints[i].kind == Kind::Loop);
-    let at_point = |&i: &usize| -> Vec<Fp> {
-        let row = moving(&rows[i]);
-        row.iter().map(|&entry| model.graph.value(entry)).collect()
-    };
-    let mut values: Vec<Vec<Fp>> = open.iter().map(at_point).collect();
+    let value = |&entry: &Edge| model.graph.value(entry);
+    let at_point = |&i: &usize| -> Vec<Fp> { moving(&rows[i]).iter().map(value).collect() };
+    let (mut open, mut values): (Vec<usize>, Vec<Vec<Fp>>) = (Vec::new(), Vec::new());
+    for &i in &others {
+        values.push(at_point(&i));
+        open.push(i);
+        if rank(values.clone()) == values.len() {
+            continue;
+        }
+        let whole = open.iter().map(|&i| rows[i].iter().map(value).collect());
+        if rank(whole.collect()) == open.len() {
+            return Err(contradicting(&model.constraints, i));
+        }
+        if matches!(model.constraints[i].kind, Kind::Drive { .. }) {
+            return Err(redundant(&model.constraints, i, ""));
+        }
+        values.pop();
+        dropped.extend(open.pop());
+    }
     let all: Vec<Vec<Edge>> = open
         .iter()
         .chain(&loops)
@@ -50,10 +67,12 @@ pub fn keep(
         values.push(at_point(&loops[place]));
         if rank(values.clone()) < values.len() {
             values.pop();
+            dropped.push(loops[place]);
         } else {
             open.push(loops[place]);
         }
     }
+    dropped.sort_unstable();
     open.sort_unstable();
     let edges: Vec<Edge> = open.iter().flat_map(|&i| moving(&rows[i])).collect();
     let values = evaluate(&model.graph, &edges, &start_numbers(model));
@@ -158,16 +177,14 @@ pub fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
     }
 }
 
-/// The error of a row that follows from the others.
-pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
-    let error = Diagnostic::new(
-        constraints[row].span,
-        format!("this constraint is redundant{when}: it follows from the others"),
-    )
-    .help("remove it; its multiplier would have no value");
-    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
-        Some((_, other)) => error.note(other.span, "one of the others"),
-        None => error,
+/// A row over its length; a row of zeros as it is.
+pub fn unit(row: &[f64]) -> Vec<f64> {
+    let length = norm(row);
+    let divided = row.iter().map(|v| v / length);
+    if length > 0.0 {
+        divided.collect()
+    } else {
+        row.to_vec()
     }
 }
 

@@ -149,7 +149,10 @@ fn dependence(
 
 /// The constraints on velocities, in words, or states of first order, or the time.
 fn constrained(full: &Model) -> Option<Reason> {
-    let count = |kind: Kind| full.constraints.iter().filter(|c| c.kind == kind).count();
+    let count = |kind: Kind| {
+        let rows = full.constraints.iter();
+        rows.filter(|c| c.kind == kind && !c.redundant).count()
+    };
     let words = [
         (Kind::Inactive, "inactive velocity", "inactive velocities"),
         (Kind::Nonholonomic, "nonholonomic row", "nonholonomic rows"),

@@ -106,6 +106,19 @@ impl Full {
         Some(full)
     }
 
+    /// λ of all rows, with 0 for those that were dropped, then the forces of drives.
+    pub(super) fn of_all_rows(&self, lambda: Vec<Fp>) -> Vec<Fp> {
+        let mut next = lambda.into_iter();
+        let constraints = self.reference.model.constraints.iter();
+        let rows = constraints.map(|row| match row.redundant {
+            true => Fp::ZERO,
+            false => next.next().unwrap_or(Fp::ZERO),
+        });
+        let mut all: Vec<Fp> = rows.collect();
+        all.extend(next);
+        all
+    }
+
     /// Whether the forces of drives are known, which take part in d/dt (T + V): not where they are not emitted, nor where
     /// the forces of loops are not unique.
     pub(super) fn power_is_known(&self, program: &Program) -> bool {

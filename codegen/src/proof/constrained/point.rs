@@ -186,6 +186,7 @@ impl<'a> At<'a> {
             }
             None => Vec::new(),
         };
+        let lambda = self.full.of_all_rows(lambda);
         let rows = evaluate_at(&full.graph, &self.full.rows, &mut self.point.clone())?;
         let drives = lambda.get(rows.len() / n..).unwrap_or(&[]);
         for ((velocity, _), &force) in full.accelerated.iter().zip(drives) {

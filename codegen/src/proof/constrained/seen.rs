@@ -224,6 +224,7 @@ impl<'a> Seen<'a> {
         let model = &self.full.reference.model;
         let (n, force) = (self.n(), &self.values.force);
         let lambda = self.emitted("constraint_force")?;
+        let lambda = lambda.map(|lambda| self.full.of_all_rows(lambda));
         let xi_dot = match (&self.xi_dot, &lambda) {
             (None, Some(_)) => Some(self.implied()?),
             (emitted, _) => emitted.clone(),
