@@ -170,12 +170,22 @@ impl Builder<'_> {
         self.push(FunctionId::PotentialForce, slope);
         self.push(FunctionId::GeneralizedForce, applied);
         self.push(FunctionId::Momentum, momentum);
+        let gyroscopic = self.model.gyroscopic != self.model.graph.zero();
         self.push(FunctionId::KineticEnergy, vec![kinetic]);
+        if let (Some(function), true) = (self.functions.last_mut(), gyroscopic) {
+            let text = "Of what is written as `kinetic`, T₂ − T₀ by degrees in ẋ: with it T + V is ẋ · ∂L/∂ẋ − L.";
+            function.docs.push(text.into());
+        }
         self.push(FunctionId::PotentialEnergy, vec![potential]);
         self.push(FunctionId::Energy, vec![energy]);
+        if let (Some(function), true) = (self.functions.last_mut(), gyroscopic) {
+            let text =
+                "Of what is written as `kinetic`, T₂ − T₀ by degrees in ẋ: this is ẋ · ∂L/∂ẋ − L.";
+            function.docs.push(text.into());
+        }
     }
 
-    /// T and T + V, V in a graph of its own: by ½ ξ · p, or by the velocities of points and bodies, whichever takes less.
+    /// The parts of T in the energy, and with V the energy, V in a graph of its own: by ½ ξ · p, or by the velocities of points and bodies, whichever takes less.
     fn energies(&mut self, momentum: &[Edge], reference: &Graph, potential: Edge) -> [Edge; 2] {
         let [mut kinetic, mut energy] = [(); 2].map(|()| Candidates::with(&self.care));
         let mut offer = |graph: Graph, t: Edge| {
@@ -193,6 +203,7 @@ impl Builder<'_> {
             let mut model = self.model.clone();
             let mut calculus = Calculus::new(&model);
             let traced = energy::traced(&mut model, &mut calculus);
+            let traced = energy::part_of_energy(&mut model, traced);
             // Armatures, and M that was written, are in p alone.
             if model.graph.value(traced) == value {
                 offer(model.graph, traced);

@@ -66,6 +66,25 @@ pub fn traced(model: &mut Model, calculus: &mut Calculus) -> Edge {
     graph.add(moved, model.kinetic)
 }
 
+/// The part of T in the energy ẋ · ∂L/∂ẋ − L: of what was written as `kinetic` T₂ − T₀, as its terms that are linear in the
+/// velocities do no work and those without any act as a potential; of moving points and bodies their kinetic energy in space.
+pub fn part_of_energy(model: &mut Model, kinetic: Edge) -> Edge {
+    model.graph.sub(kinetic, model.gyroscopic)
+}
+
+/// T₁ + 2 T₀ of a kinetic energy that was written, by degrees in ẋ: its derivative by the rate ṫ of time where all other rates of
+/// coordinates stay as they are, Σ Yⁱₜ ∂T/∂ξⁱ with Y by rows.
+pub fn gyroscopic(model: &mut Model, y: &[Vec<Edge>]) -> Edge {
+    let Some(clock) = model.clock else {
+        return model.graph.zero();
+    };
+    let momentum = momentum(model, model.kinetic);
+    let graph = &mut model.graph;
+    let column: Vec<Edge> = y.iter().map(|row| row[clock.x]).collect();
+    let sum = graph.dot(&column, &momentum);
+    graph.mul(model.xi[clock.xi], sum)
+}
+
 /// p = ∂T/∂ξ.
 pub fn momentum(model: &mut Model, kinetic: Edge) -> Vec<Edge> {
     let graph = &mut model.graph;

@@ -8,7 +8,7 @@ use crate::model::Model;
 use crate::model::invariants::Quantity;
 use crate::model::value::Value;
 
-/// What an invariant names; `energies` are T and V.
+/// What an invariant names; `energies` are the part of T in the energy, and V.
 pub fn value(
     model: &mut Model,
     calculus: &mut Calculus,

@@ -18,6 +18,7 @@ mod externals;
 mod fixtures;
 mod format;
 mod functions;
+mod gyroscopic;
 mod headers;
 mod include;
 mod inerter;

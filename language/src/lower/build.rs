@@ -262,6 +262,7 @@ fn read_at(
         ..
     } = ground;
     let (motion, called) = (scope.motion, scope.called.into_inner());
+    let zero = graph.zero();
     let model = Model {
         name: system.name.name.clone(),
         public: system.public,
@@ -303,6 +304,7 @@ fn read_at(
         bodies: dynamics.bodies,
         particles: dynamics.particles,
         kinetic: dynamics.kinetic,
+        gyroscopic: zero,
         armature,
         potential: dynamics.potential,
         gravity: dynamics.gravity,

@@ -137,7 +137,7 @@ fields!(Elements {
 });
 fields!(Model {
     x, xi, xi_dot, u, momenta, rate, a, frames, closures, bodies, particles, wrenches, elements, dissipation, observed,
-    kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
+    kinetic, gyroscopic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, full_frame;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, augmented, starts_anywhere, clock,
     joints, start_x, start_xi, start_z, opening, asked, span, origins, warnings, independent, externals

@@ -265,6 +265,9 @@ pub struct Model {
     pub particles: Vec<Particle>,
     /// Kinetic energy beyond that of bodies and particles; that of armatures is a part of it.
     pub kinetic: Edge,
+    /// T₁ + 2 T₀ of that, by its terms of first degree and of none in the rates of coordinates: what T has beyond its part
+    /// T₂ − T₀ of the energy ẋ · ∂L/∂ẋ − L. It is known once velocities are solved for.
+    pub gyroscopic: Edge,
     /// J of ½ J ξⁱ², the armatures of joints, for every velocity; each of these is the rate of a
     /// coordinate, so that they add J ξ̇ⁱ to the forces and nothing else (kg m², kg).
     pub armature: Vec<Edge>,

@@ -84,12 +84,12 @@ pub struct Parts {
     pub inverse_dynamics: Option<Vec<Edge>>,
     /// ∂T/∂ξ, where it was traced by itself: M ξ, and more where ẋ has terms without ξ.
     pub momentum: Option<Vec<Edge>>,
-    /// T, where it is not ½ ξᵀ M ξ.
+    /// The part of T in the energy, where it is not ½ ξᵀ M ξ.
     pub kinetic: Option<Edge>,
 }
 
 impl Parts {
-    /// T.
+    /// The part of T in the energy.
     pub fn kinetic_of(&self, graph: &mut Graph, model: &Model, momentum: &[Edge]) -> Edge {
         if let Some(kinetic) = self.kinetic {
             return kinetic;
@@ -187,6 +187,7 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
     }
     let kinetic = model.is_affine().then(|| energy::traced(model, calculus));
     let momentum = kinetic.map(|kinetic| energy::momentum(model, kinetic));
+    let kinetic = kinetic.map(|kinetic| energy::part_of_energy(model, kinetic));
     let potential = loads::elastic(model, calculus);
     let loads = loads::applied(model, calculus);
     let graph = &mut model.graph;

@@ -5,7 +5,7 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{multiply, transpose};
 use crate::derive::calculus::Calculus;
-use crate::derive::{commutation, connection, inertia, kinematics};
+use crate::derive::{commutation, connection, energy, inertia, kinematics};
 use crate::model::{KineticTerms, Model};
 
 /// ξ = C ξₐ + c.
@@ -28,7 +28,7 @@ pub fn drift(full: &mut Model, xi_active: &[Edge], section: &Section) -> Vec<Edg
 }
 
 /// Cᵀ K C and Cᵀ (h + K (Ċ ξₐ + ċ)) of the kinetic energy that the user wrote, with Hamel's h before the
-/// constraints are put in; still in terms of ξ.
+/// constraints are put in; still in terms of ξ. The model learns what that energy has beyond its part of the whole energy.
 pub fn kinetic_terms(
     full: &mut Model,
     xi_active: &[Edge],
@@ -40,6 +40,7 @@ pub fn kinetic_terms(
     let mut calculus = Calculus::new(full);
     let mass = inertia::kinetic_mass(full);
     let rows = kinematics::left_inverse(full)?;
+    full.gyroscopic = energy::gyroscopic(full, &rows);
     let gamma = commutation::gamma(full, &mut calculus, &rows);
     let h = connection::quadratic(full, &mut calculus, &mass, &gamma);
     let drift = drift(full, xi_active, section);

@@ -9,8 +9,8 @@ use crate::algebra::numeric::evaluate_at;
 use crate::algebra::transplant::{substitute, substitute_under_roots};
 use crate::derive::accel::saddle;
 use crate::derive::calculus::Calculus;
-use crate::derive::quantity;
 use crate::derive::reduction::{Reduction, drift};
+use crate::derive::{kinematics, quantity};
 use crate::model::{Model, class};
 use crate::program::{FunctionId, Program};
 use crate::proof::kernel::places;
@@ -31,6 +31,8 @@ pub(super) struct Full {
     pub(super) complement: Vec<Edge>,
     /// B, all rows.
     pub(super) rows: Vec<Edge>,
+    /// The part of T in the energy.
+    pub(super) in_energy: Edge,
     /// d/dt (T + V) at ξ̇ = 0.
     pub(super) change: Edge,
     /// The symbols of velocities that were solved away, with what gives them.
@@ -60,7 +62,8 @@ impl Full {
         let mut calculus = Calculus::new(full);
         let energy = full.graph.add(reference.kinetic, reference.potential);
         let change = calculus.rate(&mut full.graph, energy);
-        let energies = (reference.kinetic, reference.potential);
+        let in_energy = in_energy(full, reference.kinetic)?;
+        let energies = (in_energy, reference.potential);
         let claims = model.invariants.iter();
         let claims = claims.map(|claim| {
             let value = quantity::value(full, &mut calculus, energies, &claim.quantity);
@@ -93,6 +96,7 @@ impl Full {
                 .iter()
                 .flat_map(|c| c.row.clone())
                 .collect(),
+            in_energy,
             change,
             solved,
             forms,
@@ -160,12 +164,38 @@ impl Full {
             &mut reference.kinetic,
             &mut reference.potential,
             &mut reference.dissipation,
+            &mut self.in_energy,
             &mut self.change,
         ];
         for edge in single {
             *edge = put(graph, &[*edge])[0];
         }
     }
+}
+
+/// The part of T in the energy: T less T₁ + 2 T₀ of what was written, which is ½ (T(2) − T(0)) as a function of ṫ with the rates
+/// of all other coordinates held.
+fn in_energy(full: &mut Model, kinetic: Edge) -> Option<Edge> {
+    let Some(clock) = full.clock.filter(|_| full.kinetic != full.graph.zero()) else {
+        return Some(kinetic);
+    };
+    let y = kinematics::left_inverse(full)?;
+    let symbols = places(&full.graph, class::VELOCITY);
+    let graph = &mut full.graph;
+    let [still, twice] = [-1, 1].map(|more| {
+        let more = graph.ratio(more, 1);
+        let moved = full.xi.iter().zip(&y).zip(&symbols);
+        let moved = moved.map(|((&xi, row), &symbol)| {
+            let part = graph.mul(more, row[clock.x]);
+            (symbol, graph.add(xi, part))
+        });
+        let moved: Vec<(usize, Edge)> = moved.collect();
+        substitute(graph, &[full.kinetic], &moved)[0]
+    });
+    let difference = graph.sub(twice, still);
+    let half = graph.ratio(1, 2);
+    let beyond = graph.mul(half, difference);
+    Some(graph.sub(kinetic, beyond))
 }
 
 /// The symbols of prescribed coordinates with what they are prescribed to be, and ξ⁰ with 1.

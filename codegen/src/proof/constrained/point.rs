@@ -35,7 +35,7 @@ pub(super) struct Values {
     pub(super) slope: Vec<Fp>,
     pub(super) force: Vec<Fp>,
     pub(super) drift: Vec<Fp>,
-    pub(super) kinetic: Fp,
+    pub(super) in_energy: Fp,
     pub(super) potential: Fp,
     pub(super) dissipation: Fp,
     pub(super) change: Fp,
@@ -133,7 +133,7 @@ impl<'a> At<'a> {
             roots.extend(part);
         }
         roots.extend([
-            reference.kinetic,
+            self.full.in_energy,
             reference.potential,
             reference.dissipation,
             self.full.change,
@@ -141,7 +141,7 @@ impl<'a> At<'a> {
         let all = evaluate_at(graph, &roots, &mut self.point.clone())?;
         let (mass, rest) = all.split_at(n * n);
         let part = |i: usize| rest[i * n..(i + 1) * n].to_vec();
-        let [kinetic, potential, dissipation, change] = rest[5 * n..] else {
+        let [in_energy, potential, dissipation, change] = rest[5 * n..] else {
             return None;
         };
         Some(Values {
@@ -151,7 +151,7 @@ impl<'a> At<'a> {
             force: part(2),
             drift: part(3),
             xi: part(4),
-            kinetic,
+            in_energy,
             potential,
             dissipation,
             change,

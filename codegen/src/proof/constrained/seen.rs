@@ -284,9 +284,9 @@ impl<'a> Seen<'a> {
         let all = [
             ("generalized_force", self.projected(&values.force)),
             ("potential_force", self.projected(&values.slope)),
-            ("kinetic_energy", vec![values.kinetic]),
+            ("kinetic_energy", vec![values.in_energy]),
             ("potential_energy", vec![values.potential]),
-            ("energy", vec![values.kinetic + values.potential]),
+            ("energy", vec![values.in_energy + values.potential]),
             ("dissipation", vec![values.dissipation]),
         ];
         for (name, expected) in all {

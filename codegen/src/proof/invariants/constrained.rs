@@ -91,6 +91,7 @@ fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
         let mass = inertia::mass_matrix(model, calculus);
         energy::kinetic(model, &mass)
     };
+    let kinetic = energy::part_of_energy(model, kinetic);
     (kinetic, energy::potential(model))
 }
 
