@@ -2,6 +2,7 @@
 
 use super::accel::hybrid;
 use super::calculus::{Calculus, into_frame};
+use super::idle;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{apply3, cross};
@@ -242,7 +243,7 @@ pub fn positive_definite(
             mass = sum;
         }
     }
-    let pivot_at = |x: &[f64], least: f64| {
+    let mass_at = |x: &[f64]| {
         let mut values = evaluate(&graph, &mass.concat(), &numbers(model, x));
         // Where no constraint acts on it, a velocity whose rate is given takes no part in what is solved.
         for &(place, _) in model
@@ -255,8 +256,9 @@ pub fn positive_definite(
                 (values[place * n + i], values[i * n + place]) = (entry, entry);
             }
         }
-        failing_pivot(&values, n, least)
+        values
     };
+    let pivot_at = |x: &[f64], least: f64| failing_pivot(&mass_at(x), n, least);
     let Some(pivot) = pivot_at(&model.start_x, ROUNDING) else {
         return Ok(());
     };
@@ -270,11 +272,16 @@ pub fn positive_definite(
         .iter()
         .find(|s| s.node == model.xi[pivot].node())
         .map_or("", |s| s.name.as_str());
+    let help = idle::advice(model, &mass_at(&model.start_x), pivot);
+    let help = help.unwrap_or_else(|| {
+        "every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it".into()
+    });
     Err(Diagnostic::new(
         model.velocity_spans.get(pivot).copied().unwrap_or(model.span),
         format!("the mass matrix is not positive definite at the start: pivot {} (`{name}`) is not positive", pivot + 1),
     )
-    .help("every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it").about_inverse())
+    .help(help)
+    .about_inverse())
 }
 
 /// The first velocity whose pivot in Cholesky's factorisation is not larger than `least`, relative to the diagonal; `None`

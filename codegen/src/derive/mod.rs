@@ -8,6 +8,7 @@
 //! | `correction` | the stabilising term −Ψ φ | (8) |
 //! | `commutation` | Hamel coefficients γ | (12), (13) |
 //! | `inertia` | mass matrix M | (20) |
+//! | `idle` | what has no inertia where M is singular | |
 //! | `connection` | connection coefficients Γ | (23) |
 //! | `loads` | potential, gravity, applied forces | (28) |
 //! | `energy` | T, V, momentum | |
@@ -42,6 +43,7 @@ pub(crate) mod energy;
 mod frames;
 mod further;
 pub mod geometry;
+mod idle;
 pub mod inertia;
 pub mod kinematics;
 pub(crate) mod linearize;

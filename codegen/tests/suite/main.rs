@@ -20,6 +20,7 @@ mod format;
 mod functions;
 mod gyroscopic;
 mod headers;
+mod idle;
 mod include;
 mod inerter;
 mod joints;
