@@ -34,6 +34,7 @@ mod nearest;
 mod norms;
 mod notation;
 mod observed;
+mod own_words;
 mod plain;
 mod points;
 mod powers;

@@ -5,10 +5,17 @@ use super::words::{self, FUNCTIONS, reserved};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{Expr, ExprKind, Ident, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
+use crate::syntax::written::written;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Names listed where none is close to a misspelt one.
 const LISTED: usize = 12;
+
+/// How names begin that programs add to a description: they are not offered.
+const GENERATED: &str = "hamel_";
+
+/// How the rates of coordinates are often called.
+const ENDINGS: [&str; 3] = ["_dot", "dot", "_d"];
 
 /// Misspelt names for which a close one is looked for.
 const MOST_MISSPELT: usize = 50;
@@ -34,6 +41,8 @@ pub struct Checker<'a> {
     bodies: BTreeMap<&'a str, Body<'a>>,
     /// Functions that were looked at, and how many names were open then.
     seen: BTreeMap<&'a str, usize>,
+    /// The velocities, or entries of them, that are rates of coordinates by themselves.
+    rates: BTreeMap<&'a str, &'a Expr>,
     /// How many names were found to be unknown.
     misspelt: usize,
 }
@@ -65,6 +74,7 @@ impl<'a> Checker<'a> {
             report: Report::new(),
             bodies,
             seen: BTreeMap::new(),
+            rates: plain_rates(system),
             misspelt: 0,
         }
     }
@@ -247,9 +257,14 @@ impl<'a> Checker<'a> {
         if name == "t" && wanted.is_none() {
             return error.help("the time has to be declared: `time t;`");
         }
+        if let Some((coordinate, velocity)) = self.rate_of(name, &accept) {
+            return error.help(format!("the rate of `{coordinate}` is `{velocity}`"));
+        }
         let known = || {
             let all = self.symbols.iter();
-            let known = all.filter(|(name, s)| accept(s.kind) && !self.open.contains(name));
+            let known = all.filter(|(name, s)| {
+                accept(s.kind) && !self.open.contains(name) && !name.starts_with(GENERATED)
+            });
             known.map(|(name, _)| name)
         };
         if let Some(near) = closest(name, known().filter(|&near| near != name)) {
@@ -265,6 +280,43 @@ impl<'a> Checker<'a> {
             (false, _) => error.help(format!("known here: {}", all.join(", "))),
         }
     }
+}
+
+impl Checker<'_> {
+    /// The coordinate of which a name seems to be the rate, as `x_dot` is of `x`, and the velocity that this rate is.
+    fn rate_of(&self, name: &str, accept: &impl Fn(Kind) -> bool) -> Option<(&str, String)> {
+        let stripped = ENDINGS
+            .iter()
+            .filter_map(|ending| name.strip_suffix(ending));
+        let coordinates = stripped.chain(name.strip_prefix('d'));
+        let found = coordinates.filter_map(|name| self.rates.get_key_value(name));
+        let mut velocities = found.filter(|(_, velocity)| {
+            let of = match &velocity.kind {
+                ExprKind::Index(base, _) => base.as_ref(),
+                _ => velocity,
+            };
+            let ExprKind::Name(of) = &of.kind else {
+                return false;
+            };
+            self.symbols
+                .kind(of)
+                .is_some_and(|kind| kind == Kind::Velocity && accept(kind))
+        });
+        let (coordinate, velocity) = velocities.next()?;
+        Some((coordinate, written(velocity)))
+    }
+}
+
+/// Coordinates whose rates are velocities, or entries of these, by themselves.
+fn plain_rates(system: &System) -> BTreeMap<&str, &Expr> {
+    let rates = system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Rate { target, value } => Some((target, value)),
+        _ => None,
+    });
+    let whole = rates.filter(|(target, _)| target.field.is_none() && target.entry.is_empty());
+    whole
+        .map(|(target, value)| (target.name.name.as_str(), value))
+        .collect()
 }
 
 /// A name that is defined, but not yet where it is used.

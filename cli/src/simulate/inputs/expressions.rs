@@ -14,9 +14,6 @@ use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::path::plain;
 
-/// The names that the description has beside those of the user, as messages list them.
-const OWN: &str = "`hamel_v`, `hamel_x`, ";
-
 /// Expressions of inputs.
 #[derive(Clone, Debug)]
 pub struct Expressions {
@@ -261,12 +258,7 @@ fn said(errors: &[Diagnostic]) -> String {
         return String::new();
     };
     match &error.help {
-        // What the description has of its own is nothing to choose from.
-        Some(help) => format!(
-            "{}; {}",
-            error.message,
-            help.replace(OWN, "").replace("`hamel_t`, ", "")
-        ),
+        Some(help) => format!("{}; {help}", error.message),
         None => error.message.clone(),
     }
 }
