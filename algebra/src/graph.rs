@@ -415,7 +415,10 @@ impl Graph {
         let node = Node::Apply(function, argument);
         let edge = match self.known(node, value, class) {
             Some(known) => known,
-            None => self.push(node, value, class),
+            None => match (function == Function::Sqrt).then(|| self.even_root(argument)) {
+                Some(Some(root)) => root,
+                _ => self.push(node, value, class),
+            },
         };
         edge.signed(negative)
     }

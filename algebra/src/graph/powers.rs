@@ -2,6 +2,7 @@
 
 use super::{Edge, Function, Graph, Node, NodeId};
 use num_rational::BigRational;
+use std::cmp::Ordering;
 
 /// Products of more factors are not looked at.
 const MOST_FACTORS: usize = 12;
@@ -96,6 +97,43 @@ impl Graph {
         let sum = |factor: &Edge| matches!(self.node(factor.node()), Node::Add(..));
         let mut sums = factors.iter().filter(|factor| sum(factor));
         sums.find(|sum| times(sum.node()) > 2).map(|sum| sum.node())
+    }
+
+    /// The root of a product of even powers, √(c a⁴ b²) = √c a² |b|: it has slopes where a and b are 0. `None` where another
+    /// factor varies.
+    pub(super) fn even_root(&mut self, square: Edge) -> Option<Edge> {
+        let mut factors = self.whole_factors(square)?;
+        let negative = factors.iter().filter(|factor| factor.is_negative()).count();
+        if factors.len() < 2 || negative % 2 == 1 {
+            return None;
+        }
+        factors.iter_mut().for_each(|factor| *factor = factor.abs());
+        factors.sort_unstable();
+        let (constants, varying): (Vec<Edge>, Vec<Edge>) =
+            (factors.into_iter()).partition(|factor| self.class(factor.node()) == 0);
+        let powers: Vec<&[Edge]> = varying.chunk_by(|a, b| a == b).collect();
+        if powers.is_empty() || powers.iter().any(|power| power.len() % 2 == 1) {
+            return None;
+        }
+        let mut constant = self.one();
+        for factor in constants {
+            constant = self.mul(constant, factor);
+        }
+        if self.side(constant) != Some(Ordering::Greater) {
+            return None;
+        }
+        let mut root = self.apply(Function::Sqrt, constant);
+        for power in powers {
+            let half = power.len() / 2;
+            let factor = match half % 2 {
+                0 => power[0],
+                _ => self.apply(Function::Abs, power[0]),
+            };
+            for _ in 0..half {
+                root = self.mul(root, factor);
+            }
+        }
+        Some(root)
     }
 
     /// The factors of a product, the sign of an edge with one of them; `None` where there are too many.

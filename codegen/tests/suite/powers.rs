@@ -99,3 +99,36 @@ fn a_subnormal_pivot_is_refused() {
         assert!(found.iter().flatten().all(|entry| entry.is_finite()));
     }
 }
+
+/// √(c a⁴ b²) = √c a² |b| has slopes where a and b are 0.
+#[test]
+fn roots_of_even_powers_have_slopes_everywhere() {
+    let cases: [(&str, fn(f64) -> f64, f64); 8] = [
+        ("sqrt(q^4)", |q| 2.0 * q, 0.0),
+        ("sqrt(4 * q^4)", |q| 4.0 * q, 0.0),
+        ("sqrt(q^2)", f64::signum, 0.0),
+        ("sqrt(q^6)", |q| 3.0 * q * q.abs(), 0.0),
+        ("sqrt(2 * q^8)", |q| 4.0 * 2.0_f64.sqrt() * q.powi(3), 0.0),
+        ("sqrt(sqrt(q^8))", |q| 2.0 * q, 0.0),
+        ("sqrt(k^2 * q^4)", |q| 6.0 * q, 0.0),
+        (
+            "sqrt((q - 0.5)^4 * (q + 1)^4)",
+            |q| 2.0 * (q - 0.5) * (q + 1.0) * (2.0 * q + 0.5),
+            -0.5,
+        ),
+    ];
+    for (potential, slope, at_zero) in cases {
+        let of = generated(&format!(
+            "system Q {{ param k = -3; coord q; velocity v; rate q = v; kinetic v^2 / 2; potential {potential}; }}"
+        ));
+        let accel = |q: f64| value(&of, "accel", [&[q], &[0.3], &[], &[]])[0];
+        assert_eq!(accel(0.0), -at_zero, "{potential}");
+        for q in [-0.7, 0.3, 1.9] {
+            assert!(
+                (accel(q) + slope(q)).abs() < 1e-12,
+                "{potential} at {q}: {}",
+                accel(q)
+            );
+        }
+    }
+}
