@@ -15,6 +15,9 @@ use hamel_codegen::proof::confidence::Confidence;
 use hamel_codegen::tables::geometry::lines;
 use std::path::PathBuf;
 
+/// Functions that lose fewer digits than this are not listed.
+const SOME: f64 = 1.0;
+
 /// Proves the identities behind the equations of motion.
 ///
 /// Equation numbers are those of KR18, the paper of the method. "proved" is exact, over the rationals
@@ -23,7 +26,7 @@ use std::path::PathBuf;
 ///
 /// Then come geometric properties: which velocities are integrable and what they are the rates of,
 /// which Lie algebra the frame is, the pattern of M, and symmetries. "rounding" is how many decimal
-/// digits each function loses in f64, compared with numbers of twice the length at the start and at
+/// digits a function loses in f64, where it is one or more, compared with numbers of twice the length at the start and at
 /// states close to it, relative to the largest entry of the result.
 ///
 /// The last lines say which integrators apply: whether the equations split into free motion
@@ -157,27 +160,35 @@ fn table(identities: &[Identity]) -> String {
         .collect()
 }
 
-/// The digits, of the sixteen of `f64`, that rounding takes of every function.
+/// The digits, of the sixteen of `f64`, that rounding takes of the functions where it takes some; the others in one line.
 fn rounding(generated: &Generated) -> String {
     let functions = &generated.program.functions;
     let losses = losses(&generated.active, &generated.program);
-    let width = functions.iter().map(|f| f.name.len()).max().unwrap_or(0);
-    let lines = functions
+    let known: Vec<_> = functions.iter().zip(losses).collect();
+    let known = known
         .iter()
-        .zip(losses)
-        .filter_map(|(function, digits)| {
-            let digits = digits?;
-            let help = if digits >= MANY {
-                format!(". {HELP}")
-            } else {
-                String::new()
-            };
-            let name = &function.name;
-            Some(format!(
-                "  rounding       {name:width$}  loses {digits:.1} digits{help}\n"
-            ))
-        });
-    lines.collect()
+        .filter_map(|&(function, digits)| Some((function, digits?)));
+    let (lossy, exact): (Vec<_>, Vec<_>) = known.partition(|(_, digits)| *digits >= SOME);
+    let rest = match (exact.len(), lossy.len()) {
+        (0, _) => String::new(),
+        (_, 0) => "  rounding       no function loses a digit\n".to_string(),
+        (1, _) => "  rounding       the other function loses less than a digit\n".to_string(),
+        (count, _) => {
+            format!("  rounding       the other {count} functions lose less than a digit\n")
+        }
+    };
+    let width = lossy.iter().map(|(f, _)| f.name.len()).max().unwrap_or(0);
+    let lines = lossy.iter().map(|(function, digits)| {
+        let digits = *digits;
+        let help = if digits >= MANY {
+            format!(". {HELP}")
+        } else {
+            String::new()
+        };
+        let name = &function.name;
+        format!("  rounding       {name:width$}  loses {digits:.1} digits{help}\n")
+    });
+    lines.collect::<String>() + &rest
 }
 
 /// What speaks for it that expressions of equal value are equal.

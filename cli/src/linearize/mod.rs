@@ -61,6 +61,10 @@ enum Format {
 /// Parts of eigenvalues that are smaller, relative to the largest entry of A, are shown as zero.
 const ROUNDING: f64 = 1e-14;
 
+/// Eigenvalues that are smaller, relative to the largest entry of A, are zeros to rounding: of a zero that is a double root of
+/// the characteristic polynomial, rounding leaves the root of what it is.
+const ZERO: f64 = 1e-7;
+
 /// The numbers of a linearisation.
 #[derive(Clone, Debug)]
 pub struct Linear {
@@ -223,18 +227,15 @@ fn text(linear: &Linear) -> String {
             linear.given
         ));
     }
-    text.push_str("\n\x1b[1mA\x1b[0m\n");
-    text.push_str(&table(&linear.states, &linear.states, &linear.a));
-    if !linear.inputs.is_empty() {
-        text.push_str("\n\x1b[1mB\x1b[0m\n");
-        text.push_str(&table(&linear.states, &linear.inputs, &linear.b));
+    let (states, inputs, outputs) = (&linear.states, &linear.inputs, &linear.outputs);
+    text.push_str(&matrix("A", states, states, &linear.a));
+    if !inputs.is_empty() {
+        text.push_str(&matrix("B", states, inputs, &linear.b));
     }
-    if !linear.outputs.is_empty() {
-        text.push_str("\n\x1b[1mC\x1b[0m\n");
-        text.push_str(&table(&linear.outputs, &linear.states, &linear.c));
-        if !linear.inputs.is_empty() {
-            text.push_str("\n\x1b[1mD\x1b[0m\n");
-            text.push_str(&table(&linear.outputs, &linear.inputs, &linear.d));
+    if !outputs.is_empty() {
+        text.push_str(&matrix("C", outputs, states, &linear.c));
+        if !inputs.is_empty() {
+            text.push_str(&matrix("D", outputs, inputs, &linear.d));
         }
     }
     text.push_str("\n\x1b[1meigenvalues of A\x1b[0m\n");
@@ -253,8 +254,16 @@ fn text(linear: &Linear) -> String {
     if linear.eigenvalues.is_none() {
         text.push_str("  not found\n");
     }
-    for &(re, im) in linear.eigenvalues.iter().flatten() {
+    let values = linear.eigenvalues.iter().flatten();
+    let (zeros, others): (Vec<_>, Vec<_>) =
+        values.partition(|(re, im)| re.hypot(*im) <= ZERO * size);
+    let mut zeros = zeroes(&zeros, ROUNDING * size);
+    for &&(re, im) in &others {
         let re = clean(re);
+        // Where they stand in the order.
+        if re < 0.0 {
+            text.push_str(&std::mem::take(&mut zeros));
+        }
         // A pair of conjugates on one line.
         if im > 0.0 {
             text.push_str(&format!("  {} ± {} i\n", short(re), short(im)));
@@ -262,6 +271,7 @@ fn text(linear: &Linear) -> String {
             text.push_str(&format!("  {}\n", short(re)));
         }
     }
+    text.push_str(&zeros);
     let largest = linear.xi_dot.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if largest > AT_REST {
         text.push_str(&format!(
@@ -270,6 +280,29 @@ fn text(linear: &Linear) -> String {
         ));
     }
     text
+}
+
+/// All eigenvalues that are zero in one line, with how far rounding leaves them from it; empty where there are none.
+fn zeroes(zeros: &[&(f64, f64)], rounding: f64) -> String {
+    let off = zeros.iter().map(|(re, im)| re.hypot(*im));
+    let off = off.fold(0.0, f64::max);
+    let by = match off > rounding {
+        true => format!(", up to {off:.0e} of rounding"),
+        false => String::new(),
+    };
+    match zeros.len() {
+        0 => String::new(),
+        1 => format!("  0{by}\n"),
+        count => format!("  0, {count} times{by}\n"),
+    }
+}
+
+/// A matrix with its name; one of zeros alone in one line.
+fn matrix(name: &str, rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
+    if values.iter().flatten().all(|&value| value == 0.0) {
+        return format!("\n\x1b[1m{name}\x1b[0m = 0\n");
+    }
+    format!("\n\x1b[1m{name}\x1b[0m\n{}", table(rows, columns, values))
 }
 
 /// Numbers below the names of their columns, after the names of their rows.

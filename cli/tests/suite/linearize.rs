@@ -94,6 +94,21 @@ fn the_text_names_rows_and_says_where_it_holds() {
     for part in ["h(w)", "d(v)", "eigenvalues of A", "hold for this instant"] {
         assert!(report.contains(part), "{part}: {report}");
     }
+    // Zeros stand in one line, amid the others.
+    let values = report.split("eigenvalues of A").nth(1).expect("values");
+    let values: Vec<&str> = values.lines().skip(1).take(3).map(str::trim).collect();
+    assert_eq!(values[1], "0, 2 times", "{report}");
+    assert!(
+        values[2].starts_with('-') && !values[0].starts_with('-'),
+        "{report}"
+    );
+    let free = "system Free { input F, _G; coord q; velocity v; rate q = v; kinetic v^2 / 2; generalized force v = F + q; output y = v; }";
+    let output = hamel(&["linearize", "-"], free);
+    let report = text(&output.stdout);
+    assert!(
+        report.contains("\nD = 0\n") && report.contains("\nB\n"),
+        "{report}"
+    );
     let state = r#"{"param": {"m": 0}}"#;
     let output = hamel(&["linearize", &model("pendulum"), "--at", "-"], state);
     assert_eq!(output.status.code(), Some(1));
