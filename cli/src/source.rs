@@ -70,15 +70,9 @@ impl Source {
         };
         let bytes =
             bytes.map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))?;
-        match String::from_utf8(bytes) {
-            Ok(text) => Ok(Source::new(name, text)),
-            Err(error) => {
-                let place = error.utf8_error().valid_up_to();
-                Err(Failure::usage(format!(
-                    "cannot read {name}: byte {place} is not UTF-8"
-                )))
-            }
-        }
+        urdf::decode(bytes)
+            .map(|text| Source::new(name.clone(), text))
+            .map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))
     }
 
     /// Reads a file beside this description; `what` it holds is said where both are standard input.
@@ -106,7 +100,11 @@ impl Source {
 
     /// Whether the text is that of a robot in URDF, by the name of its file or by how it begins.
     pub fn is_urdf(&self) -> bool {
-        urdf::is_urdf(Path::new(&self.path)) || self.text.trim_start().starts_with('<')
+        urdf::is_urdf(Path::new(&self.path))
+            || self
+                .text
+                .trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}')
+                .starts_with('<')
     }
 
     /// The joints of a robot by their names in its file and in the description; none of a description.

@@ -206,6 +206,20 @@ impl Made {
         Ok(text)
     }
 
+    /// The same of a file that may be a robot, in any encoding that robots have.
+    fn open_as(&mut self, path: &Path, kind: &Kind) -> io::Result<String> {
+        match kind {
+            Kind::Description => self.open(path),
+            #[cfg(feature = "urdf")]
+            Kind::Urdf(_) => {
+                watch(path)?;
+                let text = crate::urdf::decode(std::fs::read(path)?);
+                self.read.extend(place(path));
+                text.map_err(io::Error::other)
+            }
+        }
+    }
+
     fn write(&self, file: &Path, text: &str) -> Result<(), String> {
         if place(file).is_some_and(|file| self.read.contains(&file)) {
             return Err(format!(
@@ -254,7 +268,7 @@ impl Builder {
     /// Reads a file, and makes the texts that are to be written.
     fn make(&self, path: &Path, kind: &Kind, stem: &str, made: &mut Made) -> Result<(), String> {
         let shown = path.display().to_string();
-        let text = made.open(path).map_err(|error| {
+        let text = made.open_as(path, kind).map_err(|error| {
             let here = match std::env::current_dir() {
                 Ok(folder) if path.is_relative() && error.kind() == io::ErrorKind::NotFound => {
                     format!("; its path starts at {}", folder.display())

@@ -3,7 +3,7 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::render::{Level, Note, notes, render, span_bytes};
-pub use hamel_urdf::{Imported, Mimic, Options, TOLERANCE};
+pub use hamel_urdf::{Imported, Mimic, Options, TOLERANCE, Undecoded, decode};
 use std::ops::Range;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use crate::plan::{Mobility, Plan};
 use crate::problem::Problems;
-use crate::robot::{Inertial, Kind, Robot};
+use crate::robot::{Inertial, Robot};
 use crate::tree::Tree;
 
 /// A part of the largest moment that says nothing: the cosines below lose half of the digits where
@@ -46,9 +46,9 @@ pub(crate) fn check(
         if !carries[edge.child] && plan.motions[edge.joint] == Mobility::Free {
             let link = &robot.links[edge.child].name;
             let name = &joint.name.name;
-            let lock = match joint.kind {
-                Kind::Planar | Kind::Floating => String::new(),
-                _ => format!(", lock the joint with `--lock {name}=0`"),
+            let lock = match joint.kind.is_single() {
+                true => format!(", lock the joint with `--lock {name}=0`"),
+                false => String::new(),
             };
             warnings.push(
                 &link.range,

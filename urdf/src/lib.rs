@@ -6,13 +6,18 @@
 //!
 //! [`import`] reads the tree of links and joints and writes an `.eom` text: one `joint` statement for each joint, one
 //! `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for those that are
-//! roundings of multiples of π/2 or of 0; the text says what was changed. Shapes, meshes, transmissions and the
-//! elements of particular simulators do not enter the equations of motion and are ignored.
+//! roundings of multiples of π/2 or of 0; the text says what was changed.
+//!
+//! What a file may hold is a closed list. Shapes, meshes, limits and sensors are no part of the equations of motion and
+//! are left out without a word. Terms of the dialects whose meaning is certain are taken, with a warning: inertias of
+//! rotors, closing joints, springs in joints and between points. Whatever else stands in the file is named in a warning,
+//! with its line.
 //!
 //! XML is read by `roxmltree`, which keeps the position of every attribute, so that every error names its place.
 
 mod angle;
 mod decimal;
+mod decode;
 mod inertia;
 mod names;
 mod options;
@@ -23,6 +28,7 @@ mod robot;
 mod tree;
 mod write;
 
+pub use decode::{Undecoded, decode};
 pub use options::{Imported, Mimic, Options, TOLERANCE};
 pub use problem::Problem;
 
@@ -33,7 +39,7 @@ use problem::Problems;
 pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
     let mut errors = Problems::new(xml);
     let mut warnings = Problems::new(xml);
-    let Some(read) = read::robot(xml, options.tolerance, &mut errors, &mut warnings) else {
+    let Some(read) = read::robot(xml, options, &mut errors, &mut warnings) else {
         return Err(errors.sorted());
     };
     // A tree of what was misread would be wrong about what is right.
@@ -61,7 +67,6 @@ pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
     if !errors.is_empty() {
         return Err(errors.sorted());
     }
-    let mut imported = write::write(xml, &read, &tree, &plan, options);
-    imported.warnings = warnings.sorted();
-    Ok(imported)
+    let warnings = warnings.sorted();
+    Ok(write::write(xml, &read, &tree, &plan, options, warnings))
 }

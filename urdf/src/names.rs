@@ -27,6 +27,10 @@ SO3 SE3 vec2 vec3 mat3 sym3";
 const SUFFIXES: [&str; 10] = [
     "", "_dot", "_tau", "_r", "_r_dot", "_R", "_v", "_w", "_force", "_torque",
 ];
+/// The same of a joint with two angles.
+const PAIR: [&str; 6] = ["", "_1", "_2", "_1_dot", "_2_dot", "_tau"];
+/// What the frames of a closing joint add to its name.
+const ENDS: [&str; 3] = ["", "_1", "_2"];
 /// What the parameters of a body add to its link's name.
 const PARAMETERS: [&str; 4] = ["", "_mass", "_com", "_inertia"];
 
@@ -38,6 +42,8 @@ pub(crate) struct Names {
     pub(crate) root: String,
     pub(crate) joints: Vec<String>,
     pub(crate) links: Vec<String>,
+    /// Closing joints.
+    pub(crate) loops: Vec<String>,
 }
 
 impl Names {
@@ -60,12 +66,17 @@ impl Names {
         let links = links
             .map(|link| taken.choose(&link.name.name, "_link", &PARAMETERS))
             .collect();
+        let loops = robot.loops.iter();
+        let loops = loops
+            .map(|closing| taken.choose(&closing.name.name, "_loop", &ENDS))
+            .collect();
         let system = camel(system.unwrap_or(&robot.name));
         Names {
             system,
             root,
             joints,
             links,
+            loops,
         }
     }
 }
@@ -78,6 +89,7 @@ impl Taken {
     fn joint(&mut self, joint: &Joint) -> String {
         let suffixes: &[&str] = match joint.kind {
             Kind::Fixed => &SUFFIXES[..1],
+            Kind::Universal => &PAIR,
             _ => &SUFFIXES,
         };
         self.choose(&joint.name.name, "_joint", suffixes)

@@ -110,10 +110,7 @@ fn locks(
             continue;
         };
         let joint = &robot.joints[number];
-        let one = matches!(
-            joint.kind,
-            Kind::Revolute | Kind::Continuous | Kind::Prismatic
-        );
+        let one = joint.kind.is_single();
         match Decimal::parse(value.trim()) {
             _ if !one => errors.push(
                 &joint.name.range,
@@ -168,8 +165,7 @@ fn follow(
             }
             return Mobility::Free;
         };
-        let one = |kind| matches!(kind, Kind::Revolute | Kind::Continuous | Kind::Prismatic);
-        if !one(robot.joints[next].kind) || !one(joint.kind) {
+        if !robot.joints[next].kind.is_single() || !joint.kind.is_single() {
             if at == number {
                 errors.push(
                     &mimic.source.range,

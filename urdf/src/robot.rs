@@ -12,6 +12,8 @@ pub(crate) struct Robot {
     pub(crate) range: Range<usize>,
     pub(crate) links: Vec<Link>,
     pub(crate) joints: Vec<Joint>,
+    pub(crate) loops: Vec<Loop>,
+    pub(crate) springs: Vec<Spring>,
 }
 
 /// A name with its place.
@@ -48,7 +50,7 @@ pub(crate) struct Origin {
     pub(crate) rotation: Rotation,
 }
 
-/// Types of joints in URDF.
+/// Types of joints in URDF and its dialects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Fixed,
@@ -57,6 +59,17 @@ pub(crate) enum Kind {
     Prismatic,
     Planar,
     Floating,
+    /// Free rotation about a point.
+    Spherical,
+    /// Rotation about x and then about the y that it has turned.
+    Universal,
+}
+
+impl Kind {
+    /// Whether one angle or one length describes the motion.
+    pub(crate) fn is_single(self) -> bool {
+        matches!(self, Kind::Revolute | Kind::Continuous | Kind::Prismatic)
+    }
 }
 
 /// A joint.
@@ -77,6 +90,44 @@ pub(crate) struct Joint {
     pub(crate) velocity: Option<Decimal>,
     pub(crate) effort: Option<Decimal>,
     pub(crate) mimic: Option<Follows>,
+    /// Inertias of rotors with the ratios of their gears: the sum of inertia · ratio² is the armature.
+    pub(crate) rotors: Vec<(Decimal, Decimal)>,
+    /// Stiffness of a spring in the joint, and where it is without force.
+    pub(crate) spring: Option<(Decimal, Decimal)>,
+}
+
+/// A joint that closes a loop: it ties two frames of links that the tree moves.
+#[derive(Debug)]
+pub(crate) struct Loop {
+    pub(crate) name: Named,
+    pub(crate) closing: Closing,
+    pub(crate) ends: [End; 2],
+}
+
+/// Motions that a closing joint leaves.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Closing {
+    Fixed,
+    Spherical,
+    Revolute([Decimal; 3]),
+    Prismatic([Decimal; 3]),
+}
+
+/// A frame of a link.
+#[derive(Debug)]
+pub(crate) struct End {
+    pub(crate) link: Named,
+    pub(crate) origin: Origin,
+}
+
+/// A spring and a damper between points of two links.
+#[derive(Debug)]
+pub(crate) struct Spring {
+    pub(crate) range: Range<usize>,
+    pub(crate) ends: [End; 2],
+    pub(crate) length: Decimal,
+    pub(crate) stiffness: Decimal,
+    pub(crate) damping: Decimal,
 }
 
 /// `<mimic>`: q = multiplier · source + offset.

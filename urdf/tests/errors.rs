@@ -38,6 +38,13 @@ fn wrong_files() {
         ("xacro", "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<xacro:arm/></robot>".into()),
         ("xacro without its namespace", "<robot name='r'>\n<xacro:arm/></robot>".into()),
         ("property of xacro", pendulum(&hinge("<origin xyz='0 0 ${l}'/>"), BODY)),
+        ("a blank line before the declaration", "\n<?xml version='1.0'?>\n<robot name='r'/>".into()),
+        ("undeclared prefix", "<robot name='r'>\n<gazebo><sensor:ray name='x'/></gazebo></robot>".into()),
+        ("undeclared prefix of Drake", "<robot name='r'>\n<drake:joint name='x'/></robot>".into()),
+        ("ampersand", "<robot name='a & b'/>".into()),
+        ("tiny numbers", pendulum(&hinge("<origin xyz='0 1e-400 1.6e-314'/>"), BODY)),
+        ("huge numbers", pendulum(&hinge("<origin xyz='0 1e400 -1e301'/>"), BODY)),
+        ("infinite", pendulum(&hinge("<origin xyz='0 inf 0'/>"), BODY)),
         ("no name", "<robot><link name='a'/></robot>".into()),
         ("no links", "<robot name='r'/>".into()),
         ("unknown link", pendulum(&hinge("").replace("'a'", "'aa'"), BODY)),
@@ -48,13 +55,12 @@ fn wrong_files() {
         ("cycle beside the tree", "<robot name='r'><link name='o'/><link name='a'/><link name='b'/>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>".into()),
         ("two roots beside two cycles", "<robot name='r'><link name='o'/><link name='p'/><link name='a'/><link name='b'/><link name='c'/><link name='d'/>\n<joint name='l' type='fixed'><parent link='b'/><child link='d'/></joint>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint>\n<joint name='m' type='fixed'><parent link='c'/><child link='c'/></joint></robot>".into()),
         ("unknown link beside a cycle", "<robot name='r'><link name='o'/><link name='a'/><link name='b'/><link name='c'/>\n<joint name='i' type='fixed'><parent link='oo'/><child link='c'/></joint>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>".into()),
-        ("unknown type", pendulum(&hinge("").replace("revolute", "ball"), BODY)),
-        ("unknown type, axis, pose and link", pendulum(&hinge("<origin xyz='0 0'/><axis xyz='0 0 0'/>").replace("revolute", "ball").replace("'b'", "'bb'"), BODY)),
+        ("unknown type", pendulum(&hinge("").replace("revolute", "screw"), BODY)),
+        ("unknown type, axis, pose and link", pendulum(&hinge("<origin xyz='0 0'/><axis xyz='0 0 0'/>").replace("revolute", "screw").replace("'b'", "'bb'"), BODY)),
         ("no parent", pendulum("<joint name='j' type='fixed'><child link='b'/></joint>", BODY)),
         ("zero axis", pendulum(&hinge("<axis xyz='0 0 0'/>"), BODY)),
         ("two numbers", pendulum(&hinge("<axis xyz='0 1'/>"), BODY)),
         ("no number", pendulum(&hinge("<origin xyz='0 0 nan' rpy='0 x 0'/>"), BODY)),
-        ("limits exchanged", pendulum(&hinge("<limit lower='1' upper='-1'/>"), BODY)),
         ("negative damping", pendulum(&hinge("<dynamics damping='-1'/>"), BODY)),
         ("two axes", pendulum(&hinge("<axis xyz='1 0 0'/><axis xyz='0 1 0'/>"), BODY)),
         ("no mass", pendulum(&hinge(""), &BODY.replace("<mass value='1'/>", ""))),
@@ -199,7 +205,43 @@ fn limits_of_joints_that_have_none() {
     import(&pendulum(&fixed, BODY), &Options::default()).expect("the limits say nothing");
     for kind in ["revolute", "prismatic"] {
         let text = exchanged.replace("revolute", kind);
-        assert!(messages(&text, &Options::default()).contains("exchange them"));
+        let imported =
+            import(&text, &Options::default()).expect("limits do not enter the equations");
+        let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
+        assert!(
+            warnings.iter().any(|w| w.contains("exchange them")),
+            "{warnings:?}"
+        );
+        assert!(!imported.text.contains("    limit "), "{}", imported.text);
+    }
+}
+
+/// What does not enter the equations may be unreadable: it is left out with a warning.
+#[test]
+fn bounds_and_names_may_be_wrong() {
+    let bounds = "<limit lower='-inf' upper='Infinity' velocity='1e999' effort='?'/>";
+    let imported = import(&pendulum(&hinge(bounds), BODY), &Options::default()).expect("legal");
+    assert_eq!(imported.warnings.len(), 4, "{:?}", imported.warnings);
+    assert!(
+        imported.text.contains("force j_tau;\n    };"),
+        "{}",
+        imported.text
+    );
+    for name in ["<robot>", "<robot name=''>", "<robot name=' '>"] {
+        let text = pendulum(&hinge(""), BODY).replace("<robot name='r'>", name);
+        assert!(import(&text, &Options::default()).is_err());
+        let named = Options {
+            name: Some("arm".into()),
+            ..Options::default()
+        };
+        let imported = import(&text, &named).expect("it has another name");
+        assert!(imported.text.contains("pub system Arm {"));
+        let warnings: Vec<&str> = imported
+            .warnings
+            .iter()
+            .map(|w| w.message.as_str())
+            .collect();
+        assert_eq!(warnings, ["the robot has no name"]);
     }
 }
 

@@ -1,9 +1,12 @@
-//! `<joint>`.
+//! `<joint>`, and `<drake:joint>`.
 
-use super::xml::{Reader, tag};
+use super::xml::{Reader, tag, written};
 use crate::decimal::Decimal;
 use crate::robot::{Follows, Joint, Kind, Origin};
 use roxmltree::Node;
+
+/// Joints that Drake has and URDF has not; their axes are those of the joint's frame.
+const DRAKE: &str = "drake:joint";
 
 /// The types of joints, as URDF names them.
 const KINDS: [(&str, Kind); 6] = [
@@ -15,17 +18,11 @@ const KINDS: [(&str, Kind); 6] = [
     ("floating", Kind::Floating),
 ];
 
-/// What stands in a joint.
-const ELEMENTS: [&str; 9] = [
-    "parent",
-    "child",
-    "origin",
-    "axis",
-    "dynamics",
-    "limit",
-    "mimic",
-    "calibration",
-    "safety_controller",
+/// The types of the dialects: those of Bullet, SDF and MuJoCo beside those of Drake.
+const OTHERS: [(&str, Kind); 3] = [
+    ("spherical", Kind::Spherical),
+    ("ball", Kind::Spherical),
+    ("universal", Kind::Universal),
 ];
 
 impl<'a> Reader<'a, '_, '_> {
@@ -33,44 +30,41 @@ impl<'a> Reader<'a, '_, '_> {
     /// what is wrong with the tree.
     pub(super) fn joint(&mut self, node: &Node<'_, 'a>) -> Option<Joint> {
         let name = self.name(node, "name");
-        let kind = self.kind(node);
+        let drake = written(self.text, node) == DRAKE;
+        let kind = self.kind(node, drake);
         let [parent, child] = ["parent", "child"].map(|end| {
             let form = format!("<{end} link=\"…\"/>");
             let element = self.required(node, end, &form)?;
             self.name(&element, "link")
         });
         let origin = self.origin(node);
-        let axis = self
-            .child(node, "axis")
-            .map(|element| self.axis(&element, kind));
+        let axis = match (self.child(node, "axis"), kind) {
+            (None, Some(Kind::Planar)) if drake => {
+                Some(Some([Decimal::zero(), Decimal::zero(), Decimal::one()]))
+            }
+            (element, _) => element.map(|element| self.axis(&element, kind)),
+        };
         let dynamics = self.child(node, "dynamics");
-        let [damping, friction] = ["damping", "friction"]
-            .map(|name| dynamics.and_then(|element| self.coefficient(&element, name)));
-        if let Some(element) = dynamics {
-            let known = ["damping", "friction"];
-            self.attributes(&element, &known, "add it to the description");
-        }
-        self.elements(node, &ELEMENTS);
+        let properties = self.child(node, "joint_properties");
+        let [damping, friction] =
+            ["damping", "friction"].map(|name| self.dissipation(dynamics, properties, name, kind));
+        let armature = dynamics.and_then(|element| self.armature(&element));
         let limit = self.child(node, "limit");
-        if let Some(element) = limit {
-            let known = ["lower", "upper", "velocity", "effort"];
-            self.attributes(&element, &known, "add it to the description");
-        }
         let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"]
-            .map(|name| limit.and_then(|element| self.optional(&element, name)));
+            .map(|name| limit.and_then(|element| self.bound(&element, name)));
         // Positions of the other types have no limits in URDF, whatever the file says.
         let limited = matches!(kind, Some(Kind::Revolute | Kind::Prismatic));
         if let (Some(lower), Some(upper), Some(element)) = (&lower, &upper, limit)
             && limited
             && lower.value > upper.value
         {
-            self.errors.push(
+            self.warnings.push(
                 &element.range(),
                 format!(
-                    "the lower limit {} is above the upper one {}",
+                    "the lower limit {} is above the upper one {}: both are left out",
                     lower.text, upper.text
                 ),
-                "exchange them",
+                "exchange them; they do not enter the equations",
             );
         }
         let mimic = self
@@ -90,22 +84,45 @@ impl<'a> Reader<'a, '_, '_> {
             velocity,
             effort,
             mimic,
+            rotors: armature.into_iter().collect(),
+            spring: None,
         })
     }
 
-    fn kind(&mut self, node: &Node<'_, 'a>) -> Option<Kind> {
+    fn kind(&mut self, node: &Node<'_, 'a>, drake: bool) -> Option<Kind> {
         let attribute = self.attribute(node, "type")?;
         let written = attribute.value().trim();
-        let found = KINDS.iter().find(|(name, _)| *name == written);
-        if found.is_none() {
+        let listed = |list: &[(&str, Kind)]| {
+            let found = list.iter().find(|(name, _)| *name == written);
+            found.map(|(_, kind)| *kind)
+        };
+        let known = listed(&KINDS);
+        // The axes of a universal joint are known of Drake alone.
+        let other = listed(&OTHERS).filter(|&kind| drake || kind != Kind::Universal);
+        if known.is_none() && other.is_none() {
             let names = KINDS.map(|(name, _)| name).join(", ");
             self.errors.push(
                 &attribute.range_value(),
                 format!("`{written}` is not a type of joint"),
-                format!("URDF has {names}"),
+                format!("URDF has {names}; `spherical` and `ball` are read, too"),
+            );
+        } else if known.is_none() || drake {
+            let read = match (known, other) {
+                (None, Some(Kind::Universal)) => "as one about x and then about the turned y",
+                (None, _) => "as one that turns freely about a point",
+                _ => "as the joint of that type in URDF",
+            };
+            let named = match drake {
+                true => format!("`<{DRAKE} type=\"{written}\">`"),
+                false => format!("the type `{written}`"),
+            };
+            self.note(
+                attribute.range_value(),
+                format!("{named} is no part of URDF; it is read {read}"),
+                "other programs may read the file differently".to_string(),
             );
         }
-        found.map(|(_, kind)| *kind)
+        known.or(other)
     }
 
     /// A direction; it need not have length 1.
@@ -113,7 +130,10 @@ impl<'a> Reader<'a, '_, '_> {
         let attribute = self.attribute(element, "xyz")?;
         let mut axis = self.vector(&attribute)?;
         self.clean(&mut axis, &attribute.range_value(), 0.0);
-        let needed = !matches!(kind, Some(Kind::Fixed | Kind::Floating));
+        let needed = !matches!(
+            kind,
+            Some(Kind::Fixed | Kind::Floating | Kind::Spherical | Kind::Universal)
+        );
         if needed && axis.iter().all(Decimal::is_zero) {
             self.errors.push(
                 &attribute.range_value(),
@@ -123,6 +143,105 @@ impl<'a> Reader<'a, '_, '_> {
             return None;
         }
         Some(axis)
+    }
+
+    /// Damping or friction, from `<dynamics>` or else from `<joint_properties>`, its forerunner.
+    fn dissipation(
+        &mut self,
+        dynamics: Option<Node<'_, 'a>>,
+        properties: Option<Node<'_, 'a>>,
+        name: &str,
+        kind: Option<Kind>,
+    ) -> Option<Decimal> {
+        if name == "damping" && matches!(kind, Some(Kind::Planar | Kind::Floating)) {
+            return self.several(dynamics.or(properties)?);
+        }
+        let read = dynamics.and_then(|element| self.coefficient(&element, name));
+        let old = properties.and_then(|element| self.coefficient(&element, name));
+        let range = |element: Option<Node<'_, 'a>>| {
+            let attribute = element.and_then(|element| element.attribute_node(name));
+            attribute.map_or(0..0, |attribute| attribute.range())
+        };
+        let from_old = dynamics.is_none_or(|element| !element.has_attribute(name));
+        let (number, range) = match from_old {
+            true => (old, range(properties)),
+            false => {
+                if old.is_some() {
+                    self.note(
+                        range(properties),
+                        format!(
+                            "`{name}` of `<joint_properties>` is left out: `<dynamics>` has it, too"
+                        ),
+                        "remove one of them".to_string(),
+                    );
+                }
+                (read, range(dynamics))
+            }
+        };
+        let number = number?;
+        let kind = kind?;
+        if name == "friction" && kind != Kind::Fixed {
+            self.note(
+                range,
+                "Coulomb friction is not modelled, and is left out".to_string(),
+                "add it to the description as a `generalized force`".to_string(),
+            );
+        } else if from_old && kind != Kind::Fixed {
+            self.note(
+                range,
+                format!("`{name}` of `<joint_properties>` is no part of URDF; it is read as that of `<dynamics>`"),
+                format!("write `<dynamics {name}=\"…\"/>`"),
+            );
+        }
+        Some(number)
+    }
+
+    /// Damping of several freedoms, which URDF does not explain.
+    fn several(&mut self, element: Node<'_, 'a>) -> Option<Decimal> {
+        let attribute = element.attribute_node("damping")?;
+        let written = attribute.value().trim();
+        if written
+            .split_whitespace()
+            .all(|word| word.parse() == Ok(0.0))
+        {
+            return None;
+        }
+        self.note(
+            attribute.range(),
+            "damping of several freedoms is not modelled, and is left out".to_string(),
+            "add it to the description as a `dissipation`".to_string(),
+        );
+        Decimal::parse(written)
+    }
+
+    /// `armature` of `<dynamics>`, from dialects that have it.
+    fn armature(&mut self, element: &Node<'_, 'a>) -> Option<(Decimal, Decimal)> {
+        let armature = self.coefficient(element, "armature")?;
+        let attribute = element.attribute_node("armature")?;
+        self.note(
+            attribute.range(),
+            "`armature` is no part of URDF; it is read as the inertia of the drive, added to that of the joint"
+                .to_string(),
+            "other programs may leave it out".to_string(),
+        );
+        Some((armature, Decimal::one()))
+    }
+
+    /// A bound, which does not enter the equations: one that is no number is left out.
+    fn bound(&mut self, element: &Node<'_, 'a>, name: &str) -> Option<Decimal> {
+        let attribute = element.attribute_node(name)?;
+        let written = attribute.value().trim();
+        let number = Decimal::parse(written);
+        if number.is_none() {
+            self.warnings.push(
+                &attribute.range_value(),
+                format!(
+                    "the bound `{name}` is `{written}`, which is no finite number: it is left out"
+                ),
+                "limits do not enter the equations; leave it out of the file, too",
+            );
+        }
+        number
     }
 
     /// A number of `<dynamics>`, not negative.
@@ -143,8 +262,6 @@ impl<'a> Reader<'a, '_, '_> {
     }
 
     fn mimic(&mut self, element: &Node<'_, 'a>) -> Option<Follows> {
-        let known = ["joint", "multiplier", "offset"];
-        self.attributes(element, &known, "it is `multiplier` · source + `offset`");
         let source = self.name(element, "joint");
         let multiplier = match element.attribute_node("multiplier") {
             Some(_) => self.optional(element, "multiplier"),

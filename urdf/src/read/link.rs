@@ -13,7 +13,6 @@ impl<'a> Reader<'a, '_, '_> {
         let inertial = self
             .child(node, "inertial")
             .and_then(|inertial| self.inertial(&inertial));
-        self.elements(node, &["inertial", "visual", "collision"]);
         Some(Link {
             name: name?,
             inertial,
@@ -21,7 +20,6 @@ impl<'a> Reader<'a, '_, '_> {
     }
 
     fn inertial(&mut self, node: &Node<'_, 'a>) -> Option<Inertial> {
-        self.elements(node, &["origin", "mass", "inertia"]);
         let origin = self.origin(node);
         let mass = self
             .required(node, "mass", "<mass value=\"…\"/>")

@@ -1,10 +1,16 @@
 //! From XML to links and joints: what a robot is, with the place of everything that may be wrong.
 
+mod drive;
 mod joint;
+mod known;
 mod link;
+mod list;
+mod plugin;
 mod strange;
+mod ties;
 mod xml;
 
+use crate::options::Options;
 use crate::problem::Problems;
 use crate::robot::{Read, Robot};
 use std::ops::Range;
@@ -24,22 +30,18 @@ fn is_xacro(text: &str, range: &Range<usize>) -> bool {
 /// Reads the file; `None` where there is no robot in it. Parts with errors are left out.
 pub(crate) fn robot<'t>(
     text: &str,
-    tolerance: f64,
+    options: &Options,
     errors: &mut Problems<'t>,
     warnings: &mut Problems<'t>,
 ) -> Option<Read> {
     let document = match xml::parse(text) {
         Ok(document) => document,
-        Err((range, _)) if is_xacro(text, &range) => {
+        Err((range, ..)) if is_xacro(text, &range) => {
             errors.push(&range, XACRO, EXPAND);
             return None;
         }
-        Err((range, message)) => {
-            errors.push(
-                &range,
-                format!("this is not well-formed XML: {message}"),
-                "mend it here, or a little before",
-            );
+        Err((range, message, help)) => {
+            errors.push(&range, message, help);
             return None;
         }
     };
@@ -62,28 +64,31 @@ pub(crate) fn robot<'t>(
     }
     let mut reader = Reader {
         text,
-        tolerance,
+        tolerance: options.tolerance,
         errors,
         warnings,
         cleaned: Vec::new(),
         strange: Vec::new(),
     };
-    let name = reader.name(&root, "name");
+    let name = reader.robot_name(&root, options.name.is_some());
     let mut robot = Robot {
         range: name.as_ref().map_or(0..0, |name| name.range.clone()),
         name: name.map_or_else(String::new, |name| name.name),
         links: Vec::new(),
         joints: Vec::new(),
+        loops: Vec::new(),
+        springs: Vec::new(),
     };
     for element in root.children().filter(|node| node.is_element()) {
-        match element.tag_name().name() {
+        match xml::written(text, &element) {
             "link" => robot.links.extend(reader.link(&element)),
-            "joint" => robot.joints.extend(reader.joint(&element)),
+            "joint" | "drake:joint" => robot.joints.extend(reader.joint(&element)),
             _ => {}
         }
     }
-    let known = ["link", "joint", "material", "transmission", "gazebo"];
-    reader.elements(&root, &known);
+    reader.beside(&root, &mut robot);
+    reader.plugins(&root, &robot.joints);
+    reader.compare(&root, &list::ROBOT);
     reader.tell();
     let cleaned = reader.cleaned;
     Some(Read { robot, cleaned })

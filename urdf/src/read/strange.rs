@@ -1,88 +1,100 @@
-//! What is legal XML and is not what was meant: misspelt names, numbers in other units.
+//! What is legal XML and is not understood, or is not what was meant: words that are not on the closed list, numbers in
+//! other units.
 
-use super::xml::{Reader, tag};
+use super::known::{Element, Level};
+use super::xml::{Reader, property, tag, written};
 use crate::decimal::Decimal;
 use crate::tree::near;
 use roxmltree::Node;
 use std::ops::Range;
 
+/// The namespace of attributes that say where the schema of a file is.
+const SCHEMA: &str = "http://www.w3.org/2001/XMLSchema-instance";
 /// Angles above a turn (rad), with room for roundings.
 const TURN: f64 = 6.5;
 /// Lengths that no robot has (m).
 const FAR: f64 = 100.0;
 
-/// A property that URDF does not know: its name, its element, its first place, how often it stands.
+/// A word that is not on the closed list: what was said of it, its first place, how often it stands.
 #[derive(Debug)]
 pub(super) struct Strange {
-    name: String,
-    element: String,
+    message: String,
     range: Range<usize>,
     help: String,
     count: usize,
 }
 
 impl<'a> Reader<'a, '_, '_> {
-    /// Notes attributes that an element does not have in URDF.
-    pub(super) fn attributes(&mut self, node: &Node<'_, 'a>, known: &[&str], help: &str) {
-        let element = node.tag_name().name();
+    /// Notes what stands in an element and is not on the list, at every level of it.
+    pub(super) fn compare(&mut self, node: &Node<'_, 'a>, level: &'static Level) {
+        let element = written(self.text, node);
         for attribute in node.attributes() {
-            let name = attribute.name();
-            if known.contains(&name) {
+            let name = property(self.text, &attribute);
+            if level.attributes.contains(&name) || attribute.namespace() == Some(SCHEMA) {
                 continue;
             }
-            let noted = self.strange.iter_mut();
-            let same = |s: &&mut Strange| s.name == name && s.element == element;
-            match noted.into_iter().find(same) {
-                Some(strange) => strange.count += 1,
-                None => self.strange.push(Strange {
-                    name: name.to_string(),
-                    element: element.to_string(),
-                    range: attribute.range(),
-                    help: match near(name, known.iter().copied()) {
-                        Some(near) => format!("did you mean `{near}`?"),
-                        None => help.to_string(),
-                    },
-                    count: 1,
-                }),
-            }
+            let near = near(name, level.attributes.iter().copied());
+            self.note(
+                attribute.range(),
+                format!("`{name}` is no property of `<{element}>` in URDF, and is left out"),
+                near.map_or_else(
+                    || level.help.to_string(),
+                    |near| format!("did you mean `{near}`?"),
+                ),
+            );
         }
-    }
-
-    /// Warns of elements whose name is nearly one that URDF knows here; others are those of other
-    /// programs.
-    pub(super) fn elements(&mut self, node: &Node<'_, 'a>, known: &[&str]) {
         for child in node.children().filter(Node::is_element) {
-            let name = child.tag_name().name();
-            if known.contains(&name) {
-                continue;
-            }
-            if let Some(near) = near(name, known.iter().copied()) {
-                self.warnings.push(
-                    &tag(self.text, &child),
-                    format!(
-                        "`<{name}>` is nothing that `<{}>` has in URDF, and is left out",
-                        node.tag_name().name()
-                    ),
-                    format!("did you mean `<{near}>`?"),
-                );
+            let name = written(self.text, &child);
+            match level.find(name) {
+                Some(Element::Read(level)) => self.compare(&child, level),
+                Some(Element::Apart) => {}
+                Some(Element::Unless(words, _)) if is_idle(&child, words) => {}
+                Some(Element::Unless(_, help)) => self.note(
+                    tag(self.text, &child),
+                    format!("`<{name}>` changes the motion, and is left out"),
+                    (*help).to_string(),
+                ),
+                None => {
+                    let near = near(name, level.names());
+                    self.note(
+                        tag(self.text, &child),
+                        format!(
+                            "`<{name}>` is nothing that `<{element}>` has in URDF, and is left out"
+                        ),
+                        near.map_or_else(
+                            || level.help.to_string(),
+                            |near| format!("did you mean `<{near}>`?"),
+                        ),
+                    );
+                }
             }
         }
     }
 
-    /// Warns of the properties that were noted, each once.
+    /// Notes what has to be said, once for all places of the same message.
+    pub(super) fn note(&mut self, range: Range<usize>, message: String, help: String) {
+        let mut noted = self.strange.iter_mut();
+        match noted.find(|strange| strange.message == message) {
+            Some(strange) => strange.count += 1,
+            None => self.strange.push(Strange {
+                message,
+                range,
+                help,
+                count: 1,
+            }),
+        }
+    }
+
+    /// Warns of everything that was noted.
     pub(super) fn tell(&mut self) {
         for strange in std::mem::take(&mut self.strange) {
-            let Strange { name, element, .. } = &strange;
             let more = match strange.count {
                 1 => String::new(),
                 2 => ", here and at one more place".to_string(),
                 count => format!(", here and at {} more places", count - 1),
             };
-            self.warnings.push(
-                &strange.range,
-                format!("`{name}` is no property of `<{element}>` in URDF, and is left out{more}"),
-                strange.help,
-            );
+            let message = format!("{}{more}", strange.message);
+            self.warnings.push(&strange.range, message, strange.help);
         }
     }
 
@@ -108,4 +120,28 @@ impl<'a> Reader<'a, '_, '_> {
         };
         self.warnings.push(range, message, help);
     }
+}
+
+/// Whether an element says one of the words, or the same numbers: by its text, or else by all of its attributes.
+fn is_idle(node: &Node<'_, '_>, words: &[&str]) -> bool {
+    let same = |said: &str| {
+        let numbers = numbers(said);
+        words.iter().any(|word| {
+            said.eq_ignore_ascii_case(word) || numbers.is_some() && numbers == self::numbers(word)
+        })
+    };
+    match node.text().map(str::trim) {
+        Some(said) if !said.is_empty() => same(said),
+        _ => {
+            let mut attributes = node.attributes().map(|attribute| attribute.value().trim());
+            node.attributes().len() > 0 && attributes.all(same)
+        }
+    }
+}
+
+/// The numbers that a text is; `None` of another text.
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split_whitespace()
+        .map(|word| word.parse().ok())
+        .collect()
 }

@@ -11,8 +11,11 @@ use std::ops::Range;
 /// A length that stands alone in its vector is judged absolutely, by so much of the tolerance: 1e-15 m.
 const ALONE: f64 = 1e-6;
 
+/// Text that is not XML: its place, what is wrong with it, what to do.
+pub(super) type Malformed = (Range<usize>, String, String);
+
 /// Parses XML; an error has its place.
-pub(super) fn parse(text: &str) -> Result<Document<'_>, (Range<usize>, String)> {
+pub(super) fn parse(text: &str) -> Result<Document<'_>, Malformed> {
     let options = ParsingOptions {
         // Some exporters write a document type; its entities are not read from anywhere.
         allow_dtd: true,
@@ -27,16 +30,51 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, (Range<usize>, String)> 
             }
             _ => offset(text, error.pos()),
         };
-        let width = text.get(begin..).and_then(|rest| rest.chars().next());
-        let end = begin + width.map_or(0, char::len_utf8);
-        // The place is said by its own means.
-        let message = error.to_string();
-        let message = match message.rfind(" at ") {
-            Some(end) if message.ends_with(|c: char| c.is_ascii_digit()) => &message[..end],
-            _ => &message,
-        };
-        (begin..end, message.to_string())
+        let rest = text.get(begin..).unwrap_or("");
+        let width = rest.chars().next().map_or(0, char::len_utf8);
+        let range = begin..begin + width;
+        if rest.starts_with("<?xml") && text.get(..begin).is_some_and(|before| !before.is_empty()) {
+            let message = "the XML declaration `<?xml …?>` is not at the very start of the file";
+            let help = "remove what stands before it, blank lines included";
+            return (begin..begin + 5, message.into(), help.into());
+        }
+        match &error {
+            Error::UnknownNamespace(prefix, _) => (
+                begin..begin + prefix.len().min(rest.len()),
+                format!("the prefix `{prefix}` is declared nowhere"),
+                format!(
+                    "declare it in the outermost element: `<robot name=\"…\" xmlns:{prefix}=\"{}\">`",
+                    space(prefix)
+                ),
+            ),
+            Error::UnknownEntityReference(..) | Error::MalformedEntityReference(_) => (
+                range,
+                "`&` begins the name of a sign here, and no sign has this name".into(),
+                "write `&amp;` for the sign `&` itself".into(),
+            ),
+            _ => {
+                // The place is said by its own means.
+                let message = error.to_string();
+                let message = match message.rfind(" at ") {
+                    Some(end) if message.ends_with(|c: char| c.is_ascii_digit()) => &message[..end],
+                    _ => &message,
+                };
+                (
+                    range,
+                    format!("this is not well-formed XML: {message}"),
+                    "mend it here, or a little before".into(),
+                )
+            }
+        }
     })
+}
+
+/// The namespace that a prefix usually stands for; every text would do.
+fn space(prefix: &str) -> String {
+    match prefix {
+        "drake" => "http://drake.mit.edu".into(),
+        prefix => format!("http://playerstage.sourceforge.net/gazebo/xmlschema/#{prefix}"),
+    }
 }
 
 /// The byte at which a line and a column begin.
@@ -57,6 +95,22 @@ pub(super) fn tag(text: &str, node: &Node<'_, '_>) -> Range<usize> {
     start..start + length.unwrap_or(rest.len())
 }
 
+/// The name of an element as it is written, with its prefix.
+pub(super) fn written<'a>(text: &'a str, node: &Node<'_, 'a>) -> &'a str {
+    let name = text
+        .get(tag(text, node))
+        .and_then(|tag| tag.strip_prefix('<'));
+    // The elements of an entity are written elsewhere.
+    name.filter(|name| name.ends_with(node.tag_name().name()))
+        .unwrap_or(node.tag_name().name())
+}
+
+/// The name of an attribute as it is written, with its prefix.
+pub(super) fn property<'a>(text: &'a str, attribute: &Attribute<'_, 'a>) -> &'a str {
+    let name = text.get(attribute.range_qname());
+    name.unwrap_or(attribute.name())
+}
+
 /// Reads elements and keeps what is wrong with them.
 pub(super) struct Reader<'a, 'p, 't> {
     pub(super) text: &'a str,
@@ -70,9 +124,10 @@ pub(super) struct Reader<'a, 'p, 't> {
 impl<'a> Reader<'a, '_, '_> {
     /// The only child of a name; a second one is an error.
     pub(super) fn child<'d>(&mut self, node: &Node<'d, 'a>, name: &str) -> Option<Node<'d, 'a>> {
+        let text = self.text;
         let mut found = node
             .children()
-            .filter(|child| child.tag_name().name() == name);
+            .filter(|child| child.is_element() && written(text, child) == name);
         let first = found.next();
         for second in found {
             self.errors.push(
@@ -138,6 +193,22 @@ impl<'a> Reader<'a, '_, '_> {
         Some(named)
     }
 
+    /// The robot's name, which may be empty where the system has another one.
+    pub(super) fn robot_name(&mut self, root: &Node<'_, 'a>, other: bool) -> Option<Named> {
+        let found = root.attribute_node("name");
+        let empty = found.is_none_or(|name| name.value().trim().is_empty());
+        if !(other && empty) {
+            return self.name(root, "name");
+        }
+        let range = found.map_or_else(|| tag(self.text, root), |name| name.range());
+        let help = "write `<robot name=\"…\">`";
+        self.warnings.push(&range, "the robot has no name", help);
+        Some(Named {
+            name: String::new(),
+            range,
+        })
+    }
+
     /// A number that has to be there.
     pub(super) fn number(&mut self, node: &Node<'_, 'a>, attribute: &str) -> Option<Decimal> {
         let found = self.attribute(node, attribute)?;
@@ -150,17 +221,33 @@ impl<'a> Reader<'a, '_, '_> {
         self.decimal(found.value().trim(), &found.range_value())
     }
 
-    fn decimal(&mut self, written: &str, range: &Range<usize>) -> Option<Decimal> {
+    pub(super) fn decimal(&mut self, written: &str, range: &Range<usize>) -> Option<Decimal> {
         let number = Decimal::parse(written);
         if number.is_none() {
-            self.errors.push(
-                range,
-                format!("`{written}` is not a number"),
-                match written.contains("${") {
-                    true => "this is a property of xacro: expand the file first, `xacro FILE > robot.urdf`",
-                    false => "numbers are finite decimals, as in `0.25` or `1e-3`",
-                },
-            );
+            let (message, help) = match written.parse::<f64>() {
+                _ if written.contains("${") => (
+                    format!("`{written}` is not a number"),
+                    "this is a property of xacro: expand the file first, `xacro FILE > robot.urdf`",
+                ),
+                // Of these, Rust reads more than are lengths, masses or angles.
+                Ok(value) if value.abs() < 1.0 && !written.contains("inf") => (
+                    format!("`{written}` is nearer to 0 than any quantity of a robot"),
+                    "write 0 where nothing is meant; numbers that are not 0 have a size above 1e-300",
+                ),
+                Ok(value)
+                    if value.abs() > 1.0 && written.starts_with(|c: char| !c.is_alphabetic()) =>
+                {
+                    (
+                        format!("`{written}` is larger than any quantity of a robot"),
+                        "numbers have a size below 1e300, and at most 200 digits",
+                    )
+                }
+                _ => (
+                    format!("`{written}` is not a number"),
+                    "numbers are finite decimals, as in `0.25` or `1e-3`",
+                ),
+            };
+            self.errors.push(range, message, help);
         }
         number
     }
@@ -189,11 +276,11 @@ impl<'a> Reader<'a, '_, '_> {
         let Some(element) = self.child(node, "origin") else {
             return Some(Origin::identity());
         };
-        self.attributes(
-            &element,
-            &["xyz", "rpy"],
-            "a pose is `<origin xyz=\"…\" rpy=\"…\"/>`",
-        );
+        self.pose(&element)
+    }
+
+    /// The pose that `xyz` and `rpy` of an element are; `None` where it cannot be read.
+    pub(super) fn pose(&mut self, element: &Node<'_, 'a>) -> Option<Origin> {
         let mut origin = Origin::identity();
         let mut sound = true;
         if let Some(attribute) = element.attribute_node("xyz") {

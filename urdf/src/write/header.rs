@@ -4,7 +4,7 @@ use super::Writer;
 use super::page::plain;
 use crate::options::Mimic;
 use crate::plan::Mobility;
-use crate::problem::place;
+use crate::problem::{Problem, place};
 use crate::robot::Cleaned;
 
 /// What was changed, numbers of one spelling in one sentence, in the order of the file.
@@ -33,7 +33,7 @@ pub(super) fn cleaned(xml: &str, list: &[Cleaned]) -> Vec<String> {
 }
 
 impl Writer<'_> {
-    pub(super) fn header(&mut self, cleaned: &[String]) {
+    pub(super) fn header(&mut self, cleaned: &[String], warnings: &[Problem]) {
         let options = self.options;
         let robot = plain(&self.robot.name);
         let base = if options.floating {
@@ -80,13 +80,25 @@ impl Writer<'_> {
                 self.page.top(&format!("// - {change}"));
             }
         }
+        if !warnings.is_empty() {
+            self.page.top("//");
+            self.page
+                .top("// Warnings, each with its line in the URDF:");
+            for warning in warnings {
+                let (line, message) = (warning.line, plain(&warning.message));
+                self.page.top(&format!("// - {line}: {message}"));
+            }
+        }
         let pairs: Vec<(String, String)> = {
             let robot = self.robot;
             let links = robot.links.iter().zip(&self.names.links);
             let links = links.map(|(link, name)| (link.name.name.clone(), name.clone()));
             let joints = robot.joints.iter().zip(&self.names.joints);
             let joints = joints.map(|(joint, name)| (joint.name.name.clone(), name.clone()));
-            joints.chain(links).filter(|(a, b)| a != b).collect()
+            let loops = robot.loops.iter().zip(&self.names.loops);
+            let loops = loops.map(|(closing, name)| (closing.name.name.clone(), name.clone()));
+            let all = joints.chain(links).chain(loops);
+            all.filter(|(a, b)| a != b).collect()
         };
         if !pairs.is_empty() {
             self.page.top("//");

@@ -52,15 +52,21 @@ impl Writer<'_> {
             }
             self.page.line(range, "};");
         }
-        if let (Mobility::Follows(source, steps), Some(damping)) = (&motion, &joint.damping) {
+        if let Mobility::Follows(source, steps) = &motion {
             let rate = format!("{}_dot", self.names.joints[*source]);
             let factors: Vec<_> = steps
                 .iter()
                 .map(|(factor, _)| (factor.clone(), Decimal::zero()))
                 .collect();
             let rate = linear(rate, &factors);
-            let damper = format!("damper coefficient {} on {rate};", damping.text);
-            self.page.line(range, &damper);
+            if let Some(damping) = &joint.damping {
+                let damper = format!("damper coefficient {} on {rate};", damping.text);
+                self.page.line(range, &damper);
+            }
+            if let Some(armature) = armature(joint) {
+                let inerter = format!("inerter inertance {armature} on {rate};");
+                self.page.line(range, &inerter);
+            }
         }
         if motion == Mobility::Free {
             match joint.kind {
@@ -74,6 +80,13 @@ impl Writer<'_> {
                         "wrench ({name}_force, {name}_torque) on {frame} from {from} in body;"
                     );
                     self.page.line(range, &load);
+                }
+                Kind::Universal => {
+                    for axis in [1, 2] {
+                        let force =
+                            format!("generalized force {name}_{axis}_dot = {name}_tau[{axis}];");
+                        self.page.line(range, &force);
+                    }
                 }
                 Kind::Planar => {
                     self.page.line(
@@ -97,6 +110,8 @@ impl Writer<'_> {
         match joint.kind {
             Kind::Fixed => "fixed".into(),
             Kind::Floating => "free".into(),
+            Kind::Spherical => "spherical".into(),
+            Kind::Universal => "universal [1, 0, 0], [0, 1, 0]".into(),
             Kind::Planar => format!("planar {}", axis()),
             Kind::Prismatic => format!("prismatic {}", axis()),
             // What follows an angle needs the angle.
@@ -117,7 +132,8 @@ impl Writer<'_> {
             return comments;
         }
         let moving = joint.kind != Kind::Fixed;
-        if moving && joint.kind != Kind::Floating && joint.axis.is_none() {
+        let directed = joint.kind.is_single() || joint.kind == Kind::Planar;
+        if directed && joint.axis.is_none() {
             comments.push("No axis is given: URDF's default.".to_string());
         }
         if let Some(friction) = joint.friction.as_ref().filter(|_| moving) {
@@ -148,7 +164,7 @@ fn axis(joint: &Joint) -> [Decimal; 3] {
 }
 
 /// `pose(R, p)`; nothing for the identity.
-fn pose(
+pub(super) fn pose(
     rotation: Option<String>,
     position: &[Decimal; 3],
     shift: Option<String>,
@@ -239,20 +255,31 @@ fn linear(start: String, steps: &[(Decimal, Decimal)]) -> String {
 
 /// What stands in the braces.
 fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
-    let one = matches!(
-        joint.kind,
-        Kind::Revolute | Kind::Continuous | Kind::Prismatic
-    );
-    if !one || matches!(motion, Mobility::Fixed | Mobility::Locked(_)) {
+    let one = joint.kind.is_single();
+    let damped = one || matches!(joint.kind, Kind::Spherical | Kind::Universal);
+    if !damped || matches!(motion, Mobility::Fixed | Mobility::Locked(_)) {
         return Vec::new();
     }
+    let free = *motion == Mobility::Free;
     let mut fields = Vec::new();
-    if *motion == Mobility::Free {
+    if free && joint.kind != Kind::Universal {
         fields.push(format!("force {name}_tau;"));
     }
     // What follows is damped by its leader, below.
-    if let (Some(damping), Mobility::Free) = (&joint.damping, motion) {
+    if let (Some(damping), true) = (&joint.damping, free) {
         fields.push(format!("damping {};", damping.text));
+    }
+    if !one {
+        return fields;
+    }
+    if let (Some(armature), true) = (armature(joint), free) {
+        fields.push(format!("armature {armature};"));
+    }
+    if let Some((stiffness, rest)) = &joint.spring {
+        fields.push(match rest.is_zero() {
+            true => format!("stiffness {};", stiffness.text),
+            false => format!("stiffness {}; rest {};", stiffness.text, rest.text),
+        });
     }
     let mut bounds = Vec::new();
     if joint.kind != Kind::Continuous
@@ -272,6 +299,19 @@ fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
         fields.push(bounds.join(" "));
     }
     fields
+}
+
+/// Σ inertia · ratio² of the rotors.
+fn armature(joint: &Joint) -> Option<String> {
+    let terms = joint.rotors.iter().map(|(inertia, ratio)| {
+        let size = ratio.text.trim_start_matches('-');
+        match size {
+            "1" | "1.0" => inertia.text.clone(),
+            size => format!("{} * {size}^2", inertia.text),
+        }
+    });
+    let terms: Vec<String> = terms.collect();
+    (!terms.is_empty()).then(|| terms.join(" + "))
 }
 
 /// Both limits, the one that is left out being 0; none where they leave nothing between.

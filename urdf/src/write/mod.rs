@@ -4,10 +4,12 @@ mod body;
 mod header;
 mod joint;
 mod page;
+mod ties;
 
 use crate::names::Names;
 use crate::options::{Imported, Options};
 use crate::plan::{Mobility, Plan};
+use crate::problem::Problem;
 use crate::robot::{Kind, Read, Robot};
 use crate::tree::{Edge, Tree};
 use page::Page;
@@ -29,6 +31,7 @@ pub(crate) fn write(
     tree: &Tree,
     plan: &Plan,
     options: &Options,
+    warnings: Vec<Problem>,
 ) -> Imported {
     let names = Names::of(&read.robot, options.name.as_deref());
     let cleaned = header::cleaned(xml, &read.cleaned);
@@ -40,7 +43,7 @@ pub(crate) fn write(
         names,
         page: Page::default(),
     };
-    writer.header(&cleaned);
+    writer.header(&cleaned, &warnings);
     writer.parameters();
     writer.page.line(None, "gravity [0, 0, -9.81];");
     writer.inputs();
@@ -53,6 +56,8 @@ pub(crate) fn write(
             writer.body(edge.child);
         }
     }
+    writer.springs();
+    writer.loops();
     writer.page.close();
     let joints = writer.own_joints();
     let link = |link: usize| {
@@ -71,7 +76,7 @@ pub(crate) fn write(
         name: writer.names.system,
         joints,
         cleaned,
-        warnings: Vec::new(),
+        warnings,
         text: writer.page.text,
         origins: writer.page.origins,
     }
@@ -100,9 +105,19 @@ impl Writer<'_> {
             .options
             .floating
             .then(|| (self.names.root.clone(), self.names.root.clone()));
-        let joints = self.free().map(|edge| {
-            let name = self.robot.joints[edge.joint].name.name.clone();
-            (name, self.names.joints[edge.joint].clone())
+        let joints = self.free().flat_map(|edge| {
+            let joint = &self.robot.joints[edge.joint];
+            let pair = (
+                joint.name.name.clone(),
+                self.names.joints[edge.joint].clone(),
+            );
+            // Each of two angles has its own name.
+            match joint.kind {
+                Kind::Universal => ["_1", "_2"]
+                    .map(|angle| (pair.0.clone() + angle, pair.1.clone() + angle))
+                    .to_vec(),
+                _ => vec![pair],
+            }
         });
         root.into_iter().chain(joints).collect()
     }
@@ -122,6 +137,8 @@ impl Writer<'_> {
                     inputs.push(format!("{name}_force: vec3"));
                     inputs.push(format!("{name}_torque: vec3"));
                 }
+                Kind::Spherical => inputs.push(format!("{name}_tau: vec3")),
+                Kind::Universal => inputs.push(format!("{name}_tau: vec2")),
                 Kind::Planar => {
                     inputs.push(format!("{name}_force: vec2"));
                     inputs.push(format!("{name}_tau"));

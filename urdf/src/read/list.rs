@@ -1,0 +1,458 @@
+//! The closed list: what may stand in a URDF file, the dialects of Drake, Gazebo, Bullet, MuJoCo and ROS included.
+
+use super::known::Element::{Apart, Read, Unless};
+use super::known::Level;
+
+/// What to do about everything else.
+const ADD: &str = "if it changes the motion, add it to the description";
+/// What to do about gravity that does not act on a link.
+const GRAVITY: &str =
+    "`gravity` of a description acts on all bodies; add a `force` that balances it";
+/// Words for yes and for no, as in files of Gazebo.
+const YES: &[&str] = &["true", "1"];
+const NO: &[&str] = &["false", "0"];
+
+/// An element of attributes alone.
+const fn leaf(attributes: &'static [&'static str], help: &'static str) -> Level {
+    Level {
+        attributes,
+        elements: &[],
+        help,
+    }
+}
+
+const ORIGIN: Level = leaf(&["xyz", "rpy"], "a pose is `<origin xyz=\"…\" rpy=\"…\"/>`");
+const VALUE: Level = leaf(&["value"], ADD);
+const NAME: Level = leaf(&["name"], ADD);
+const LINK: Level = leaf(&["link"], ADD);
+const AXIS: Level = leaf(&["xyz"], "a direction is `<axis xyz=\"…\"/>`");
+
+/// `<robot>`.
+pub(super) const ROBOT: Level = Level {
+    attributes: &["name", "version"],
+    elements: &[
+        (&["link"], Read(&LINKS)),
+        (&["joint", "drake:joint"], Read(&JOINT)),
+        (&["transmission"], Read(&TRANSMISSION)),
+        (&["gazebo"], Read(&GAZEBO)),
+        (&["ros2_control"], Read(&CONTROL)),
+        (&["mujoco"], Read(&MUJOCO)),
+        (&["loop_joint"], Read(&LOOP)),
+        (&["drake:ball_constraint"], Read(&BALL)),
+        (&["drake:linear_spring_damper"], Read(&SPRING)),
+        (
+            &["material", "sensor", "frame", "group", "group_state"],
+            Apart,
+        ),
+        (
+            &["chain", "end_effector", "virtual_joint", "passive_joint"],
+            Apart,
+        ),
+        (
+            &[
+                "disable_collisions",
+                "enable_collisions",
+                "disable_default_collisions",
+            ],
+            Apart,
+        ),
+        (
+            &["collision_filter_group", "drake:collision_filter_group"],
+            Apart,
+        ),
+    ],
+    help: ADD,
+};
+
+/// `<link>`.
+const LINKS: Level = Level {
+    attributes: &["name", "type"],
+    elements: &[
+        (&["inertial"], Read(&INERTIAL)),
+        (&["contact"], Read(&CONTACT)),
+        (
+            &["visual", "collision", "sensor", "surface", "material"],
+            Apart,
+        ),
+        (
+            &[
+                "collision_checking",
+                "self_collision_checking",
+                "self_filter",
+            ],
+            Apart,
+        ),
+        (
+            &[
+                "self_collide",
+                "selfCollide",
+                "laser_retro",
+                "laserRetro",
+                "audio_source",
+            ],
+            Apart,
+        ),
+        (&["gravity"], Unless(YES, GRAVITY)),
+        (&["kinematic", "enable_wind", "static"], Unless(NO, ADD)),
+        // A pose of the link in itself, from exporters that have one there: the identity.
+        (
+            &["origin"],
+            Unless(
+                &["0 0 0"],
+                "links have no pose of their own: write it to the joint",
+            ),
+        ),
+    ],
+    help: ADD,
+};
+
+const INERTIAL: Level = Level {
+    attributes: &[],
+    elements: &[
+        (&["origin"], Read(&ORIGIN)),
+        (&["mass"], Read(&VALUE)),
+        (&["inertia"], Read(&INERTIA)),
+    ],
+    help: ADD,
+};
+
+const INERTIA: Level = leaf(&["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], ADD);
+
+/// `<contact>` of Bullet.
+const CONTACT: Level = Level {
+    attributes: &[],
+    elements: &[
+        (
+            &[
+                "lateral_friction",
+                "rolling_friction",
+                "spinning_friction",
+                "friction_anchor",
+            ],
+            Apart,
+        ),
+        (
+            &[
+                "contact_cfm",
+                "contact_erp",
+                "stiffness",
+                "damping",
+                "restitution",
+            ],
+            Apart,
+        ),
+        (
+            &["inertia_scaling"],
+            Unless(&["1", "1.0"], "write the scaled inertia to `<inertia>`"),
+        ),
+    ],
+    help: ADD,
+};
+
+/// `<joint>`.
+const JOINT: Level = Level {
+    attributes: &["name", "type", "dont_collapse"],
+    elements: &[
+        (&["parent", "child"], Read(&LINK)),
+        (&["origin"], Read(&ORIGIN)),
+        (&["axis"], Read(&AXIS)),
+        (&["dynamics"], Read(&DYNAMICS)),
+        (&["joint_properties"], Read(&PROPERTIES)),
+        (&["limit"], Read(&LIMIT)),
+        (&["mimic"], Read(&MIMIC)),
+        (
+            &[
+                "calibration",
+                "safety_controller",
+                "hardwareInterface",
+                "sensor",
+            ],
+            Apart,
+        ),
+    ],
+    help: ADD,
+};
+
+const DYNAMICS: Level = leaf(
+    &["damping", "friction", "armature"],
+    "add it to the description",
+);
+const PROPERTIES: Level = leaf(&["damping", "friction"], "add it to the description");
+const LIMIT: Level = leaf(
+    &[
+        "lower",
+        "upper",
+        "velocity",
+        "effort",
+        "effort_min",
+        "effort_max",
+        "acceleration",
+        "deceleration",
+        "jerk",
+        "drake:acceleration",
+    ],
+    "add it to the description",
+);
+const MIMIC: Level = leaf(
+    &["joint", "multiplier", "offset"],
+    "it is `multiplier` · source + `offset`",
+);
+
+/// `<transmission>`: ratios alone change nothing, inertias of rotors are armatures.
+const TRANSMISSION: Level = Level {
+    attributes: &["name", "type"],
+    elements: &[
+        (&["joint", "actuator"], Read(&DRIVE)),
+        (
+            &["leftActuator", "rightActuator", "flexJoint", "rollJoint"],
+            Read(&PAIRED),
+        ),
+        (
+            &[
+                "type",
+                "plugin",
+                "role",
+                "offset",
+                "gap_joint",
+                "passive_joint",
+            ],
+            Apart,
+        ),
+        (&["use_simulated_gripper_joint", "hardwareInterface"], Apart),
+        (&RATIOS, Apart),
+    ],
+    help: ADD,
+};
+
+/// `<joint>` and `<actuator>` of a transmission.
+const DRIVE: Level = Level {
+    attributes: &["name", "role"],
+    elements: &[
+        (&ROTORS, Read(&VALUE)),
+        (&RATIOS, Apart),
+        (
+            &[
+                "hardwareInterface",
+                "hardware_interface",
+                "role",
+                "offset",
+                "motorTorqueConstant",
+            ],
+            Apart,
+        ),
+        (
+            &[
+                "deadBandUpper",
+                "deadBandLower",
+                "saturationUpper",
+                "saturationLower",
+            ],
+            Apart,
+        ),
+        (&["ignoreTransmissionAbsoluteEncoder"], Apart),
+    ],
+    help: ADD,
+};
+
+const PAIRED: Level = leaf(&["name", "mechanicalReduction"], ADD);
+
+/// Inertias of rotors, Drake's name first.
+pub(super) const ROTORS: [&str; 5] = [
+    "drake:rotor_inertia",
+    "rotor_inertia",
+    "rotorInertia",
+    "motorInertia",
+    "motor_inertia",
+];
+/// Ratios of gears, Drake's name first.
+pub(super) const RATIOS: [&str; 5] = [
+    "drake:gear_ratio",
+    "gear_ratio",
+    "gearRatio",
+    "mechanicalReduction",
+    "mechanical_reduction",
+];
+
+/// `<ros2_control>`.
+const CONTROL: Level = Level {
+    attributes: &["name", "type", "rw_rate", "is_async", "thread_priority"],
+    elements: &[
+        (&["hardware", "joint", "sensor", "gpio"], Apart),
+        (&["transmission"], Read(&TRANSMISSION)),
+    ],
+    help: ADD,
+};
+
+/// `<mujoco>`: how the compiler of MuJoCo reads the file.
+const MUJOCO: Level = Level {
+    attributes: &["model"],
+    elements: &[
+        (&["compiler"], Read(&COMPILER)),
+        (&["size", "visual", "statistic", "asset"], Apart),
+    ],
+    help: ADD,
+};
+
+const COMPILER: Level = leaf(
+    &[
+        "strippath",
+        "meshdir",
+        "texturedir",
+        "assetdir",
+        "discardvisual",
+        "fusestatic",
+        "autolimits",
+        "angle",
+        "convexhull",
+        "alignfree",
+    ],
+    ADD,
+);
+
+/// `<gazebo>`: what Gazebo's simulation adds to a link, to a joint or to the robot.
+const GAZEBO: Level = Level {
+    attributes: &["reference"],
+    elements: &[
+        (&["springStiffness", "springReference"], Read(&VALUE)),
+        (
+            &[
+                "material",
+                "visual",
+                "collision",
+                "surface",
+                "laserRetro",
+                "laser_retro",
+            ],
+            Apart,
+        ),
+        (
+            &["mu", "mu1", "mu2", "kp", "kd", "fdir1", "genTexCoord"],
+            Apart,
+        ),
+        (
+            &[
+                "maxVel",
+                "max_vel",
+                "minDepth",
+                "min_depth",
+                "maxContacts",
+                "max_contacts",
+            ],
+            Apart,
+        ),
+        (
+            &[
+                "selfCollide",
+                "self_collide",
+                "stopCfm",
+                "stopErp",
+                "stopKp",
+                "stopKd",
+            ],
+            Apart,
+        ),
+        (
+            &[
+                "provideFeedback",
+                "provide_feedback",
+                "fudgeFactor",
+                "cfmDamping",
+            ],
+            Apart,
+        ),
+        (
+            &["implicitSpringDamper", "physics", "allow_auto_disable"],
+            Apart,
+        ),
+        (
+            &[
+                "disableFixedJointLumping",
+                "preserveFixedJoint",
+                "canonicalBody",
+            ],
+            Apart,
+        ),
+        (
+            &["initialJointPosition", "initial_joint_position", "pose"],
+            Apart,
+        ),
+        (
+            &[
+                "sensor",
+                "plugin",
+                "audio_sink",
+                "audio_source",
+                "battery",
+                "light",
+                "projector",
+            ],
+            Apart,
+        ),
+        (
+            &["controller:*", "sensor:*", "interface:*", "rendering:*"],
+            Apart,
+        ),
+        (&["turnGravityOff"], Unless(NO, GRAVITY)),
+        (&["gravity"], Unless(YES, GRAVITY)),
+        (
+            &["kinematic", "static", "setStaticFlag", "enable_wind"],
+            Unless(NO, ADD),
+        ),
+        (
+            &["dampingFactor"],
+            Unless(&["0", "0.0"], "add a `force` in proportion to the velocity"),
+        ),
+    ],
+    help: ADD,
+};
+
+/// `<loop_joint>`.
+const LOOP: Level = Level {
+    attributes: &["name", "type"],
+    elements: &[(&["link1", "link2"], Read(&END)), (&["axis"], Read(&AXIS))],
+    help: ADD,
+};
+
+const END: Level = leaf(&["link", "xyz", "rpy"], ADD);
+
+const BALL: Level = Level {
+    attributes: &[],
+    elements: &[
+        (
+            &[
+                "drake:ball_constraint_body_A",
+                "drake:ball_constraint_body_B",
+            ],
+            Read(&NAME),
+        ),
+        (
+            &["drake:ball_constraint_p_AP", "drake:ball_constraint_p_BQ"],
+            Read(&VALUE),
+        ),
+    ],
+    help: ADD,
+};
+
+const SPRING: Level = Level {
+    attributes: &[],
+    elements: &[
+        (
+            &[
+                "drake:linear_spring_damper_body_A",
+                "drake:linear_spring_damper_body_B",
+            ],
+            Read(&NAME),
+        ),
+        (
+            &[
+                "drake:linear_spring_damper_p_AP",
+                "drake:linear_spring_damper_p_BQ",
+            ],
+            Read(&VALUE),
+        ),
+        (&["drake:linear_spring_damper_free_length"], Read(&VALUE)),
+        (&["drake:linear_spring_damper_stiffness"], Read(&VALUE)),
+        (&["drake:linear_spring_damper_damping"], Read(&VALUE)),
+    ],
+    help: ADD,
+};
