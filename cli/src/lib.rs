@@ -86,6 +86,7 @@ pub use simulate::inputs::{Asked, Control, Law};
 pub use simulate::plan::Every;
 pub use simulate::stepping::Stepping;
 pub use simulate::stop::Stop;
+pub use source::decoded;
 pub use state::State;
 pub use tables::Format;
 

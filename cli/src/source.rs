@@ -70,9 +70,7 @@ impl Source {
         };
         let bytes =
             bytes.map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))?;
-        urdf::decode(bytes)
-            .map(|text| Source::new(name.clone(), text))
-            .map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))
+        decoded(&name, bytes).map(|text| Source::new(name, text))
     }
 
     /// Reads a file beside this description; `what` it holds is said where both are standard input.
@@ -430,6 +428,12 @@ impl Source {
         })
     }
 }
+
+/// The text that the bytes of a file are, in any encoding that robots have.
+pub fn decoded(name: &str, bytes: Vec<u8>) -> Result<String, Failure> {
+    urdf::decode(bytes).map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))
+}
+
 /// An error for each frame that a model does not have.
 fn unknown_frames(model: &Model, asked: &[Jacobian]) -> Vec<Diagnostic> {
     let known = |name: &str| model.frames.iter().any(|frame| frame.name == name);

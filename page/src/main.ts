@@ -32,6 +32,8 @@ class Page {
   // Panels that show the present text.
   private readonly shown = new Set<string>();
   private name = "system.eom";
+  // The description that was made of a robot, and what was said of the robot.
+  private imported = { text: "", said: "" };
   readonly motion: Motion;
 
   constructor(
@@ -73,7 +75,8 @@ class Page {
         return;
       }
       this.editor.mark(opened.marks);
-      this.say(opened.marks, opened.said);
+      const imported = text === this.imported.text ? this.imported.said : "";
+      this.say(opened.marks, opened.said.trim() === "" ? imported : opened.said);
       this.system = opened.system;
       this.shown.clear();
       this.stale(opened.system === null);
@@ -270,7 +273,7 @@ class Page {
 
   // A description is read as it is, a robot in URDF becomes one.
   private async take(file: File): Promise<void> {
-    const text = await file.text();
+    const text = await decoded(file);
     const stem = file.name.replace(/\.[^.]*$/, "");
     if (!text.trimStart().startsWith("<")) {
       this.name = `${stem}.eom`;
@@ -287,6 +290,7 @@ class Page {
         return;
       }
       this.name = `${stem}.eom`;
+      this.imported = { text: imported.text, said: imported.said };
       this.editor.text = imported.text;
     } catch (error) {
       this.failed(error);
@@ -315,6 +319,21 @@ class Page {
     } catch {
       this.status("the address of this page is the link; it holds the whole text");
     }
+  }
+}
+
+// The text of a file: UTF-16 with its mark, what an XML declaration says, and else UTF-8.
+async function decoded(file: File): Promise<string> {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  const start = new TextDecoder("latin1").decode(bytes.subarray(0, 200));
+  const declared = /<\?xml[^>]*encoding\s*=\s*["']([^"']+)/.exec(start)?.[1];
+  // Whoever can read that it is UTF-16 does not read UTF-16.
+  const narrow = declared?.toLowerCase().startsWith("utf-16") === true ? undefined : declared;
+  const wide = start.startsWith("\u00ff\u00fe") ? "utf-16le" : start.startsWith("\u00fe\u00ff") ? "utf-16be" : undefined;
+  try {
+    return new TextDecoder(wide ?? narrow ?? "utf-8").decode(bytes);
+  } catch {
+    return new TextDecoder().decode(bytes);
   }
 }
 

@@ -26,7 +26,7 @@ mod _hamel {
     #[pymodule_export]
     use super::function::Function;
     #[pymodule_export]
-    use super::session::{Session, asked, command};
+    use super::session::{Session, asked, command, decoded};
 
     use pyo3::prelude::*;
 

@@ -35,6 +35,12 @@ pub fn asked(py: Python<'_>, words: Vec<OsString>) -> PyResult<()> {
     }
 }
 
+/// The text that the bytes of a file are.
+#[pyfunction]
+pub fn decoded(name: &str, bytes: Vec<u8>) -> PyResult<String> {
+    hamel_cli::decoded(name, bytes).map_err(raised)
+}
+
 /// A description, derived.
 #[pyclass(frozen, module = "hamel._hamel")]
 pub struct Session(Arc<hamel_cli::Session>);

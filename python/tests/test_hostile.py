@@ -111,8 +111,18 @@ def test_robots_in_files_of_other_programs(robots, tmp_path):
     file.write_bytes(text.replace("<robot", "<!-- \xe9 --><robot", 1).encode("latin-1"))
     with pytest.raises(hamel.HamelError, match=r"cannot read .*robot.urdf: byte \d+ is not UTF-8"):
         hamel.System.from_urdf(file)
+    file.write_bytes(b"\xff\xfe" + text.encode("utf-16-le"))
+    assert len(hamel.System.from_urdf(file).joints) == 2
     with pytest.raises(TypeError, match="a description is a text, None was given"):
         hamel.System.from_text(None)
+
+
+def test_words_of_robots_that_are_not_understood_are_warned_of(robots, tmp_path):
+    text = (robots / "double_pendulum_description" / "urdf" / "double_pendulum.urdf").read_text()
+    file = tmp_path / "robot.urdf"
+    file.write_text(text.replace("</robot>", "<tendon name='t'/></robot>"))
+    with pytest.warns(UserWarning, match="`<tendon>` is nothing that `<robot>` has in URDF, and is left out"):
+        hamel.System.from_urdf(file)
 
 
 def test_functions_that_there_are_not_are_no_attributes(models):

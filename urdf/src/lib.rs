@@ -7,11 +7,7 @@
 //! [`import`] reads the tree of links and joints and writes an `.eom` text: one `joint` statement for each joint, one
 //! `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for those that are
 //! roundings of multiples of π/2 or of 0; the text says what was changed.
-//!
-//! What a file may hold is a closed list. Shapes, meshes, limits and sensors are no part of the equations of motion and
-//! are left out without a word. Terms of the dialects whose meaning is certain are taken, with a warning: inertias of
-//! rotors, closing joints, springs in joints and between points. Whatever else stands in the file is named in a warning,
-//! with its line.
+//! The list of what a file may hold is `read/list.rs`.
 //!
 //! XML is read by `roxmltree`, which keeps the position of every attribute, so that every error names its place.
 

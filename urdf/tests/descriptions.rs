@@ -99,6 +99,23 @@ fn small_is_what_is_small_beside_the_largest() {
     );
 }
 
+/// Quaternions are the angles that they stand for.
+#[test]
+fn quaternions() {
+    let angles = EVERY_JOINT.replace(
+        "rpy=\"0 0 -1.57079632679\"",
+        "rpy=\"0 0 -1.5707963267948966\"",
+    );
+    let quaternion = angles.replace("rpy=\"0 0 -1.5707963267948966\"", "quat_xyzw=\"0 0 2 -2\"");
+    assert_ne!(angles, quaternion);
+    let text = |urdf: &str| {
+        let imported = import(urdf, &options()).expect("a sound robot");
+        let lines = imported.text.lines().filter(|line| !line.starts_with("//"));
+        lines.map(str::to_string).collect::<Vec<String>>()
+    };
+    assert_eq!(text(&angles), text(&quaternion));
+}
+
 /// Names are quoted in comments, which end with their line.
 #[test]
 fn names_with_line_breaks_stay_in_comments() {

@@ -11,6 +11,7 @@ mod control;
 mod counts;
 #[path = "common/described.rs"]
 mod described;
+mod dialects;
 mod draw;
 mod drawing;
 mod emitted;
@@ -25,6 +26,7 @@ mod installed;
 mod kept;
 mod linearize;
 mod methods;
+mod misspelt;
 #[path = "common/pinocchio.rs"]
 mod pinocchio;
 mod redundant;

@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __version__: str
-__all__ = ["__version__", "HamelError", "SingularError", "Function", "Session", "asked", "command"]
+__all__ = ["__version__", "HamelError", "SingularError", "Function", "Session", "asked", "command", "decoded"]
 
 _Array = NDArray[np.float64]
 _Numbers = tuple[_Array, _Array, _Array, _Array]
@@ -87,4 +87,7 @@ class Session:
     def base_parameters(self) -> dict[str, str]: ...
 
 def command(words: list[str]) -> int: ...
+def decoded(name: str, bytes: bytes) -> str:
+    """The text that the bytes of a file are: UTF-8, UTF-16, or what an XML declaration says."""
+
 def asked(words: list[str]) -> None: ...

@@ -13,7 +13,7 @@ from typing import Any, Literal, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._hamel import Function, HamelError, Session
+from ._hamel import Function, HamelError, Session, decoded
 
 Array = NDArray[np.float64]
 Inputs = Union[
@@ -297,11 +297,7 @@ def _read(path: str | os.PathLike[str]) -> tuple[str, str]:
     """The path of a file as a text, and the text in the file."""
     name = os.fspath(path)
     with open(name, "rb") as file:
-        found = file.read()
-    try:
-        return name, found.decode("utf-8")
-    except UnicodeDecodeError as why:
-        raise HamelError(f"cannot read {name}: byte {why.start} is not UTF-8") from None
+        return name, decoded(name, file.read())
 
 
 class System:

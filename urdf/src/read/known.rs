@@ -30,7 +30,7 @@ impl Level {
         };
         let mut elements = self.elements.iter();
         elements
-            .find(|(names, _)| names.iter().any(|listed| same(listed)))
+            .find(|(names, _)| names.iter().any(&same))
             .map(|(_, element)| element)
     }
 

@@ -21,7 +21,10 @@ const fn leaf(attributes: &'static [&'static str], help: &'static str) -> Level 
     }
 }
 
-const ORIGIN: Level = leaf(&["xyz", "rpy"], "a pose is `<origin xyz=\"…\" rpy=\"…\"/>`");
+const ORIGIN: Level = leaf(
+    &["xyz", "rpy", "quat_xyzw"],
+    "a pose is `<origin xyz=\"…\" rpy=\"…\"/>`",
+);
 const VALUE: Level = leaf(&["value"], ADD);
 const NAME: Level = leaf(&["name"], ADD);
 const LINK: Level = leaf(&["link"], ADD);

@@ -304,7 +304,48 @@ impl<'a> Reader<'a, '_, '_> {
                 None => sound = false,
             }
         }
+        if let Some(attribute) = element.attribute_node("quat_xyzw") {
+            match self.quaternion(&attribute, element.has_attribute("rpy")) {
+                Some(rotation) => origin.rotation = rotation,
+                None => sound = false,
+            }
+        }
         sound.then_some(origin)
+    }
+
+    /// The rotation that a quaternion is, which URDF has from version 1.1 on; it need not have length 1.
+    fn quaternion(&mut self, attribute: &Attribute<'_, 'a>, second: bool) -> Option<Rotation> {
+        let range = attribute.range_value();
+        let words = attribute.value().split_whitespace();
+        let entries: Vec<Decimal> = words.filter_map(Decimal::parse).collect();
+        let count = attribute.value().split_whitespace().count();
+        let values: Vec<f64> = entries.iter().map(|entry| entry.value).collect();
+        let (&[x, y, z, w], 4) = (values.as_slice(), count) else {
+            self.errors.push(
+                &range,
+                format!("four numbers expected, {} found", entries.len()),
+                "write `quat_xyzw=\"0 0 0 1\"`, the scalar last",
+            );
+            return None;
+        };
+        if second {
+            self.errors.push(
+                &range,
+                "a pose has `rpy` and `quat_xyzw`",
+                "remove one of them",
+            );
+            return None;
+        }
+        let Some(angles) = angles([x, y, z, w]) else {
+            let message = "the quaternion is zero";
+            let help = "write `quat_xyzw=\"0 0 0 1\"` where nothing is turned";
+            self.errors.push(&range, message, help);
+            return None;
+        };
+        Some(Rotation(angles.map(|angle| {
+            let written = Decimal::parse(&format!("{angle:?}")).unwrap_or_else(Decimal::zero);
+            Angle::read(&written, self.tolerance)
+        })))
     }
 
     fn angle(&mut self, number: &Decimal, range: &Range<usize>) -> Angle {
@@ -342,5 +383,66 @@ impl<'a> Reader<'a, '_, '_> {
             written: number.text.clone(),
             read: read.to_string(),
         });
+    }
+}
+
+/// Roll, pitch and yaw of a quaternion; `None` of zero.
+fn angles([x, y, z, w]: [f64; 4]) -> Option<[f64; 3]> {
+    let norm = [x, y, z, w]
+        .iter()
+        .fold(0.0, |norm: f64, part| norm.hypot(*part));
+    if norm == 0.0 {
+        return None;
+    }
+    // Half sum and half difference of yaw and roll, with cos(pitch/2) ± sin(pitch/2) before both.
+    let (difference, sum) = ((w + y, z - x), (w - y, z + x));
+    let (plus, minus) = (difference.0.hypot(difference.1), sum.0.hypot(sum.1));
+    let (difference, sum) = (difference.1.atan2(difference.0), sum.1.atan2(sum.0));
+    let pitch = 2.0 * (plus - minus).atan2(plus + minus);
+    Some([sum - difference, pitch, sum + difference])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::angles;
+
+    /// Quaternions of roll, pitch and yaw, of any length and sign, those with pitch ±π/2 included.
+    #[test]
+    fn quaternions_are_roll_pitch_and_yaw() {
+        let product = |a: [f64; 4], b: [f64; 4]| {
+            let ([x, y, z, w], [u, v, t, s]) = (a, b);
+            [
+                w * u + s * x + y * t - z * v,
+                w * v + s * y + z * u - x * t,
+                w * t + s * z + x * v - y * u,
+                w * s - x * u - y * v - z * t,
+            ]
+        };
+        let right = std::f64::consts::FRAC_PI_2;
+        let turn = |roll: f64, pitch: f64, yaw: f64| {
+            let [r, p, y] = [roll, pitch, yaw].map(|angle| (angle / 2.0).sin_cos());
+            let about = [
+                [r.0, 0.0, 0.0, r.1],
+                [0.0, p.0, 0.0, p.1],
+                [0.0, 0.0, y.0, y.1],
+            ];
+            product(about[2], product(about[1], about[0]))
+        };
+        for pitch in [0.0, 0.3, -1.2, right, -right, right - 1e-9] {
+            for (roll, yaw) in [(0.0, 0.0), (0.4, -2.0), (-3.0, 1.5), (2.5, 3.0)] {
+                let given = turn(roll, pitch, yaw);
+                for scale in [1.0, -2.5] {
+                    let found = angles(given.map(|part| scale * part));
+                    let [roll, pitch, yaw] = found.expect("not zero");
+                    let again = turn(roll, pitch, yaw);
+                    let dot: f64 = (0..4).map(|i| given[i] * again[i]).sum();
+                    let off: f64 = (0..4)
+                        .map(|i| (given[i] - dot.signum() * again[i]).abs())
+                        .fold(0.0, f64::max);
+                    assert!(off < 1e-15, "{given:?} {again:?}");
+                }
+            }
+        }
+        assert_eq!(angles([0.0; 4]), None);
     }
 }
