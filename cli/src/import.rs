@@ -12,8 +12,8 @@ use std::path::PathBuf;
 /// One `joint` for each joint and one `body` for each link with mass, in the order of the tree;
 /// the joints on one link in the order of their names. Inertias are exact constants unless
 /// --params. Every joint gets an input, its motor's torque or force. Limits stand as documented
-/// constants; Coulomb friction is mentioned, and not modelled. What is taken for a rounding is
-/// listed on standard error.
+/// constants. What is taken for a rounding is listed on standard error, and what changes the motion and
+/// is not understood or not modelled, as Coulomb friction, is a warning; both also stand in the description.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel import arm.urdf -o arm.eom

@@ -327,7 +327,7 @@ async function decoded(file: File): Promise<string> {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const start = new TextDecoder("latin1").decode(bytes.subarray(0, 200));
   const declared = /<\?xml[^>]*encoding\s*=\s*["']([^"']+)/.exec(start)?.[1];
-  // Whoever can read that it is UTF-16 does not read UTF-16.
+  // Single bytes that name UTF-16 are not UTF-16: the declaration is older than the file.
   const narrow = declared?.toLowerCase().startsWith("utf-16") === true ? undefined : declared;
   const wide = start.startsWith("\u00ff\u00fe") ? "utf-16le" : start.startsWith("\u00fe\u00ff") ? "utf-16be" : undefined;
   try {

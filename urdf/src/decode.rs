@@ -69,7 +69,7 @@ pub fn decode(bytes: Vec<u8>) -> Result<String, Undecoded> {
     }
     let name = declared(&bytes).map(str::to_ascii_lowercase);
     match name.as_deref().unwrap_or("utf-8") {
-        // Whoever could read that it is UTF-16 has not read UTF-16.
+        // Single bytes that name UTF-16 are not UTF-16: the declaration is older than the file.
         "utf-8" | "utf8" | "us-ascii" | "ascii" | "utf-16" => unicode(bytes),
         "iso-8859-1" | "iso8859-1" | "latin1" | "latin-1" => {
             Ok(bytes.into_iter().map(char::from).collect())

@@ -163,7 +163,7 @@ fn inside(text: &str, place: usize) -> bool {
             open(&format!("<{name}>"), &format!("</{name}>"))
                 || open(&format!("<{name} "), &format!("</{name}>"))
         })
-        // Of these, joints are elements that programs read, and sensors have poses of their own.
+        // Programs read these; sensors have poses of their own.
         || ["sensor", "plugin", "ros2_control"].iter().any(|name| {
             open(&format!("<{name} "), &format!("</{name}>"))
         })

@@ -36,10 +36,12 @@ impl<'a> Reader<'a, '_, '_> {
                     continue;
                 }
                 let range = tag(text, &rotor);
-                let kind = all("type").first().and_then(Node::text).map(str::to_string);
+                let kinds = [all("type"), all("plugin")].concat();
+                let kind = kinds.first().and_then(Node::text).map(str::to_string);
                 let kind = kind.or_else(|| node.attribute("type").map(str::to_string));
                 let simple = kind.is_none_or(|kind| kind.trim().ends_with(SIMPLE));
-                let (true, [joint], [_]) = (simple, driven.as_slice(), actuators.as_slice()) else {
+                let (true, [moved], [drive]) = (simple, driven.as_slice(), actuators.as_slice())
+                else {
                     self.note(
                         range,
                         format!(
@@ -50,10 +52,10 @@ impl<'a> Reader<'a, '_, '_> {
                     );
                     continue;
                 };
-                let Some(joint) = self.name(joint, "name") else {
+                let Some(joint) = self.name(moved, "name") else {
                     continue;
                 };
-                let Some(ratio) = self.ratio(&rotor, &[*part, *node]) else {
+                let Some(ratio) = self.ratio(&rotor, &[*drive, *moved, *node]) else {
                     continue;
                 };
                 self.rotor(&rotor, &joint, (inertia, ratio), joints);
@@ -109,8 +111,10 @@ impl<'a> Reader<'a, '_, '_> {
         self.note(
             range,
             format!(
-                "`<{name}>` is no part of URDF; `{}` has the armature {} · {}² by it",
-                joint.name, inertia.text, ratio.text
+                "`<{name}>` is no part of URDF; it gives `{}` the armature {} · {}²",
+                joint.name,
+                inertia.text,
+                ratio.text.trim_start_matches('-')
             ),
             "other programs may leave it out".to_string(),
         );
@@ -167,7 +171,7 @@ impl<'a> Reader<'a, '_, '_> {
         self.note(
             range,
             format!(
-                "`<{SPRING}>` is no part of URDF; `{}` has a spring by it",
+                "`<{SPRING}>` is no part of URDF; it gives `{}` a spring",
                 joint.name
             ),
             "other programs may leave it out".to_string(),

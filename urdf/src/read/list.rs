@@ -8,6 +8,8 @@ const ADD: &str = "if it changes the motion, add it to the description";
 /// What to do about gravity that does not act on a link.
 const GRAVITY: &str =
     "`gravity` of a description acts on all bodies; add a `force` that balances it";
+/// What to do about joints that close loops, in the words of a simulation.
+const CLOSE: &str = "a joint that closes a loop is a `loop` in the description";
 /// Words for yes and for no, as in files of Gazebo.
 const YES: &[&str] = &["true", "1"];
 const NO: &[&str] = &["false", "0"];
@@ -42,6 +44,10 @@ pub(super) const ROBOT: Level = Level {
         (&["mujoco"], Read(&MUJOCO)),
         (&["loop_joint"], Read(&LOOP)),
         (&["drake:ball_constraint"], Read(&BALL)),
+        (
+            &["drake:linear_bushing_rpy", "drake:tendon_constraint"],
+            Unless(&[], ADD),
+        ),
         (&["drake:linear_spring_damper"], Read(&SPRING)),
         (
             &["material", "sensor", "frame", "group", "group_state"],
@@ -97,7 +103,7 @@ const LINKS: Level = Level {
         ),
         (&["gravity"], Unless(YES, GRAVITY)),
         (&["kinematic", "enable_wind", "static"], Unless(NO, ADD)),
-        // A pose of the link in itself, from exporters that have one there: the identity.
+        // Some exporters write a pose of the link in its own frame, the identity.
         (
             &["origin"],
             Unless(
@@ -231,6 +237,10 @@ const TRANSMISSION: Level = Level {
 const DRIVE: Level = Level {
     attributes: &["name", "role"],
     elements: &[
+        (
+            &["drake:controller_gains"],
+            Unless(&[], "add the controller to the description as a `force`"),
+        ),
         (&ROTORS, Read(&VALUE)),
         (&RATIOS, Apart),
         (
@@ -394,6 +404,11 @@ const GAZEBO: Level = Level {
         (
             &["controller:*", "sensor:*", "interface:*", "rendering:*"],
             Apart,
+        ),
+        (&["joint", "joint:*"], Unless(&[], CLOSE)),
+        (
+            &["link", "model", "include", "inertial", "gripper"],
+            Unless(&[], ADD),
         ),
         (&["turnGravityOff"], Unless(NO, GRAVITY)),
         (&["gravity"], Unless(YES, GRAVITY)),

@@ -58,7 +58,7 @@ impl<'a> Reader<'a, '_, '_> {
             };
             self.note(
                 tag(text, &plugin),
-                format!("the plugin `{file}` {does}, which is left out"),
+                format!("the plugin `{file}` {does}, and is left out"),
                 "add to the description what it does".to_string(),
             );
         }

@@ -229,7 +229,7 @@ impl<'a> Reader<'a, '_, '_> {
                     format!("`{written}` is not a number"),
                     "this is a property of xacro: expand the file first, `xacro FILE > robot.urdf`",
                 ),
-                // Of these, Rust reads more than are lengths, masses or angles.
+                // Finite for Rust, and not for `Decimal`, whose exponents have a bound.
                 Ok(value) if value.abs() < 1.0 && !written.contains("inf") => (
                     format!("`{written}` is nearer to 0 than any quantity of a robot"),
                     "write 0 where nothing is meant; numbers that are not 0 have a size above 1e-300",
