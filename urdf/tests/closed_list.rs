@@ -288,3 +288,23 @@ fn words_that_change_nothing_are_quiet() {
         assert_eq!(warnings.len(), quiet + 1, "{after}: {warnings:?}");
     }
 }
+
+/// Drake's planar joints move across z.
+#[test]
+fn planar_joints_of_drake() {
+    let joint = |axis: &str| {
+        let text = EVERY_LEVEL.replace("type=\"ball\">", &format!("type=\"planar\">{axis}"));
+        read(&text)
+    };
+    let (plain, same) = (joint(""), joint("<axis xyz=\"0 0 1\"/>"));
+    let other = joint("<axis xyz=\"1 0 0\"/>");
+    assert!(
+        plain
+            .text
+            .contains("joint wrist: planar [0, 0, 1] on fore moves hand")
+    );
+    assert_eq!(statements(&plain), statements(&same));
+    assert_eq!(statements(&plain), statements(&other));
+    let counts = [&plain, &same, &other].map(|read| read.warnings.len());
+    assert_eq!(counts, [counts[0], counts[0], counts[0] + 1]);
+}

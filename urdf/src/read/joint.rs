@@ -38,12 +38,11 @@ impl<'a> Reader<'a, '_, '_> {
             self.name(&element, "link")
         });
         let origin = self.origin(node);
-        let axis = match (self.child(node, "axis"), kind) {
-            (None, Some(Kind::Planar)) if drake => {
-                Some(Some([Decimal::zero(), Decimal::zero(), Decimal::one()]))
-            }
-            (element, _) => element.map(|element| self.axis(&element, kind)),
-        };
+        let written_axis = self.child(node, "axis");
+        let mut axis = written_axis.map(|element| self.axis(&element, kind));
+        if drake && kind == Some(Kind::Planar) {
+            axis = Some(Some(self.normal(written_axis, axis.flatten())));
+        }
         let dynamics = self.child(node, "dynamics");
         let properties = self.child(node, "joint_properties");
         let [damping, friction] =
@@ -143,6 +142,24 @@ impl<'a> Reader<'a, '_, '_> {
             return None;
         }
         Some(axis)
+    }
+
+    /// The normal of Drake's planar joints, z whatever the file says.
+    fn normal(
+        &mut self,
+        element: Option<Node<'_, 'a>>,
+        axis: Option<[Decimal; 3]>,
+    ) -> [Decimal; 3] {
+        if let (Some(element), Some([x, y, z])) = (element, axis)
+            && !(x.is_zero() && y.is_zero() && z.value > 0.0)
+        {
+            self.note(
+                tag(self.text, &element),
+                format!("the axis of a planar `<{DRAKE}>` is that of z, and this one is left out"),
+                "turn the joint by its `<origin>`".to_string(),
+            );
+        }
+        [Decimal::zero(), Decimal::zero(), Decimal::one()]
     }
 
     /// Damping or friction, from `<dynamics>` or else from `<joint_properties>`, its forerunner.
