@@ -250,12 +250,10 @@ impl<'a> Reader<'a, '_, '_> {
         let written = attribute.value().trim();
         let number = Decimal::parse(written);
         if number.is_none() {
-            self.warnings.push(
-                &attribute.range_value(),
-                format!(
-                    "the bound `{name}` is `{written}`, which is no finite number: it is left out"
-                ),
-                "limits do not enter the equations; leave it out of the file, too",
+            self.note(
+                attribute.range_value(),
+                format!("the bound `{name}` is `{written}`, no finite number, and is left out"),
+                "limits do not enter the equations; leave it out of the file, too".to_string(),
             );
         }
         number
