@@ -163,8 +163,8 @@ fn inside(text: &str, place: usize) -> bool {
             open(&format!("<{name}>"), &format!("</{name}>"))
                 || open(&format!("<{name} "), &format!("</{name}>"))
         })
-        // Programs read these; sensors have poses of their own.
-        || ["sensor", "plugin", "ros2_control"].iter().any(|name| {
+        // Programs read these; sensors have poses of their own, and joints of old Gazebo are named as a whole.
+        || ["sensor", "plugin", "ros2_control", "joint:hinge", "joint:slider"].iter().any(|name| {
             open(&format!("<{name} "), &format!("</{name}>"))
         })
 }
