@@ -217,8 +217,11 @@ fn geometry(generated: &Generated) -> String {
         .collect()
 }
 
-/// What methods of integration ask of the system, and the one that fits.
+/// What methods of integration ask of the system, and the one that fits; nothing where it has no inertia.
 fn methods(generated: &Generated) -> String {
+    if !generated.model.has_inertia {
+        return String::new();
+    }
     let structure = &generated.program.structure;
     let mut lines = structure.lines();
     if generated.program.function(FunctionId::Accel).is_some() {

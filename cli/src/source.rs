@@ -6,7 +6,9 @@ use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::functions::{Asked, FunctionId, Jacobian};
-use hamel_codegen::generate::{Generated, at_some_point, available_in, from_file, text_of};
+use hamel_codegen::generate::{
+    Generated, LeftOut, at_some_point, available_in, from_file, text_of,
+};
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
@@ -263,8 +265,18 @@ impl Source {
         Ok(model)
     }
 
+    /// Derives what a picture is made of: places, whatever the description's `generate` says. No claim about the motion is
+    /// proved.
+    pub fn derive_places(&self) -> Result<Generated, Failure> {
+        self.derived(|mut model| {
+            model.asked = Asked::only(&[]);
+            model.invariants.clear();
+            Generated::of(model, 0)
+        })
+    }
+
     /// Derives these functions, whatever the description's `generate` says; those with M⁻¹ in them are
-    /// left out, with a warning, where M is not positive definite.
+    /// left out, with a warning, where M is not positive definite, and all that need inertia where there is none.
     pub fn derive_only(
         &self,
         functions: &[FunctionId],
@@ -286,6 +298,17 @@ impl Source {
         Ok(generated)
     }
 
+    /// An error where nothing of the system has inertia, with what there is to do.
+    pub fn moves(&self, generated: &Generated) -> Result<(), Failure> {
+        match generated.model.has_inertia {
+            true => Ok(()),
+            false => {
+                let motion = Asked::only(&[FunctionId::Accel]);
+                self.derive_asked(&motion).map(drop)
+            }
+        }
+    }
+
     /// What is derived of the model, with its warnings.
     fn derived<T>(
         &self,
@@ -302,7 +325,7 @@ impl Source {
     }
 
     fn available(&self, asked: Asked) -> Result<Generated, Failure> {
-        let (generated, singular) = self.derived(|mut model| {
+        let (generated, left_out) = self.derived(|mut model| {
             let unknown: Vec<Diagnostic> = unknown_frames(&model, &asked.jacobians);
             if !unknown.is_empty() {
                 return Err(unknown);
@@ -311,18 +334,22 @@ impl Source {
             Generated::available(model, 0)
         })?;
         self.warn(&generated.model);
-        self.left_out(singular);
+        self.warn_of(left_out);
         Ok(generated)
     }
 
-    /// Says that M has no inverse.
-    fn left_out(&self, singular: Option<Diagnostic>) {
-        if let Some(Diagnostic { message, .. }) = singular {
-            failure::warn(&format!(
-                "warning: {}: {message}; functions that need its inverse, such as `accel`, are not there\n",
-                self.path
-            ));
+    /// Says that M has no inverse, or that there is no inertia; of a robot without masses that was said when it was read.
+    fn warn_of(&self, left_out: Option<LeftOut>) {
+        if let Some(left_out) = left_out.filter(|_| self.has_masses()) {
+            let said = left_out.said();
+            failure::warn(&format!("warning: {}: {said}\n", self.path));
         }
+    }
+
+    /// Whether this is no robot without masses.
+    fn has_masses(&self) -> bool {
+        let robot = self.robot.as_ref();
+        robot.is_none_or(|robot| robot.imported.has_masses)
     }
 
     /// Derives the functions that the description asks for; for a robot, which asks for nothing by itself, all
@@ -330,8 +357,8 @@ impl Source {
     pub fn derive(&self) -> Result<Generated, Failure> {
         if self.robot.is_some() {
             let derived = progress::during(DERIVING, || available_in(&self.text));
-            let (generated, singular) = derived.map_err(|errors| self.refused(&errors))?;
-            self.left_out(singular);
+            let (generated, left_out) = derived.map_err(|errors| self.refused(&errors))?;
+            self.warn_of(left_out);
             return Ok(generated);
         }
         let derived = progress::during(DERIVING, || {
@@ -362,7 +389,7 @@ impl Source {
     }
 
     /// Derives all functions that exist, and the kinematics of frames: those with M⁻¹ in them are left out, with a
-    /// warning, where M is not positive definite.
+    /// warning, where M is not positive definite, and all that need inertia where there is none.
     pub fn derive_available(&self, frames: &[Jacobian]) -> Result<Generated, Failure> {
         self.available(Asked {
             jacobians: frames.to_vec(),
@@ -370,21 +397,23 @@ impl Source {
         })
     }
 
-    /// Derives all functions and the linearisation, of a robot without an inverse of M what exists.
+    /// Derives all functions and the linearisation, of a robot without an inverse of M, or without masses, what
+    /// exists.
     pub fn derive_counted(&self) -> Result<Generated, Failure> {
-        let (generated, singular) = self.derived(|mut model| {
+        let (generated, left_out) = self.derived(|mut model| {
             let errors = match Generated::all(model.clone(), 0) {
                 Ok(generated) => return Ok((generated, None)),
                 Err(errors) => errors,
             };
-            if self.robot.is_none() || !errors.iter().all(|error| error.inverse) {
+            let lacking = errors.iter().all(|error| error.lacking.is_some());
+            if self.robot.is_none() || !lacking {
                 return Err(errors);
             }
             model.asked = Asked::everything();
             Generated::available(model, 0)
         })?;
         self.warn(&generated.model);
-        self.left_out(singular);
+        self.warn_of(left_out);
         Ok(generated)
     }
 

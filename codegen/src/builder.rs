@@ -302,11 +302,10 @@ impl Builder {
                 let description = name(&path.with_extension("eom"));
                 let refused =
                     |errors: Vec<Diagnostic>| refused(&errors, &imported, &shown, &text, false);
-                let (generated, singular) = available_in(&imported.text).map_err(refused)?;
-                if let Some(Diagnostic { message, .. }) = singular {
-                    warn(&format!(
-                        "{shown}: {message}; functions that need its inverse, such as `accel`, are not there"
-                    ));
+                let (generated, left_out) = available_in(&imported.text).map_err(refused)?;
+                // That there are no masses was said above.
+                if let Some(left_out) = left_out.filter(|_| imported.has_masses) {
+                    warn(&format!("{shown}: {}", left_out.said()));
                 }
                 let texts = self.texts(&generated, &description, stem, &shown, &mut made.named);
                 made.files.extend(texts.map_err(refused)?);

@@ -3,11 +3,12 @@
 use crate::algebra::graph::{Function, Graph, Node};
 use crate::derive;
 use crate::derive::assemble::assemble;
-use crate::derive::reduction::{reduce, warnings};
+use crate::derive::reduction::{Reduction, reduce, warnings};
 use crate::derive::regressor::Regressor;
 use crate::diagnostics::Diagnostic;
 use crate::emit::NotRust;
-use crate::functions::{Asked, FunctionId};
+use crate::functions::{Asked, FunctionId, Needs};
+use crate::inertia;
 use crate::lower;
 use crate::model::Model;
 use crate::program::Program;
@@ -72,17 +73,47 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
     derive(&system, fingerprint(&(canonical(text) + &texts.concat())))
 }
 
-/// The same but for functions with M⁻¹ in them, where M is not positive definite; then the error that they would have is
-/// returned, too. Robots say what they are, and not what is wanted of them.
+/// The same but for functions with M⁻¹ in them where M is not positive definite, and for all that need inertia where there
+/// is none; then the error that they would have is returned, too. Robots say what they are, and not what is wanted of them.
 ///
 /// # Errors
 /// What is wrong with the description beyond that.
 #[cfg(feature = "files")]
-pub fn available_in(text: &str) -> Result<(Generated, Option<Diagnostic>), Vec<Diagnostic>> {
+pub fn available_in(text: &str) -> Result<(Generated, Option<LeftOut>), Vec<Diagnostic>> {
     let mut system = syntax::parse_text(text)?;
     system.starts_anywhere = true;
     let hash = fingerprint(&canonical(text));
     at_some_point(&system, |model| Generated::available(model, hash))
+}
+
+/// What is left out where M is not positive definite, or nothing has inertia.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// The error that the functions which are left out would have.
+    pub error: Diagnostic,
+    /// Claims about the motion that are not proved.
+    pub claims: Vec<String>,
+}
+
+impl LeftOut {
+    /// A warning.
+    pub fn said(&self) -> String {
+        let mut said = match self.error.lacking {
+            Some(Needs::Inertia) => {
+                "the system has no inertia; functions that need it, such as `accel`, are not there"
+                    .into()
+            }
+            _ => format!(
+                "{}; functions that need its inverse, such as `accel`, are not there",
+                self.error.message
+            ),
+        };
+        if !self.claims.is_empty() {
+            let claims: Vec<String> = self.claims.iter().map(|name| format!("`{name}`")).collect();
+            said.push_str(&format!(", and no claim is proved: {}", claims.join(", ")));
+        }
+        said
+    }
 }
 
 /// Derives the description in a text.
@@ -153,25 +184,33 @@ impl Generated {
     }
 
     /// Derives what a model is asked for or, where M is not positive definite, all of that but the
-    /// functions with M⁻¹ in them; then the error that they would have is returned, too.
+    /// functions with M⁻¹ in them; where nothing has inertia, all but what needs it. Then claims about the motion are
+    /// left out as well, and what is left out is returned, too.
     ///
     /// # Errors
     /// What is wrong beyond that, or where nothing remains.
     pub fn available(
         mut model: Model,
         hash: u64,
-    ) -> Result<(Self, Option<Diagnostic>), Vec<Diagnostic>> {
+    ) -> Result<(Self, Option<LeftOut>), Vec<Diagnostic>> {
         let errors = match Generated::of(model.clone(), hash) {
             Ok(generated) => return Ok((generated, None)),
             Err(errors) => errors,
         };
-        let asked = &mut model.asked;
-        asked.inverse = false;
-        asked.functions.retain(|id| !id.row().inverse);
-        match errors.as_slice() {
-            [error] if error.inverse => Ok((Generated::of(model, hash)?, Some(error.clone()))),
-            _ => Err(errors),
-        }
+        let [error] = errors.as_slice() else {
+            return Err(errors);
+        };
+        let Some(lacking) = error.lacking else {
+            return Err(errors);
+        };
+        model.asked = model.asked.without(lacking);
+        // Nothing can be claimed of a motion that is not determined.
+        let claims = std::mem::take(&mut model.invariants).into_iter();
+        let left_out = LeftOut {
+            error: error.clone(),
+            claims: claims.map(|claim| claim.name).collect(),
+        };
+        Ok((Generated::of(model, hash)?, Some(left_out)))
     }
 
     /// What is said where the generated text is no Rust.
@@ -190,6 +229,9 @@ impl Generated {
     }
 
     fn proved(mut model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
+        let claims = model.invariants.iter().map(|claim| claim.name.as_str());
+        let lacking = inertia::lacking(model.span, model.has_inertia, &model.asked, claims);
+        lacking.map_or(Ok(()), |error| Err(vec![error]))?;
         let reduction = reduce(&model).map_err(|error| vec![error])?;
         let dropped = reduction.iter().flat_map(|reduction| &reduction.dropped);
         for &row in dropped.clone() {
@@ -203,7 +245,10 @@ impl Generated {
         let program = assemble(&model, reduction.as_ref(), regressor.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;
         curved(&model, &program).map_or(Ok(()), |error| Err(vec![error]))?;
-        proof::prove(&model, reduction.as_ref(), regressor.as_ref(), &program)?;
+        let motion = moving(&model, reduction.as_ref(), &program)?;
+        let motion = motion.as_ref().unwrap_or(&program);
+        let regressor = regressor.as_ref();
+        proof::prove(&model, reduction.as_ref(), regressor, [&program, motion])?;
         let solved = reduction.as_ref().map_or(Vec::new(), |reduction| {
             reduction
                 .solved
@@ -219,6 +264,31 @@ impl Generated {
             hash,
         })
     }
+}
+
+/// ξ̇ alone, proved, for claims about a constrained motion of a program that has no ξ̇: what is asked for does not decide what
+/// can be claimed.
+fn moving(
+    model: &Model,
+    reduction: Option<&Reduction>,
+    program: &Program,
+) -> Result<Option<Program>, Vec<Diagnostic>> {
+    let Some(reduction) = reduction else {
+        return Ok(None);
+    };
+    if model.invariants.is_empty() || program.xi_dot().is_some() {
+        return Ok(None);
+    }
+    let (mut model, mut reduction) = (model.clone(), reduction.clone());
+    for model in [&mut model, &mut reduction.model] {
+        model.asked = Asked::only(&[FunctionId::Accel]);
+        model.outputs.clear();
+        model.invariants.clear();
+    }
+    let one = |error| vec![error];
+    let program = assemble(&model, Some(&reduction), None, false).map_err(one)?;
+    proof::prove(&model, Some(&reduction), None, [&program; 2])?;
+    Ok(Some(program))
 }
 
 /// The base parameters of a model, where they are asked for.

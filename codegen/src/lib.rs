@@ -32,7 +32,9 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub use hamel_algebra as algebra;
-pub use hamel_language::{diagnostics, functions, lower, model, render, reuse, syntax, vocabulary};
+pub use hamel_language::{
+    diagnostics, functions, inertia, lower, model, render, reuse, syntax, vocabulary,
+};
 #[cfg(feature = "files")]
 pub mod builder;
 pub mod derive;

@@ -2,6 +2,7 @@
 //! description are shown at the place in the URDF that its lines are made from.
 
 use crate::diagnostics::Diagnostic;
+use crate::functions::Needs;
 use crate::render::{Level, Note, notes, render, span_bytes};
 pub use hamel_urdf::{Imported, Mimic, Options, TOLERANCE, Undecoded, decode};
 use std::ops::Range;
@@ -45,6 +46,9 @@ fn shown(
     notes(&list, level, path, text, color)
 }
 
+/// What to do about a robot without masses.
+const BARE: &str = "no link of the robot that moves has mass: give the links their `<inertial>`";
+
 /// Errors about the description, at their places in the URDF; those that have none there are shown
 /// in the description's own text.
 pub fn refused(
@@ -61,8 +65,14 @@ pub fn refused(
             rest.push(error.clone());
             continue;
         };
-        let mut help: Vec<String> = error.help.iter().cloned().collect();
-        help.push(format!("the description made from it has `{line}`"));
+        let help = match error.lacking {
+            Some(Needs::Inertia) => vec![BARE.to_string()],
+            _ => {
+                let help = error.help.iter().cloned();
+                let line = format!("the description made from it has `{line}`");
+                help.chain([line]).collect()
+            }
+        };
         placed.push(Note {
             range: origin,
             message: error.message.clone(),

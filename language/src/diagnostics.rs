@@ -1,5 +1,6 @@
 //! Placed errors, collected so that one build reports all of them; placed warnings have the same form.
 
+use crate::functions::Needs;
 use crate::syntax::ast::{Span, Texts};
 use std::panic::Location;
 
@@ -16,8 +17,8 @@ pub struct Diagnostic {
     pub notes: Vec<(Span, String)>,
     /// The included texts that these places are in.
     pub texts: Texts,
-    /// Whether only functions with M⁻¹ in them are in the way: all else can be derived.
-    pub inverse: bool,
+    /// What the system lacks, where only functions that need it are in the way: all else can be derived.
+    pub lacking: Option<Needs>,
     /// Whether a proof failed: a fault of the generator, or of the point that was read at.
     pub unproved: bool,
     /// Where the generator makes it: the book has an example for every such place.
@@ -34,7 +35,7 @@ impl Diagnostic {
             help: None,
             notes: Vec::new(),
             texts: Texts::default(),
-            inverse: false,
+            lacking: None,
             unproved: false,
             site: Location::caller(),
         }
@@ -46,9 +47,9 @@ impl Diagnostic {
         self
     }
 
-    /// Says that only functions with M⁻¹ in them are in the way.
-    pub fn about_inverse(mut self) -> Self {
-        self.inverse = true;
+    /// Says that only functions that need this are in the way.
+    pub fn lacking(mut self, needs: Needs) -> Self {
+        self.lacking = Some(needs);
         self
     }
 

@@ -46,6 +46,17 @@ pub enum Returns {
     Linear,
 }
 
+/// What a function needs of the inertia of a system, least first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Needs {
+    /// None: kinematics, loads, potentials.
+    Nothing,
+    /// Bodies with mass; M may be singular.
+    Inertia,
+    /// M⁻¹: M has to be positive definite.
+    Inverse,
+}
+
 /// One row of the table.
 #[derive(Debug)]
 pub struct Row {
@@ -59,14 +70,14 @@ pub struct Row {
     pub docs: &'static [&'static str],
     /// What it is wanted for.
     pub serves: Serves,
-    /// Whether M⁻¹ is in it, so that it exists only where M is positive definite.
-    pub inverse: bool,
+    /// What it needs of the inertia of the system.
+    pub needs: Needs,
     /// Whether `generate` can name it.
     pub named: bool,
 }
 
 macro_rules! table {
-    ($($id:ident $name:literal ($($argument:ident),*) $returns:ident $serves:ident $inverse:literal $named:literal [$($line:literal),* $(,)?])*) => {
+    ($($id:ident $name:literal ($($argument:ident),*) $returns:ident $serves:ident $needs:ident $named:literal [$($line:literal),* $(,)?])*) => {
         /// A function that the generator knows.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum FunctionId {
@@ -86,7 +97,7 @@ macro_rules! table {
                         returns: Returns::$returns,
                         docs: &[$($line),*],
                         serves: Serves::$serves,
-                        inverse: $inverse,
+                        needs: Needs::$needs,
                         named: $named,
                     },)*
                 }
@@ -95,128 +106,128 @@ macro_rules! table {
     };
 }
 
-// Identifier, name, arguments, what it returns, what it serves, whether M⁻¹ is in it, whether `generate` names it.
+// Identifier, name, arguments, what it returns, what it serves, what inertia it needs, whether `generate` names it.
 table! {
-    Rate "rate" (Coordinates, Velocities) Vector System false true [
+    Rate "rate" (Coordinates, Velocities) Vector System Nothing true [
         "Rates of the coordinates, ẋ = A(x) ξ (KR18 (5)).",
     ]
-    ChartRate "chart_rate" (Coordinates, Velocities) Vector System false false [
+    ChartRate "chart_rate" (Coordinates, Velocities) Vector System Nothing false [
         "Rates in the charts of the coordinate kinds: ẋ of plain coordinates, θ̇ of a circle, the body",
         "angular velocity of a quaternion or rotation matrix (KR18 (36)).",
     ]
-    Accel "accel" (Coordinates, Velocities, Inputs) Vector System true true [
+    Accel "accel" (Coordinates, Velocities, Inputs) Vector System Inverse true [
         "Forward dynamics: ξ̇ from M ξ̇ + Γ ξ ξ + ∂V = f (KR18 (30c)).",
     ]
-    InverseDynamics "inverse_dynamics" (Coordinates, Velocities, Accelerations) Vector Callers false true [
+    InverseDynamics "inverse_dynamics" (Coordinates, Velocities, Accelerations) Vector Callers Inertia true [
         "Inverse dynamics: the generalised force f = M ξ̇ + Γ ξ ξ + ∂V that ξ̇ needs (KR18 (30c)).",
     ]
-    MassMatrix "mass_matrix" (Coordinates) Rows Callers false true [
+    MassMatrix "mass_matrix" (Coordinates) Rows Callers Inertia true [
         "Mass matrix M(x) (KR18 (20)), by rows.",
     ]
-    Bias "bias" (Coordinates, Velocities) Vector Callers false true [
+    Bias "bias" (Coordinates, Velocities) Vector Callers Inertia true [
         "Bias force Γᵢⱼₖ ξʲ ξᵏ (KR18 (30c)): Coriolis, centrifugal and gyroscopic terms.",
     ]
-    PotentialForce "potential_force" (Coordinates) Vector Callers false true [
+    PotentialForce "potential_force" (Coordinates) Vector Callers Nothing true [
         "Slope of the potential, ∂ᵢV along the columns of A (KR18 (9)); gravity included.",
     ]
-    GeneralizedForce "generalized_force" (Coordinates, Velocities, Inputs) Vector Callers false true [
+    GeneralizedForce "generalized_force" (Coordinates, Velocities, Inputs) Vector Callers Nothing true [
         "Generalised force fᵢ of the applied loads (KR18 (28)).",
     ]
-    Momentum "momentum" (Coordinates, Velocities) Vector Callers false true [
+    Momentum "momentum" (Coordinates, Velocities) Vector Callers Inertia true [
         "Generalised momentum p = M ξ = ∂L/∂ξ.",
     ]
-    MomentumRate "momentum_rate" (Coordinates, Velocities, Inputs) Vector Callers false true [
+    MomentumRate "momentum_rate" (Coordinates, Velocities, Inputs) Vector Callers Inertia true [
         "Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a)).",
     ]
-    VelocityFromMomentum "velocity_from_momentum" (Coordinates, Momenta) Vector Callers true true [
+    VelocityFromMomentum "velocity_from_momentum" (Coordinates, Momenta) Vector Callers Inverse true [
         "Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.",
     ]
-    KineticEnergy "kinetic_energy" (Coordinates, Velocities) Number System false true [
+    KineticEnergy "kinetic_energy" (Coordinates, Velocities) Number System Inertia true [
         "Kinetic energy T = ½ ξᵀ M ξ (J).",
     ]
-    PotentialEnergy "potential_energy" (Coordinates) Number System false true [
+    PotentialEnergy "potential_energy" (Coordinates) Number System Nothing true [
         "Potential energy V(x) (J).",
     ]
-    Energy "energy" (Coordinates, Velocities) Number Callers false true [
+    Energy "energy" (Coordinates, Velocities) Number Callers Inertia true [
         "Energy T + V (J).",
     ]
-    Dissipation "dissipation" (Coordinates, Velocities) Number Callers false true [
+    Dissipation "dissipation" (Coordinates, Velocities) Number Callers Nothing true [
         "Rayleigh's dissipation function D(x, ξ) (W), half the power that dampers take: its force is",
         "−∂D/∂ξⁱ, part of the generalised force, and d/dt (T + V) = −2 D + power of all else.",
     ]
-    Constraint "constraint" (Coordinates) Vector System false true [
+    Constraint "constraint" (Coordinates) Vector System Nothing true [
         "Geometric constraint φ(x), zero on the configuration manifold (KR18 (3)).",
     ]
-    Correction "correction" (Coordinates) Vector System false false [
+    Correction "correction" (Coordinates) Vector System Nothing false [
         "The stabilising direction −Ψ φ(x) of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t).",
     ]
-    ConstraintForce "constraint_force" (Coordinates, Velocities, Inputs) Vector Callers true true [
+    ConstraintForce "constraint_force" (Coordinates, Velocities, Inputs) Vector Callers Inverse true [
         "Multipliers λ of the constraints B(x) ξ = 0, M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ, in their order: the",
         "generalised force that keeps an inactive velocity at zero, a force where B ξ is a speed.",
     ]
-    ProjectPosition "project_position" (Coordinates) Vector System true false [
+    ProjectPosition "project_position" (Coordinates) Vector System Inverse false [
         "The step along A that closes the loops φ(x) = 0 to first order and keeps to every other row of B,",
         "−M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ, where φ of a row that is no loop is 0.",
     ]
-    ProjectVelocity "project_velocity" (Coordinates, Velocities) Vector System true false [
+    ProjectVelocity "project_velocity" (Coordinates, Velocities) Vector System Inverse false [
         "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",
     ]
-    Linearize "linearize" (Coordinates, Velocities, Inputs) Linear Asked true true [
+    Linearize "linearize" (Coordinates, Velocities, Inputs) Linear Asked Inverse true [
         "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
         "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
     ]
-    InverseDynamicsSlopes "inverse_dynamics_slopes" (Coordinates, Velocities, Accelerations) Linear Asked false true [
+    InverseDynamicsSlopes "inverse_dynamics_slopes" (Coordinates, Velocities, Accelerations) Linear Asked Inertia true [
         "Slopes [∂f/∂h ∂f/∂ξ] of the force f of `inverse_dynamics` by displacements δx = A(x) h and by velocities, by rows;",
         "∂f/∂ξ̇ is the mass matrix.",
     ]
-    ParameterSlopes "parameter_slopes" (Coordinates, Velocities, Inputs) Linear Asked true true [
+    ParameterSlopes "parameter_slopes" (Coordinates, Velocities, Inputs) Linear Asked Inverse true [
         "Slopes ∂ξ̇/∂p of `accel` at constant x, ξ and u by the parameters, by rows; a column for each number of",
     ]
-    Regressor "regressor" (Coordinates, Velocities, Accelerations) Linear Asked false true [
+    Regressor "regressor" (Coordinates, Velocities, Accelerations) Linear Asked Inertia true [
         "Regressor Y(x, ξ, ξ̇), n rows of as many columns as there are base parameters: the force f = Y β that ξ̇ needs,",
         "with that of dampers. Columns are those of these standard parameters, in this order:",
     ]
-    BaseParameters "base_parameters" () Vector Asked false true [
+    BaseParameters "base_parameters" () Vector Asked Inertia true [
         "Base parameters β by the values of the description, in the order of the columns of `regressor`:",
     ]
-    CentreOfMass "centre_of_mass" (Coordinates) Vector Asked false true [
+    CentreOfMass "centre_of_mass" (Coordinates) Vector Asked Inertia true [
         "Centre of mass c (m) of all that moves, world axes.",
     ]
-    CentroidalMomentum "centroidal_momentum" (Coordinates, Velocities) Vector Asked false true [
+    CentroidalMomentum "centroidal_momentum" (Coordinates, Velocities) Vector Asked Inertia true [
         "Momentum h of all that moves, world axes: linear (kg m/s), then angular about the centre of mass (kg m²/s).",
     ]
-    CentroidalMap "centroidal_map" (Coordinates) Linear Asked false true [
+    CentroidalMap "centroidal_map" (Coordinates) Linear Asked Inertia true [
         "Centroidal map A_G(x), 6 rows: the momentum about the centre of mass is h = A_G ξ, linear rows first",
         "(Orin and Goswami 2008). Where the time moves bodies, h has a part without ξ in addition.",
     ]
-    CentroidalBias "centroidal_bias" (Coordinates, Velocities) Vector Asked false true [
+    CentroidalBias "centroidal_bias" (Coordinates, Velocities) Vector Asked Inertia true [
         "Bias Ȧ_G ξ of the momentum about the centre of mass: ḣ = A_G ξ̇ + Ȧ_G ξ, linear rows first.",
     ]
-    DisplacementFrame "displacement_frame" (Coordinates) Linear Tangent false false [
+    DisplacementFrame "displacement_frame" (Coordinates) Linear Tangent Nothing false [
         "A(x) without what is there for the time, by rows: displacements h move coordinates by δx = A h (KR18 (5)).",
     ]
-    DisplacementCoframe "displacement_coframe" (Coordinates) Linear Tangent false false [
+    DisplacementCoframe "displacement_coframe" (Coordinates) Linear Tangent Nothing false [
         "Y(x) with Y A = I, by rows: the displacements h = Y δx (KR18 (6)).",
     ]
-    Splitting "splitting" () Vector Split true true []
-    Centre "centre" (Coordinates) Vector Split true false [
+    Splitting "splitting" () Vector Split Inverse true []
+    Centre "centre" (Coordinates) Vector Split Inverse false [
         "Coordinates with plain ones moved to centres of mass, y = r + R s.",
     ]
-    Uncentre "uncentre" (Coordinates) Vector Split true false [
+    Uncentre "uncentre" (Coordinates) Vector Split Inverse false [
         "Coordinates x of those at centres of mass: the inverse of `centre`.",
     ]
-    SplitMomenta "split_momenta" (Coordinates, Velocities) Vector Split true false [
+    SplitMomenta "split_momenta" (Coordinates, Velocities) Vector Split Inverse false [
         "Momenta of the free motion in the chart: ẏ of plain coordinates at centres of mass, θ̇ of circles,",
         "the angular momentum P = J ω of rotors in body axes. T = ½ ẏᵀ D ẏ + ½ Σ P·J⁻¹P.",
     ]
-    SplitVelocities "split_velocities" (Coordinates, Momenta) Vector Split true false [
+    SplitVelocities "split_velocities" (Coordinates, Momenta) Vector Split Inverse false [
         "Velocity coordinates ξ of such momenta: the inverse of `split_momenta`.",
     ]
-    Kick "kick" (Coordinates, Inputs) Vector Split true false [
+    Kick "kick" (Coordinates, Inputs) Vector Split Inverse false [
         "Rates of these momenta by the forces alone: accelerations of centres of mass and of circles,",
         "torques on rotors in body axes, about the centre of mass or the fixed point.",
     ]
-    RotorInertia "rotor_inertia" () Vector Split true false [
+    RotorInertia "rotor_inertia" () Vector Split Inverse false [
         "Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows.",
     ]
 }
@@ -327,8 +338,8 @@ impl Jacobian {
 pub struct Asked {
     /// Whether everything is asked for that needs not be asked for by its name.
     pub everything: bool,
-    /// Whether this includes what has M⁻¹ in it.
-    pub inverse: bool,
+    /// The most that functions may need that are not asked for by their names.
+    pub most: Needs,
     /// Functions that are asked for by name.
     pub functions: Vec<FunctionId>,
     /// Outputs and invariants that are asked for by name.
@@ -360,19 +371,11 @@ impl Asked {
     pub fn everything() -> Self {
         Asked {
             everything: true,
-            inverse: true,
+            most: Needs::Inverse,
             functions: Vec::new(),
             outputs: Vec::new(),
             slopes: Vec::new(),
             jacobians: Vec::new(),
-        }
-    }
-
-    /// Everything but what has M⁻¹ in it.
-    pub fn without_inverse() -> Self {
-        Asked {
-            inverse: false,
-            ..Asked::everything()
         }
     }
 
@@ -407,7 +410,7 @@ impl Asked {
             Serves::Callers | Serves::Asked => false,
         };
         let whole = self.everything && !matches!(row.serves, Serves::Asked | Serves::Tangent);
-        self.names(id) || along || (whole && (self.inverse || !row.inverse))
+        self.names(id) || along || (whole && row.needs <= self.most)
     }
 
     /// Whether an output or invariant is wanted, the slopes of one, or a function of a frame.
@@ -425,16 +428,22 @@ impl Asked {
         output.is_some_and(|output| self.slopes.iter().any(|asked| asked == output))
     }
 
-    /// Whether nothing is asked for that depends on inertia or forces.
-    pub fn is_kinematic(&self) -> bool {
-        let rate = |id: &FunctionId| *id == FunctionId::Rate;
-        !self.everything && self.slopes.is_empty() && self.functions.iter().all(rate)
+    /// What the functions that are wanted need of the inertia of the system.
+    pub fn needs(&self) -> Needs {
+        let wanted = FunctionId::ALL.iter().filter(|&&id| self.wants(id));
+        let most = wanted.map(|id| id.row().needs).max();
+        most.unwrap_or(Needs::Nothing)
     }
 
-    /// Whether any function is wanted that has M⁻¹ in it.
-    pub fn wants_inverse(&self) -> bool {
-        let mut all = FunctionId::ALL.iter();
-        all.any(|&id| id.row().inverse && self.wants(id))
+    /// The same but for functions that need this.
+    pub fn without(&self, lacking: Needs) -> Self {
+        let mut asked = self.clone();
+        asked.most = match lacking {
+            Needs::Inverse => Needs::Inertia,
+            Needs::Inertia | Needs::Nothing => Needs::Nothing,
+        };
+        asked.functions.retain(|id| id.row().needs <= asked.most);
+        asked
     }
 }
 

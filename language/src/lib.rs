@@ -16,6 +16,7 @@
 //! | [`mod@lower`] | from a description to a model, and every other semantic error |
 //! | [`model`] | a mechanical system as expressions of a graph |
 //! | [`functions`] | the functions that can be asked for |
+//! | [`inertia`] | what is said of systems without inertia |
 //! | [`vocabulary`] | the words of the language, for references and editors |
 //! | [`diagnostics`], [`render`] | errors, and how they are shown |
 //!
@@ -34,6 +35,7 @@ pub use hamel_algebra as algebra;
 pub mod diagnostics;
 pub mod expression;
 pub mod functions;
+pub mod inertia;
 pub mod lower;
 pub mod model;
 pub mod render;

@@ -12,14 +12,12 @@ const ROUNDING: f64 = 1e-6;
 /// Radii of gyration that no link has (m).
 const LARGE: f64 = 10.0;
 
-/// Warns of what moves without mass and of inertias that no body has; refuses robots of which nothing that
-/// moves has mass.
+/// Warns of what moves without mass and of inertias that no body has; once where nothing that moves has mass.
 pub(crate) fn check(
     robot: &Robot,
     tree: &Tree,
     plan: &Plan,
     floating: bool,
-    errors: &mut Problems<'_>,
     warnings: &mut Problems<'_>,
 ) {
     // What a link carries, itself with it: children come after their parents.
@@ -32,6 +30,7 @@ pub(crate) fn check(
                 .is_some_and(|inertial| !inertial.is_zero())
         })
         .collect();
+    let has_mass = carries.clone();
     let mut moves = vec![floating; robot.links.len()];
     for edge in &tree.joints {
         let still = matches!(
@@ -39,6 +38,15 @@ pub(crate) fn check(
             Mobility::Fixed | Mobility::Locked(_)
         );
         moves[edge.child] = moves[edge.parent] || !still;
+    }
+    let mut masses = moves.iter().zip(&has_mass);
+    if moves.contains(&true) && !masses.any(|(&moves, &has_mass)| moves && has_mass) {
+        warnings.push(
+            &robot.links[tree.root].name.range,
+            "no link of the robot that moves has mass: there are poses, Jacobians and rates, and no mass matrix and no accelerations",
+            "give the links their `<inertial>`, unless kinematics is all that is wanted",
+        );
+        return;
     }
     for edge in tree.joints.iter().rev() {
         carries[edge.parent] |= carries[edge.child];
@@ -61,14 +69,6 @@ pub(crate) fn check(
         }
     }
     bare(robot, tree, plan, floating, &carries, warnings);
-    let nothing = |link: usize| !(moves[link] && carries[link]);
-    if moves.contains(&true) && (0..moves.len()).all(nothing) {
-        errors.push(
-            &robot.links[tree.root].name.range,
-            "nothing of the robot that moves has mass",
-            "give the links their `<inertial>`",
-        );
-    }
     for (link, moves) in robot.links.iter().zip(moves) {
         if let Some(inertial) = link
             .inertial

@@ -44,14 +44,7 @@ pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
     let (Some(tree), true) = (tree, errors.is_empty()) else {
         return Err(errors.sorted());
     };
-    inertia::check(
-        &read.robot,
-        &tree,
-        &plan,
-        options.floating,
-        &mut errors,
-        &mut warnings,
-    );
+    inertia::check(&read.robot, &tree, &plan, options.floating, &mut warnings);
     let moving = |motion: &plan::Mobility| matches!(motion, plan::Mobility::Free);
     if !options.floating && !plan.motions.iter().any(moving) {
         errors.push(

@@ -63,6 +63,8 @@ pub struct Imported {
     pub links: Vec<(String, String)>,
     /// The link that stands in the world, where the base does not float, and the name that a frame for it may have.
     pub ground: Option<(String, String)>,
+    /// Whether any link that moves has mass; else there are kinematics alone.
+    pub has_masses: bool,
     /// What was taken for a rounding, one sentence each.
     pub cleaned: Vec<String>,
     /// What is legal and still looks wrong.

@@ -70,7 +70,6 @@ fn wrong_files() {
         ("no inertia", pendulum(&hinge(""), "<inertial><mass value='1'/></inertial>")),
         ("incomplete inertia", pendulum(&hinge(""), &BODY.replace("iyz='0' ", ""))),
         ("negative mass", pendulum(&hinge(""), &BODY.replace("value='1'", "value='-1'"))),
-        ("nothing with mass", pendulum(&hinge(""), "")),
         ("nothing that moves", pendulum(&hinge("").replace("revolute", "fixed"), BODY)),
         ("mimic of nothing", pendulum(&hinge("<mimic joint='k'/>"), BODY)),
         ("mimic of itself", pendulum(&hinge("<mimic joint='j'/>"), BODY)),
@@ -180,8 +179,21 @@ fn robots_that_look_wrong() {
             ),
         ),
     ];
-    let report = cases.iter().map(|(name, text)| {
+    let bare = [
+        ("nothing with mass", pendulum(&two.replace(BODY, ""), "")),
+        (
+            "nothing that moves has mass",
+            pendulum(&hinge(""), "")
+                .replace("<link name='a'/>", &format!("<link name='a'>{BODY}</link>")),
+        ),
+    ];
+    let report = cases.iter().chain(&bare).map(|(name, text)| {
         let imported = import(text, &Options::default()).expect("legal");
+        assert_eq!(
+            imported.has_masses,
+            imported.text.contains("body on"),
+            "{name}"
+        );
         let lines: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
         assert!(!lines.is_empty(), "{name}");
         format!("{name}\n{}", lines.join("\n"))

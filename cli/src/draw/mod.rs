@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = source.in_numbers().showing_frames();
     let generated = match until > 0.0 {
         true => source.derive_all()?,
-        false => source.derive_only(&[], &[])?,
+        false => source.derive_places()?,
     };
     let state = State::read(&source, &generated, at)?;
     let traced = traced(&generated, &arguments.trace)?;

@@ -20,9 +20,10 @@ pub type Cube = Vec<Vec<Vec<f64>>>;
 /// A, γ, M, Γ of the full frame at one state.
 pub struct Geometry {
     pub a: Vec<Vec<f64>>,
-    pub mass: Vec<Vec<f64>>,
-    /// γ and Γ, where they were asked for.
-    pub tables: Option<(Cube, Cube)>,
+    /// None where nothing has inertia.
+    pub mass: Option<Vec<Vec<f64>>>,
+    /// γ and Γ, where they were asked for, the latter where anything has inertia.
+    pub tables: Option<(Cube, Option<Cube>)>,
 }
 
 impl Geometry {
@@ -41,36 +42,40 @@ impl Geometry {
             true => (0..n).map(|i| direction(model, &a, i)).collect(),
             false => Vec::new(),
         };
-        let mass = mass(generated, state, &directions)?;
+        let mass = match model.has_inertia {
+            true => Some(mass(generated, state, &directions)?),
+            false => None,
+        };
         let tables = match tables {
             true => {
                 let moving = slopes(&model.graph, &flat, &numbers, &directions);
                 let gamma = gamma(model, &numbers, &moving)?;
-                let connection = connection(n, &mass, &gamma);
+                let connection = mass.as_ref().map(|mass| connection(n, mass, &gamma));
                 Some((gamma, connection))
             }
             false => None,
         };
         Ok(Geometry {
             a,
-            mass: mass
-                .chunks(n.max(1))
-                .map(|row| row.iter().map(|entry| entry.value).collect())
-                .collect(),
+            mass: mass.map(|mass| {
+                let rows = mass.chunks(n.max(1));
+                rows.map(|row| row.iter().map(|entry| entry.value).collect())
+                    .collect()
+            }),
             tables,
         })
     }
 
-    /// The members of the result.
+    /// The members of the result; null is what there is not without inertia.
     pub fn members(&self) -> Vec<(&'static str, Json)> {
         let cube = |table: &Cube| Json::List(table.iter().map(|rows| Json::matrix(rows)).collect());
         let mut members = vec![
             ("A", Json::matrix(&self.a)),
-            ("M", Json::matrix(&self.mass)),
+            ("M", self.mass.as_deref().map_or(Json::Null, Json::matrix)),
         ];
         if let Some((gamma, connection)) = &self.tables {
             members.insert(1, ("gamma", cube(gamma)));
-            members.push(("Gamma", cube(connection)));
+            members.push(("Gamma", connection.as_ref().map_or(Json::Null, cube)));
         }
         members
     }

@@ -167,6 +167,7 @@ fn motion(
         let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
         Ok(Json::vector(&value.unwrap_or_default()))
     };
+    let has_inertia = generated.model.has_inertia;
     let accel = match system.motion(x, xi, u) {
         Ok(accel) => Json::vector(&accel),
         // That there is none was said before.
@@ -197,14 +198,23 @@ fn motion(
         (output.name.as_str(), value)
     });
     let mut members = vec![
-        ("bias", vector("bias")?),
+        (
+            "bias",
+            match has_inertia {
+                true => vector("bias")?,
+                false => Json::Null,
+            },
+        ),
         ("potential_force", vector("potential_force")?),
         ("generalized_force", vector("generalized_force")?),
         ("rate", vector("rate")?),
         ("accel", accel),
         (
             "kinetic_energy",
-            Json::Number(system.kinetic_energy(&start.0, &start.1)),
+            match has_inertia {
+                true => Json::Number(system.kinetic_energy(&start.0, &start.1)),
+                false => Json::Null,
+            },
         ),
         (
             "potential_energy",

@@ -115,27 +115,34 @@ fn members(
             .unwrap_or_default())
     };
     let n = model.n();
-    let mass = DMatrix::from_row_slice(n, n, &square(call("mass_matrix")?, n)?);
+    // What has no inertia has no M, and nothing that is made of it.
+    let with_inertia = |name: &str| match generated.model.has_inertia {
+        true => call(name).map(Some),
+        false => Ok(None),
+    };
+    let mass = with_inertia("mass_matrix")?.map(|entries| square(entries, n));
+    let mass = mass.transpose()?;
+    let mass = mass.map(|entries| DMatrix::from_row_slice(n, n, &entries));
     let slope = call("potential_force")?;
-    let bias: Vec<f64> = call("bias")?
-        .iter()
-        .zip(&slope)
-        .map(|(a, b)| a + b)
-        .collect();
-    let accel = accel(generated, sample, &mass)?;
-    let rows_of_mass: Vec<Vec<f64>> = mass
-        .row_iter()
-        .map(|row| row.iter().copied().collect())
-        .collect();
+    let bias = with_inertia("bias")?.map(|bias| {
+        let sums = bias.iter().zip(&slope).map(|(a, b)| a + b);
+        Json::vector(&sums.collect::<Vec<f64>>())
+    });
+    let accel = accel(generated, sample, mass.as_ref())?;
+    let rows_of_mass = mass.as_ref().map(|mass| {
+        let rows = mass.row_iter().map(|row| row.iter().copied().collect());
+        Json::matrix(&rows.collect::<Vec<Vec<f64>>>())
+    });
     let number = |values: Vec<f64>| Json::Number(values.first().copied().unwrap_or(f64::NAN));
+    let kinetic = with_inertia("kinetic_energy")?.map(number);
     let mut members = vec![
         ("system", Json::Text(generated.model.name.clone())),
         ("coordinates", Json::texts(&names::coordinates(model))),
         ("velocities", Json::texts(&rows(model, &sample.joints))),
         ("x", Json::vector(&state.x)),
         ("xi", Json::vector(&state.xi)),
-        ("M", Json::matrix(&rows_of_mass)),
-        ("bias", Json::vector(&bias)),
+        ("M", rows_of_mass.unwrap_or(Json::Null)),
+        ("bias", bias.unwrap_or(Json::Null)),
         ("potential_force", Json::vector(&slope)),
         ("generalized_force", Json::vector(&accel.force)),
         ("rate", Json::vector(&call("rate")?)),
@@ -143,14 +150,15 @@ fn members(
             "accel",
             accel.value.as_deref().map_or(Json::Null, Json::vector),
         ),
-        ("kinetic_energy", number(call("kinetic_energy")?)),
+        ("kinetic_energy", kinetic.unwrap_or(Json::Null)),
         ("potential_energy", number(call("potential_energy")?)),
     ];
     members.extend(kinematics(generated, state, frames)?.map(|all| ("kinematics", all)));
     let mut missing = Vec::new();
     // Where there is no such function, that was said before.
-    if accel.value.is_none() && generated.program.function(FunctionId::Accel).is_some() {
-        let why = singular::of(generated, &state.params, &mass, text);
+    let is_there = generated.program.function(FunctionId::Accel).is_some();
+    if let (None, true, Some(mass)) = (&accel.value, is_there, &mass) {
+        let why = singular::of(generated, &state.params, mass, text);
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));
@@ -167,7 +175,11 @@ struct Accel {
     force: Vec<f64>,
 }
 
-fn accel(generated: &Generated, sample: &Sample, mass: &DMatrix<f64>) -> Result<Accel, Failure> {
+fn accel(
+    generated: &Generated,
+    sample: &Sample,
+    mass: Option<&DMatrix<f64>>,
+) -> Result<Accel, Failure> {
     let state = &sample.state;
     let program = &generated.program;
     let forward = function(program, "accel", &state.params).ok();
@@ -213,7 +225,7 @@ fn accel(generated: &Generated, sample: &Sample, mass: &DMatrix<f64>) -> Result<
         Some(inputs) => accel(inputs.as_slice()),
         // No motor makes this force: M ξ̇ = M ξ̇₀ + what is missing.
         None => accel(&state.u).and_then(|start| {
-            let more = mass.clone().cholesky()?.solve(&missing);
+            let more = mass?.clone().cholesky()?.solve(&missing);
             Some((DVector::from_vec(start) + more).as_slice().to_vec())
         }),
     };

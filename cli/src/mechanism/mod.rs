@@ -48,9 +48,11 @@ pub struct Mechanism {
     project_position: Option<Place>,
     project_velocity: Option<Place>,
     constraint: Place,
-    momentum: Place,
+    /// None where nothing has inertia.
+    momentum: Option<Place>,
     force: Place,
-    kinetic: Place,
+    /// None where nothing has inertia.
+    kinetic: Option<Place>,
     potential: Place,
     outputs: Vec<Output>,
     invariants: Vec<Output>,
@@ -134,9 +136,9 @@ impl Mechanism {
             project_position: function("project_position").ok(),
             project_velocity: function("project_velocity").ok(),
             constraint: function("constraint")?,
-            momentum: function("momentum")?,
+            momentum: function("momentum").ok(),
             force: function("generalized_force")?,
-            kinetic: function("kinetic_energy")?,
+            kinetic: function("kinetic_energy").ok(),
             potential: function("potential_energy")?,
             outputs: list(&outputs)?,
             invariants: list(&invariants)?,
@@ -284,9 +286,12 @@ impl Instance {
         }
     }
 
-    /// p = M ξ.
+    /// p = M ξ; no number where nothing has inertia.
     pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Numbers {
-        self.value(self.of.momentum, x, xi, &[])
+        match self.of.momentum {
+            Some(momentum) => self.value(momentum, x, xi, &[]),
+            None => Numbers::filled(f64::NAN, xi.len()),
+        }
     }
 
     /// The power of the loads, f ξ.
@@ -477,7 +482,10 @@ impl System for Instance {
     }
 
     fn kinetic_energy(&self, x: &Numbers, xi: &Numbers) -> f64 {
-        self.scalar(self.of.kinetic, x, xi)
+        match self.of.kinetic {
+            Some(kinetic) => self.scalar(kinetic, x, xi),
+            None => f64::NAN,
+        }
     }
 
     fn potential_energy(&self, x: &Numbers) -> f64 {

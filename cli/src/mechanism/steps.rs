@@ -121,7 +121,7 @@ impl Mechanism {
                 accel: accel.index(),
                 correction: self.correction.index(),
                 constraint: self.constraint.index(),
-                kinetic: self.kinetic.index(),
+                kinetic: self.kinetic?.index(),
                 potential: self.potential.index(),
                 // A step of a method projects nothing: that is done behind it.
                 embedded: false,

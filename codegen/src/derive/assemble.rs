@@ -14,6 +14,7 @@ use super::{correction, energy, inertia, kinematics};
 use crate::algebra::graph::{Edge, Graph, Node, NodeId};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
+use crate::functions::Needs;
 use crate::model::{Model, class};
 use crate::program::structure::Structure;
 use crate::program::{Argument, Cause, Function, FunctionId, Program};
@@ -62,12 +63,13 @@ fn put_together(
 ) -> Result<(Program, Vec<Vec<Edge>>), Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
-    if model.n() <= MOST_LITERAL && model.asked.wants_inverse() {
+    let inverts = model.asked.needs() == Needs::Inverse;
+    if model.n() <= MOST_LITERAL && inverts {
         let mut calculus = Calculus::new(&reference);
         let mass = inertia::mass_matrix(&mut reference, &mut calculus);
         inertia::positive_definite(model, &reference.graph, &mass)?;
     }
-    let alone = (!model.asked.wants_inverse())
+    let alone = (!inverts)
         .then(|| forces(model, care))
         .flatten()
         .map(|computed| (Acceleration::none(model.graph.clone()), computed));
@@ -87,9 +89,9 @@ fn put_together(
             "the mass matrix is singular for every configuration",
         )
         .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it")
-        .about_inverse());
+        .lacking(Needs::Inverse));
     };
-    if model.n() > MOST_LITERAL && model.asked.wants_inverse() {
+    if model.n() > MOST_LITERAL && inverts {
         inertia::positive_definite(model, &computed.graph, &computed.parts.mass)?;
     }
     let potential = energy::potential(&mut reference);

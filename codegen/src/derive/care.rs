@@ -9,6 +9,7 @@ use super::tree::Placement;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
 use crate::algebra::rounding::rounded;
+use crate::functions::Needs;
 use crate::model::Model;
 use crate::model::states::states;
 use crate::program::Program;
@@ -95,7 +96,11 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Op
     let mut worst = 0.0_f64;
     for (function, digits) in program.functions.iter().zip(losses) {
         let mut beyond = digits.unwrap_or(0.0) - ENOUGH;
-        if beyond > 0.0 && function.id.is_some_and(|id| id.row().inverse) {
+        if beyond > 0.0
+            && function
+                .id
+                .is_some_and(|id| id.row().needs == Needs::Inverse)
+        {
             beyond -= *condition.get_or_insert_with(|| condition_digits(model, program, mass));
         }
         worst = worst.max(beyond);

@@ -8,6 +8,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{apply3, cross};
 use crate::algebra::numeric::{evaluate, rank};
 use crate::diagnostics::Diagnostic;
+use crate::functions::Needs;
 use crate::model::closure::normalise;
 use crate::model::twists::Moving;
 use crate::model::{Body, Model, Particle};
@@ -281,7 +282,7 @@ pub fn positive_definite(
         format!("the mass matrix is not positive definite at the start: pivot {} (`{name}`) is not positive", pivot + 1),
     )
     .help(help)
-    .about_inverse())
+    .lacking(Needs::Inverse))
 }
 
 /// The first velocity whose pivot in Cholesky's factorisation is not larger than `least`, relative to the diagonal; `None`

@@ -9,6 +9,7 @@ use super::reduction::Reduction;
 use super::undetermined::undetermined;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
+use crate::functions::Needs;
 use crate::model::{Model, entry};
 use crate::program::FunctionId;
 
@@ -32,9 +33,10 @@ impl Builder<'_> {
     pub(super) fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
         let constraints = || full.constraints.iter().filter(|row| !row.redundant);
         let rows = constraints().count() + full.accelerated.len();
+        let unneeded = self.model.asked.needs() == Needs::Nothing;
         // Beside rows that depend on one another, a rate that is given holds exactly, which leaves λ none that balances.
         let driven = self.model.overconstrained && !full.accelerated.is_empty();
-        if driven || rows == 0 {
+        if driven || rows == 0 || unneeded {
             return;
         }
         let solved = reduction.solved.iter().map(|&(_, velocity)| velocity);

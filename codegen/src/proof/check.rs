@@ -110,6 +110,10 @@ fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
 fn described(symbols: &mut Symbols) -> Vec<Sides> {
     let mut all = kinematic(symbols);
     all.extend(jacobi(&mut symbols.geometry));
+    if !symbols.geometry.model.has_inertia {
+        all.push(motion::loads(symbols));
+        return all;
+    }
     all.extend(metric(&mut symbols.geometry));
     all.extend(motion::forms(symbols));
     all

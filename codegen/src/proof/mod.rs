@@ -69,7 +69,8 @@ use crate::program::Program;
 
 /// Proves the functions of a program, and that what the description claims to be constant along the motion is;
 /// `reduction` solves its constraints,
-/// `regressor` are the base parameters where they are asked for.
+/// `regressor` are the base parameters where they are asked for. Claims about a motion with constraints are held against the ξ̇
+/// of `motion`, a program that was proved itself.
 ///
 /// # Errors
 /// A fault of the generator, with the identities that are broken; or the claims that are false.
@@ -77,7 +78,7 @@ pub fn prove(
     model: &Model,
     reduction: Option<&Reduction>,
     regressor: Option<&Regressor>,
-    program: &Program,
+    [program, motion]: [&Program; 2],
 ) -> Result<(), Vec<Diagnostic>> {
     let one = |error| vec![error];
     match reduction {
@@ -89,7 +90,7 @@ pub fn prove(
         regressor::validate(model, derived, program).map_err(one)?;
     }
     match reduction {
-        Some(reduction) => invariants::constrained::refute(&reduction.model, program),
+        Some(reduction) => invariants::constrained::refute(&reduction.model, motion),
         None => invariants::refute(model),
     }
 }

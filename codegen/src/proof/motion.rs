@@ -43,12 +43,7 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
             left: hessian,
             right: geometry.mass.concat(),
         },
-        Sides {
-            label: "(28)",
-            equation: "fᵢ of the loads is their virtual work Σ ⟨F_p, ∂ᵢr_p⟩",
-            left: symbols.applied.clone(),
-            right: symbols.virtual_work.clone(),
-        },
+        loads(symbols),
         Sides {
             label: "(30a) = (30b)",
             equation: gibbs,
@@ -62,6 +57,16 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
             right: explicit,
         },
     ]
+}
+
+/// fᵢ by virtual work.
+pub(super) fn loads(symbols: &Symbols) -> Sides {
+    Sides {
+        label: "(28)",
+        equation: "fᵢ of the loads is their virtual work Σ ⟨F_p, ∂ᵢr_p⟩",
+        left: symbols.applied.clone(),
+        right: symbols.virtual_work.clone(),
+    }
 }
 
 /// The emitted ξ̇ in (30c), and d/dt (T + V) = fᵢ ξⁱ.

@@ -19,7 +19,9 @@ const MOST_DRAWN: usize = 24;
 pub fn lines(inspection: &Inspection) -> Vec<String> {
     let mut rows = integrability(inspection);
     rows.extend(algebra(inspection));
-    rows.extend(inertia(inspection));
+    if inspection.has_inertia {
+        rows.extend(inertia(inspection));
+    }
     rows.extend(symmetries(inspection));
     let width = rows.iter().map(|(head, _)| head.chars().count()).max();
     let width = width.unwrap_or(0);
@@ -80,7 +82,7 @@ fn algebra(inspection: &Inspection) -> Vec<Row> {
         );
         rows.push(row("blocks of γ", text));
     }
-    if inspection.coordinate_rates {
+    if inspection.coordinate_rates && inspection.has_inertia {
         rows.push(row(
             "Γ",
             "Christoffel symbols of the first kind of M: A = I, γ = 0",
@@ -160,10 +162,14 @@ fn symmetries(inspection: &Inspection) -> Vec<Row> {
             _ => inspection.list(&members),
         }
     };
+    let potential = row("flows of ∂ᵢ that keep V", having(|s| s.keeps_potential));
+    if !inspection.has_inertia {
+        return vec![potential];
+    }
     vec![
         row("∂ᵢM = 0 along", having(|s| s.mass_constant)),
         row("flows of ∂ᵢ that keep T", having(|s| s.keeps_kinetic)),
-        row("flows of ∂ᵢ that keep V", having(|s| s.keeps_potential)),
+        potential,
         row("conserved momenta pᵢ", having(Symmetry::conserves_momentum)),
     ]
 }
@@ -175,16 +181,17 @@ pub fn json(inspection: &Inspection) -> Value {
         velocities.map(|velocity| velocity.name.as_str()).collect()
     };
     let side = |side: Option<Side>| side.map(Side::text);
+    let with_inertia = inspection.has_inertia;
     let velocities = inspection.velocities.iter().map(|velocity| {
         let symmetry = velocity.symmetry;
         object!({
             "name": velocity.name,
             "integrable": velocity.integrable,
             "rate_of": velocity.potential,
-            "mass_constant": symmetry.mass_constant,
-            "keeps_kinetic": symmetry.keeps_kinetic,
+            "mass_constant": with_inertia.then_some(symmetry.mass_constant),
+            "keeps_kinetic": with_inertia.then_some(symmetry.keeps_kinetic),
             "keeps_potential": symmetry.keeps_potential,
-            "conserved_momentum": symmetry.conserves_momentum(),
+            "conserved_momentum": with_inertia.then(|| symmetry.conserves_momentum()),
         })
     });
     let blocks = inspection.blocks.iter().map(|block| {
@@ -198,15 +205,16 @@ pub fn json(inspection: &Inspection) -> Value {
     });
     let pattern = inspection.pattern.iter().map(|line| drawn(line, ""));
     let inertia = inspection.inertia_blocks.iter();
+    let inertia: Vec<Vec<&str>> = inertia.map(|members| names(members)).collect();
     object!({
         "algebra": inspection.algebra(),
         "christoffel": inspection.coordinate_rates,
-        "constant_mass": inspection.constant_mass(),
-        "invariant": side(invariant(inspection)),
+        "constant_mass": with_inertia.then(|| inspection.constant_mass()),
+        "invariant": side(invariant(inspection).filter(|_| with_inertia)),
         "velocities": velocities.collect::<Vec<Value>>(),
         "blocks": blocks.collect::<Vec<Value>>(),
         "commuting": names(&inspection.commuting),
-        "pattern": pattern.collect::<Vec<String>>(),
-        "inertia_blocks": inertia.map(|members| names(members)).collect::<Vec<_>>(),
+        "pattern": with_inertia.then(|| pattern.collect::<Vec<String>>()),
+        "inertia_blocks": with_inertia.then_some(inertia),
     })
 }

@@ -182,6 +182,14 @@ impl Table {
         Table::Connection,
     ];
 
+    /// Whether it is about M, which a system without inertia does not have.
+    pub fn needs_inertia(self) -> bool {
+        matches!(
+            self,
+            Table::Mass | Table::Connection | Table::Accel | Table::Bias
+        )
+    }
+
     fn row(self) -> &'static Row {
         ROWS.iter()
             .find(|row| row.table == self)

@@ -65,14 +65,25 @@ pub struct Tables {
     pub geometry: Option<Inspection>,
 }
 
-/// Derives tables; all of [`Table::DEFAULT`] where none is named, and the rates of states. The error says which table
+/// Derives tables; all of [`Table::DEFAULT`] that the system has where none is named, and the rates of states. The error says which table
 /// cannot be had, and why.
-pub fn tables(generated: &Generated, of: &[Table]) -> Result<Tables, String> {
+pub fn tables(generated: &Generated, asked: &[Table]) -> Result<Tables, String> {
     let model = &generated.model;
-    let of = match of {
+    let of = match asked {
         [] if model.states.is_empty() => Table::DEFAULT.to_vec(),
         [] => [&Table::DEFAULT[..], &[Table::States]].concat(),
         of => of.to_vec(),
+    };
+    let lacking = |table: &Table| table.needs_inertia() && !model.has_inertia;
+    let of = match (asked, of.iter().copied().find(lacking)) {
+        ([], _) => of.into_iter().filter(|table| !lacking(table)).collect(),
+        (_, None) => of,
+        (_, Some(table)) => {
+            return Err(format!(
+                "there is no table `{}`: the system has no inertia",
+                table.name()
+            ));
+        }
     };
     let mut collector = Collector::new(generated);
     let mut listings: Vec<Listing> = Vec::new();

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
+use crate::inertia;
 use crate::model::Model;
 use crate::model::closure::Closure;
 use crate::model::opening::Opening;
@@ -192,6 +193,7 @@ fn read_at(
     let mut dynamics = dynamics::read(system, graph, scope, &frames, declared, &numbers, errors);
     let joints = joints::read(system, graph, scope, errors);
     let armature = joints::armature(system, graph, scope, declared, &mut dynamics, errors);
+    dynamics.has_inertia |= dynamics.kinetic != graph.zero();
     let invariants = invariants::read(system, graph, scope, &frames, declared, errors);
     let (mut constraints, closures, idle) =
         pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), errors);
@@ -239,7 +241,15 @@ fn read_at(
         .unwrap_or_default()
         .into_iter()
         .for_each(|error| report.push(error));
-    if let Err(errors) = report.finish() {
+    if let Err(mut errors) = report.finish() {
+        // Without other errors it is said of what is derived, which may be less than what the description asks for.
+        let claims = invariants.iter().map(|claim| claim.name.as_str());
+        errors.extend(inertia::lacking(
+            system.name.span,
+            dynamics.has_inertia,
+            &dynamics.asked,
+            claims,
+        ));
         return Err((errors, Some(Box::new(ground.graph))));
     }
     let (Some(kinematics), Some(start), Some(opening), Some(written), false) = (
@@ -304,6 +314,7 @@ fn read_at(
         bodies: dynamics.bodies,
         particles: dynamics.particles,
         kinetic: dynamics.kinetic,
+        has_inertia: dynamics.has_inertia,
         gyroscopic: zero,
         armature,
         potential: dynamics.potential,

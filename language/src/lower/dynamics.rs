@@ -37,9 +37,9 @@ pub fn read(
         elements: Elements::none(graph, declared.xi.len()),
         outputs: Vec::new(),
         asked: Asked::everything(),
+        has_inertia: false,
     };
     let mut gravity: Option<Span> = None;
-    let mut has_inertia = false;
     for item in &system.items {
         let evaluator = Evaluator::new(graph, scope, report);
         let mut reader = Reader {
@@ -49,17 +49,17 @@ pub fn read(
         };
         match &item.kind {
             ItemKind::Body(body) => {
-                has_inertia = true;
+                dynamics.has_inertia = true;
                 dynamics.bodies.extend(reader.body(body, item.span));
             }
             ItemKind::Particle { mass, at, on } => {
-                has_inertia = true;
+                dynamics.has_inertia = true;
                 dynamics
                     .particles
                     .extend(reader.particle(mass, at, on.as_ref()));
             }
             ItemKind::Kinetic(expr) => {
-                has_inertia = true;
+                dynamics.has_inertia = true;
                 if let Some(term) = reader.kinetic(expr) {
                     dynamics.kinetic = graph.add(dynamics.kinetic, term);
                 }
@@ -122,13 +122,6 @@ pub fn read(
     let mut outputs = output_names(system, report);
     outputs.extend(super::invariants::names(system));
     dynamics.asked = asked(system, &outputs, report);
-    has_inertia |= dynamics.kinetic != graph.zero();
-    if !has_inertia && !dynamics.asked.is_kinematic() {
-        report.push(
-            Diagnostic::new(system.name.span, "the system has no inertia")
-                .help("write `body on f { mass m; … }`, `particle mass m at p;` or `kinetic …;`"),
-        );
-    }
     dynamics
 }
 

@@ -27,6 +27,8 @@ pub struct Dynamics {
     pub elements: Elements,
     pub outputs: Vec<(String, Value)>,
     pub asked: Asked,
+    /// Whether there is any statement about inertia.
+    pub has_inertia: bool,
 }
 
 /// Whether a name is that of a function, which no output or invariant can have.

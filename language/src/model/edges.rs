@@ -139,7 +139,7 @@ fields!(Model {
     x, xi, xi_dot, u, momenta, rate, a, frames, closures, bodies, particles, wrenches, elements, dissipation, observed,
     kinetic, gyroscopic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, full_frame;
-    name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, augmented, starts_anywhere, clock,
+    name, public, docs, graph, points, has_inertia, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, augmented, starts_anywhere, clock,
     joints, start_x, start_xi, start_z, opening, asked, span, origins, warnings, independent, externals
 });
 

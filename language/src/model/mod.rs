@@ -265,6 +265,8 @@ pub struct Model {
     pub particles: Vec<Particle>,
     /// Kinetic energy beyond that of bodies and particles; that of armatures is a part of it.
     pub kinetic: Edge,
+    /// Whether the description says anything of inertia; else there are kinematics and loads, and no motion.
+    pub has_inertia: bool,
     /// T₁ + 2 T₀ of that, by its terms of first degree and of none in the rates of coordinates: what T has beyond its part
     /// T₂ − T₀ of the energy ẋ · ∂L/∂ẋ − L. It is known once velocities are solved for.
     pub gyroscopic: Edge,

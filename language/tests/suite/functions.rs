@@ -1,6 +1,6 @@
 //! The functions that can be asked for: their names, and which of them serve others.
 
-use hamel_language::functions::{Asked, FunctionId, Serves};
+use hamel_language::functions::{Asked, FunctionId, Needs, Serves};
 
 #[test]
 fn names_are_told_apart() {
@@ -24,9 +24,16 @@ fn a_type_that_is_linearised_can_be_simulated() {
 
 #[test]
 fn what_needs_no_inverse_does_not_ask_for_one() {
-    assert!(Asked::everything().wants_inverse());
-    assert!(!Asked::without_inverse().wants_inverse());
-    assert!(Asked::without_inverse().wants(FunctionId::Bias));
-    assert!(!Asked::only(&[FunctionId::InverseDynamics]).wants_inverse());
-    assert!(!Asked::only(&[FunctionId::InverseDynamics]).wants(FunctionId::Rate));
+    let everything = Asked::everything();
+    assert_eq!(everything.needs(), Needs::Inverse);
+    let singular = everything.without(Needs::Inverse);
+    assert_eq!(singular.needs(), Needs::Inertia);
+    assert!(singular.wants(FunctionId::Bias) && !singular.wants(FunctionId::Accel));
+    let massless = everything.without(Needs::Inertia);
+    assert_eq!(massless.needs(), Needs::Nothing);
+    assert!(massless.wants(FunctionId::Rate) && !massless.wants(FunctionId::Bias));
+    let inverse_dynamics = Asked::only(&[FunctionId::InverseDynamics]);
+    assert_eq!(inverse_dynamics.needs(), Needs::Inertia);
+    assert!(!inverse_dynamics.wants(FunctionId::Rate));
+    assert_eq!(Asked::only(&[FunctionId::Rate]).needs(), Needs::Nothing);
 }

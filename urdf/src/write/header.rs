@@ -109,7 +109,8 @@ impl Writer<'_> {
             }
         }
         let system = self.names.system.clone();
-        self.page.top(&format!("pub system {system} {{"));
+        let range = &self.robot.range;
+        self.page.begin(range, &format!("pub system {system} {{"));
     }
 
     /// Masses, centres of mass and inertias that a program may change.
@@ -124,7 +125,7 @@ impl Writer<'_> {
     }
 
     /// Links with mass that move, in the order of the tree.
-    fn bodies(&self) -> Vec<usize> {
+    pub(super) fn bodies(&self) -> Vec<usize> {
         let moving = self.moving();
         let order = self.tree.joints.iter().map(|edge| edge.child);
         std::iter::once(self.tree.root)

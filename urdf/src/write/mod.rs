@@ -70,11 +70,13 @@ pub(crate) fn write(
         true => (Some(link(root)), None),
         false => (None, Some(link(root))),
     };
+    let has_masses = !writer.bodies().is_empty();
     Imported {
         links: base.into_iter().chain(moved).collect(),
         ground,
         name: writer.names.system,
         joints,
+        has_masses,
         cleaned,
         warnings,
         text: writer.page.text,

@@ -25,6 +25,14 @@ impl Page {
         self.origins.push(None);
     }
 
+    /// The line that begins the system, of the element `<robot>`.
+    pub(super) fn begin(&mut self, origin: &Range<usize>, text: &str) {
+        self.top(text);
+        if let Some(last) = self.origins.last_mut() {
+            *last = Some(origin.clone());
+        }
+    }
+
     /// A comment in the braces of the system, which may quote names of the file.
     pub(super) fn comment(&mut self, origin: &Range<usize>, text: &str) {
         self.line(Some(origin), &format!("// {}", plain(text)));

@@ -19,6 +19,7 @@ pub mod solve;
 use crate::algebra::graph::{Edge, Graph};
 use crate::derive::care::Care;
 use crate::derive::inertia;
+use crate::functions::Needs;
 use crate::model::Model;
 use crate::program::count::count;
 use crate::syntax::ast::Axes;
@@ -77,11 +78,17 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
 }
 
 /// M and the forces as each is cheapest, where ξ̇ is not wanted: M may be singular, and has to be where
-/// some velocity has no inertia. `None` with constraints, whose reduction inverts M.
+/// some velocity has no inertia. `None` with constraints, whose reduction inverts M, unless nothing is wanted that has to do
+/// with M.
 pub fn forces(model: &Model, care: &Care) -> Option<Computation> {
     let given = Setting::given(model);
     if !model.constraints.is_empty() {
-        return None;
+        let variant = *variants(model, false).first()?;
+        let unneeded = model.asked.needs() == Needs::Nothing;
+        return unneeded.then(|| {
+            let (Model { graph, .. }, parts) = trace(&given, variant);
+            Computation { graph, parts }
+        });
     }
     let recursions = recursions(&given, care);
     let mut computations = Vec::new();

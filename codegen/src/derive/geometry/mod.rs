@@ -71,6 +71,8 @@ pub struct Inspection {
     pub commuting: Vec<usize>,
     /// x = q, ξ = q̇: A = I, so that Γ are the Christoffel symbols of M.
     pub coordinate_rates: bool,
+    /// Whether there is M: else nothing is said of it, and of symmetries that of V alone.
+    pub has_inertia: bool,
     /// How every entry of M depends on x.
     pub pattern: Vec<Vec<Entry>>,
     /// The blocks of M.
@@ -116,6 +118,7 @@ impl Inspection {
             blocks,
             commuting: single.concat(),
             coordinate_rates: rates_of_coordinates(&geometry.model),
+            has_inertia: geometry.model.has_inertia,
             inertia_blocks: blocks::inertia_blocks(&pattern),
             pattern,
         })
