@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             source.path
         )));
     }
-    let source = source.robot(&arguments.robot)?;
+    let source = source.given(&arguments.robot)?;
     let cleaned = source
         .robot
         .iter()

@@ -15,6 +15,7 @@ mod dialects;
 mod draw;
 mod drawing;
 mod emitted;
+mod every;
 #[cfg(target_os = "linux")]
 mod files;
 mod first_run;
@@ -25,6 +26,7 @@ mod inputs;
 mod installed;
 mod kept;
 mod linearize;
+mod massless;
 mod methods;
 mod misspelt;
 #[path = "common/pinocchio.rs"]
