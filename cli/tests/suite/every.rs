@@ -20,7 +20,7 @@ const COMMANDS: [&str; 6] = [
 ];
 
 /// What is rightly refused: a file, the command, a part of what is said, and why.
-const REFUSED: [[&str; 4]; 2] = [
+const REFUSED: [[&str; 4]; 4] = [
     [
         "tests/models/drifting_oscillator.eom",
         "draw",
@@ -31,6 +31,18 @@ const REFUSED: [[&str; 4]; 2] = [
         "tests/models/heisenberg.eom",
         "draw",
         "nothing of Heisenberg can be drawn",
+        "as above",
+    ],
+    [
+        "tests/models/tabled/wing.eom",
+        "draw",
+        "nothing of Wing can be drawn",
+        "as above",
+    ],
+    [
+        "tests/models/torque_curve.eom",
+        "draw",
+        "nothing of TorqueCurve can be drawn",
         "as above",
     ],
 ];
