@@ -339,11 +339,7 @@ impl Session {
     }
 
     fn instance(&self, state: &State) -> Result<Instance, Failure> {
-        if !self.generated.model.has_inertia {
-            // It is refused with what there is to do.
-            let motion = Wanted::only(&[FunctionId::Accel]);
-            self.source.derive_asked(&motion)?;
-        }
+        self.source.moves(&self.generated)?;
         let instance = Instance::of(self.mechanism()?, state)?;
         instance.check_parameters(&state.x)?;
         Ok(instance)
