@@ -91,3 +91,57 @@ fn what_is_linearised_can_be_simulated() {
     };
     assert_eq!(whole(""), whole("generate all;"));
 }
+
+/// A particle on a plane whose velocities are tied: its energy is constant, and x is not.
+const TIED: &str = "system Tied {
+    coord x, y; velocity u, v; rate x = u, y = v;
+    particle mass 1 at [x, y, 0];
+    nonholonomic v = x * u;
+    invariant CLAIM;
+    generate GENERATE;
+}";
+
+/// What is generated does not decide what can be proved.
+#[test]
+fn claims_beside_constraints_are_proved_whatever_is_generated() {
+    for generate in ["inverse_dynamics", "rate", "mass_matrix, CLAIM", "all"] {
+        for (claim, name, holds) in [("energy", "energy", true), ("I = x + u", "I", false)] {
+            let described = TIED.replace("GENERATE", generate);
+            let described = described.replacen("CLAIM", claim, 1).replace("CLAIM", name);
+            let output = hamel(&["emit", "-"], &described);
+            let said = text(&output.stderr);
+            assert_eq!(output.status.success(), holds, "{generate}: {said}");
+            let code = text(&output.stdout);
+            if holds {
+                let has_accel = code.contains("fn accel");
+                assert_eq!(has_accel, generate == "all", "{generate}");
+            } else {
+                let part = "`I` is not constant along the motion";
+                assert!(said.contains(part), "{generate}: {said}");
+            }
+        }
+    }
+}
+
+/// A picture of a state says nothing of the motion.
+#[test]
+fn pictures_of_a_state_prove_no_claims() {
+    let described = TIED.replace("CLAIM", "energy");
+    let described = described.replace("generate GENERATE;", "");
+    let output = hamel(&["draw", "-"], &described);
+    let said = text(&output.stderr);
+    assert!(output.status.success() && said.is_empty(), "{said}");
+}
+
+/// Nothing is claimed of a motion that is not determined, and that is said.
+#[test]
+fn claims_of_a_singular_system_are_named() {
+    let described = MASSLESS.replace("gravity", "invariant energy; gravity");
+    let output = hamel(&["check", "-"], &described);
+    let said = text(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("no claim is proved: `energy`"), "{said}");
+    assert!(!text(&output.stdout).contains("d/dt energy"));
+    let output = hamel(&["emit", "-"], &described);
+    assert!(!output.status.success());
+}
