@@ -308,7 +308,10 @@ impl Session {
         match (id, of_frame, output) {
             (Some(id), ..) => wanted.functions.push(id),
             (_, Some(jacobian), _) => wanted.jacobians.push(jacobian),
-            (.., Some(output)) => wanted.slopes.push(output.into()),
+            (.., Some(output)) => {
+                wanted.slopes.push(output.into());
+                wanted.functions.push(FunctionId::Linearize);
+            }
             (None, None, None) => {
                 let all = self.functions();
                 let close =

@@ -1,6 +1,7 @@
 //! What there is without M⁻¹, and what comes along with what is asked for.
 
 use crate::common::{hamel, text};
+use hamel_cli::{RobotOptions, Session};
 use serde_json::Value;
 
 /// A pendulum with a second link that has no mass.
@@ -144,4 +145,20 @@ fn claims_of_a_singular_system_are_named() {
     assert!(!text(&output.stdout).contains("d/dt energy"));
     let output = hamel(&["emit", "-"], &described);
     assert!(!output.status.success());
+}
+
+/// Every function that a session lists is there, or is refused by its name.
+#[test]
+fn functions_that_a_session_lists_are_there() {
+    let described = "system Pendulum { param m = 1; coord q; velocity v; rate q = v; frame f = pose(rotz(q), [cos(q), sin(q), 0]);
+         particle mass m at [cos(q), sin(q), 0]; gravity [0, -9.81, 0]; output height = sin(q); }";
+    let read = Session::read(described.into(), "p.eom", &RobotOptions::default());
+    let (session, _) = read.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let missing: Vec<String> = session
+        .functions()
+        .iter()
+        .filter_map(|name| session.function(name).err())
+        .map(|failure| failure.text())
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
