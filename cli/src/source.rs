@@ -309,17 +309,6 @@ impl Source {
         }
     }
 
-    /// An error where nothing of the system has inertia, with what there is to do.
-    pub fn moves(&self, generated: &Generated) -> Result<(), Failure> {
-        match generated.model.has_inertia {
-            true => Ok(()),
-            false => {
-                let motion = Asked::only(&[FunctionId::Accel]);
-                self.derive_asked(&motion).map(drop)
-            }
-        }
-    }
-
     /// What is derived of the model, with its warnings.
     fn derived<T>(
         &self,

@@ -107,7 +107,7 @@ const ARM: &str = "system Arm {
 fn one_wrong_entry_of_what_is_observed_is_refused() {
     let generated = from_text(ARM).expect("a program");
     let model = &generated.model;
-    assert!(prove(model, None, None, &generated.program).is_ok());
+    assert!(prove(model, None, None, [&generated.program; 2]).is_ok());
     let names = generated.program.functions.iter().map(|f| f.name.clone());
     let observed = |name: &String| {
         ["g_", "y_", "felt_", "cent"]
@@ -126,7 +126,7 @@ fn one_wrong_entry_of_what_is_observed_is_refused() {
             .rposition(varying)
             .expect("an entry that varies");
         outputs[place] = -outputs[place];
-        assert!(prove(model, None, None, &program).is_err(), "{name}");
+        assert!(prove(model, None, None, [&program; 2]).is_err(), "{name}");
     }
 }
 
@@ -247,7 +247,8 @@ fn a_wrong_sign_in_the_rate_of_the_chart_is_refused() {
     for text in CHARTS {
         let generated = from_text(text).unwrap_or_else(|errors| panic!("{errors:?}"));
         let reduction = reduce(&generated.model).expect("regular");
-        let proved = |program: &Program| prove(&generated.model, reduction.as_ref(), None, program);
+        let proved =
+            |program: &Program| prove(&generated.model, reduction.as_ref(), None, [program; 2]);
         assert!(proved(&generated.program).is_ok());
         let chart = (generated.program.functions.iter())
             .position(|function| function.id == Some(FunctionId::ChartRate))
