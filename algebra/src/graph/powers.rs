@@ -99,8 +99,8 @@ impl Graph {
         sums.find(|sum| times(sum.node()) > 2).map(|sum| sum.node())
     }
 
-    /// The root of a product of even powers, √(c a⁴ b²) = √c a² |b|: it has slopes where a and b are 0. `None` where another
-    /// factor varies.
+    /// The root of a product of even powers, √(c a⁴ b⁶) = √c a² |b| b², which has slopes where a and b are 0. `None` where another
+    /// factor varies, or where no power is higher than a square.
     pub(super) fn even_root(&mut self, square: Edge) -> Option<Edge> {
         let mut factors = self.whole_factors(square)?;
         let negative = factors.iter().filter(|factor| factor.is_negative()).count();
@@ -112,7 +112,8 @@ impl Graph {
         let (constants, varying): (Vec<Edge>, Vec<Edge>) =
             (factors.into_iter()).partition(|factor| self.class(factor.node()) == 0);
         let powers: Vec<&[Edge]> = varying.chunk_by(|a, b| a == b).collect();
-        if powers.is_empty() || powers.iter().any(|power| power.len() % 2 == 1) {
+        let is_odd = |power: &&[Edge]| power.len() % 2 == 1;
+        if powers.iter().any(is_odd) || powers.iter().all(|power| power.len() < 4) {
             return None;
         }
         let mut constant = self.one();
@@ -124,13 +125,19 @@ impl Graph {
         }
         let mut root = self.apply(Function::Sqrt, constant);
         for power in powers {
-            let half = power.len() / 2;
-            let factor = match half % 2 {
-                0 => power[0],
-                _ => self.apply(Function::Abs, power[0]),
+            let (base, half) = (power[0], power.len() / 2);
+            let size = match half {
+                // √(e²)² is e² at every point, |e|² only where it is real.
+                1 => {
+                    let square = self.mul(base, base);
+                    self.apply(Function::Sqrt, square)
+                }
+                half if half % 2 == 1 => self.apply(Function::Abs, base),
+                _ => self.one(),
             };
-            for _ in 0..half {
-                root = self.mul(root, factor);
+            root = self.mul(root, size);
+            for _ in 0..half - half % 2 {
+                root = self.mul(root, base);
             }
         }
         Some(root)

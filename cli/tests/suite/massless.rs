@@ -159,7 +159,8 @@ fn descriptions_without_masses_have_kinematics() {
     // A bar that slides on a wall and on the floor, with a claim that nothing was asked about; a sled, whose blade
     // is a constraint without a constant factor.
     let loops = "system Bar { joint s: prismatic [1, 0, 0] moves f; joint h: revolute [0, 0, 1] on f moves g;
-         joint v: prismatic [0, 1, 0] moves w; loop g.p + 2 * g.R * [1, 0, 0] = w.p; start h = 2; GENERATE }";
+         joint v: prismatic [0, 1, 0] moves w; let tip = g.p + 2 * g.R * [1, 0, 0];
+         loop tip[1] = 0, tip[2] = w.p[2]; start h = 2; GENERATE }";
     let sled = "system Sled { coord x, y, th; velocity u, v, w; rate x = u, y = v, th = w;
          nonholonomic sin(th) * u = cos(th) * v; frame g = pose(rotz(th), [x, y, 0]); GENERATE }";
     for described in [

@@ -71,7 +71,10 @@ pub fn listing(
     let mut flipped = vec![false; rows.len()];
     for (row, flip) in rows.iter_mut().zip(&mut flipped) {
         row.polynomial = writer.polynomial(row.edge);
-        *flip = row.polynomial.as_ref().is_some_and(reads_better_negated);
+        *flip = match &row.polynomial {
+            Some(polynomial) => reads_better_negated(polynomial),
+            None => row.edge.is_negative(),
+        };
         row.edge = row.edge.signed(*flip);
         match row
             .polynomial

@@ -15,11 +15,6 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Longest polynomial that is shown as one.
 pub const MOST_SHOWN: usize = 60;
 
-/// Intermediate polynomials with more terms are not expanded: what cancels modulo φ leaves a tenth of them, or more.
-const MOST_INTERMEDIATE_TERMS: usize = 300;
-/// Products and sums of terms for all expansions together; entries that are left are written by their parts.
-const MOST_WORK: usize = 400_000;
-
 /// Longest polynomial that is expanded inside an expression that is not.
 const MOST_INSIDE: usize = 8;
 
@@ -49,7 +44,7 @@ impl Simplifier {
     pub fn free(points: &Points) -> Self {
         let numbered = points.blocks.iter().enumerate();
         Simplifier {
-            expander: Expander::within(MOST_WORK).of_terms(MOST_INTERMEDIATE_TERMS),
+            expander: Expander::default(),
             forms: None,
             first: points.first as NodeId,
             blocks: numbered

@@ -347,9 +347,9 @@ fn accelerated(
             Some(_) => format!(
                 "the rate of `{name}` is prescribed, and the constraints leave it none of its own at the start"
             ),
-            None => format!(
-                "the rate of `{name}` is prescribed, and the constraints give this velocity by others"
-            ),
+            None => {
+                format!("the rate of `{name}` is prescribed, and a constraint gives this velocity")
+            }
         };
         let error = Diagnostic::new(full.velocity_spans[velocity], message);
         return Err(error.help("prescribe the rate of a velocity that the constraints, and the rates that are prescribed before it, leave free"));
