@@ -103,7 +103,8 @@ fn a_subnormal_pivot_is_refused() {
 /// √(c a⁴ b⁶) = √c a² |b| b² has slopes where a and b are 0.
 #[test]
 fn roots_of_even_powers_have_slopes_everywhere() {
-    let cases: [(&str, fn(f64) -> f64, f64); 7] = [
+    type Case = (&'static str, fn(f64) -> f64, f64);
+    let cases: [Case; 7] = [
         ("sqrt(q^4)", |q| 2.0 * q, 0.0),
         ("sqrt(4 * q^4)", |q| 4.0 * q, 0.0),
         ("sqrt(q^6)", |q| 3.0 * q * q.abs(), 0.0),

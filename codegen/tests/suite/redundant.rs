@@ -235,7 +235,7 @@ fn turn(random: &mut Random) -> [[f64; 3]; 3] {
 /// would write, beside the same with rows that are just enough.
 fn faults(seed: u64) -> Vec<String> {
     let mut random = Random::new(0x4ed0 + seed);
-    let tilt = if seed % 3 == 0 {
+    let tilt = if seed.is_multiple_of(3) {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     } else {
         turn(&mut random)
@@ -342,7 +342,9 @@ fn faults(seed: u64) -> Vec<String> {
     }
     // Of a plane along the axes the forces are unique.
     let free = undetermined(&many.model);
-    if seed % 3 == 0 && free[..2] != [false, false] || undetermined(&few.model).contains(&true) {
+    if seed.is_multiple_of(3) && free[..2] != [false, false]
+        || undetermined(&few.model).contains(&true)
+    {
         faults.push(format!("{seed}: determined {free:?}"));
     }
     if messages(&many).is_empty() || !messages(&few).is_empty() {
