@@ -280,8 +280,11 @@ fn refused_descriptions_exist() {
     }
 }
 
-/// The subcommands with their options, long names and the values that are listed.
-fn options() -> Vec<(String, Vec<(String, Vec<String>)>)> {
+/// An option by its long name, with the values that are listed for it.
+type Listed = (String, Vec<String>);
+
+/// The subcommands with their options.
+fn options() -> Vec<(String, Vec<Listed>)> {
     let line = hamel_cli::described();
     let commands = line.get_subcommands();
     commands
