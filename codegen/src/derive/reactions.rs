@@ -86,7 +86,7 @@ impl Builder<'_> {
             let more = if shown.len() < text.len() { " …" } else { "" };
             let entry = match entry.as_str() {
                 "" => String::new(),
-                entry => format!(", entry {entry}"),
+                entry => format!(", entry `{entry}`"),
             };
             let free = if unique { "" } else { "; not determined" };
             format!("- {}: `{shown}{more}`{entry}{free}", row + 1)

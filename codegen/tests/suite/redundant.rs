@@ -106,8 +106,8 @@ fn the_force_of_a_pin_is_given_beside_rows_without_one() {
         .function("constraint_force")
         .expect("it is there");
     for row in [
-        "- 1: `position(P) = position(Q)`, entry [1]",
-        "- 3: `P.R = Q.R`, entry [1, 1]; not determined",
+        "- 1: `position(P) = position(Q)`, entry `[1]`",
+        "- 3: `P.R = Q.R`, entry `[1, 1]`; not determined",
     ] {
         assert!(
             function.docs.iter().any(|line| line == row),
