@@ -70,7 +70,7 @@ pub struct Row {
     pub docs: &'static [&'static str],
     /// What it is wanted for.
     pub serves: Serves,
-    /// What it needs of the inertia of the system.
+    /// Requirement on the inertia of the system.
     pub needs: Needs,
     /// Whether `generate` can name it.
     pub named: bool,

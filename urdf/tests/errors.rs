@@ -231,7 +231,7 @@ fn limits_of_joints_that_have_none() {
     }
 }
 
-/// What does not enter the equations may be unreadable: it is left out with a warning.
+/// Numbers outside of the equations that cannot be read are left out with a warning.
 #[test]
 fn bounds_and_names_may_be_wrong() {
     let bounds = "<limit lower='-inf' upper='Infinity' velocity='1e999' effort='?'/>";

@@ -326,7 +326,7 @@ fn warnings_are_everywhere() {
     }
 }
 
-/// What PowerShell writes, and what declarations say, is read as the same robot.
+/// UTF-16 from PowerShell and declared encodings are read as the same robot.
 #[test]
 fn encodings_of_robots() {
     let plain = pendulum("", "");

@@ -19,7 +19,7 @@ const COMMANDS: [&str; 6] = [
     "emit FILE --out OUT/code.rs",
 ];
 
-/// What is rightly refused: a file, the command, a part of what is said, and why.
+/// Refusals that are right: a file, the command, a part of the message, and the reason.
 const REFUSED: [[&str; 4]; 4] = [
     [
         "tests/models/drifting_oscillator.eom",

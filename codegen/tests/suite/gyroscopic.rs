@@ -88,7 +88,7 @@ fn the_energy_of_random_gyroscopic_terms_is_constant() {
     }
 }
 
-/// What moves with the time keeps its kinetic energy in space.
+/// The energy of pivots that move with time is still the kinetic energy in space.
 #[test]
 fn moving_points_have_their_energy_in_space() {
     let of = generated(

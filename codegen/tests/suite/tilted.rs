@@ -465,7 +465,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| value.abs().max(most))
 }
 
-/// What is wrong with a chain: that it is refused, or a number that differs.
+/// Derives a chain and compares its numbers with the definition; the error says that it is refused, or which number differs.
 fn verdict(chain: &Chain, seed: u64) -> Result<(), String> {
     let of: Generated = match from_text(&chain.text) {
         Ok(of) => of,

@@ -1,4 +1,4 @@
-//! What the dialects say of joints outside of them: rotors in `<transmission>`, springs in `<gazebo>`.
+//! Reads properties of joints that dialects write elsewhere: rotors in `<transmission>`, springs in `<gazebo>`.
 
 use super::list::{RATIOS, ROTORS};
 use super::xml::{Reader, tag, written};

@@ -1,7 +1,7 @@
 //! How the closed list of what may stand in a URDF file is written: elements and attributes that are read, and those that are
 //! no part of the equations of motion. Whatever is not on it is named in a warning.
 
-/// What an element is to the equations of motion.
+/// The role of an element in the equations of motion.
 pub(super) enum Element {
     /// What stands in it is on the list, too.
     Read(&'static Level),

@@ -66,7 +66,7 @@ impl Writer<'_> {
     }
 }
 
-/// What is 0 where two frames are closed.
+/// The differences that vanish where two frames are closed.
 fn rows(closing: &Closing, a: &str, b: &str) -> Vec<String> {
     let gap = |axis: usize| format!("position({a})[{axis}] - position({b})[{axis}]");
     let across = |left: &str, right: &str| format!("dot({a}.R * {left}, {b}.R * {right})");
