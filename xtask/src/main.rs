@@ -1,10 +1,13 @@
 //! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask gallery`,
-//! `cargo xtask bless`.
+//! `cargo xtask bless`; and `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that
+//! should change no result.
 //!
 //! Each task is a list of commands, run in order from the root of the repository; the first that fails
 //! ends it.
 
-use std::path::PathBuf;
+mod record;
+
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
@@ -142,12 +145,22 @@ const TASKS: [(&str, Task, &str); 6] = [
 
 fn main() -> ExitCode {
     let asked: Vec<String> = std::env::args().skip(1).collect();
+    let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
+    match asked[..] {
+        ["record", folder] => return ended(record::record(Path::new(folder)).map(|()| true)),
+        ["compare", before, after] => {
+            return ended(record::compare(Path::new(before), Path::new(after)));
+        }
+        _ => {}
+    }
     let found = TASKS.iter().find(|(name, ..)| asked == [*name]);
     let Some((name, commands, _)) = found else {
         eprintln!("cargo xtask TASK, where TASK is one of");
         for (name, _, what) in TASKS {
             eprintln!("  {name:7} {what}");
         }
+        eprintln!("  record FOLDER: what `hamel` says of every description, into FOLDER");
+        eprintln!("  compare BEFORE AFTER: where two records differ");
         return ExitCode::from(2);
     };
     for command in *commands {
@@ -162,6 +175,18 @@ fn main() -> ExitCode {
         println!("== {:.0} s", begin.elapsed().as_secs_f64());
     }
     ExitCode::SUCCESS
+}
+
+/// The exit status of a task that is no list of commands.
+fn ended(result: std::io::Result<bool>) -> ExitCode {
+    match result {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
 /// The root of the repository.
