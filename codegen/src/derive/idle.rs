@@ -8,8 +8,10 @@ use crate::syntax::ast::JointKind;
 /// Entries of a direction that are smaller than this, relative to the largest, count as 0; so does what M makes of it.
 const SMALL: f64 = 1e-6;
 
-/// What to do about a direction without inertia, where one joint alone moves along it; `mass` are numbers of M by rows, whose
-/// pivot at this place vanishes.
+/// Suggests how to change a description whose mass matrix M is singular because a single joint can move without resistance.
+///
+/// `mass` holds the numbers of M by rows, and `pivot` is the index of the first velocity whose pivot in the elimination of M is
+/// zero. The result is `None` if a motion without resistance takes several joints, or if these numbers do not determine it.
 pub fn advice(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
     let direction = kernel(mass, model.n(), pivot)?;
     let moving = |place: &usize| direction[*place] != 0.0;
