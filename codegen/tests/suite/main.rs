@@ -11,6 +11,8 @@ mod constrained;
 mod continuous;
 mod coordinates;
 mod degenerate;
+#[path = "common/dense.rs"]
+mod dense;
 mod emit;
 mod entries;
 mod expressions;
@@ -23,6 +25,10 @@ mod headers;
 mod idle;
 mod include;
 mod inerter;
+#[path = "common/jet.rs"]
+mod jet;
+#[path = "common/jointed/mod.rs"]
+mod jointed;
 mod joints;
 mod language;
 mod loops;

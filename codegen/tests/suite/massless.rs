@@ -4,7 +4,10 @@
 //! What moves is determined where M is positive definite on the directions that B leaves; M itself may have any rank. Forty systems
 //! in every run, four times as many with `HAMEL_ATTACK=more`, three thousand with `HAMEL_ATTACK=full`.
 
+mod joints;
+
 use crate::common::{Random, attack, value};
+use crate::dense::{least_pivot, solution};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 
@@ -216,60 +219,12 @@ impl System {
                 column
             })
             .collect();
-        let product = |a: &[f64], b: &[f64]| -> f64 {
-            let pairs = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-            pairs.map(|(i, j)| a[i] * mass[i][j] * b[j]).sum()
-        };
-        let k = columns.len();
-        let whole: Vec<Vec<f64>> = columns
-            .iter()
-            .map(|a| columns.iter().map(|b| product(a, b)).collect())
-            .collect();
-        let mut rest = whole.clone();
-        let mut least: f64 = 1.0;
-        for c in 0..k {
-            // NaN where a direction has no inertia at all.
-            let ratio = rest[c][c] / whole[c][c];
-            if ratio.is_nan() || ratio < 1e-12 {
-                return 0.0;
-            }
-            least = least.min(ratio);
-            for i in c + 1..k {
-                for j in c + 1..k {
-                    rest[i][j] -= rest[i][c] * rest[c][j] / rest[c][c];
-                }
-            }
-        }
-        least
+        least_pivot(&mass, &columns)
     }
 
     /// ξ̇ of M ξ̇ − Bᵀ λ = f, B ξ̇ = b.
     fn acceleration(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let ((mass, force), (rows, right)) = (self.inertia_and_force(q, v), self.rows(q, v));
-        let (n, size) = (self.n, self.n + rows.len());
-        let mut a = vec![vec![0.0; size + 1]; size];
-        for i in 0..n {
-            a[i][..n].copy_from_slice(&mass[i]);
-            a[i][size] = force[i];
-            for (k, row) in rows.iter().enumerate() {
-                (a[i][n + k], a[n + k][i]) = (-row[i], row[i]);
-            }
-        }
-        for (k, right) in right.iter().enumerate() {
-            a[n + k][size] = *right;
-        }
-        for c in 0..size {
-            let largest = (c..size).max_by(|&i, &j| a[i][c].abs().total_cmp(&a[j][c].abs()));
-            a.swap(c, largest.expect("a row"));
-            for i in (0..size).filter(|&i| i != c) {
-                let factor = a[i][c] / a[c][c];
-                for j in c..=size {
-                    let part = factor * a[c][j];
-                    a[i][j] -= part;
-                }
-            }
-        }
-        (0..n).map(|i| a[i][size] / a[i][i]).collect()
+        solution(self.inertia_and_force(q, v), self.rows(q, v))
     }
 }
 

@@ -1,0 +1,320 @@
+//! Trees of joints that are free, follow others or move as functions of time, with loops and constraints, and their accelerations
+//! by Lagrange's equations in numbers: every body is a cloud of points, whose positions are differentiated twice.
+
+mod parts;
+
+pub use parts::{Joint, Law, Load, Loop, Motion, Name, short};
+
+use crate::dense::{kernel, least_pivot, shortest, solution};
+use crate::jet::{Jet, constant, sum, turned};
+
+/// Newton's steps towards a configuration that closes the loops.
+const STEPS: usize = 40;
+
+pub struct System {
+    /// The joints, each on one before it.
+    pub joints: Vec<Joint>,
+    /// Closed loops, and the constants that close them at the guesses.
+    pub loops: Vec<(Loop, f64)>,
+    /// Where the joints start, as far as nothing else says it.
+    pub guess: Vec<f64>,
+    /// The acceleration of gravity.
+    pub gravity: [f64; 3],
+    /// Whether the time is declared.
+    pub timed: bool,
+    /// Rows Σ c_k v_k = 0 by the joints k.
+    pub rows: Vec<Vec<(usize, Law)>>,
+    /// A joint with a force F − d v, and the values of F and d.
+    pub acted: Option<(usize, [f64; 2])>,
+}
+
+/// Where everything is: the values of joints, and the frames as maps of points.
+pub struct Placed<'a> {
+    /// What is placed.
+    pub system: &'a System,
+    /// Of the joints.
+    pub values: Vec<Jet>,
+    /// The time.
+    pub time: Jet,
+}
+
+impl Placed<'_> {
+    /// The value of a name.
+    pub fn of(&self, name: Name) -> Jet {
+        match name {
+            Name::Joint(i) => self.values[i],
+            Name::Time => self.time,
+        }
+    }
+
+    /// A point of the frame that a joint moves, or of the world.
+    pub fn point(&self, frame: Option<usize>, place: [f64; 3]) -> [Jet; 3] {
+        let mut point = constant(place);
+        let mut frame = frame;
+        while let Some(i) = frame {
+            let joint = &self.system.joints[i];
+            let length = joint.axis.iter().map(|a| a * a).sum::<f64>().sqrt();
+            let axis = joint.axis.map(|a| a / length);
+            point = match joint.kind {
+                "prismatic" => sum(point, axis.map(|a| self.values[i] * a)),
+                _ => turned(point, axis, self.values[i]),
+            };
+            point = sum(point, constant(joint.at));
+            frame = joint.on;
+        }
+        point
+    }
+
+    /// What a loop holds constant.
+    pub fn closed(&self, of: &Loop) -> Jet {
+        match of {
+            Loop::Tie(i, law) => self.values[*i] + law.value(|name| self.of(name)),
+            Loop::Point([(f, p), (g, q)], axis) => {
+                self.point(*f, *p)[*axis] - self.point(*g, *q)[*axis]
+            }
+        }
+    }
+}
+
+impl System {
+    /// The joints that have a coordinate of their own, in the order of the variables; the time stands behind them.
+    pub fn own(&self) -> Vec<usize> {
+        let all = 0..self.joints.len();
+        all.filter(|&i| self.joints[i].has_coordinate()).collect()
+    }
+
+    /// The guesses with the prescribed coordinates at t = 0.
+    pub fn start(&self) -> Vec<f64> {
+        let own = self.own();
+        let mut q: Vec<f64> = own.iter().map(|&i| self.guess[i]).collect();
+        q.push(0.0);
+        self.prescribe(&mut q);
+        q
+    }
+
+    /// Sets coordinates that are functions of time to their values.
+    pub fn prescribe(&self, q: &mut [f64]) {
+        let own = self.own();
+        let t = q[own.len()];
+        for (place, &i) in own.iter().enumerate() {
+            if let Motion::Placed(law) = &self.joints[i].motion {
+                q[place] = law.value(|_| Jet::number(t)).value;
+            }
+        }
+    }
+
+    /// Where everything is at coordinates and the time behind them.
+    pub fn placed(&self, q: &[f64]) -> Placed<'_> {
+        let time = Jet::variable(self.own().len(), q[self.own().len()]);
+        let mut at = Placed {
+            system: self,
+            values: Vec::new(),
+            time,
+        };
+        let mut place = 0;
+        for joint in &self.joints {
+            let value = match &joint.motion {
+                Motion::Follows(law) => law.value(|name| at.of(name)),
+                _ => {
+                    place += 1;
+                    Jet::variable(place - 1, q[place - 1])
+                }
+            };
+            at.values.push(value);
+        }
+        at
+    }
+
+    /// The functions that stay 0, of loops and of what is driven; those of drives by velocities have only their slopes.
+    pub fn residuals(&self, at: &Placed) -> Vec<Jet> {
+        let loops = self.loops.iter();
+        let mut all: Vec<Jet> = loops
+            .map(|(tie, constant)| at.closed(tie) - Jet::number(*constant))
+            .collect();
+        for (i, joint) in self.joints.iter().enumerate() {
+            match &joint.motion {
+                Motion::Placed(law) => all.push(at.values[i] - law.value(|name| at.of(name))),
+                Motion::Driven(law) => {
+                    // v − w: its slope by the time is −w, and that of w the acceleration.
+                    let rate = law.value(|name| at.of(name));
+                    let time = self.own().len();
+                    let mut row = at.values[i] - Jet::number(at.values[i].value);
+                    row.slopes[time] = -rate.value;
+                    row.bends[time][time] = -rate.slopes[time];
+                    all.push(row);
+                }
+                _ => {}
+            }
+        }
+        all.extend(self.rows.iter().map(|row| self.residual(at, row)));
+        all
+    }
+
+    /// Σ c_k v_k as slopes alone, whose bends are those of the coefficients.
+    fn residual(&self, at: &Placed, row: &[(usize, Law)]) -> Jet {
+        let own = self.own();
+        let mut residual = Jet::number(0.0);
+        for (joint, law) in row {
+            let place = own.iter().position(|i| i == joint).expect("it has one");
+            let factor = law.value(|name| at.of(name));
+            residual.slopes[place] += factor.value;
+            for (bend, slope) in residual.bends[place].iter_mut().zip(factor.slopes) {
+                *bend += slope;
+            }
+        }
+        residual
+    }
+
+    /// Their slopes by the coordinates.
+    pub fn rows_of(&self, at: &Placed) -> Vec<Vec<f64>> {
+        let n = self.own().len();
+        let all = self.residuals(at);
+        all.iter().map(|jet| jet.slopes[..n].to_vec()).collect()
+    }
+
+    /// A configuration near another one with all residuals 0, the time as it is.
+    pub fn assembled(&self, mut q: Vec<f64>) -> Option<Vec<f64>> {
+        let n = self.own().len();
+        self.prescribe(&mut q);
+        for _ in 0..STEPS {
+            let at = self.placed(&q);
+            let residuals = self.residuals(&at);
+            let size = residuals
+                .iter()
+                .fold(0.0, |most: f64, r| most.max(r.value.abs()));
+            if size < 1e-14 {
+                return Some(q);
+            }
+            let right: Vec<f64> = residuals.iter().map(|r| -r.value).collect();
+            let step = shortest(&self.rows_of(&at), &right, n);
+            let longest = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+            if longest.is_nan() || longest > 1e3 {
+                return None;
+            }
+            (0..n).for_each(|i| q[i] += step[i]);
+        }
+        None
+    }
+
+    /// Velocities near others that keep the residuals, behind them that of the time.
+    pub fn moving(&self, q: &[f64], mut v: Vec<f64>) -> Vec<f64> {
+        let n = self.own().len();
+        v.push(1.0);
+        let at = self.placed(q);
+        let right: Vec<f64> = self.residuals(&at).iter().map(|r| -r.along(&v)).collect();
+        let step = shortest(&self.rows_of(&at), &right, n);
+        (0..n).for_each(|i| v[i] += step[i]);
+        v
+    }
+
+    /// M and f − h − ∂V, with the velocities and that of the time.
+    pub fn inertia_and_force(&self, q: &[f64], v: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let own = self.own();
+        let n = own.len();
+        let at = self.placed(q);
+        let mut mass = vec![vec![0.0; n]; n];
+        let mut force = vec![0.0; n];
+        for (i, joint) in self.joints.iter().enumerate() {
+            let value = &at.values[i];
+            (0..n).for_each(|k| force[k] -= joint.stiffness * value.value * value.slopes[k]);
+            for (m, place) in joint.load.points() {
+                let point = at.point(Some(i), place);
+                for (axis, entry) in point.iter().enumerate() {
+                    let push = m * (entry.curvature(v) - self.gravity[axis]);
+                    for a in 0..n {
+                        force[a] -= push * entry.slopes[a];
+                        for b in 0..n {
+                            mass[a][b] += m * entry.slopes[a] * entry.slopes[b];
+                        }
+                    }
+                }
+            }
+        }
+        for (place, &i) in own.iter().enumerate() {
+            mass[place][place] += self.joints[i].armature;
+        }
+        if let Some((joint, [push, damping])) = self.acted {
+            let place = own.iter().position(|&i| i == joint).expect("it has one");
+            force[place] += push - damping * v[place];
+        }
+        (mass, force)
+    }
+
+    /// The rates of the velocities, by elimination.
+    pub fn acceleration(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let (mass, force) = self.inertia_and_force(q, v);
+        let residuals = self.residuals(&self.placed(q));
+        let right = residuals.iter().map(|r| -r.curvature(v)).collect();
+        let rows = self.rows_of(&self.placed(q));
+        solution((mass, force), (rows, right))
+    }
+
+    /// What is left to move: the least pivot of M there, the number of directions, and how independent the rows are.
+    pub fn regularity(&self, q: &[f64]) -> (f64, usize, f64) {
+        let still = vec![0.0; q.len()];
+        let (mass, _) = self.inertia_and_force(q, &still);
+        let rows = self.rows_of(&self.placed(q));
+        let (columns, independent) = kernel(&rows, q.len() - 1);
+        (least_pivot(&mass, &columns), columns.len(), independent)
+    }
+
+    /// The description, with further statements.
+    pub fn text(&self, more: &[String]) -> String {
+        let mut lines = Vec::new();
+        if self.timed {
+            lines.push("time t;".to_owned());
+        }
+        // Where no loop acts there is nothing to guess.
+        let sign = if self.loops.is_empty() { "=" } else { "~" };
+        let mut starts = Vec::new();
+        for (i, joint) in self.joints.iter().enumerate() {
+            lines.push(joint.text(i));
+            lines.extend(joint.load.text(i));
+            if joint.stiffness > 0.0 {
+                lines.push(format!("spring stiffness {} on j{i};", joint.stiffness));
+            }
+            match &joint.motion {
+                Motion::Placed(law) => lines.push(format!("prescribe j{i} = {};", law.text())),
+                Motion::Driven(law) => lines.push(format!("prescribe j{i}_dot = {};", law.text())),
+                _ => {}
+            }
+            if matches!(joint.motion, Motion::Free | Motion::Driven(_))
+                && joint.kind != "continuous"
+            {
+                starts.push(format!("j{i} {sign} {}", self.guess[i]));
+            }
+        }
+        for (tie, constant) in &self.loops {
+            lines.push(match tie {
+                Loop::Tie(own, law) => format!("loop j{own} + {} = {constant};", law.text()),
+                Loop::Point(ends, axis) => {
+                    let [first, second] = ends.map(|(frame, place)| match frame {
+                        Some(frame) => format!("position(f{frame}, {place:?})[{}]", axis + 1),
+                        None => format!("{:?}", place[*axis]),
+                    });
+                    format!("loop {first} - {second} = {constant};")
+                }
+            });
+        }
+        for row in &self.rows {
+            let terms = row
+                .iter()
+                .map(|(joint, law)| format!("({}) * j{joint}_dot", law.text()));
+            lines.push(format!(
+                "nonholonomic {} = 0;",
+                terms.collect::<Vec<_>>().join(" + ")
+            ));
+        }
+        if let Some((joint, [_, damping])) = self.acted {
+            lines.push("input F;".to_owned());
+            lines.push(format!("param d = {damping};"));
+            lines.push(format!(
+                "generalized force j{joint}_dot = F - d * j{joint}_dot;"
+            ));
+        }
+        lines.push(format!("gravity {:?};", self.gravity));
+        lines.push(format!("start {};", starts.join(", ")));
+        lines.extend_from_slice(more);
+        format!("system S {{\n    {}\n}}\n", lines.join("\n    "))
+    }
+}

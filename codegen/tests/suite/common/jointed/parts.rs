@@ -1,0 +1,227 @@
+//! The parts of a description of joints: laws of motion, masses, joints, loops.
+
+use crate::common::Random;
+use crate::jet::Jet;
+
+/// A sum of terms in the values of joints and the time, with its text.
+#[derive(Clone)]
+pub struct Law {
+    /// The term that depends on nothing.
+    pub constant: f64,
+    /// Terms c x.
+    pub linear: Vec<(f64, Name)>,
+    /// The term c sin x.
+    pub sine: Option<(f64, Name)>,
+    /// The term c x y.
+    pub product: Option<(f64, Name, Name)>,
+}
+
+/// What a law depends on.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Name {
+    /// The value of a joint.
+    Joint(usize),
+    /// The time.
+    Time,
+}
+
+impl Name {
+    /// How it is written.
+    pub fn text(self) -> String {
+        match self {
+            Name::Joint(i) => format!("j{i}"),
+            Name::Time => "t".into(),
+        }
+    }
+}
+
+/// A number in ±1 with two digits, never 0.
+pub fn short(random: &mut Random) -> f64 {
+    match (random.number() * 100.0).round() / 100.0 {
+        0.0 => 0.5,
+        number => number,
+    }
+}
+
+impl Law {
+    /// A law of some names; nonlinear in half of all cases.
+    pub fn random(random: &mut Random, names: &[Name]) -> Self {
+        let name = |random: &mut Random| names[random.below(names.len())];
+        let linear = (0..1 + random.below(2)).map(|_| {
+            let factor = [1.0, -1.0, 2.0, 0.5, short(random)][random.below(5)];
+            (factor, name(random))
+        });
+        let linear = linear.collect();
+        let kind = random.below(4);
+        Law {
+            constant: [0.0, short(random)][random.below(2)],
+            linear,
+            sine: (kind == 1 || kind == 3).then(|| (short(random), name(random))),
+            product: (kind == 2).then(|| (short(random), name(random), name(random))),
+        }
+    }
+
+    /// a + b t + c sin t.
+    pub fn of_time(random: &mut Random) -> Self {
+        Law {
+            constant: short(random),
+            linear: vec![(short(random), Name::Time)],
+            sine: Some((short(random), Name::Time)),
+            product: None,
+        }
+    }
+
+    /// How it is written.
+    pub fn text(&self) -> String {
+        let linear = self.linear.iter();
+        let mut terms: Vec<String> = linear.map(|(c, n)| format!("{c} * {}", n.text())).collect();
+        if let Some((c, name)) = self.sine {
+            terms.push(format!("{c} * sin({})", name.text()));
+        }
+        if let Some((c, a, b)) = self.product {
+            terms.push(format!("{c} * {} * {}", a.text(), b.text()));
+        }
+        if self.constant != 0.0 {
+            terms.push(self.constant.to_string());
+        }
+        terms.join(" + ")
+    }
+
+    /// Its value.
+    pub fn value(&self, of: impl Fn(Name) -> Jet) -> Jet {
+        let mut total = Jet::number(self.constant);
+        for &(factor, name) in &self.linear {
+            total = total + of(name) * factor;
+        }
+        if let Some((factor, name)) = self.sine {
+            total = total + of(name).sin() * factor;
+        }
+        if let Some((factor, a, b)) = self.product {
+            total = total + of(a) * of(b) * factor;
+        }
+        total
+    }
+}
+
+/// What gives the motion of a joint.
+pub enum Motion {
+    /// Forces alone.
+    Free,
+    /// Other joints: it has no coordinate.
+    Follows(Law),
+    /// Its coordinate is a function of time.
+    Placed(Law),
+    /// Its velocity is.
+    Driven(Law),
+}
+
+/// What a joint moves.
+pub enum Load {
+    /// Nothing.
+    Nothing,
+    /// A mass and its place.
+    Particle(f64, [f64; 3]),
+    /// Six points of equal mass, two on each axis at distances of their own from the centre of mass.
+    Body(f64, [f64; 3], [f64; 3]),
+}
+
+impl Load {
+    /// One of them, in half of all cases nothing.
+    pub fn random(random: &mut Random) -> Self {
+        let mass = 3.0 * (1 + random.below(3)) as f64;
+        let place = [(); 3].map(|()| short(random));
+        match random.below(4) {
+            0 => Load::Particle(mass, place),
+            1 => {
+                let spread = [(); 3].map(|()| 0.5 + short(random).abs());
+                Load::Body(mass, place, spread)
+            }
+            _ => Load::Nothing,
+        }
+    }
+
+    /// Masses with their places in the frame.
+    pub fn points(&self) -> Vec<(f64, [f64; 3])> {
+        match *self {
+            Load::Nothing => Vec::new(),
+            Load::Particle(mass, place) => vec![(mass, place)],
+            Load::Body(mass, centre, spread) => {
+                let point = |i: usize| {
+                    let mut place = centre;
+                    place[i / 2] += [1.0, -1.0][i % 2] * spread[i / 2];
+                    (mass / 6.0, place)
+                };
+                (0..6).map(point).collect()
+            }
+        }
+    }
+
+    /// Its statement.
+    pub fn text(&self, frame: usize) -> Option<String> {
+        match *self {
+            Load::Nothing => None,
+            Load::Particle(mass, place) => {
+                Some(format!("particle mass {mass} at {place:?} on f{frame};"))
+            }
+            Load::Body(mass, centre, spread) => {
+                // Exact to four digits where the mass is a multiple of three and the distances have two.
+                let squares = spread.map(|s| mass / 3.0 * s * s);
+                let total: f64 = squares.iter().sum();
+                let exact = |moment: f64| (moment * 1e4).round() / 1e4;
+                let [x, y, z] = squares.map(|square| exact(total - square));
+                Some(format!(
+                    "body on f{frame} {{ mass {mass}; com {centre:?}; inertia diag({x}, {y}, {z}) about com; }}"
+                ))
+            }
+        }
+    }
+}
+
+pub struct Joint {
+    /// Its kind, as it is written.
+    pub kind: &'static str,
+    /// Its axis, of any length.
+    pub axis: [f64; 3],
+    /// The joint whose frame it is mounted on; the world where there is none.
+    pub on: Option<usize>,
+    /// Where it is mounted.
+    pub at: [f64; 3],
+    /// What gives its motion.
+    pub motion: Motion,
+    /// What it moves.
+    pub load: Load,
+    /// Of a spring on it.
+    pub stiffness: f64,
+    /// The inertia of its drive.
+    pub armature: f64,
+}
+
+impl Joint {
+    /// Whether it has a coordinate of its own.
+    pub fn has_coordinate(&self) -> bool {
+        !matches!(self.motion, Motion::Follows(_))
+    }
+
+    /// Its statement.
+    pub fn text(&self, i: usize) -> String {
+        let on = self.on.map_or(String::new(), |j| format!(" on f{j}"));
+        let follows = match &self.motion {
+            Motion::Follows(law) => format!(" follows {}", law.text()),
+            _ => String::new(),
+        };
+        let armature = match self.armature {
+            0.0 => ";".into(),
+            armature => format!(" {{ armature {armature}; }}"),
+        };
+        let Joint { kind, axis, at, .. } = self;
+        format!("joint j{i}: {kind} {axis:?}{on} at {at:?} moves f{i}{follows}{armature}")
+    }
+}
+
+/// A closed loop; the constant closes it at the guesses.
+pub enum Loop {
+    /// A joint's own value and a law of others.
+    Tie(usize, Law),
+    /// A component of the way between points of two frames, or of one and the world.
+    Point([(Option<usize>, [f64; 3]); 2], usize),
+}
