@@ -196,7 +196,7 @@ fn beside_the_start(model: &Model) -> Option<Vec<f64>> {
 }
 
 /// M + w BᵀB and w Bᵀ b, which may be added to M ξ̇ = f + Bᵀ λ where B ξ̇ = b: neither ξ̇ nor λ changes, and what has
-/// inertia through constraints alone gets pivots. w = tr M / tr BᵀB makes the sizes of both alike.
+/// inertia through constraints alone gets pivots.
 pub fn augmented(
     graph: &mut Graph,
     mass: &[Vec<Edge>],
@@ -220,10 +220,13 @@ pub fn augmented(
     Some((sum, force.collect()))
 }
 
-/// w = tr M / tr BᵀB.
+/// w = tr M / tr BᵀB, which makes the sizes of both alike; 1 / tr BᵀB where M is 0, so that constraints alone give the motion.
 pub fn weight(graph: &mut Graph, mass: &[Vec<Edge>], rows: &[Vec<Edge>]) -> Option<Edge> {
     let diagonal: Vec<Edge> = (0..mass.len()).map(|i| mass[i][i]).collect();
-    let (entries, trace) = (rows.concat(), graph.sum(&diagonal));
+    let (entries, mut trace) = (rows.concat(), graph.sum(&diagonal));
+    if trace == graph.zero() {
+        trace = graph.one();
+    }
     let squares = graph.dot(&entries, &entries);
     graph.div(trace, squares)
 }

@@ -6,7 +6,7 @@
 
 mod joints;
 
-use crate::common::{Random, attack, value};
+use crate::common::{Random, attack, generated, value};
 use crate::dense::{least_pivot, solution};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
@@ -311,4 +311,46 @@ fn a_loop_over_a_direction_without_mass() {
         "{}",
         render(&read.err().unwrap_or_default(), "system", text, false)
     );
+}
+
+/// A slider without mass that a loop ties to a given motion: M is 0 for all that is solved for, and the loop alone says how it
+/// moves, and carries its spring.
+#[test]
+fn loops_to_given_motions_carry_what_has_no_mass_at_all() {
+    let of = generated(
+        "system Slave {
+            time t;
+            joint a: prismatic [1, 0, 0] moves slider;
+            joint b: prismatic [1, 0, 0] moves drive;
+            body on drive { mass 2; }
+            spring stiffness 3 on a;
+            loop a + 0.3 * sin(a) = b;
+            prescribe b = sin(t);
+            generate accel, constraint_force;
+        }",
+    );
+    let (t, a) = (0.4_f64, 0.25_f64);
+    let b = a + 0.3 * a.sin();
+    let slope = 1.0 + 0.3 * a.cos();
+    let v = t.cos() / slope;
+    let mut x = vec![0.0; of.model.nu()];
+    for (name, entry) in [("t", t), ("a", a), ("b", b)] {
+        let mut coordinates = of.model.coordinates.iter();
+        let coordinate = coordinates
+            .find(|c| c.name == name)
+            .expect("it is declared");
+        x[coordinate.offset] = entry;
+    }
+    let rate = value(&of, "accel", [&x, &[v], &[], &[]]);
+    let expected = (-t.sin() + 0.3 * a.sin() * v * v) / slope;
+    assert!(
+        (rate[0] - expected).abs() < 1e-12,
+        "{rate:?}, not {expected}"
+    );
+    // 0 = −3 a + λ (1 + 0.3 cos a); the drive moves its own mass and what the loop asks of it.
+    let forces = value(&of, "constraint_force", [&x, &[v], &[], &[]]);
+    let bond = 3.0 * a / slope;
+    for (found, expected) in forces.iter().zip([bond, -2.0 * t.sin() + bond]) {
+        assert!((found - expected).abs() < 1e-12, "{forces:?}");
+    }
 }

@@ -311,7 +311,10 @@ pub fn solve_at(
     let m = right.len();
     let raising = raising(&model.constraints, given.len());
     if model.augmented {
-        let trace = (0..n).fold(Fp::ZERO, |sum, i| sum + mass[i * n + i]);
+        let mut trace = (0..n).fold(Fp::ZERO, |sum, i| sum + mass[i * n + i]);
+        if trace.is_zero() {
+            trace = Fp::ONE;
+        }
         let squares = rows.iter().fold(Fp::ZERO, |sum, &b| sum + b * b);
         let weight = trace * squares.inv()?;
         for (row, &right) in rows.chunks(n).zip(&right) {
