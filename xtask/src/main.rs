@@ -75,7 +75,7 @@ const CI: Task = &[
 
 /// The random attacks at full size: some two hours.
 const ATTACK: Task = &[
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- expressions:: massless:: mounts:: tilted:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- claims:: expressions:: massless:: mounts:: tilted:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-native --test suite random::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test suite -- free_rotation:: stiff::",

@@ -5,6 +5,7 @@ mod arm;
 mod assembly;
 mod built;
 mod care;
+mod claims;
 mod common;
 mod components;
 mod constrained;

@@ -7,22 +7,22 @@ pub const VARIABLES: usize = 8;
 
 /// A value, its gradient and its Hessian.
 #[derive(Clone, Copy)]
-pub struct Jet {
+pub struct Jet<const N: usize = VARIABLES> {
     /// The value.
     pub value: f64,
     /// Its first derivatives.
-    pub slopes: [f64; VARIABLES],
+    pub slopes: [f64; N],
     /// Its second derivatives.
-    pub bends: [[f64; VARIABLES]; VARIABLES],
+    pub bends: [[f64; N]; N],
 }
 
-impl Jet {
+impl<const N: usize> Jet<N> {
     /// A number that depends on nothing.
     pub fn number(value: f64) -> Self {
         Jet {
             value,
-            slopes: [0.0; VARIABLES],
-            bends: [[0.0; VARIABLES]; VARIABLES],
+            slopes: [0.0; N],
+            bends: [[0.0; N]; N],
         }
     }
 
@@ -41,6 +41,22 @@ impl Jet {
         Jet {
             value,
             slopes: self.slopes.map(|slope| first * slope),
+            bends: std::array::from_fn(|i| std::array::from_fn(|j| bend(i, j))),
+        }
+    }
+
+    /// The product, by Leibniz's rule.
+    fn product(&self, other: &Self) -> Self {
+        let (a, b) = (self, other);
+        let bend = |i: usize, j: usize| {
+            a.bends[i][j] * b.value
+                + a.slopes[i] * b.slopes[j]
+                + a.slopes[j] * b.slopes[i]
+                + a.value * b.bends[i][j]
+        };
+        Jet {
+            value: a.value * b.value,
+            slopes: std::array::from_fn(|i| a.slopes[i] * b.value + a.value * b.slopes[i]),
             bends: std::array::from_fn(|i| std::array::from_fn(|j| bend(i, j))),
         }
     }
@@ -74,9 +90,9 @@ impl Jet {
     }
 }
 
-impl Add for Jet {
-    type Output = Jet;
-    fn add(self, other: Jet) -> Jet {
+impl<const N: usize> Add for Jet<N> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
         Jet {
             value: self.value + other.value,
             slopes: std::array::from_fn(|i| self.slopes[i] + other.slopes[i]),
@@ -87,41 +103,30 @@ impl Add for Jet {
     }
 }
 
-impl Neg for Jet {
-    type Output = Jet;
-    fn neg(self) -> Jet {
+impl<const N: usize> Neg for Jet<N> {
+    type Output = Self;
+    fn neg(self) -> Self {
         self * -1.0
     }
 }
 
-impl Sub for Jet {
-    type Output = Jet;
-    fn sub(self, other: Jet) -> Jet {
+impl<const N: usize> Sub for Jet<N> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Mul for Jet {
-    type Output = Jet;
-    fn mul(self, other: Jet) -> Jet {
-        let (a, b) = (self, other);
-        let bend = |i: usize, j: usize| {
-            a.bends[i][j] * b.value
-                + a.slopes[i] * b.slopes[j]
-                + a.slopes[j] * b.slopes[i]
-                + a.value * b.bends[i][j]
-        };
-        Jet {
-            value: a.value * b.value,
-            slopes: std::array::from_fn(|i| a.slopes[i] * b.value + a.value * b.slopes[i]),
-            bends: std::array::from_fn(|i| std::array::from_fn(|j| bend(i, j))),
-        }
+impl<const N: usize> Mul for Jet<N> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        self.product(&other)
     }
 }
 
-impl Mul<f64> for Jet {
-    type Output = Jet;
-    fn mul(self, factor: f64) -> Jet {
+impl<const N: usize> Mul<f64> for Jet<N> {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
         self.of([factor * self.value, factor, 0.0])
     }
 }

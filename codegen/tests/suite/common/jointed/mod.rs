@@ -11,6 +11,7 @@ use crate::jet::{Jet, constant, sum, turned};
 /// Newton's steps towards a configuration that closes the loops.
 const STEPS: usize = 40;
 
+#[derive(Clone)]
 pub struct System {
     /// The joints, each on one before it.
     pub joints: Vec<Joint>,

@@ -12,8 +12,8 @@ pub struct Law {
     pub linear: Vec<(f64, Name)>,
     /// The term c sin x.
     pub sine: Option<(f64, Name)>,
-    /// The term c x y.
-    pub product: Option<(f64, Name, Name)>,
+    /// Terms c x y.
+    pub products: Vec<(f64, Name, Name)>,
 }
 
 /// What a law depends on.
@@ -57,7 +57,19 @@ impl Law {
             constant: [0.0, short(random)][random.below(2)],
             linear,
             sine: (kind == 1 || kind == 3).then(|| (short(random), name(random))),
-            product: (kind == 2).then(|| (short(random), name(random), name(random))),
+            products: (0..usize::from(kind == 2))
+                .map(|_| (short(random), name(random), name(random)))
+                .collect(),
+        }
+    }
+
+    /// A number.
+    pub fn constant(constant: f64) -> Self {
+        Law {
+            constant,
+            linear: Vec::new(),
+            sine: None,
+            products: Vec::new(),
         }
     }
 
@@ -67,8 +79,19 @@ impl Law {
             constant: short(random),
             linear: vec![(short(random), Name::Time)],
             sine: Some((short(random), Name::Time)),
-            product: None,
+            products: Vec::new(),
         }
+    }
+
+    /// Whether it depends on something.
+    pub fn mentions(&self, wanted: Name) -> bool {
+        let linear = self.linear.iter().map(|(_, name)| *name);
+        let sine = self.sine.iter().map(|(_, name)| *name);
+        let products = self.products.iter().flat_map(|(_, a, b)| [*a, *b]);
+        linear
+            .chain(sine)
+            .chain(products)
+            .any(|name| name == wanted)
     }
 
     /// How it is written.
@@ -78,7 +101,7 @@ impl Law {
         if let Some((c, name)) = self.sine {
             terms.push(format!("{c} * sin({})", name.text()));
         }
-        if let Some((c, a, b)) = self.product {
+        for (c, a, b) in &self.products {
             terms.push(format!("{c} * {} * {}", a.text(), b.text()));
         }
         if self.constant != 0.0 {
@@ -96,7 +119,7 @@ impl Law {
         if let Some((factor, name)) = self.sine {
             total = total + of(name).sin() * factor;
         }
-        if let Some((factor, a, b)) = self.product {
+        for &(factor, a, b) in &self.products {
             total = total + of(a) * of(b) * factor;
         }
         total
@@ -104,6 +127,7 @@ impl Law {
 }
 
 /// What gives the motion of a joint.
+#[derive(Clone)]
 pub enum Motion {
     /// Forces alone.
     Free,
@@ -116,6 +140,7 @@ pub enum Motion {
 }
 
 /// What a joint moves.
+#[derive(Clone)]
 pub enum Load {
     /// Nothing.
     Nothing,
@@ -177,6 +202,7 @@ impl Load {
     }
 }
 
+#[derive(Clone)]
 pub struct Joint {
     /// Its kind, as it is written.
     pub kind: &'static str,
@@ -219,6 +245,7 @@ impl Joint {
 }
 
 /// A closed loop; the constant closes it at the guesses.
+#[derive(Clone)]
 pub enum Loop {
     /// A joint's own value and a law of others.
     Tie(usize, Law),
