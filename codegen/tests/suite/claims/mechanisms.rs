@@ -376,12 +376,13 @@ fn depends_on_time(system: &System) -> bool {
     joints || loops
 }
 
-/// A system that moves.
+/// A system that moves, each spring with it.
 pub fn drawn(random: &mut Random) -> Kept {
     loop {
         let kept = Kept::random(random);
         let (pivot, left, independent) = kept.system.regularity(&kept.system.start());
-        if pivot > REGULAR && left > 0 && independent > 0.05 {
+        let moves = pivot > REGULAR && left > 0 && independent > 0.05;
+        if moves && !kept.system.has_idle_spring() {
             return kept;
         }
     }

@@ -123,21 +123,7 @@ fn rightly_refused(system: &System, said: &str) -> bool {
     let (pivot, left, _) = system.regularity(&system.start());
     let idle = pivot <= REGULAR && said.contains("the mass matrix is not positive definite");
     let still = left == 0 && said.contains("the constraints leave no motion");
-    idle || still || said.contains("this spring does nothing") && has_idle_spring(system)
-}
-
-/// Whether a spring is on a joint whose value never changes, as one that follows q − q.
-fn has_idle_spring(system: &System) -> bool {
-    let start = system.start();
-    let elsewhere: Vec<f64> = start.iter().map(|q| 0.7 * q + 0.3).collect();
-    let rests = |i: usize| {
-        [&start, &elsewhere].iter().all(|q| {
-            let slopes = system.placed(q).values[i].slopes;
-            slopes.iter().all(|slope| slope.abs() < 1e-12)
-        })
-    };
-    let mut joints = system.joints.iter().enumerate();
-    joints.any(|(i, joint)| joint.stiffness > 0.0 && rests(i))
+    idle || still || said.contains("this spring does nothing") && system.has_idle_spring()
 }
 
 /// The number of the joint of a velocity, `j3_dot`.

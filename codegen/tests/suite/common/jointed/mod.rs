@@ -78,6 +78,20 @@ impl Placed<'_> {
 }
 
 impl System {
+    /// Whether a spring is on a joint whose value never changes, as one that follows q − q.
+    pub fn has_idle_spring(&self) -> bool {
+        let start = self.start();
+        let elsewhere: Vec<f64> = start.iter().map(|q| 0.7 * q + 0.3).collect();
+        let rests = |i: usize| {
+            [&start, &elsewhere].iter().all(|q| {
+                let slopes = self.placed(q).values[i].slopes;
+                slopes.iter().all(|slope| slope.abs() < 1e-12)
+            })
+        };
+        let mut joints = self.joints.iter().enumerate();
+        joints.any(|(i, joint)| joint.stiffness > 0.0 && rests(i))
+    }
+
     /// The joints that have a coordinate of their own, in the order of the variables; the time stands behind them.
     pub fn own(&self) -> Vec<usize> {
         let all = 0..self.joints.len();
