@@ -1,6 +1,8 @@
 //! The front end for robots in URDF: `hamel_urdf` makes a description of them, and errors about that
 //! description are shown at the place in the URDF that its lines are made from.
 
+mod idle;
+
 use crate::diagnostics::Diagnostic;
 use crate::functions::Needs;
 use crate::render::{Level, Note, notes, render, span_bytes};
@@ -14,9 +16,11 @@ pub fn is_urdf(path: &Path) -> bool {
         .is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
 }
 
-/// Makes a description; errors are underlined in the text, which is named `path`.
+/// Makes a description, whose closing joints have the equations that say something; errors are underlined in the text, which is
+/// named `path`.
 pub fn import(text: &str, options: &Options, path: &str, color: bool) -> Result<Imported, String> {
     hamel_urdf::import(text, options)
+        .map(|imported| idle::without_idle(text, options, imported))
         .map_err(|problems| shown(&problems, Level::Error, path, text, color))
 }
 

@@ -25,14 +25,26 @@ mod tree;
 mod write;
 
 pub use decode::{Undecoded, decode};
-pub use options::{Imported, Mimic, Options, TOLERANCE};
+pub use options::{Idle, Imported, Mimic, Options, TOLERANCE};
 pub use problem::Problem;
 
 use problem::Problems;
+use std::collections::BTreeMap;
 
 /// Reads a robot and writes its description; all independent errors at once, in the order of the
 /// text.
 pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
+    import_without(xml, options, &BTreeMap::new())
+}
+
+/// The same without equations of closing joints that are `idle`, by their places among the
+/// [`equations`](Imported::equations) of [`import`]. The text has them as comments, with the reason. Which equations these are
+/// is not known here: it takes derivatives of the equations along the tree.
+pub fn import_without(
+    xml: &str,
+    options: &Options,
+    idle: &BTreeMap<usize, Idle>,
+) -> Result<Imported, Vec<Problem>> {
     let mut errors = Problems::new(xml);
     let mut warnings = Problems::new(xml);
     let Some(read) = read::robot(xml, options, &mut errors, &mut warnings) else {
@@ -57,5 +69,11 @@ pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
         return Err(errors.sorted());
     }
     let warnings = warnings.sorted();
-    Ok(write::write(xml, &read, &tree, &plan, options, warnings))
+    Ok(write::write(
+        xml,
+        &read,
+        (&tree, &plan),
+        (options, idle),
+        warnings,
+    ))
 }

@@ -71,4 +71,15 @@ pub struct Imported {
     pub warnings: Vec<Problem>,
     /// For each line of the text, the bytes of the URDF that it is made from.
     pub origins: Vec<Option<Range<usize>>>,
+    /// The lines of the text, from 0, on which the equations of closing joints stand.
+    pub equations: Vec<usize>,
+}
+
+/// Why an equation of a closing joint says nothing that the others do not say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Idle {
+    /// Both sides are equal wherever the tree is.
+    Holds,
+    /// It follows from other equations wherever the tree is.
+    Follows,
 }

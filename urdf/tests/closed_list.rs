@@ -131,7 +131,9 @@ fn the_base_of_the_trials_holds_every_level() {
         "armature 0.0001 * 100^2 + 0.002;",
         "stiffness 3; rest 0.2;",
         "spherical on fore",
-        "] = [0, 0, 0, 0, 0];",
+        "position(pin_1)[3] = position(pin_2)[3],",
+        "dot(pin_1.R * [0, 1, 0], pin_2.R * [1, 0, 0]) = 0;",
+        "position(ball_constraint_1)[3] = position(ball_constraint_2)[3];",
         "spring stiffness 7 length 0.3 from [0.1, 0, 0] on world to [0, 0, 0.2] on upper;",
         "damper coefficient 0.5 from",
     ] {

@@ -1,6 +1,7 @@
 //! What is written for a robot, as it is read by people.
 
-use hamel_urdf::{Imported, Mimic, Options, import};
+use hamel_urdf::{Idle, Imported, Mimic, Options, import, import_without};
+use std::collections::BTreeMap;
 
 const EVERY_JOINT: &str = include_str!("files/every_joint.urdf");
 
@@ -180,4 +181,32 @@ fn lines_know_their_origin() {
 #[test]
 fn the_same_file_gives_the_same_text() {
     assert_eq!(imported(&options()).text, imported(&options()).text);
+}
+
+/// Equations of closing joints stand on lines of their own; those that are said to be idle are comments with the reason, and a
+/// closing joint without any has no frames.
+#[test]
+fn idle_equations_are_comments() {
+    let urdf = include_str!("files/every_level.urdf");
+    let all = import(urdf, &options()).expect("a sound robot");
+    let lines: Vec<&str> = all.text.lines().collect();
+    let equations: Vec<&str> = all.equations.iter().map(|&line| lines[line]).collect();
+    // A hinge has five, a ball three.
+    assert_eq!(equations.len(), 8, "{equations:?}");
+    assert!(equations.iter().all(|line| line.contains(" = ")));
+    assert!(!all.text.contains("Left out of"), "{}", all.text);
+    let ball = (5..8).map(|place| (place, Idle::Holds));
+    let idle: BTreeMap<usize, Idle> = ball.chain([(1, Idle::Follows)]).collect();
+    let fewer = import_without(urdf, &options(), &idle).expect("a sound robot");
+    let lines: Vec<&str> = fewer.text.lines().collect();
+    let kept: Vec<&str> = fewer.equations.iter().map(|&line| lines[line]).collect();
+    let plain = |line: &&str| line.trim_end_matches([',', ';']).to_string();
+    let expected = [0, 2, 3, 4].map(|place| plain(&equations[place]));
+    assert_eq!(kept.iter().map(plain).collect::<Vec<_>>(), expected);
+    assert!(lines.contains(&"    // - along [0, 1, 0] of the world: `position(pin_1)[2] = position(pin_2)[2]` follows from the others"));
+    assert!(lines.contains(
+        &"    // Left out of `ball_constraint`, since it says nothing new wherever the tree is:"
+    ));
+    assert!(!fewer.text.contains("frame ball_constraint"));
+    assert_eq!(lines.len(), fewer.origins.len());
 }

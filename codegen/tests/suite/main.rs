@@ -6,6 +6,7 @@ mod assembly;
 mod built;
 mod care;
 mod claims;
+mod closing;
 mod common;
 mod components;
 mod constrained;

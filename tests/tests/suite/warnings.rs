@@ -1,6 +1,6 @@
 //! Correct descriptions give no warnings: those of the models, the examples, and what imports write.
 
-use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::derive::reduction::{reduce, warnings as redundant};
 use hamel_codegen::lower::build;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::warnings;
@@ -58,14 +58,11 @@ fn imports_use_what_they_declare() {
                     ..Options::default()
                 };
                 let imported = import(&text, &options, "robot.urdf", false).expect("a robot");
-                let list = read(&imported.text, Path::new("")).warnings;
-                // Closing joints of planar mechanisms have rows that say nothing new.
-                let redundant = |warning: &Diagnostic| {
-                    let said = &warning.message;
-                    said.ends_with("left out")
-                };
-                let list: Vec<Diagnostic> =
-                    list.iter().filter(|w| !redundant(w)).cloned().collect();
+                let model = read(&imported.text, Path::new(""));
+                let reduction = reduce(&model).expect("a robot that moves");
+                let dropped = reduction.map_or(Vec::new(), |reduction| reduction.dropped);
+                let mut list = model.warnings;
+                list.extend(redundant(&model.constraints, &dropped));
                 let said = warnings(&list, "robot.eom", &imported.text, false);
                 assert!(said.is_empty(), "{said}");
             }

@@ -7,12 +7,13 @@ mod page;
 mod ties;
 
 use crate::names::Names;
-use crate::options::{Imported, Options};
+use crate::options::{Idle, Imported, Options};
 use crate::plan::{Mobility, Plan};
 use crate::problem::Problem;
 use crate::robot::{Kind, Read, Robot};
 use crate::tree::{Edge, Tree};
 use page::Page;
+use std::collections::BTreeMap;
 
 /// What the statements are written from.
 struct Writer<'a> {
@@ -21,16 +22,17 @@ struct Writer<'a> {
     plan: &'a Plan,
     options: &'a Options,
     names: Names,
+    /// The lines of equations of closing joints.
+    equations: Vec<usize>,
     page: Page,
 }
 
-/// Writes the description of a robot that was read and checked.
+/// Writes the description of a robot that was read and checked, without equations of closing joints that are idle.
 pub(crate) fn write(
     xml: &str,
     read: &Read,
-    tree: &Tree,
-    plan: &Plan,
-    options: &Options,
+    (tree, plan): (&Tree, &Plan),
+    (options, idle): (&Options, &BTreeMap<usize, Idle>),
     warnings: Vec<Problem>,
 ) -> Imported {
     let names = Names::of(&read.robot, options.name.as_deref());
@@ -41,6 +43,7 @@ pub(crate) fn write(
         plan,
         options,
         names,
+        equations: Vec::new(),
         page: Page::default(),
     };
     writer.header(&cleaned, &warnings);
@@ -57,7 +60,7 @@ pub(crate) fn write(
         }
     }
     writer.springs();
-    writer.loops();
+    writer.loops(idle);
     writer.page.close();
     let joints = writer.own_joints();
     let link = |link: usize| {
@@ -81,6 +84,7 @@ pub(crate) fn write(
         warnings,
         text: writer.page.text,
         origins: writer.page.origins,
+        equations: writer.equations,
     }
 }
 

@@ -3,35 +3,88 @@
 use super::Writer;
 use super::joint::pose;
 use crate::decimal::{Decimal, vector};
+use crate::options::Idle;
 use crate::robot::{Closing, End};
+use std::collections::BTreeMap;
+
+/// Unit vectors.
+const UNITS: [&str; 3] = ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"];
+
+/// An equation of a closing joint.
+struct Row {
+    left: String,
+    right: String,
+    /// What it stops: `along` or `about` a direction, of the world or of the first frame.
+    stops: String,
+}
 
 impl Writer<'_> {
     /// Closing joints, each with a frame at either end.
-    pub(super) fn loops(&mut self) {
-        let robot = self.robot;
-        for (index, closing) in robot.loops.iter().enumerate() {
-            let name = self.names.loops[index].clone();
-            let range = &closing.name.range;
+    pub(super) fn loops(&mut self, idle: &BTreeMap<usize, Idle>) {
+        let mut before = 0;
+        for index in 0..self.robot.loops.len() {
+            let name = &self.names.loops[index];
+            let ends = ["_1", "_2"].map(|end| format!("{name}{end}"));
+            let rows = rows(&self.robot.loops[index].closing, &ends);
+            let first = before;
+            before += rows.len();
+            let reasons = (first..before).map(|place| idle.get(&place).copied());
+            let (mut kept, mut left_out) = (Vec::new(), Vec::new());
+            for (row, reason) in rows.iter().zip(reasons) {
+                match reason {
+                    None => kept.push(row),
+                    Some(reason) => left_out.push((row, reason)),
+                }
+            }
             self.page.blank();
-            let [a, b] = ["_1", "_2"].map(|end| format!("{name}{end}"));
-            for (frame, end) in [&a, &b].into_iter().zip(&closing.ends) {
-                let pose = pose(end.origin.rotation.text(), &end.origin.position, None);
-                let pose = pose.unwrap_or_else(|| "pose(identity(3), [0, 0, 0])".into());
-                let text = match self.carrier(end) {
-                    Some(link) => format!("frame {frame} on {link} at {pose};"),
-                    None => format!("frame {frame} = {pose};"),
-                };
-                self.page.line(Some(range), &text);
-            }
-            // Equations that always hold are none where they stand in one vector with others.
-            let rows = rows(&closing.closing, &a, &b);
-            let zeros = vec!["0"; rows.len()].join(", ");
-            self.page.line(Some(range), "loop [");
-            for (place, row) in rows.iter().enumerate() {
-                let comma = if place + 1 < rows.len() { "," } else { "" };
-                self.page.line(Some(range), &format!("    {row}{comma}"));
-            }
-            self.page.line(Some(range), &format!("] = [{zeros}];"));
+            self.closing(index, &ends, &kept);
+            self.left_out(index, &left_out);
+        }
+    }
+
+    /// The frames of a closing joint and its equations, where there are any.
+    fn closing(&mut self, index: usize, names: &[String; 2], rows: &[&Row]) {
+        let Some((last, others)) = rows.split_last() else {
+            return;
+        };
+        let closing = &self.robot.loops[index];
+        let range = Some(&closing.name.range);
+        for (frame, end) in names.iter().zip(&closing.ends) {
+            let pose = pose(end.origin.rotation.text(), &end.origin.position, None);
+            let pose = pose.unwrap_or_else(|| "pose(identity(3), [0, 0, 0])".into());
+            let text = match self.carrier(end) {
+                Some(link) => format!("frame {frame} on {link} at {pose};"),
+                None => format!("frame {frame} = {pose};"),
+            };
+            self.page.line(range, &text);
+        }
+        self.page.line(range, "loop");
+        let others = others.iter().map(|row| (row, ","));
+        for (row, end) in others.chain([(last, ";")]) {
+            self.equations.push(self.page.origins.len());
+            let (left, right) = (&row.left, &row.right);
+            self.page.line(range, &format!("    {left} = {right}{end}"));
+        }
+    }
+
+    /// Equations that say nothing, with the reason.
+    fn left_out(&mut self, index: usize, rows: &[(&Row, Idle)]) {
+        let name = &self.robot.loops[index].name;
+        let range = &name.range;
+        if !rows.is_empty() {
+            let name = &name.name;
+            let text =
+                format!("Left out of `{name}`, since it says nothing new wherever the tree is:");
+            self.page.comment(range, &text);
+        }
+        for (row, reason) in rows {
+            let why = match reason {
+                Idle::Holds => "always holds",
+                Idle::Follows => "follows from the others",
+            };
+            let Row { left, right, stops } = row;
+            let text = format!("- {stops}: `{left} = {right}` {why}");
+            self.page.comment(range, &text);
         }
     }
 
@@ -66,27 +119,40 @@ impl Writer<'_> {
     }
 }
 
-/// The differences that vanish where two frames are closed.
-fn rows(closing: &Closing, a: &str, b: &str) -> Vec<String> {
-    let gap = |axis: usize| format!("position({a})[{axis}] - position({b})[{axis}]");
-    let across = |left: &str, right: &str| format!("dot({a}.R * {left}, {b}.R * {right})");
-    let aligned = [
-        across("[1, 0, 0]", "[0, 1, 0]"),
-        across("[0, 1, 0]", "[0, 0, 1]"),
-        across("[0, 0, 1]", "[1, 0, 0]"),
-    ];
+/// What holds where two frames are closed.
+fn rows(closing: &Closing, [a, b]: &[String; 2]) -> Vec<Row> {
+    let gap = |axis: usize| Row {
+        left: format!("position({a})[{axis}]"),
+        right: format!("position({b})[{axis}]"),
+        stops: format!("along {} of the world", UNITS[axis - 1]),
+    };
+    let across = |left: &str, right: &str, about: &str| Row {
+        left: format!("dot({a}.R * {left}, {b}.R * {right})"),
+        right: "0".into(),
+        stops: format!("about {about} of `{a}`"),
+    };
+    let aligned = || {
+        let [x, y, z] = UNITS;
+        [across(x, y, z), across(y, z, x), across(z, x, y)]
+    };
     match closing {
-        Closing::Spherical => [1, 2, 3].map(gap).to_vec(),
-        Closing::Fixed => [1, 2, 3].map(gap).into_iter().chain(aligned).collect(),
+        Closing::Spherical => [1, 2, 3].map(gap).into(),
+        Closing::Fixed => [1, 2, 3].map(gap).into_iter().chain(aligned()).collect(),
         Closing::Revolute(axis) => {
             let (along, [first, second]) = (vector(axis), normals(axis));
-            let turns = [across(&along, &first), across(&along, &second)];
+            let turns = [
+                across(&along, &first, &second),
+                across(&along, &second, &first),
+            ];
             [1, 2, 3].map(gap).into_iter().chain(turns).collect()
         }
         Closing::Prismatic(axis) => {
-            let slides = normals(axis)
-                .map(|normal| format!("dot({a}.R * {normal}, position({b}) - position({a}))"));
-            slides.into_iter().chain(aligned).collect()
+            let slides = normals(axis).map(|normal| Row {
+                left: format!("dot({a}.R * {normal}, position({b}) - position({a}))"),
+                right: "0".into(),
+                stops: format!("along {normal} of `{a}`"),
+            });
+            slides.into_iter().chain(aligned()).collect()
         }
     }
 }
