@@ -29,14 +29,12 @@ impl Builder<'_> {
     }
 
     /// λ of all constraints that say something, then the forces of drives whose rates are given. Where they are not unique, those
-    /// of a solution; the docs name them. Where they depend on one another and rates are given, there are none.
+    /// of a solution; the docs name them.
     pub(super) fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
         let constraints = || full.constraints.iter().filter(|row| !row.redundant);
         let rows = constraints().count() + full.accelerated.len();
         let unneeded = self.model.asked.needs() == Needs::Nothing;
-        // Beside rows that depend on one another, a rate that is given holds exactly, which leaves λ none that balances.
-        let driven = self.model.overconstrained && !full.accelerated.is_empty();
-        if driven || rows == 0 || unneeded {
+        if rows == 0 || unneeded {
             return;
         }
         let solved = reduction.solved.iter().map(|&(_, velocity)| velocity);

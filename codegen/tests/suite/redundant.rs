@@ -2,8 +2,11 @@
 //! are the multipliers that are unique; the others are named.
 
 use crate::common::{Random, attack, difference, generated, value};
+use hamel_codegen::derive::reduction::reduce;
 use hamel_codegen::derive::undetermined::undetermined;
 use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::program::Program;
+use hamel_codegen::proof::prove;
 
 /// The values of a function at the start, with rates.
 fn at_start(of: &Generated, name: &str, rates: &[f64]) -> Vec<f64> {
@@ -356,4 +359,220 @@ fn faults(seed: u64) -> Vec<String> {
 #[test]
 fn redundant_rows_change_neither_motion_nor_unique_forces() {
     attack(9, 200, faults);
+}
+
+/// A crank q of 0.5, two more of its length, and the plate that they carry; a bar on the plate, to the ground by another one. Three
+/// equations close the plate, one too many; two close the bars.
+const CRANKS: &str = "
+    joint q: revolute [0, 0, 1] moves first;
+    joint b: revolute [0, 0, 1] at [0.7, 0.1, 0] moves second;
+    joint c: revolute [0, 0, 1] at [0.3, 0.6, 0] moves third;
+    joint top: revolute [0, 0, 1] on first at [0.5, 0, 0] moves plate;
+    joint d: revolute [0, 0, 1] on plate at [0.4, 0.5, 0] moves bar;
+    joint e: revolute [0, 0, 1] at [1.5, 0.2, 0] moves last;
+    loop position(plate, [0.7, 0.1, 0])[1] = position(second, [0.5, 0, 0])[1],
+        position(plate, [0.7, 0.1, 0])[2] = position(second, [0.5, 0, 0])[2];
+    loop position(bar, [0.8, 0, 0])[1] = position(last, [0.9, 0, 0])[1],
+        position(bar, [0.8, 0, 0])[2] = position(last, [0.9, 0, 0])[2];
+    loop position(plate, [0.3, 0.6, 0])[1] = position(third, [0.5, 0, 0])[1],
+        position(plate, [0.3, 0.6, 0])[2] = position(third, [0.5, 0, 0])[2];
+    body on first { mass 1.2; com [0.2, 0.1, 0]; inertia diag(0.1, 0.2, 0.3) about com; }
+    body on second { mass 0.7; com [0.3, 0, 0]; inertia diag(0.1, 0.1, 0.1) about com; }
+    body on third { mass 0.4; com [0.1, 0.2, 0]; inertia diag(0.1, 0.1, 0.2) about com; }
+    body on plate { mass 2; com [0.3, 0.2, 0]; inertia diag(0.2, 0.2, 0.4) about com; }
+    body on bar { mass 0.6; com [0.3, 0.05, 0]; inertia diag(0.1, 0.2, 0.2) about com; }
+    body on last { mass 0.9; com [0.4, 0, 0]; inertia diag(0.1, 0.2, 0.15) about com; }
+    start q = 0.8, b ~ 0.8, c ~ 0.8, top ~ -0.8, d ~ 0.3, e ~ 1.5;";
+
+/// Bricard's mechanism of six hinges at right angles, with one equation too many, and a pendulum that hangs on it and is held by an
+/// equation of its own.
+const BRICARD: &str = "
+    joint q: revolute [0, 0, 1] moves f1;
+    joint r: revolute [0, 0, 1] on f1 at pose(rotx(pi / 2), [1, 0, 0]) moves f2;
+    joint s: revolute [0, 0, 1] on f2 at pose(rotx(-pi / 2), [1, 0, 0]) moves f3;
+    joint t: revolute [0, 0, 1] on f3 at pose(rotx(pi / 2), [1, 0, 0]) moves f4;
+    joint v: revolute [0, 0, 1] on f4 at pose(rotx(-pi / 2), [1, 0, 0]) moves f5;
+    joint hung: revolute [0, 1, 0] on f3 at [0.1, 0.2, 0] moves pendulum;
+    loop position(f5, [1, 0, 0]) = [-1, 0, 0];
+    let axis = f5.R * rotx(pi / 2) * [0, 0, 1];
+    loop axis[1] = 0, axis[3] = 0;
+    let bob = position(pendulum, [0, 0, 0.4]);
+    loop bob[3] = 0.776;
+    body on f1 { mass 1; com [0.5, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }
+    body on f2 { mass 2; com [0.4, 0.1, 0]; inertia diag(0.02, 0.1, 0.1) about com; }
+    body on f3 { mass 1; com [0.5, 0, 0.1]; inertia diag(0.02, 0.1, 0.11) about com; }
+    body on f4 { mass 1.5; com [0.5, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }
+    body on f5 { mass 1; com [0.6, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }
+    body on pendulum { mass 0.5; com [0.02, 0, 0.3]; inertia diag(0.1, 0.15, 0.1) about com; }
+    start q = 1.4, r ~ 1.72, s ~ 1.4, t ~ 1.72, v ~ 1.4, hung ~ 0.3;";
+
+/// B of the loops by differences of φ, where ẋ = ξ, by rows.
+fn bonds(of: &Generated) -> Vec<Vec<f64>> {
+    let model = &of.active;
+    let residual = |i: usize, h: f64| {
+        let mut x = model.start_x.clone();
+        x[i] += h;
+        value(of, "constraint", [&x, &[], &[], &[]])
+    };
+    let h = 1e-3;
+    let column = |i: usize| -> Vec<f64> {
+        let slope = |h: f64| -> Vec<f64> {
+            let sides = residual(i, h).into_iter().zip(residual(i, -h));
+            sides.map(|(a, b)| (a - b) / (2.0 * h)).collect()
+        };
+        let [coarse, middle, fine] = [h, h / 2.0, h / 4.0].map(slope);
+        let all = coarse.iter().zip(&middle).zip(&fine);
+        all.map(|((a, b), c)| (64.0 * c - 20.0 * b + a) / 45.0)
+            .collect()
+    };
+    let columns: Vec<Vec<f64>> = (0..model.n()).map(column).collect();
+    (0..columns[0].len())
+        .map(|row| columns.iter().map(|column| column[row]).collect())
+        .collect()
+}
+
+/// The unknowns that Σ rows[k] λ[k] = right determines, each with its value, by elimination with the largest pivots; `None` where it
+/// leaves one free.
+fn eliminated(rows: &[Vec<f64>], right: &[f64]) -> Vec<Option<f64>> {
+    let (count, n) = (rows.len(), right.len());
+    let mut left: Vec<Vec<f64>> = (0..n)
+        .map(|i| {
+            let entries = rows.iter().map(|row| row[i]);
+            entries.chain([right[i]]).collect()
+        })
+        .collect();
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    loop {
+        let open = (0..n).filter(|i| pivots.iter().all(|(row, _)| row != i));
+        let entries = open.flat_map(|i| (0..count).map(move |k| (i, k)));
+        let size = |&(i, k): &(usize, usize)| left[i][k].abs();
+        let largest = entries.max_by(|a, b| size(a).total_cmp(&size(b)));
+        let Some((row, k)) = largest.filter(|place| size(place) > 1e-7) else {
+            break;
+        };
+        let scale = left[row][k];
+        left[row].iter_mut().for_each(|entry| *entry /= scale);
+        let pivot = left[row].clone();
+        for (i, other) in left.iter_mut().enumerate() {
+            let factor = if i == row { 0.0 } else { other[k] };
+            let pairs = other.iter_mut().zip(&pivot);
+            pairs.for_each(|(entry, by)| *entry -= factor * by);
+        }
+        pivots.push((row, k));
+    }
+    let value = |k: usize| {
+        let (row, _) = pivots.iter().find(|(_, pivot)| *pivot == k)?;
+        let mut others = (0..count).filter(|&other| other != k);
+        let alone = others.all(|other| left[*row][other].abs() < 1e-7);
+        alone.then_some(left[*row][count])
+    };
+    (0..count).map(value).collect()
+}
+
+/// The cranks, one of which has no mass of its own.
+fn light_cranks() -> String {
+    let lines = CRANKS.lines();
+    let lines: Vec<&str> = lines
+        .filter(|line| !line.contains("body on third"))
+        .collect();
+    lines.join("\n")
+}
+
+/// A mechanism in which the rate of a joint's velocity is prescribed.
+fn driven(text: &str, joint: &str) -> Generated {
+    generated(&format!(
+        "system Driven {{
+            {text}
+            input more;
+            prescribe rate({joint}_dot) = 0.3 + more;
+            gravity [1, -9.81, 0.5];
+            start q_dot = 0.6;
+        }}"
+    ))
+}
+
+/// Where rows depend on one another and a rate is prescribed, the forces that are unique are those of an elimination, the drive's
+/// among them; the others are named, and all balance.
+#[test]
+fn unique_forces_are_given_beside_prescribed_rates() {
+    let light = light_cranks();
+    for (name, text, drives, unique) in [
+        ("cranks", CRANKS, "q", 2),
+        ("cranks by the plate's bar", CRANKS, "e", 2),
+        ("cranks of which one has no mass", &light, "q", 2),
+        ("Bricard", BRICARD, "q", 1),
+        ("Bricard by the pendulum", BRICARD, "hung", 1),
+    ] {
+        let of = driven(text, drives);
+        let xi_dot = accel(&of);
+        let velocities = of.active.velocities.iter();
+        let given = velocities
+            .clone()
+            .find(|group| group.name == format!("{drives}_dot"));
+        let given = given.expect("it is there").offset;
+        assert!((xi_dot[given] - 0.3).abs() < 1e-12, "{name}");
+        let needed = at_start(&of, "inverse_dynamics", &xi_dot);
+        let applied = at_start(&of, "generalized_force", &[]);
+        let right: Vec<f64> = needed.iter().zip(&applied).map(|(a, b)| a - b).collect();
+        let mut rows = bonds(&of);
+        rows.push(
+            (0..right.len())
+                .map(|i| f64::from(u8::from(i == given)))
+                .collect(),
+        );
+        let expected = eliminated(&rows, &right);
+        let found = at_start(&of, "constraint_force", &[]);
+        assert_eq!(found.len(), expected.len(), "{name}");
+        let scale = found.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
+        for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            if let Some(expected) = expected {
+                assert!(
+                    (found - expected).abs() < 1e-7 * scale,
+                    "{name}, {k}: {found}, {expected}"
+                );
+            }
+        }
+        let free: Vec<bool> = expected.iter().map(Option::is_none).collect();
+        assert_eq!(undetermined(&of.model), free, "{name}");
+        let loops = free.iter().rev().skip(1).filter(|free| !**free).count();
+        assert_eq!((loops, free.last()), (unique, Some(&false)), "{name}");
+        for (i, right) in right.iter().enumerate() {
+            let sum: f64 = found
+                .iter()
+                .zip(&rows)
+                .map(|(force, row)| force * row[i])
+                .sum();
+            assert!(
+                (sum - right).abs() < 1e-7 * scale,
+                "{name}, {i}: {sum}, {right}"
+            );
+        }
+    }
+}
+
+/// The proof sees a wrong sign in the force of any row, beside gears that are solved for, too.
+#[test]
+fn wrong_forces_beside_prescribed_rates_are_refused() {
+    let geared = format!(
+        "{CRANKS} joint wheel: revolute [0, 0, 1] moves disk; loop wheel = 2 * b; \
+         body on disk {{ mass 1; inertia diag(0.1, 0.1, 0.2) about com; }}"
+    );
+    for text in [CRANKS, &light_cranks(), &geared, BRICARD] {
+        let of = driven(text, "q");
+        let reduction = reduce(&of.model).expect("it was derived");
+        let proved =
+            |program: &Program| prove(&of.model, reduction.as_ref(), None, [program; 2]).is_ok();
+        assert!(proved(&of.program), "{text}");
+        let functions = of.program.functions.iter();
+        let place = functions
+            .clone()
+            .position(|of| of.name == "constraint_force");
+        let place = place.expect("it is there");
+        for entry in 0..of.program.functions[place].outputs.len() {
+            let mut wrong = of.program.clone();
+            let output = &mut wrong.functions[place].outputs[entry];
+            *output = -*output;
+            assert!(!proved(&wrong), "{entry} of {text}");
+        }
+    }
 }

@@ -290,7 +290,15 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     }
 }
 
-/// ξ̇ in numbers modulo p, by plain elimination: what the emitted code has to agree with. The parts are M, the forces, B by
+/// ξ̇ and λ in numbers modulo p.
+pub struct Solved {
+    /// ξ̇.
+    pub xi_dot: Vec<Fp>,
+    /// λ of the constraints, then of velocities whose rates are given.
+    pub multipliers: Vec<Fp>,
+}
+
+/// ξ̇ and λ in numbers modulo p, by plain elimination: what the emitted code has to agree with. The parts are M, the forces, B by
 /// rows, and the right side of B ξ̇; then come velocities whose rates are given. Of the lane is what `Raised` multiplies by
 /// where the system is overconstrained. Where M is raised by w BᵀB, w Bᵀ b is added to forces that `balance` it, as in ξ̇; steps
 /// back to constraints have no forces.
@@ -300,7 +308,7 @@ pub fn solve_at(
     given: &[(usize, Fp)],
     balance: bool,
     lane: &Lane,
-) -> Option<Vec<Fp>> {
+) -> Option<Solved> {
     let n = force.len();
     let (mut mass, mut force) = (mass.to_vec(), force.to_vec());
     let (mut rows, mut right) = (rows.to_vec(), right.to_vec());
@@ -310,13 +318,14 @@ pub fn solve_at(
     }
     let m = right.len();
     let raising = raising(&model.constraints, given.len());
+    let mut weight = Fp::ZERO;
     if model.augmented {
         let mut trace = (0..n).fold(Fp::ZERO, |sum, i| sum + mass[i * n + i]);
         if trace.is_zero() {
             trace = Fp::ONE;
         }
         let squares = rows.iter().fold(Fp::ZERO, |sum, &b| sum + b * b);
-        let weight = trace * squares.inv()?;
+        weight = trace * squares.inv()?;
         for (row, &right) in rows.chunks(n).zip(&right) {
             for (i, &b) in row.iter().enumerate() {
                 if balance {
@@ -342,16 +351,23 @@ pub fn solve_at(
         false => Fp::ONE,
     };
     let wanted: Vec<Fp> = (0..m).map(|i| right[i] - dot(row(i), free)).collect();
-    let multipliers = multipliers_at(&schur, &raising, wanted, factor)?;
+    let mut multipliers = multipliers_at(&schur, &raising, wanted, factor)?;
     let moved = (0..n).map(|k| {
         let column: Vec<Fp> = bonds.iter().map(|bond| bond[k]).collect();
         free[k] + dot(&column, &multipliers)
     });
     let mut xi_dot: Vec<Fp> = moved.collect();
+    // As in `plain`.
+    for (i, multiplier) in multipliers.iter_mut().enumerate() {
+        *multiplier = *multiplier - weight * (dot(row(i), &xi_dot) - right[i]);
+    }
     for &(place, rate) in given {
         xi_dot[place] = rate;
     }
-    Some(xi_dot)
+    Some(Solved {
+        xi_dot,
+        multipliers,
+    })
 }
 
 /// A⁻¹ b for several b.

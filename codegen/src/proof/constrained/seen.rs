@@ -7,7 +7,7 @@ use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
-use crate::derive::accel::saddle;
+use crate::derive::accel::saddle::{self, Solved};
 use crate::derive::reduction::Reduction;
 use crate::program::{FunctionId, Program};
 use crate::proof::charts::Charts;
@@ -187,13 +187,13 @@ impl<'a> Seen<'a> {
         })
     }
 
-    /// ξ̇ₐ of Cᵀ M C ξ̇ₐ = force + Bᵀ λ, B ξ̇ₐ = right, by elimination in numbers; steps have no forces.
+    /// ξ̇ₐ and λ of Cᵀ M C ξ̇ₐ = force + Bᵀ λ, B ξ̇ₐ = right, by elimination in numbers; steps have no forces.
     fn solution(
         &self,
         force: Option<&[Fp]>,
         right: &[Fp],
         driven: &[(usize, Fp)],
-    ) -> Option<Vec<Fp>> {
+    ) -> Option<Solved> {
         let none = vec![Fp::ZERO; self.reduction.active.len()];
         let parts = [&self.mass[..], force.unwrap_or(&none), &self.kept, right];
         saddle::solve_at(
@@ -205,8 +205,8 @@ impl<'a> Seen<'a> {
         )
     }
 
-    /// The ξ̇ₐ that the forces imply.
-    fn implied(&self) -> Option<Vec<Fp>> {
+    /// The ξ̇ₐ and λ that the forces imply.
+    fn implied(&self) -> Option<Solved> {
         let Values { force, slope, .. } = &self.values;
         let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
         let rest: Vec<Fp> = rest.collect();
@@ -221,31 +221,17 @@ impl<'a> Seen<'a> {
     /// Every row of the full frame with the emitted multipliers, and along virtual velocities without them. Where ξ̇ is
     /// not emitted, multipliers are compared with the ξ̇ that the forces imply.
     fn balances(&self) -> Option<bool> {
-        let model = &self.full.reference.model;
-        let (n, force) = (self.n(), &self.values.force);
+        let force = &self.values.force;
         let lambda = self.emitted("constraint_force")?;
         let lambda = lambda.map(|lambda| self.full.of_all_rows(lambda));
         let xi_dot = match (&self.xi_dot, &lambda) {
-            (None, Some(_)) => Some(self.implied()?),
+            (None, Some(_)) => Some(self.implied()?.xi_dot),
             (emitted, _) => emitted.clone(),
         };
-        if let (Some(xi_dot), Some(lambda)) = (&xi_dot, lambda) {
-            let needed = self.needed(xi_dot);
-            let time = model.clock.map(|clock| clock.xi);
-            // The row of ξ⁰ is no equation of motion.
-            let balanced = (0..n).filter(|&i| Some(i) != time).all(|i| {
-                let bonds = lambda.iter().zip(self.rows.chunks(n));
-                let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
-                // Beyond the rows of constraints stand the forces of drives whose rates are given.
-                let drives = model.accelerated.iter();
-                let drives = drives.zip(lambda.get(self.rows.len() / n..).unwrap_or(&[]));
-                let drive = drives.filter(|((velocity, _), _)| *velocity == i);
-                let drive = drive.fold(Fp::ZERO, |sum, (_, &force)| sum + force);
-                needed[i] == force[i] + bond + drive
-            });
-            if !balanced {
-                return Some(false);
-            }
+        if let (Some(xi_dot), Some(lambda)) = (&xi_dot, &lambda)
+            && !(self.bonds_balance(xi_dot, lambda)? && self.shared_is_implied(lambda)?)
+        {
+            return Some(false);
         }
         // A virtual velocity v has B v = 0, and moves no drive: neither multipliers nor drives do work on it.
         if let Some(xi_dot) = &xi_dot {
@@ -263,13 +249,62 @@ impl<'a> Seen<'a> {
         self.equal("inverse_dynamics", &self.projected(&self.needed(&rates)))
     }
 
+    /// The rows of the full frame with the multipliers of all constraints, then of drives; `None` where some have no value.
+    fn bonds_balance(&self, xi_dot: &[Fp], lambda: &[Fp]) -> Option<bool> {
+        let model = &self.full.reference.model;
+        let (n, force) = (self.n(), &self.values.force);
+        let needed = self.needed(xi_dot);
+        let time = model.clock.map(|clock| clock.xi);
+        // The row of ξ⁰ is no equation of motion.
+        let compared = (0..n).filter(|&i| Some(i) != time && !self.contradicts(i));
+        let mut balanced = compared.map(|i| {
+            let bonds = lambda.iter().zip(self.rows.chunks(n));
+            let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
+            // Beyond the rows of constraints stand the forces of drives whose rates are given.
+            let drives = model.accelerated.iter();
+            let drives = drives.zip(lambda.get(self.rows.len() / n..)?);
+            let drive = drives.filter(|((velocity, _), _)| *velocity == i);
+            let drive = drive.fold(Fp::ZERO, |sum, (_, &force)| sum + force);
+            Some(needed[i] == force[i] + bond + drive)
+        });
+        balanced.try_fold(true, |all, row| Some(all & row?))
+    }
+
+    /// Whether rates are given beside rows that depend on one another. Off the loops these contradict one another and the rates
+    /// that are given, which hold exactly.
+    fn is_shared(&self) -> bool {
+        let reduced = &self.full.reduced;
+        reduced.overconstrained && !reduced.accelerated.is_empty()
+    }
+
+    /// Whether the row of a velocity balances where the loops are closed alone: that of one which moves by itself.
+    fn contradicts(&self, velocity: usize) -> bool {
+        let model = &self.full.reference.model;
+        let driven = model
+            .accelerated
+            .iter()
+            .any(|&(place, _)| place == velocity);
+        self.is_shared() && !driven && self.reduction.active.contains(&velocity)
+    }
+
+    /// Whether the multipliers of kept rows are those of the elimination in numbers, where rows of the balance are not compared.
+    /// The rows that are compared give all other multipliers.
+    fn shared_is_implied(&self, lambda: &[Fp]) -> Option<bool> {
+        if !self.is_shared() {
+            return Some(true);
+        }
+        let implied = self.implied()?.multipliers;
+        let mut kept = self.reduction.kept.iter().zip(&implied);
+        Some(kept.all(|(&row, implied)| lambda.get(row) == Some(implied)))
+    }
+
     /// The constraints, along the emitted ξ̇.
     fn is_kept(&self) -> Option<bool> {
         let Some(xi_dot) = &self.xi_dot else {
             return Some(true);
         };
         if self.full.reduced.overconstrained {
-            return Some(self.implied()? == *xi_dot);
+            return Some(self.implied()?.xi_dot == *xi_dot);
         }
         let mut driven = self.driven.iter();
         let mut rows = (self.right.iter()).zip(self.kept.chunks(xi_dot.len().max(1)));
@@ -310,7 +345,8 @@ impl<'a> Seen<'a> {
         let held: Vec<(usize, Fp)> = self.driven.iter().map(|&(i, _)| (i, Fp::ZERO)).collect();
         let back = |left: &[Fp]| {
             let right: Vec<Fp> = left.iter().map(|&left| -left).collect();
-            self.solution(None, &right, &held)
+            let solution = self.solution(None, &right, &held)?;
+            Some(solution.xi_dot)
         };
         if let Some(found) = self.emitted("project_position")?
             && found[..na] != back(&residuals)?
