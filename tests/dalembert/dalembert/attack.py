@@ -12,7 +12,7 @@ import sys
 import time
 
 from . import wrong
-from .awkward import AwkwardDriven, AwkwardLoops, AwkwardTrees, Platforms
+from .awkward import AwkwardDriven, AwkwardLoops, AwkwardTrees, DrivenPlatforms, Platforms
 from .compare import Comparison, Errors
 from .definitions import Definitions, independent
 from .doors import Doors, Refused
@@ -102,8 +102,8 @@ def awkward(seed, largest, hard):
 
 
 def platform(seed, largest, hard):
-    """One on more cranks than it needs."""
-    return loop(seed, largest, hard, Platforms)
+    """One on more cranks than it needs, whose motion is given or not."""
+    return loop(seed, largest, hard, (Platforms, DrivenPlatforms)[seed % 2])
 
 
 def spoken(seed, largest, hard):

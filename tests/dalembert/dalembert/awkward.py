@@ -84,6 +84,14 @@ class Platforms(Loops):
         return s
 
 
+class DrivenPlatforms(Platforms, Driven):
+    """The same where the rate of a crank is given: of all multipliers the force of its drive alone is unique."""
+
+    def constraints(self):
+        Loops.constraints(self)
+        self.rate(next(place for name, _, place in self.m.velocities if name == "a0_dot"))
+
+
 class AwkwardLoops(Awkward, Loops):
     """Loops."""
 
@@ -92,4 +100,4 @@ class AwkwardDriven(Awkward, Driven):
     """Motions that are given."""
 
 
-__all__ = ["AwkwardTrees", "AwkwardLoops", "AwkwardDriven", "Platforms"]
+__all__ = ["AwkwardTrees", "AwkwardLoops", "AwkwardDriven", "DrivenPlatforms", "Platforms"]

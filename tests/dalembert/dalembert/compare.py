@@ -1,9 +1,11 @@
 """One mechanism at one state: every function of generated C, and what `eval` and `linearize` print, beside the definitions."""
 
+from itertools import combinations
+
 from . import further, kinematics, left, tied
 from .definitions import Definitions, independent
 from .doors import Refused
-from .vectors import mpf, on, times, transposed
+from .vectors import dot, mpf, on, solve, times, transposed
 
 
 def flat(value):
@@ -193,13 +195,14 @@ class Comparison:
     def ties(self, c, s, given, kind, tolerance):
         """What keeps ties, and what leads back onto them."""
         d, m = self.d, self.m
-        # Of rows that depend on one another some are left out, and λ is not unique: the suites compare those with fewer rows.
-        if "constraint_force" in c and self.unique:
+        if "constraint_force" not in c:
+            self.errors.found.append((self.where, kind + "constraint_force", "is missing"))
+        elif self.unique:
             force = c.call("constraint_force", self.rows, **given)
             bonds = self.in_text(d.bonds(s))
             self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(bonds), [mpf(f) for f in force]), tolerance)
-        elif self.unique:
-            self.errors.found.append((self.where, kind + "constraint_force", "is missing"))
+        else:
+            self.shared(c, s, given, kind)
         # From beside the ties.
         beside = tied.beside(d, s)
         given = {**given, "x": [float(e) for e in beside.x], "xi": [float(e) for e in [*(beside.xi[i] for i in d.active), *s.z]]}
@@ -222,6 +225,33 @@ class Comparison:
         if "project_velocity" in c:
             projected = [tied.project_velocity(d, beside)[i] for i in d.active] + list(s.z)
             self.note(kind + "project_velocity", projected, c.call("project_velocity", len(projected), **given), tolerance)
+
+    def shared(self, c, s, given, kind):
+        """λ where rows depend on one another. Some of these are left out: which ones is not said by number, but the force of those that
+        are left is that of all. What is said to be unique is so by elimination, and has the value that this gives."""
+        d = self.d
+        bonds, total = self.in_text(d.bonds(s)), d.motion(s)[1]
+        said = self.doors.eval(self.state(s))
+        free = [row in said.get("undetermined", []) for row in said["constraints"]]
+        theirs = [mpf(f) for f in c.call("constraint_force", len(free), **given)]
+        mine = multipliers(bonds, total)
+        tolerance = 2e-2 if single_of(kind) else 1e-7
+        size = max(max(map(abs, total), default=mpf(0)), mpf("1e-3"))
+
+        def misses(rows):
+            force = on(transposed([bonds[k] for k in rows]), theirs)
+            return max((abs(a - b) for a, b in zip(force, total)), default=mpf(0)) > tolerance * size
+
+        fitting = [rows for rows in combinations(range(len(bonds)), len(free)) if not misses(rows)]
+        if not fitting:
+            self.errors.found.append((self.where, kind + "constraint_force", f"no choice of {len(free)} rows gives the force"))
+            return
+        agreeing = [rows for rows in fitting if [mine[k] is None for k in rows] == free]
+        if not agreeing:
+            self.errors.found.append((self.where, kind + "constraint_force", f"{free} are said to be not determined"))
+            return
+        unique = [(mine[k], force) for k, force in zip(agreeing[0], theirs) if mine[k] is not None]
+        self.note(kind + "constraint_force", [a for a, _ in unique], [b for _, b in unique], tolerance)
 
     def regressor(self, c, s, given, kind):
         if "regressor" not in c:
@@ -285,6 +315,18 @@ class Comparison:
 def whole(lin):
     """[A B] as they are printed."""
     return [a + b for a, b in zip(lin["A"], lin["B"])]
+
+
+def multipliers(bonds, total):
+    """The multipliers of rows whose force is given, each `None` where it is not unique: where its row depends on the others."""
+    rows = independent(bonds)
+    b = [bonds[k] for k in rows]
+    found = dict(zip(rows, solve([[dot(p, q) for q in b] for p in b], [dot(p, total) for p in b])))
+
+    def depends(k):
+        return len(independent(bonds[:k] + bonds[k + 1 :])) == len(rows)
+
+    return [None if depends(k) else found[k] for k in range(len(bonds))]
 
 
 def square(numbers, rows):
