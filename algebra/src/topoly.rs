@@ -19,6 +19,12 @@ pub const OPAQUE: Var = 1 << 24;
 /// Largest number of terms of an intermediate polynomial.
 pub const MOST_TERMS: usize = 4000;
 
+/// How many times as many terms a polynomial may have before it is reduced.
+const UNREDUCED: usize = 4;
+
+/// Polynomials of so many terms are not reduced on the way: they are short enough.
+const REDUCED_TERMS: usize = 16;
+
 /// Highest degree of an intermediate polynomial: towers of powers reach degrees that no exponent
 /// could hold.
 pub const HIGHEST_DEGREE: u32 = 100;
@@ -69,6 +75,11 @@ impl Expander {
         self
     }
 
+    /// The same from now on; what has been expanded stays.
+    pub fn limit_terms(&mut self, most: usize) {
+        self.most_terms = most;
+    }
+
     /// The same, with linear forms as variables whose third or a higher power is taken.
     pub fn keeping_powers(mut self) -> Self {
         self.bases = Some(FxHashSet::default());
@@ -77,15 +88,58 @@ impl Expander {
 
     /// The polynomial of an expression; `None` where it has too many terms.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
-        let reachable = graph.reachable(&[edge]);
-        self.keep_powers(graph, &reachable);
-        for id in reachable {
-            if !self.memo.contains_key(&id) {
-                let polynomial = self.local(graph, id);
-                self.memo.insert(id, polynomial);
-            }
+        if self.bases.is_some() {
+            self.keep_powers(graph, &graph.reachable(&[edge]));
+        }
+        for id in self.unknown(graph, edge) {
+            let polynomial = self.local(graph, id, self.most_terms);
+            self.memo.insert(id, polynomial);
         }
         self.signed(edge).map(Cow::into_owned)
+    }
+
+    /// The polynomial of an expression modulo an ideal: `reduce` gives a representative of each polynomial on the way
+    /// that has more than [`REDUCED_TERMS`]. `None` where a representative has too many terms, or a product before it
+    /// has far too many, or where it takes more than `work` products and sums of terms; parts that were not reached
+    /// then are expanded when they are asked for again. One expander serves one ideal.
+    pub fn expand_modulo(
+        &mut self,
+        graph: &Graph,
+        edge: Edge,
+        work: usize,
+        reduce: &mut dyn FnMut(&Graph, Poly<BigRational>) -> Poly<BigRational>,
+    ) -> Option<Poly<BigRational>> {
+        self.work = work;
+        for id in self.unknown(graph, edge) {
+            let mut polynomial = self.local(graph, id, UNREDUCED * self.most_terms);
+            if self.work == 0 {
+                return None;
+            }
+            let terms = |polynomial: &Poly<BigRational>| polynomial.terms().len();
+            let length = polynomial.as_ref().map_or(0, terms);
+            if length > REDUCED_TERMS {
+                // Each of its terms may be replaced by others, for which there is made room among the rest.
+                self.spend(length * length / 8)?;
+                polynomial = polynomial.map(|polynomial| reduce(graph, polynomial));
+            }
+            let polynomial = polynomial.filter(|polynomial| terms(polynomial) <= self.most_terms);
+            self.memo.insert(id, polynomial);
+        }
+        self.signed(edge).map(Cow::into_owned)
+    }
+
+    /// The parts of an expression that have not been expanded, children first.
+    fn unknown(&self, graph: &Graph, edge: Edge) -> Vec<NodeId> {
+        let mut found = FxHashSet::default();
+        let mut open = vec![edge.node()];
+        while let Some(id) = open.pop() {
+            if !self.memo.contains_key(&id) && found.insert(id) {
+                open.extend(graph.node(id).children().map(Edge::node));
+            }
+        }
+        let mut found: Vec<NodeId> = found.into_iter().collect();
+        found.sort_unstable();
+        found
     }
 
     /// Finds the linear forms whose powers are kept. What was expanded before them is expanded anew.
@@ -132,7 +186,7 @@ impl Expander {
         Some(self.memo.get(&edge.node())?.as_ref()?.terms().len())
     }
 
-    fn local(&mut self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
+    fn local(&mut self, graph: &Graph, id: NodeId, most: usize) -> Option<Poly<BigRational>> {
         match graph.node(id) {
             Node::Add(a, b) => self.spend(self.terms(a)? + self.terms(b)?)?,
             Node::Mul(a, b) => self.spend(self.terms(a)? * self.terms(b)?)?,
@@ -144,11 +198,11 @@ impl Expander {
             Node::Add(a, b) => {
                 let (a, b) = (self.signed(a)?, self.signed(b)?);
                 let sum = a.add(&b);
-                (sum.terms().len() <= self.most_terms).then_some(sum)
+                (sum.terms().len() <= most).then_some(sum)
             }
             Node::Mul(a, b) => {
                 let (a, b) = (self.signed(a)?, self.signed(b)?);
-                product(&a, &b, self.most_terms)
+                product(&a, &b, most)
             }
             _ => Some(Poly::var(OPAQUE + id)),
         }

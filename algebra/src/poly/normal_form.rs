@@ -64,6 +64,16 @@ impl<F: Field> Basis<F> {
         reduce(&f, &divisors, usize::MAX, &mut unlimited).unwrap_or(f)
     }
 
+    /// Whether f is in normal form: no leading monomial of the basis divides one of its terms.
+    pub fn is_reduced(&self, f: &Poly<F>) -> bool {
+        f.terms().iter().all(|(monomial, _)| {
+            let mask = !monomial.mask();
+            self.divisors
+                .iter()
+                .all(|divisor| divisor.mask & mask != 0 || monomial.div(&divisor.lead).is_none())
+        })
+    }
+
     /// Whether f lies in the ideal.
     pub fn contains(&self, f: &Poly<F>) -> bool {
         self.normal_form(f).is_zero()

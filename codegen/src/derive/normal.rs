@@ -18,11 +18,18 @@ use std::collections::BTreeMap;
 /// Polynomials with their normal forms modulo the ideal of φ; one instance serves one graph, which
 /// may grow.
 pub struct NormalForms {
+    /// Polynomials as they stand.
     expander: Expander,
-    angles: Angles,
-    bases: Vec<Basis<BigRational>>,
-    circles: BTreeMap<Var, Option<Basis<BigRational>>>,
+    /// Those in normal form.
+    reduced: Expander,
+    ideal: Ideal,
 }
+
+/// Products and sums of terms that are made for one normal form: those of entries that people read take a tenth of it.
+const MOST_WORK: usize = 60_000;
+
+/// Longest normal form on the way to one that is asked for.
+const MOST_REDUCED: usize = 200;
 
 impl NormalForms {
     /// The Gröbner bases of φ; constraints whose basis is too large are left out.
@@ -86,9 +93,12 @@ impl NormalForms {
             .collect();
         NormalForms {
             expander: Expander::within(work),
-            angles: Angles::default(),
-            bases,
-            circles: BTreeMap::new(),
+            reduced: Expander::default().of_terms(MOST_REDUCED),
+            ideal: Ideal {
+                angles: Angles::default(),
+                bases,
+                circles: BTreeMap::new(),
+            },
         }
     }
 
@@ -96,6 +106,11 @@ impl NormalForms {
     pub fn of_terms(mut self, most: usize) -> Self {
         self.expander = self.expander.of_terms(most);
         self
+    }
+
+    /// Gives up on normal forms with one on the way of more terms than this, from now on.
+    pub fn limit_terms(&mut self, most: usize) {
+        self.reduced.limit_terms(most);
     }
 
     /// The same with powers of linear forms as they are: digits of (x − c)³ near c.
@@ -111,9 +126,34 @@ impl NormalForms {
 
     /// The normal form of a polynomial.
     pub fn reduce(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> Poly<BigRational> {
-        let mut result = polynomial.clone();
+        self.ideal.reduce(graph, polynomial.clone())
+    }
+
+    /// The normal form of an expression, whose polynomials on the way are in normal form, too, where they are long.
+    pub fn normal_form(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
+        let ideal = &mut self.ideal;
+        let mut reduce = |graph: &Graph, polynomial| ideal.reduce(graph, polynomial);
+        let polynomial = self
+            .reduced
+            .expand_modulo(graph, edge, MOST_WORK, &mut reduce)?;
+        Some(self.ideal.reduce(graph, polynomial))
+    }
+}
+
+/// The ideal of φ, and those of the circles of cos a and sin a.
+struct Ideal {
+    angles: Angles,
+    bases: Vec<Basis<BigRational>>,
+    circles: BTreeMap<Var, Option<Basis<BigRational>>>,
+}
+
+impl Ideal {
+    fn reduce(&mut self, graph: &Graph, polynomial: Poly<BigRational>) -> Poly<BigRational> {
+        let mut result = polynomial;
         for basis in &self.bases {
-            result = basis.normal_form(&result);
+            if !basis.is_reduced(&result) {
+                result = basis.normal_form(&result);
+            }
         }
         for var in result.variables() {
             if let Some((cos, sin)) = self.angles.pair(graph, var) {
@@ -122,7 +162,9 @@ impl NormalForms {
                 let Some(basis) = self.circles.entry(cos).or_insert_with(ideal) else {
                     continue;
                 };
-                result = basis.normal_form(&result);
+                if !basis.is_reduced(&result) {
+                    result = basis.normal_form(&result);
+                }
             }
         }
         result

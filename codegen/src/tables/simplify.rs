@@ -15,6 +15,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Longest polynomial that is shown as one.
 pub const MOST_SHOWN: usize = 60;
 
+/// Longest polynomial on the way to one that is shown, as it stands.
+const MOST_EXPANDED: usize = 100;
+
+/// Expressions without a short polynomial after which polynomials on the way may be no longer than those that are shown:
+/// of a long chain no entry has one, and to find that out takes long for each.
+const MOST_FAILURES: usize = 100;
+
 /// Longest polynomial that is expanded inside an expression that is not.
 const MOST_INSIDE: usize = 8;
 
@@ -22,6 +29,8 @@ const MOST_INSIDE: usize = 8;
 pub struct Simplifier {
     expander: Expander,
     forms: Option<NormalForms>,
+    /// Expressions that had no short polynomial.
+    failures: usize,
     /// The symbol of x₁.
     first: NodeId,
     /// The block of every coordinate.
@@ -44,8 +53,9 @@ impl Simplifier {
     pub fn free(points: &Points) -> Self {
         let numbered = points.blocks.iter().enumerate();
         Simplifier {
-            expander: Expander::default(),
+            expander: Expander::default().of_terms(MOST_EXPANDED),
             forms: None,
+            failures: 0,
             first: points.first as NodeId,
             blocks: numbered
                 .flat_map(|(i, block)| vec![i; block.len()])
@@ -56,22 +66,44 @@ impl Simplifier {
     }
 
     /// The polynomial to show: of the candidates that with fewest blocks of coordinates, then
-    /// fewest coordinates, then fewest terms; `None` where it is too long.
+    /// fewest coordinates, then fewest terms; `None` where all are too long.
     pub fn whole(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
-        let plain = self.expander.expand(graph, Edge::of(node))?;
-        let mut best = plain.clone();
+        let shortest = self.shortest(graph, node);
+        if shortest.is_none() {
+            self.failures += 1;
+            if self.failures == MOST_FAILURES
+                && let Some(forms) = &mut self.forms
+            {
+                forms.limit_terms(MOST_SHOWN);
+            }
+        }
+        shortest
+    }
+
+    fn shortest(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
+        let plain = self.expander.expand(graph, Edge::of(node));
+        let mut candidates: Vec<Poly<BigRational>> = plain.into_iter().collect();
         if graph.class(node) & class::CONFIGURATION != 0
             && let Some(forms) = &mut self.forms
         {
-            let reduced = forms.reduce(graph, &plain);
-            for candidate in [plain, reduced] {
-                let pairs = pairs(graph, self.first, &self.kinds, &candidate);
-                let candidate = shortened(candidate, &pairs);
-                if self.cost(graph, &candidate) < self.cost(graph, &best) {
-                    best = candidate;
-                }
-            }
+            candidates.extend(forms.normal_form(graph, Edge::of(node)));
+            let shorter: Vec<Poly<BigRational>> = candidates
+                .iter()
+                .map(|candidate| {
+                    let pairs = pairs(graph, self.first, &self.kinds, candidate);
+                    shortened(candidate.clone(), &pairs)
+                })
+                .collect();
+            // A candidate as it stands is taken where it is as good as one in which squares on circles are replaced.
+            candidates.truncate(1);
+            candidates.extend(shorter);
         }
+        let costs: Vec<_> = candidates
+            .iter()
+            .map(|candidate| self.cost(graph, candidate))
+            .collect();
+        let least = (0..candidates.len()).min_by_key(|&candidate| costs[candidate])?;
+        let best = candidates.swap_remove(least);
         // Products with quotients are shorter as they are than multiplied out.
         let quotient = |var: Var| {
             let id = var.checked_sub(OPAQUE);
