@@ -31,7 +31,7 @@ const STATES: usize = 3;
 enum Form {
     Sum,
     Square,
-    Sine,
+    Logarithm,
 }
 
 #[derive(Clone)]
@@ -68,7 +68,7 @@ impl Claim {
             (Some(said), _) => said.clone(),
             (None, Form::Sum) => sum,
             (None, Form::Square) => format!("({sum})^2"),
-            (None, Form::Sine) => format!("sin(({sum}) / 8)"),
+            (None, Form::Logarithm) => format!("log(2 + ({sum})^2)"),
         };
         let values = ["F", "d"].iter().zip(self.when);
         let conditions: Vec<String> = values

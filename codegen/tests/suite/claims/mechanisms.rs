@@ -121,7 +121,7 @@ impl Kept {
         all.extend(self.ties().into_iter().map(Claim::new));
         for claim in &mut all {
             if claim.named.is_none() {
-                claim.form = [Form::Sum, Form::Sum, Form::Square, Form::Sine][random.below(4)];
+                claim.form = [Form::Sum, Form::Sum, Form::Square, Form::Logarithm][random.below(4)];
                 if random.below(2) == 0 {
                     claim.pieces.extend(self.vanishing(random));
                 }

@@ -146,7 +146,7 @@ impl Surface {
         }
         for claim in all.iter_mut().filter(|claim| claim.named.is_none()) {
             claim.pieces.extend(self.vanishing(random));
-            claim.form = [Form::Sum, Form::Square, Form::Sine][random.below(3)];
+            claim.form = [Form::Sum, Form::Square, Form::Logarithm][random.below(3)];
         }
         all
     }
