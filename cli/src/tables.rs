@@ -54,7 +54,8 @@ pub enum Format {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
     let generated = source.derive_available(&[])?;
-    let tables = tables::tables(&generated, &arguments.of)
+    let tables = generated
+        .tables(&arguments.of)
         .map_err(|why| Failure::failed(format!("{}: {why}", source.path)))?;
     print(&written(&tables, arguments.format, arguments.all))
 }

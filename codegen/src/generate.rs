@@ -14,6 +14,7 @@ use crate::model::Model;
 use crate::program::Program;
 use crate::proof;
 use crate::syntax::{self, Places, ast};
+use crate::tables::{self, Derivation, Table, Tables};
 use proc_macro2::TokenStream;
 use std::path::Path;
 
@@ -211,6 +212,19 @@ impl Generated {
             claims: claims.map(|claim| claim.name).collect(),
         };
         Ok((Generated::of(model, hash)?, Some(left_out)))
+    }
+
+    /// Tables of coefficients: all of [`Table::DEFAULT`] that the system has where none is named.
+    ///
+    /// # Errors
+    /// Which table cannot be had, and why.
+    pub fn tables(&self, asked: &[Table]) -> Result<Tables, String> {
+        let derivation = Derivation {
+            model: &self.model,
+            active: &self.active,
+            program: &self.program,
+        };
+        tables::tables(derivation, asked)
     }
 
     /// What is said where the generated text is no Rust.

@@ -4,20 +4,20 @@
 //!
 //! # The stages
 //!
-//! `text or tokens → ast → names → shapes → model → derivation → program → proof → Rust, C | tables | machine code | interpreter`,
-//! one module for each stage. Dependencies point one way:
+//! `text or tokens → ast → names → shapes → model → derivation → program → proof → Rust, C | tables | machine code | interpreter`.
+//! Most stages are crates, in folders of this one; dependencies point one way:
 //!
-//! | module | what it owns |
-//! |---|---|
-//! | [`algebra`] | a crate of its own: expression graph, polynomials and normal forms, without mechanics |
-//! | [`syntax`], [`reuse`], [`mod@lower`], [`model`] | the crate `hamel-language`: from a description to a mechanical system as expressions of a graph |
-//! | [`mod@derive`] | the symbols of the formalism, and ξ̇ by the cheapest route |
-//! | [`proof`] | everything derived once more by other routes, and compared |
-//! | [`program`] | binding times, operation counts, tapes, interpretation |
-//! | [`emit`] | Rust and C99 as text, without any algebra |
-//! | [`tables`] | the tables of coefficients that people read |
-//! | `scene` | descriptions as data, built in Rust or read from text |
-//! | [`generate`], [`expand()`], [`Builder`] | the front ends |
+//! | module | crate | what it owns |
+//! |---|---|---|
+//! | [`algebra`] | `hamel-algebra` | expression graph, polynomials and normal forms, without mechanics |
+//! | [`syntax`], [`reuse`], [`mod@lower`], [`model`] | `hamel-language` | from a description to a mechanical system as expressions of a graph |
+//! | [`program`] | `hamel-program` | binding times, operation counts, tapes, interpretation |
+//! | [`derive`](mod@derive) | `hamel-dynamics` | the symbols of the formalism, and ξ̇ by the cheapest route |
+//! | [`proof`] | `hamel-verify` | everything derived once more by other routes, and compared |
+//! | [`emit`] | `hamel-emit` | Rust and C99 as text, without any algebra |
+//! | [`tables`] | `hamel-tables` | the tables of coefficients that people read |
+//! | `scene` | | descriptions as data, built in Rust or read from text |
+//! | [`generate`], [`expand()`], [`Builder`] | | the front ends |
 //!
 //! # Features
 //!
@@ -32,20 +32,21 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub use hamel_algebra as algebra;
+pub use hamel_dynamics as derive;
+pub use hamel_emit as emit;
 pub use hamel_language::{
     diagnostics, functions, inertia, lower, model, render, reuse, syntax, vocabulary,
 };
+pub use hamel_program as program;
+pub use hamel_tables as tables;
+pub use hamel_verify as proof;
+
 #[cfg(feature = "files")]
 pub mod builder;
-pub mod derive;
-pub mod emit;
 mod expand;
 pub mod generate;
-pub mod program;
-pub mod proof;
 #[cfg(feature = "files")]
 pub mod scene;
-pub mod tables;
 #[cfg(feature = "urdf")]
 pub mod urdf;
 

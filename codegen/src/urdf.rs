@@ -1,4 +1,4 @@
-//! The front end for robots in URDF: `hamel_urdf` makes a description of them, and errors about that
+//! The front end for robots in URDF: `hamel_import` makes a description of them, and errors about that
 //! description are shown at the place in the URDF that its lines are made from.
 
 mod idle;
@@ -6,7 +6,7 @@ mod idle;
 use crate::diagnostics::Diagnostic;
 use crate::functions::Needs;
 use crate::render::{Level, Note, notes, render, span_bytes};
-pub use hamel_urdf::{Imported, Mimic, Options, TOLERANCE, Undecoded, decode};
+pub use hamel_import::{Imported, Mimic, Options, TOLERANCE, Undecoded, decode};
 use std::ops::Range;
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub fn is_urdf(path: &Path) -> bool {
 /// Makes a description, whose closing joints have the equations that say something; errors are underlined in the text, which is
 /// named `path`.
 pub fn import(text: &str, options: &Options, path: &str, color: bool) -> Result<Imported, String> {
-    hamel_urdf::import(text, options)
+    hamel_import::import(text, options)
         .map(|imported| idle::without_idle(text, options, imported))
         .map_err(|problems| shown(&problems, Level::Error, path, text, color))
 }
@@ -33,7 +33,7 @@ pub fn warnings(imported: &Imported, path: &str, text: &str, color: bool) -> Str
 }
 
 fn shown(
-    problems: &[hamel_urdf::Problem],
+    problems: &[hamel_import::Problem],
     level: Level,
     path: &str,
     text: &str,

@@ -79,7 +79,7 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-native --test suite random::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test suite -- free_rotation:: stiff::",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files -p hamel-urdf",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files -p hamel-import",
     "bash tests/robots/install.sh",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --lib --test suite -- states:: emitted:: shaken:: misspelt:: eigenvalues::",
     "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-c99",

@@ -40,8 +40,8 @@ use hamel_codegen::functions::{Asked as Wanted, FunctionId, Jacobian, SLOPES, Se
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::program::Cause;
+use hamel_codegen::tables::Table;
 use hamel_codegen::tables::regressor::BaseParameters;
-use hamel_codegen::tables::{self, Table};
 use observed::AllObserved;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -469,7 +469,7 @@ impl Session {
     pub fn tables(&self, of: &[String], format: Format, all: bool) -> Result<String, Failure> {
         let named = of.iter().map(|name| Table::parse(name));
         let named: Result<Vec<Table>, String> = named.collect();
-        let tables = named.and_then(|of| tables::tables(&self.generated, &of));
+        let tables = named.and_then(|of| self.generated.tables(&of));
         let tables = tables.map_err(Failure::usage)?;
         Ok(crate::tables::written(&tables, format, all))
     }

@@ -85,7 +85,7 @@ impl Session {
     /// Where a table is not known, or cannot be had.
     pub fn typeset(&self, of: &[String]) -> Result<String, Failure> {
         let named: Result<Vec<Table>, String> = of.iter().map(|name| Table::parse(name)).collect();
-        let tables = named.and_then(|of| tables::tables(&self.generated, &of));
+        let tables = named.and_then(|of| self.generated.tables(&of));
         let tables = tables.map_err(Failure::usage)?;
         Ok(tables::typeset(&tables).to_string())
     }

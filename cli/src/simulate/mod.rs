@@ -160,7 +160,7 @@ fn drawn(picture: &hamel_report::plot::Picture) -> Result<String, Failure> {
 /// γ, M and Γ; empty where A has dependent columns.
 fn coefficients(generated: &Generated) -> String {
     let of = [Table::Gamma, Table::Mass, Table::Connection];
-    match tables::tables(generated, &of) {
+    match generated.tables(&of) {
         Ok(tables) => tables::text(&tables, false) + "\n",
         Err(_) => String::new(),
     }

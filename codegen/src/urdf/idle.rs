@@ -8,7 +8,7 @@ use crate::model::closure::Closure;
 use crate::model::pfaffian::Kind;
 use crate::render::span_bytes;
 use crate::syntax;
-use hamel_urdf::{Idle, Imported, Options, import_without};
+use hamel_import::{Idle, Imported, Options, import_without};
 use std::collections::BTreeMap;
 
 /// The same robot without equations of closing joints that say nothing wherever its tree is. As it was where there are none,

@@ -4,7 +4,6 @@ use hamel_codegen::emit::c::{Options, Precision, files};
 use hamel_codegen::emit::rust;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::proof::check::{Verdict, check};
-use hamel_codegen::tables::tables;
 
 /// Descriptions that are right.
 const SYSTEMS: [&str; 8] = [
@@ -51,6 +50,6 @@ fn no_stage_panics() {
             files(&generated.program, &options);
         }
         // A table that there is not is refused, too.
-        let _ = tables(&generated, &[]);
+        let _ = generated.tables(&[]);
     }
 }

@@ -20,7 +20,6 @@ mod entries;
 mod expressions;
 mod externals;
 mod fixtures;
-mod format;
 mod functions;
 mod gyroscopic;
 mod headers;
@@ -38,13 +37,8 @@ mod massless;
 #[path = "common/models.rs"]
 mod models;
 mod mounts;
-mod nearest;
-mod norms;
-mod notation;
 mod observed;
 mod own_words;
-mod plain;
-mod points;
 mod powers;
 #[path = "common/precise.rs"]
 mod precise;
@@ -60,19 +54,14 @@ mod roots;
 mod rounding;
 mod said;
 mod scene;
-mod seeds;
 #[path = "common/some.rs"]
 mod some;
-mod tetrahedron;
 mod tilted;
 #[path = "common/tree/mod.rs"]
 mod tree;
 mod trees;
 mod unsaid;
 mod urdf;
-mod words;
 mod work;
 
 use common::Random;
-// By this name included files have it.
-use hamel_codegen::algebra;

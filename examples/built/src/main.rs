@@ -7,7 +7,7 @@ mod chain;
 mod drone;
 
 use hamel_codegen::scene::Scene;
-use hamel_codegen::tables::{tables, text};
+use hamel_codegen::tables::text;
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Prints the tables of a mechanism, and says how much code it takes.
 fn print(scene: &Scene) -> Result<(), Box<dyn Error>> {
     let generated = scene.generate()?;
-    println!("{}", text(&tables(&generated, &[])?, false));
+    println!("{}", text(&generated.tables(&[])?, false));
     let lines = scene.rust(&generated)?.lines().count();
     let functions = generated.program.functions.len();
     println!("{functions} functions in {lines} lines of Rust\n");

@@ -10,8 +10,21 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// The generator, and the crates that it is made of.
-const CRATES: [&str; 5] = ["algebra", "language", "codegen", "files", "urdf"];
+/// The folders of the generator.
+const FOLDERS: [&str; 2] = ["codegen", "files"];
+/// The crates in them.
+const CRATES: [&str; 10] = [
+    "codegen",
+    "codegen/algebra",
+    "codegen/language",
+    "codegen/import",
+    "codegen/program",
+    "codegen/dynamics",
+    "codegen/verify",
+    "codegen/emit",
+    "codegen/tables",
+    "files",
+];
 /// Where the program that checks a model stands in the copy: Cargo finds it there without a line in a manifest.
 const CHECK: &str = "codegen/src/bin/check.rs";
 
@@ -103,7 +116,7 @@ impl Copy {
             .collect();
         copy.write("Cargo.toml", &manifest);
         copy.write("Cargo.lock", &read(&root().join("Cargo.lock")));
-        for name in CRATES {
+        for name in FOLDERS {
             copy.copy(Path::new(name));
         }
         let check = Path::new(env!("CARGO_MANIFEST_DIR")).join("check.rs");
@@ -165,8 +178,6 @@ impl Copy {
                 "hamel-codegen",
             ])
             .args(["--bin", "check", "--config", "profile.dev.debug=false"])
-            .args(["--config", "profile.dev.package.hamel-codegen.opt-level=0"])
-            .args(["--config", "profile.dev.package.hamel-language.opt-level=0"])
             .current_dir(&self.folder)
             .env("CARGO_TARGET_DIR", &target)
             .env("CARGO_INCREMENTAL", "1")

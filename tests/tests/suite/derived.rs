@@ -2,7 +2,7 @@
 
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
-use hamel_codegen::tables::{Table, Tables, tables};
+use hamel_codegen::tables::{Table, Tables};
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
 
@@ -26,7 +26,7 @@ impl Derived {
     /// All of its tables.
     pub fn tables(&self) -> &Tables {
         self.tables
-            .get_or_init(|| tables(self.generated(), &every_table()).expect("derivable"))
+            .get_or_init(|| self.generated().tables(&every_table()).expect("derivable"))
     }
 }
 

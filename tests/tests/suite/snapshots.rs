@@ -9,7 +9,7 @@ use crate::some::some;
 use hamel_codegen::builder::{source, written};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::{Count, count};
-use hamel_codegen::tables::{Table, json, latex, markdown, tables, text};
+use hamel_codegen::tables::{Table, json, latex, markdown, text};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -124,7 +124,10 @@ fn coefficient_tables() {
 /// One model in every format.
 #[test]
 fn table_formats() {
-    let tables = tables(model("heavy_top").generated(), &[]).expect("the default tables");
+    let tables = model("heavy_top")
+        .generated()
+        .tables(&[])
+        .expect("the default tables");
     insta::assert_snapshot!("tables_markdown", markdown(&tables, false));
     insta::assert_snapshot!("tables_latex", latex(&tables, false));
     insta::assert_snapshot!("tables_json", laid_out(&json(&tables, false), 0));

@@ -48,7 +48,7 @@ fn models_and_examples_use_what_they_declare() {
 
 #[test]
 fn imports_use_what_they_declare() {
-    for path in below("../urdf/tests/files", "urdf") {
+    for path in below("../codegen/import/tests/files", "urdf") {
         let text = std::fs::read_to_string(&path).expect("readable");
         for params in [false, true] {
             for floating in [false, true] {

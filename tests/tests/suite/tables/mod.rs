@@ -10,13 +10,13 @@ use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::tables::expression::Term;
-use hamel_codegen::tables::{Listing, Table, Tables, json, latex, markdown, tables, text};
+use hamel_codegen::tables::{Listing, Table, Tables, json, latex, markdown, text};
 use rayon::prelude::*;
 use serde_json::Value;
 
 /// A table as it is printed.
 fn printed(generated: &Generated, table: Table) -> Value {
-    let shown = tables(generated, &[table]).expect("derivable");
+    let shown = generated.tables(&[table]).expect("derivable");
     json(&shown, false)["tables"][table.name()].clone()
 }
 
@@ -52,7 +52,9 @@ fn entries_contain_only_coordinates_that_they_depend_on() {
     for name in fixtures {
         let generated = model(name).generated();
         let mut geometry = Geometry::new(&generated.model).expect(name);
-        let shown = tables(generated, &[Table::Gamma, Table::Mass, Table::Connection]).expect(name);
+        let shown = generated
+            .tables(&[Table::Gamma, Table::Mass, Table::Connection])
+            .expect(name);
         for listing in &shown.listings {
             for entry in &listing.entries {
                 let i: Vec<usize> = entry.index.iter().map(|i| i - 1).collect();
@@ -151,7 +153,9 @@ fn outputs_names_and_notation() {
         }",
     )
     .expect("derivable");
-    let shown = tables(&generated, &[Table::Outputs, Table::Mass, Table::Accel]).expect("shown");
+    let shown = generated
+        .tables(&[Table::Outputs, Table::Mass, Table::Accel])
+        .expect("shown");
     let printed = [
         text(&shown, false),
         latex(&shown, false),

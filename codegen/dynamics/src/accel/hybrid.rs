@@ -1,0 +1,81 @@
+//! Hybrid dynamics: where the rates of some velocities are given, M ξ̇ = f − h − ∂V is solved for the others, and the rows
+//! of the first are the forces of their drives (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, 9.2).
+
+use super::parts::Parts;
+use hamel_algebra::graph::Edge;
+use hamel_language::model::Model;
+
+/// The velocities whose rates are not given.
+pub fn free_places(model: &Model) -> Vec<usize> {
+    let given = |i: &usize| model.accelerated.iter().any(|(place, _)| place == i);
+    (0..model.n()).filter(|i| !given(i)).collect()
+}
+
+/// M and the right-hand sides for the velocities that are free, in the traced model's graph; all of them where no rate
+/// is given.
+pub fn free(mut traced: Model, parts: &Parts) -> (Model, Parts) {
+    if traced.accelerated.is_empty() {
+        return (traced, parts.clone());
+    }
+    let places = free_places(&traced);
+    let of = |list: &[Edge]| places.iter().map(|&i| list[i]).collect::<Vec<Edge>>();
+    let graph = &mut traced.graph;
+    let driven: Vec<Edge> = (places.iter())
+        .map(|&i| {
+            let terms = traced.accelerated.iter();
+            let terms: Vec<Edge> = terms
+                .map(|&(j, rate)| -graph.mul(parts.mass[i][j], rate))
+                .collect();
+            graph.sum(&terms)
+        })
+        .collect();
+    let mut groups: Vec<Vec<Edge>> = parts.groups.iter().map(|group| of(group)).collect();
+    groups.push(driven);
+    let free = Parts {
+        mass: places.iter().map(|&i| of(&parts.mass[i])).collect(),
+        groups,
+        ..Parts::default()
+    };
+    (traced, free)
+}
+
+/// ξ̇ of all velocities from that of those that are free.
+pub fn all_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
+    if model.accelerated.is_empty() {
+        return free;
+    }
+    let mut free = free.into_iter();
+    let given = |i: usize| model.accelerated.iter().find(|(place, _)| *place == i);
+    (0..model.n())
+        .filter_map(|i| given(i).map(|(_, rate)| *rate).or_else(|| free.next()))
+        .collect()
+}
+
+/// Pivots of all velocities from those that are free: 1 where the rate is given, which asks for no inertia.
+pub fn pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
+    let mut all = vec![model.graph.one(); model.n()];
+    for (place, pivot) in free_places(model).into_iter().zip(free) {
+        all[place] = pivot;
+    }
+    all
+}
+
+/// The rows of B ξ̇ = b: those of the constraints, then one for each rate that is given.
+pub fn rows(model: &Model) -> Vec<Vec<Edge>> {
+    let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
+    let constraints = model.constraints.iter().map(|c| c.row.clone());
+    let given = model.accelerated.iter().map(move |(place, _)| {
+        let mut row = vec![zero; n];
+        row[*place] = one;
+        row
+    });
+    constraints.chain(given).collect()
+}
+
+/// ξ̇ with the rates that are given as they are given.
+pub fn exact(model: &Model, mut xi_dot: Vec<Edge>) -> Vec<Edge> {
+    for &(place, rate) in &model.accelerated {
+        xi_dot[place] = rate;
+    }
+    xi_dot
+}

@@ -1,0 +1,361 @@
+//! The polynomial route: the right-hand side of (30c) expanded into run-time monomials with
+//! constant coefficients, and factored anew. Small systems get their shortest code this way; M may
+//! be inverted into the coefficients where it is constant.
+
+use super::parts::{Reference, Variant, parts};
+use super::solve::{Plan, solve};
+use super::{Acceleration, Parts, all_plans, elimination};
+use crate::calculus::Calculus;
+use crate::normal::{Collected, NormalForms, collect, variable_node};
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::solve_symmetric;
+use hamel_algebra::poly::factor::{Coefficient, Operand, Step, Term, Value, factor};
+use hamel_algebra::poly::monomial::Var;
+use hamel_algebra::topoly::OPAQUE;
+use hamel_algebra::transplant::rebuild;
+use hamel_language::model::Model;
+use hamel_language::syntax::ast::Axes;
+use hamel_program::count::count;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Most run-time terms of a system that is expanded.
+const MOST_TERMS: usize = 260;
+/// Most terms where M is constant and still to be solved with: tracing the bodies has a smaller
+/// right-hand side then.
+const MOST_CONSTANT_TERMS: usize = 40;
+/// Products and sums of terms after which the expansion is given up: what is traced stands.
+const MOST_WORK: usize = 1_000_000;
+
+/// The candidates of this route that may cost less than `most`; none where the system is too large
+/// to expand.
+pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
+    let mut traced = model.clone();
+    let variant = Variant {
+        axes: Axes::World,
+        reference: Reference::Com,
+        shift: None,
+    };
+    let mut calculus = Calculus::new(model);
+    let parts = parts(&mut traced, &mut calculus, variant);
+    let mut forms = NormalForms::within(&model.points, MOST_WORK).keeping_powers();
+    let mut all = Vec::new();
+    let mut before: Option<System> = None;
+    for reduced in [false, true] {
+        let Some(system) = System::expand(model, &traced, &parts, &mut forms, reduced) else {
+            continue;
+        };
+        if before
+            .as_ref()
+            .is_some_and(|before| before.right == system.right && before.varying == system.varying)
+        {
+            continue;
+        }
+        all.extend(system.inverted(most));
+        all.extend(system.solved(model, most));
+        before = Some(system);
+    }
+    all
+}
+
+/// Right-hand side and mass matrix as polynomials, in a graph that holds no more than the model
+/// and their coefficients.
+struct System {
+    graph: Graph,
+    right: Vec<Collected>,
+    /// Entries of M that vary, of the lower triangle.
+    varying: Vec<(usize, usize, Collected)>,
+    /// M, constant entries in place.
+    mass: Vec<Vec<Edge>>,
+    /// What the variables beyond the symbols stand for in `graph`.
+    opaque: BTreeMap<Var, Edge>,
+    reduced: bool,
+}
+
+impl System {
+    fn expand(
+        model: &Model,
+        traced: &Model,
+        parts: &Parts,
+        forms: &mut NormalForms,
+        reduced: bool,
+    ) -> Option<Self> {
+        let n = model.n();
+        let mut source = traced.graph.clone();
+        let mut polynomial = |source: &mut Graph, edges: &[Edge]| -> Option<Collected> {
+            let mut sum = hamel_algebra::poly::polynomial::Poly::zero();
+            for &edge in edges {
+                sum = sum.add(&forms.expand(source, edge)?);
+            }
+            let normal = if reduced {
+                forms.reduce(source, &sum)
+            } else {
+                sum
+            };
+            let collected = collect(source, &normal);
+            (collected.len() <= MOST_TERMS).then_some(collected)
+        };
+        let mut graph = model.graph.clone();
+        let mut right = Vec::new();
+        for i in 0..n {
+            let column: Vec<Edge> = parts.groups.iter().map(|group| group[i]).collect();
+            right.push(polynomial(&mut source, &column)?);
+        }
+        let mut varying = Vec::new();
+        let mut mass = vec![vec![graph.zero(); n]; n];
+        for i in 0..n {
+            for j in 0..=i {
+                let edge = parts.mass[i][j];
+                if source.is_free(edge.node()) {
+                    mass[i][j] = rebuild(&source, &mut graph, &[edge])[0];
+                    mass[j][i] = mass[i][j];
+                } else {
+                    varying.push((i, j, polynomial(&mut source, &[edge])?));
+                }
+            }
+        }
+        // Coefficients and opaque variables move to the small graph.
+        let mut opaque = BTreeMap::new();
+        for collected in right
+            .iter_mut()
+            .chain(varying.iter_mut().map(|(_, _, c)| c))
+        {
+            for (monomial, coefficient) in collected.iter_mut() {
+                *coefficient = rebuild(&source, &mut graph, &[*coefficient])[0];
+                for &(var, _) in monomial.powers() {
+                    if var >= OPAQUE && !opaque.contains_key(&var) {
+                        let node = variable_node(&source, var);
+                        let moved = rebuild(&source, &mut graph, &[node])[0];
+                        opaque.insert(var, moved);
+                    }
+                }
+            }
+        }
+        let terms: usize = right.iter().map(|c| c.len()).sum();
+        (terms <= MOST_TERMS).then_some(System {
+            graph,
+            right,
+            varying,
+            mass,
+            opaque,
+            reduced,
+        })
+    }
+
+    /// ξ̇ = M⁻¹ f with the constant M⁻¹ in the coefficients.
+    fn inverted(&self, most: usize) -> Option<Acceleration> {
+        if !self.varying.is_empty() {
+            return None;
+        }
+        let n = self.mass.len();
+        let mut graph = self.graph.clone();
+        let identity: Vec<Vec<Edge>> = (0..n)
+            .map(|i| {
+                (0..n)
+                    .map(|j| if i == j { graph.one() } else { graph.zero() })
+                    .collect()
+            })
+            .collect();
+        let inverse = solve_symmetric(&mut graph, &self.mass, &identity)?;
+        let polynomials: Vec<Collected> = (0..n)
+            .map(|i| {
+                let mut sum = Collected::new();
+                for j in 0..n {
+                    if inverse[i][j] == graph.zero() {
+                        continue;
+                    }
+                    for (monomial, &coefficient) in &self.right[j] {
+                        let product = graph.mul(inverse[i][j], coefficient);
+                        let entry = sum.entry(monomial.clone()).or_insert(graph.zero());
+                        *entry = graph.add(*entry, product);
+                    }
+                }
+                sum.retain(|_, coefficient| *coefficient != graph.zero());
+                sum
+            })
+            .collect();
+        let terms: usize = polynomials.iter().map(BTreeMap::len).sum();
+        if terms > MOST_TERMS || least(&graph, &polynomials) >= most {
+            return None;
+        }
+        let xi_dot = self.factored(&mut graph, &polynomials);
+        // The pivots of the constant M still have to be positive.
+        let parts = Parts {
+            mass: self.mass.clone(),
+            groups: Vec::new(),
+            inertia: Vec::new(),
+            conservative: Vec::new(),
+            applied: Vec::new(),
+            ..Parts::default()
+        };
+        let plan = Plan {
+            order: (0..n).collect(),
+            apart: 0,
+            scale: false,
+            inverse: false,
+        };
+        let pivots = solve(&mut graph, &parts, &plan)?.pivots;
+        Some(self.finish(graph, xi_dot, pivots, "M⁻¹ in its coefficients"))
+    }
+
+    /// M ξ̇ = f with f and M factored together.
+    fn solved(&self, model: &Model, most: usize) -> Vec<Acceleration> {
+        let n = self.mass.len();
+        let mut graph = self.graph.clone();
+        let polynomials: Vec<Collected> = self
+            .right
+            .iter()
+            .chain(self.varying.iter().map(|(_, _, c)| c))
+            .cloned()
+            .collect();
+        let terms: usize = polynomials.iter().map(BTreeMap::len).sum();
+        let constant = self.varying.is_empty() && terms > MOST_CONSTANT_TERMS;
+        if constant || least(&graph, &polynomials) >= most {
+            return Vec::new();
+        }
+        let values = self.factored(&mut graph, &polynomials);
+        let mut mass = self.mass.clone();
+        for ((i, j, _), &value) in self.varying.iter().zip(&values[n..]) {
+            mass[*i][*j] = value;
+            mass[*j][*i] = value;
+        }
+        let parts = Parts {
+            mass,
+            groups: vec![values[..n].to_vec()],
+            inertia: Vec::new(),
+            conservative: Vec::new(),
+            applied: Vec::new(),
+            ..Parts::default()
+        };
+        all_plans(&graph, &parts)
+            .into_iter()
+            .filter_map(|plan| {
+                let mut graph = graph.clone();
+                let solution = solve(&mut graph, &parts, &plan)?;
+                let how = elimination(model, &plan.order);
+                Some(self.finish(graph, solution.xi_dot, solution.pivots, &how))
+            })
+            .collect()
+    }
+
+    fn finish(
+        &self,
+        graph: Graph,
+        xi_dot: Vec<Edge>,
+        pivots: Vec<Edge>,
+        how: &str,
+    ) -> Acceleration {
+        let mut roots = xi_dot.clone();
+        roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
+        let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
+        let modulo = if self.reduced { " modulo φ" } else { "" };
+        Acceleration {
+            other: None,
+            loss: 0,
+            multipliers: Vec::new(),
+            projections: None,
+            route: format!("right-hand side expanded{modulo} and factored, {how}"),
+            graph,
+            xi_dot,
+            pivots,
+            twist: false,
+            count,
+            depth,
+        }
+    }
+
+    /// The polynomials as expressions with few operations.
+    fn factored(&self, graph: &mut Graph, polynomials: &[Collected]) -> Vec<Edge> {
+        // Coefficient 0 is the number 1; the others by first use.
+        let mut coefficients = vec![graph.one()];
+        let terms: Vec<Vec<Term>> = polynomials
+            .iter()
+            .map(|collected| {
+                collected
+                    .iter()
+                    .map(|(monomial, &edge)| {
+                        let place = coefficients
+                            .iter()
+                            .position(|&known| known == edge.abs())
+                            .unwrap_or_else(|| {
+                                coefficients.push(edge.abs());
+                                coefficients.len() - 1
+                            });
+                        Term {
+                            coefficient: Coefficient {
+                                id: place as u32,
+                                negative: edge.is_negative(),
+                            },
+                            monomial: monomial.clone(),
+                        }
+                    })
+                    .collect()
+            })
+            .collect();
+        let program = factor(&terms);
+        let mut values: Vec<Edge> = Vec::with_capacity(program.steps.len());
+        let read = |graph: &Graph, values: &[Edge], operand: Operand| {
+            let edge = match operand.value {
+                Value::Zero => graph.zero(),
+                Value::Coefficient(id) => coefficients[id as usize],
+                Value::Var(var) => self
+                    .opaque
+                    .get(&var)
+                    .copied()
+                    .unwrap_or_else(|| variable_node(graph, var)),
+                Value::Step(index) => values[index],
+            };
+            edge.signed(operand.negative)
+        };
+        for step in &program.steps {
+            let value = match *step {
+                Step::Mul(a, b) => {
+                    let (a, b) = (read(graph, &values, a), read(graph, &values, b));
+                    graph.mul(a, b)
+                }
+                Step::Add(a, b) => {
+                    let (a, b) = (read(graph, &values, a), read(graph, &values, b));
+                    graph.add(a, b)
+                }
+            };
+            values.push(value);
+        }
+        program
+            .outputs
+            .iter()
+            .map(|&output| read(graph, &values, output))
+            .collect()
+    }
+}
+
+/// Operations that no factoring avoids: every coefficient but 1 takes part in a product; terms whose
+/// coefficient occurs in one polynomial alone cannot be summed anywhere else; and polynomials of
+/// degree two with such terms are independent, so each needs a product of variables of its own.
+fn least(graph: &Graph, polynomials: &[Collected]) -> usize {
+    let mut rows: BTreeMap<Edge, BTreeSet<usize>> = BTreeMap::new();
+    for (row, collected) in polynomials.iter().enumerate() {
+        for coefficient in collected.values() {
+            rows.entry(coefficient.abs()).or_default().insert(row);
+        }
+    }
+    rows.remove(&graph.one());
+    let own = |edge: &Edge| rows.get(&edge.abs()).is_some_and(|rows| rows.len() == 1);
+    let sums: usize = polynomials
+        .iter()
+        .map(|collected| {
+            collected
+                .values()
+                .filter(|edge| own(edge))
+                .count()
+                .saturating_sub(1)
+        })
+        .sum();
+    let products = polynomials
+        .iter()
+        .filter(|collected| {
+            collected
+                .iter()
+                .any(|(monomial, edge)| monomial.degree() > 1 && own(edge))
+        })
+        .count();
+    rows.len() + sums + products
+}

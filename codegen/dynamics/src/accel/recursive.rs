@@ -1,0 +1,485 @@
+//! Trees: ξ̇, M and forces by recursion over links.
+
+use super::best::{Acceleration, Best, Family};
+use super::branches::Branches;
+use super::cheapest::Computation;
+use super::parts::Parts;
+use super::setting::Setting;
+use super::solve::{Plan, Solution, solve};
+use crate::calculus::Calculus;
+use crate::care::Care;
+use crate::loads;
+use crate::tree::inverse::{Motion, TENSORS, Tensors, WITH_ALPHA, Wrench, inverse, wrenches};
+use crate::tree::momentum::{columns, quadratic_rate, total};
+use crate::tree::slopes::{Slopes, slopes};
+use crate::tree::uniform::Uniform;
+use crate::tree::{Placement, Tree, articulated, composite};
+use hamel_algebra::derivation::Derivation;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{Vec3, matrix, zero3};
+use hamel_algebra::transplant::map_symbols;
+use hamel_language::model::Model;
+
+/// Trees with more links are not tried by other routes.
+const SHORT: usize = 3;
+
+/// A model whose inertia is that of links.
+pub struct Recursion {
+    /// The model, its graph holding constants and loads: in its full frame, where the other velocities are given.
+    model: Model,
+    tree: Tree,
+    /// Whether digits come before cost.
+    careful: bool,
+    /// −∂V of what is not gravity.
+    elastic: Vec<Edge>,
+    /// fᴱ.
+    applied: Vec<Edge>,
+    /// How to get from the full frame to the velocities that are free.
+    free: Option<Free>,
+}
+
+/// The velocities that are free of a full frame.
+struct Free {
+    /// Their graph.
+    graph: Graph,
+    /// What the symbols of the full frame become there.
+    images: Vec<Edge>,
+    /// Their places in ξ.
+    active: Vec<usize>,
+}
+
+impl Recursion {
+    /// The recursion over a model's links, where they are a tree.
+    pub fn of(setting: &Setting, placement: Placement, care: &Care) -> Option<Self> {
+        let reduced = &setting.model;
+        if !reduced.constraints.is_empty() || setting.back.is_some() {
+            return None;
+        }
+        let (mut model, mut calculus, free) = match &reduced.full_frame {
+            Some(frame) => {
+                let full = Model::clone(&frame.full);
+                let calculus = Calculus::new(&full);
+                let free = Free {
+                    graph: reduced.graph.clone(),
+                    images: frame.images.clone(),
+                    active: frame.active.clone(),
+                };
+                (full, calculus, Some(free))
+            }
+            None if reduced.is_affine() => return None,
+            None => (reduced.clone(), setting.calculus.clone(), None),
+        };
+        let tree = Tree::of(&mut model, &mut calculus, placement)?;
+        let elastic = loads::elastic(&mut model, &mut calculus);
+        let loads = loads::applied(&mut model, &mut calculus);
+        let applied = (0..model.n())
+            .map(|i| {
+                let column: Vec<Edge> = loads.iter().map(|load| load[i]).collect();
+                model.graph.sum(&column)
+            })
+            .collect();
+        Some(Recursion {
+            model,
+            tree,
+            careful: care.is_taken(),
+            elastic,
+            applied,
+            free,
+        })
+    }
+
+    /// The tree with U of its links by the cheapest of some ways; from ω and α of each where digits come first.
+    fn cheapest(&self, ways: &[Tensors], graph: &Graph, motion: Motion) -> Tree {
+        match self.careful {
+            true => self.tree.clone(),
+            false => self.tree.cheapest(ways, graph, motion),
+        }
+    }
+
+    /// Whether the tree is so long that the recursion is certainly cheapest.
+    pub fn is_long(&self) -> bool {
+        self.tree.links.len() > SHORT
+    }
+
+    /// What acts beside gravity.
+    fn load(&self, graph: &mut Graph) -> Vec<Edge> {
+        let both = self.elastic.iter().zip(&self.applied);
+        both.map(|(&a, &b)| graph.add(a, b)).collect()
+    }
+
+    /// Places of the velocities of the state, and of those that are given by the time.
+    fn places(&self) -> (Vec<usize>, Vec<usize>) {
+        let all = 0..self.model.n();
+        match &self.free {
+            None => (all.collect(), Vec::new()),
+            Some(free) => all.partition(|i| free.active.contains(i)),
+        }
+    }
+
+    /// ξ̇ where the velocities of the state do not accelerate.
+    fn given_rates(&self) -> Vec<Edge> {
+        let mut rates = vec![self.model.graph.zero(); self.model.n()];
+        for i in self.places().1 {
+            rates[i] = self.model.xi_dot[i];
+        }
+        rates
+    }
+
+    /// ξ̇ of the state from that of the velocities whose rates are not given, by places in the full frame.
+    fn driven(&self, active: &[usize], free: impl Fn(usize) -> Edge) -> Vec<Edge> {
+        let given = |i: usize| self.model.accelerated.iter().find(|(place, _)| *place == i);
+        let rate = |&i: &usize| given(i).map_or_else(|| free(i), |(_, rate)| *rate);
+        active.iter().map(rate).collect()
+    }
+
+    /// Expressions of the full frame as those of the velocities that are free, with their graph.
+    fn leave<const N: usize>(
+        &self,
+        graph: Graph,
+        lists: [Vec<Edge>; N],
+    ) -> (Graph, [Vec<Edge>; N]) {
+        let Some(free) = &self.free else {
+            return (graph, lists);
+        };
+        let mut into = free.graph.clone();
+        let lists = lists.map(|list| map_symbols(&graph, &mut into, &list, &free.images));
+        (into, lists)
+    }
+
+    /// Counts articulated bodies, and M with elimination from the leaves and from the root.
+    pub(super) fn search(&self, best: &mut Best) {
+        let n = self.model.n();
+        let (active, mut given) = self.places();
+        let mut rates = self.given_rates();
+        for &(place, rate) in &self.model.accelerated {
+            rates[place] = rate;
+            given.push(place);
+        }
+        let solved: Vec<usize> = active
+            .iter()
+            .copied()
+            .filter(|i| !given.contains(i))
+            .collect();
+        let (xi, gravity) = (&self.model.xi, self.model.gravity);
+        // Where the time gives velocities, other functions need ω of links more than ξ̇ gains.
+        let tree = match self.free {
+            Some(_) => self.tree.clone(),
+            None => self.cheapest(&TENSORS, &self.model.graph, (xi, &rates, gravity)),
+        };
+        if self.tree.is_plain(&self.model.graph, n, &given) {
+            let mut graph = self.model.graph.clone();
+            self.tree.know_polars(&mut graph);
+            let load = self.load(&mut graph);
+            let forces = wrenches(&mut graph, &tree, xi, &rates, gravity);
+            let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
+            if let Some(Solution { xi_dot, pivots }) = solution {
+                let route = "links traced, articulated bodies".to_string();
+                let xi_dot = self.driven(&active, |i| xi_dot[i]);
+                let pivots = active.iter().map(|&i| pivots[i]).collect();
+                let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
+                let candidate = Acceleration::counted(graph, xi_dot, pivots, route);
+                best.keep(Family::Links, candidate);
+            }
+        }
+        let mut graph = self.model.graph.clone();
+        self.tree.know_polars(&mut graph);
+        let load = self.load(&mut graph);
+        let bias = inverse(&mut graph, &tree, xi, &rates, gravity);
+        let mass = composite::mass_matrix(&mut graph, &self.tree, n);
+        let right = solved.iter().map(|&i| graph.sub(load[i], bias[i]));
+        let right = right.collect();
+        let of_free = |row: &Vec<Edge>| solved.iter().map(|&j| row[j]).collect();
+        let of_parts = Parts {
+            mass: solved.iter().map(|&i| of_free(&mass[i])).collect(),
+            groups: vec![right],
+            ..Parts::default()
+        };
+        let free = solved.len();
+        for order in [(0..free).rev().collect::<Vec<_>>(), (0..free).collect()] {
+            let way = if order.first() == Some(&0) {
+                "from the first velocity to the last"
+            } else {
+                "from the last velocity to the first"
+            };
+            let plan = Plan {
+                order,
+                apart: 0,
+                scale: false,
+                inverse: false,
+            };
+            let mut graph = graph.clone();
+            if let Some(Solution { xi_dot, pivots }) = solve(&mut graph, &of_parts, &plan) {
+                let route = format!("links traced, composite bodies, M eliminated {way}");
+                let place = |i: usize| solved.iter().position(|&place| place == i);
+                let xi_dot = self.driven(&active, |i| place(i).map_or(xi_dot[0], |at| xi_dot[at]));
+                let one = graph.one();
+                let pivots = active
+                    .iter()
+                    .map(|&i| place(i).map_or(one, |at| pivots[at]));
+                let pivots = pivots.collect();
+                let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
+                let candidate = Acceleration::counted(graph, xi_dot, pivots, route);
+                best.keep(Family::Links, candidate);
+            }
+        }
+    }
+
+    /// M and forces.
+    pub fn parts(&self) -> Computation {
+        let mut graph = self.model.graph.clone();
+        let n = self.model.n();
+        let (active, _) = self.places();
+        let (xi, gravity) = (&self.model.xi, self.model.gravity);
+        let (still, weightless) = (vec![graph.zero(); n], zero3(&graph));
+        let tree = self.cheapest(&TENSORS, &graph, (xi, &self.model.xi_dot, gravity));
+        let force = inverse(&mut graph, &tree, xi, &self.model.xi_dot, gravity);
+        let inverse_dynamics = (active.iter())
+            .map(|&i| graph.sub(force[i], self.elastic[i]))
+            .collect();
+        let rates = self.given_rates();
+        let tree = self.cheapest(&TENSORS, &graph, (xi, &rates, weightless));
+        let bias = inverse(&mut graph, &tree, xi, &rates, weightless);
+        let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
+        let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
+        let mass = composite::mass_matrix_alone(&mut graph, &self.tree, n);
+        let conservative = (active.iter())
+            .map(|&i| graph.sub(self.elastic[i], weight[i]))
+            .collect();
+        let kinetic: Vec<Edge> = match self.free {
+            None => Vec::new(),
+            Some(_) => {
+                let twice = graph.dot(&momentum, xi);
+                let half = graph.ratio(1, 2);
+                vec![graph.mul(half, twice)]
+            }
+        };
+        let of_free = |list: &[Edge]| active.iter().map(|&i| list[i]).collect::<Vec<Edge>>();
+        let rows: Vec<Edge> = active.iter().flat_map(|&i| of_free(&mass[i])).collect();
+        let lists = [
+            rows,
+            of_free(&bias).into_iter().map(|edge| -edge).collect(),
+            conservative,
+            of_free(&self.applied),
+            inverse_dynamics,
+            of_free(&momentum),
+            kinetic,
+        ];
+        let (graph, lists) = self.leave(graph, lists);
+        let [
+            mass,
+            inertia,
+            conservative,
+            applied,
+            inverse_dynamics,
+            momentum,
+            kinetic,
+        ] = lists;
+        let parts = Parts {
+            mass: matrix(&mass, active.len()),
+            groups: Vec::new(),
+            inertia,
+            conservative,
+            applied,
+            inverse_dynamics: Some(inverse_dynamics),
+            momentum: Some(momentum),
+            kinetic: kinetic.first().copied(),
+        };
+        Computation { graph, parts }
+    }
+
+    /// M ξ̇ + Γ ξ ξ + ∂V − f of velocities of the full frame: the forces of their drives.
+    pub fn residuals(&self, velocities: &[usize]) -> (Graph, Vec<Edge>) {
+        let mut graph = self.model.graph.clone();
+        let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
+        let tree = self.cheapest(&TENSORS, &graph, (xi, xi_dot, self.model.gravity));
+        let force = inverse(&mut graph, &tree, xi, xi_dot, self.model.gravity);
+        let load = self.load(&mut graph);
+        let rows = velocities.iter().map(|&i| graph.sub(force[i], load[i]));
+        let rows = rows.collect();
+        let (graph, [rows]) = self.leave(graph, [rows]);
+        (graph, rows)
+    }
+
+    /// ṗ of (x, ξ, u), in a graph of its own; `None` where a joint varies with x.
+    pub fn momentum_rate(&self) -> Option<(Graph, Vec<Edge>)> {
+        if self.free.is_some() {
+            return None;
+        }
+        let mut graph = self.model.graph.clone();
+        let still = vec![graph.zero(); self.model.n()];
+        let quadratic = quadratic_rate(&mut graph, &self.tree, &self.model.xi)?;
+        let weight = inverse(&mut graph, &self.tree, &still, &still, self.model.gravity);
+        let load = self.load(&mut graph);
+        let rate = (0..self.model.n()).map(|i| {
+            let terms = [quadratic[i], load[i], -weight[i]];
+            graph.sum(&terms)
+        });
+        let rate = rate.collect();
+        Some((graph, rate))
+    }
+
+    /// The momentum of everything in a graph of its own: linear and about the origin of the world, in its
+    /// axes. The links have to be the description's: others move as these do and have other momenta.
+    pub fn total_momentum(&self) -> (Graph, Vec3, Vec3) {
+        let mut graph = self.model.graph.clone();
+        let (linear, angular) = total(&mut graph, &self.tree, &self.model.xi);
+        let (graph, [linear, angular]) = self.leave(graph, [linear.to_vec(), angular.to_vec()]);
+        let three = |list: &[Edge]| std::array::from_fn(|i| list[i]);
+        (graph, three(&linear), three(&angular))
+    }
+
+    /// The same for a unit of each velocity alone; `None` where other velocities are given.
+    pub fn momentum_columns(&self) -> Option<(Graph, Vec<(Vec3, Vec3)>)> {
+        if self.free.is_some() {
+            return None;
+        }
+        let mut graph = self.model.graph.clone();
+        let columns = columns(&mut graph, &self.tree, self.model.n());
+        Some((graph, columns))
+    }
+
+    /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not
+    /// the rate of one freedom, or M is singular everywhere.
+    pub fn velocity_from_momentum(&self) -> Option<(Graph, Solution)> {
+        let mut graph = self.model.graph.clone();
+        if self.free.is_some() || !self.tree.is_plain(&graph, self.model.n(), &[]) {
+            return None;
+        }
+        self.tree.know_polars(&mut graph);
+        let none = zero3(&graph);
+        let nothing = Wrench {
+            force: none,
+            torque: none,
+        };
+        let wrenches = vec![nothing; self.tree.links.len()];
+        let momenta = &self.model.momenta;
+        let solution = articulated::forward(&mut graph, &self.tree, &[], &wrenches, momenta)?;
+        Some((graph, solution))
+    }
+
+    /// ∂(M ξ̇ + Γ ξ ξ + ∂V) along displacements and velocities at constant ξ̇, in a graph of its own: n rows of 2 n.
+    /// `None` where a joint varies with x.
+    pub fn inverse_slopes(&self) -> Option<(Graph, Vec<Vec<Edge>>)> {
+        if self.free.is_some() {
+            return None;
+        }
+        let mut graph = self.model.graph.clone();
+        let Model {
+            xi,
+            xi_dot,
+            gravity,
+            ..
+        } = &self.model;
+        let tree = self.cheapest(&WITH_ALPHA, &graph, (xi, xi_dot, *gravity));
+        let found = slopes(&mut graph, &tree, xi, xi_dot, *gravity)?;
+        let mut columns = self.changes(&self.elastic, &mut graph, &found);
+        columns.truncate(2 * self.model.n());
+        let row = |i: usize| columns.iter().map(|column| -column[i]).collect();
+        Some((graph, (0..self.model.n()).map(row).collect()))
+    }
+
+    /// ξ̇ with its slopes, from one factorisation of M: δξ̇ = M⁻¹ δ(f − M ξ̇ − Γ ξ ξ − ∂V) with ξ̇ held. `None` where a
+    /// joint varies with x, or M is singular everywhere.
+    pub fn rates_and_slopes(&self) -> Option<RatesAndSlopes> {
+        let model = &self.model;
+        let n = model.n();
+        if self.free.is_some() || !model.accelerated.is_empty() {
+            return None;
+        }
+        let mut graph = model.graph.clone();
+        let load = self.load(&mut graph);
+        let rates = self.given_rates();
+        let tree = &self.cheapest(&WITH_ALPHA, &graph, (&model.xi, &rates, model.gravity));
+        let free = tree.uniform(&mut graph, &model.xi, model.gravity);
+        let (proper, gravity) = match &free {
+            Some(uniform) => (&uniform.xi, zero3(&graph)),
+            None => (&model.xi, model.gravity),
+        };
+        let bias = inverse(&mut graph, tree, proper, &rates, gravity);
+        let mass = composite::by_second_moments(&mut graph, tree, n);
+        let twins = tree.twins(&mut graph);
+        let branches = Branches::of(&mut graph, &mass, &twins)?;
+        let right: Vec<Edge> = (0..n).map(|i| graph.sub(load[i], bias[i])).collect();
+        let mut xi_dot = branches.solve(&mut graph, &right);
+        let found = slopes(&mut graph, tree, proper, &xi_dot, gravity)?;
+        let mut changes = self.changes(&load, &mut graph, &found);
+        if let Some(uniform) = &free {
+            // The velocities that are left out act by what they add to ξ̇ alone.
+            for &i in &uniform.common {
+                changes[n + i] = self.along(&graph, n + i).all(&mut graph, &load);
+            }
+        }
+        // The inputs first: much of the others' work is theirs.
+        let mut columns: Vec<Vec<Edge>> = (changes[2 * n..].iter())
+            .map(|column| branches.solve(&mut graph, column))
+            .collect();
+        let moved = changes[..2 * n].iter();
+        let moved = moved.map(|column| branches.solve(&mut graph, column));
+        columns.splice(..0, moved.collect::<Vec<_>>());
+        if let Some(Uniform { rates, .. }) = &free {
+            for (j, column) in columns.iter_mut().enumerate() {
+                let more = self.along(&graph, j).all(&mut graph, rates);
+                for (entry, more) in column.iter_mut().zip(more) {
+                    *entry = graph.add(*entry, more);
+                }
+            }
+            for (rate, &more) in xi_dot.iter_mut().zip(rates) {
+                *rate = graph.add(*rate, more);
+            }
+        }
+        let row = |i: usize| columns.iter().map(|column| column[i]).collect();
+        Some(RatesAndSlopes {
+            rows: (0..n).map(row).collect(),
+            graph,
+            xi_dot,
+            pivots: branches.pivots,
+        })
+    }
+
+    /// The derivation along a displacement, a velocity or an input, by their order.
+    fn along(&self, graph: &Graph, j: usize) -> Derivation {
+        let model = &self.model;
+        let one = graph.one();
+        match j.checked_sub(model.n()) {
+            None => {
+                let seeds = model.x.iter().zip(&model.a);
+                Derivation::new(seeds.map(|(x, row)| (x.node(), row[j])))
+            }
+            Some(i) => {
+                let symbol = model.xi.iter().chain(&model.u).nth(i);
+                Derivation::new(symbol.map(|symbol| (symbol.node(), one)))
+            }
+        }
+    }
+
+    /// ∂(load − M ξ̇ − Γ ξ ξ) with what weighs along displacements, velocities and inputs, ξ̇ held: 2 n + m columns.
+    fn changes(&self, load: &[Edge], graph: &mut Graph, found: &Slopes) -> Vec<Vec<Edge>> {
+        let n = self.model.n();
+        let columns = (0..2 * n + self.model.u.len()).map(|j| {
+            let mut column = self.along(graph, j).all(graph, load);
+            let table = match j.checked_sub(n) {
+                None => Some((&found.displacement, j)),
+                Some(velocity) => (velocity < n).then_some((&found.velocity, velocity)),
+            };
+            if let Some((table, j)) = table {
+                for (entry, row) in column.iter_mut().zip(table) {
+                    *entry = graph.sub(*entry, row[j]);
+                }
+            }
+            column
+        });
+        columns.collect()
+    }
+}
+
+/// ξ̇ with its slopes.
+pub struct RatesAndSlopes {
+    /// The graph of all.
+    pub graph: Graph,
+    /// ξ̇.
+    pub xi_dot: Vec<Edge>,
+    /// Pivots that have to be positive, one for each velocity.
+    pub pivots: Vec<Edge>,
+    /// n rows of 2 n + m.
+    pub rows: Vec<Vec<Edge>>,
+}

@@ -1,0 +1,401 @@
+//! ξ̇ and the multipliers λ of M ξ̇ = f − h + Bᵀ λ, B ξ̇ = b, by M = L D Lᵀ and the Schur complement
+//! S = B M⁻¹ Bᵀ, both unrolled.
+
+use super::dependent::{CLEARED, SERIES, multipliers_at, raise, raising};
+use super::parts::Parts;
+use crate::calculus::Calculus;
+use hamel_algebra::fp::Fp;
+use hamel_algebra::graph::{Edge, Function, Graph};
+use hamel_algebra::lane::Lane;
+use hamel_language::model::Model;
+
+/// The solution.
+#[derive(Clone, Debug)]
+pub struct Saddle {
+    /// ξ̇.
+    pub xi_dot: Vec<Edge>,
+    /// λ, one for each row of B.
+    pub multipliers: Vec<Edge>,
+}
+
+/// The right side of B ξ̇ = … with s = B ξ + b: −Ḃ ξ − ḃ, and with it what makes a violation decay like exp(−λ t), −λ s,
+/// or −2 λ s − λ² φ where s is the rate of an equation φ = 0 of coordinates.
+pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+    let constraints = model.constraints.clone();
+    constraints
+        .iter()
+        .map(|constraint| {
+            let graph = &mut model.graph;
+            let speed = constraint.speed(graph, &model.xi);
+            let mut sum = calculus.rate(graph, speed);
+            if let Some(lambda) = constraint.stabilized {
+                let order = if constraint.is_holonomic() { 2 } else { 1 };
+                let order = graph.ratio(order, 1);
+                let damping = graph.mul(order, lambda);
+                let damped = graph.mul(damping, speed);
+                let stiffness = graph.mul(lambda, lambda);
+                let pulled = graph.mul(stiffness, constraint.residual);
+                sum = graph.sum(&[sum, damped, pulled]);
+            }
+            -sum
+        })
+        .collect()
+}
+
+/// M and S = B M⁻¹ Bᵀ, factored.
+#[derive(Clone, Debug)]
+pub struct Factored {
+    order: Vec<usize>,
+    mass: Factors,
+    /// L⁻¹ Bᵀ by columns, and the same divided by D.
+    bonds: Vec<Vec<Edge>>,
+    scaled: Vec<Vec<Edge>>,
+    inner: Factors,
+    /// The diagonal that S was raised by before it was factored, where it is singular.
+    raised: Vec<Edge>,
+}
+
+/// Factors with an order of elimination of M; `None` where a pivot vanishes identically.
+pub fn factored(
+    graph: &mut Graph,
+    parts: &Parts,
+    rows: &[Vec<Edge>],
+    order: &[usize],
+    raising: Option<&[Vec<usize>]>,
+) -> Option<Factored> {
+    let m = rows.len();
+    let ordered = |row: &[Edge]| order.iter().map(|&i| row[i]).collect::<Vec<_>>();
+    let mut matrix: Vec<Vec<Edge>> = order.iter().map(|&i| ordered(&parts.mass[i])).collect();
+    let mass = factor(graph, &mut matrix)?;
+    let mut bonds: Vec<Vec<Edge>> = rows.iter().map(|row| ordered(row)).collect();
+    for bond in &mut bonds {
+        forward(graph, &mass, bond);
+    }
+    let scaled: Vec<Vec<Edge>> = bonds
+        .iter()
+        .map(|bond| {
+            let entries = bond.iter().zip(&mass.inverses);
+            entries.map(|(&b, &d)| graph.mul(b, d)).collect()
+        })
+        .collect();
+    let mut schur: Vec<Vec<Edge>> = vec![vec![graph.zero(); m]; m];
+    for i in 0..m {
+        for j in 0..=i {
+            let entry = graph.dot(&scaled[i], &bonds[j]);
+            (schur[i][j], schur[j][i]) = (entry, entry);
+        }
+    }
+    let mut matrix = schur;
+    let raised = raising.map_or(Vec::new(), |rows| raise(graph, &mut matrix, rows));
+    Some(Factored {
+        order: order.to_vec(),
+        inner: factor(graph, &mut matrix)?,
+        mass,
+        bonds,
+        scaled,
+        raised,
+    })
+}
+
+impl Factored {
+    /// Pivots of M in order of velocities, then of S in order of rows; a pivot of S vanishes where
+    /// the rows of B become dependent, at a singular configuration.
+    pub fn pivots(&self) -> Vec<Edge> {
+        let mut pivots = self.mass.pivots.clone();
+        for (&i, &pivot) in self.order.iter().zip(&self.mass.pivots) {
+            pivots[i] = pivot;
+        }
+        pivots.extend(&self.inner.pivots);
+        pivots
+    }
+
+    /// ξ̇ and λ of M ξ̇ = f + Bᵀ λ, B ξ̇ = right.
+    pub fn solve(&self, graph: &mut Graph, force: &[Edge], right: &[Edge]) -> Saddle {
+        let mut force: Vec<Edge> = self.order.iter().map(|&i| force[i]).collect();
+        forward(graph, &self.mass, &mut force);
+        let wanted: Vec<Edge> = right
+            .iter()
+            .zip(&self.scaled)
+            .map(|(&right, scaled)| {
+                let free = graph.dot(scaled, &force);
+                graph.sub(right, free)
+            })
+            .collect();
+        let multipliers = self.multipliers(graph, wanted);
+        let mut solution: Vec<Edge> = (0..force.len())
+            .map(|k| {
+                let column: Vec<Edge> = self.bonds.iter().map(|bond| bond[k]).collect();
+                let pull = graph.dot(&column, &multipliers);
+                let sum = graph.add(force[k], pull);
+                graph.mul(sum, self.mass.inverses[k])
+            })
+            .collect();
+        backward(graph, &self.mass, &mut solution);
+        let mut xi_dot = vec![graph.zero(); solution.len()];
+        for (&i, value) in self.order.iter().zip(solution) {
+            xi_dot[i] = value;
+        }
+        Saddle {
+            xi_dot,
+            multipliers,
+        }
+    }
+
+    /// S⁻¹ r, or S⁺ r where S is singular.
+    fn multipliers(&self, graph: &mut Graph, wanted: Vec<Edge>) -> Vec<Edge> {
+        if self.raised.is_empty() {
+            return self.divided(graph, wanted);
+        }
+        let mut left = wanted;
+        for _ in 0..CLEARED {
+            let step = self.divided(graph, left.clone());
+            for ((left, &raised), step) in left.iter_mut().zip(&self.raised).zip(step) {
+                let kept = graph.mul(raised, step);
+                *left = graph.sub(*left, kept);
+            }
+        }
+        let mut solution = vec![graph.zero(); left.len()];
+        for factor in SERIES {
+            let factor = graph.ratio(factor, 1);
+            let step = self.divided(graph, left.clone());
+            for (place, &step) in step.iter().enumerate() {
+                let more = graph.mul(factor, step);
+                solution[place] = graph.add(solution[place], more);
+                left[place] = graph.mul(self.raised[place], step);
+            }
+        }
+        solution
+    }
+
+    /// What L D Lᵀ of S, or of what it was raised to, makes of a right side.
+    fn divided(&self, graph: &mut Graph, mut right: Vec<Edge>) -> Vec<Edge> {
+        forward(graph, &self.inner, &mut right);
+        for (entry, &inverse) in right.iter_mut().zip(&self.inner.inverses) {
+            *entry = graph.mul(*entry, inverse);
+        }
+        backward(graph, &self.inner, &mut right);
+        right
+    }
+}
+
+/// λ of M ξ̇ = f + Bᵀ λ where ξ̇ was solved for with w BᵀB added to M and w Bᵀ b to f: λ' − w (B ξ̇ − b). The last part vanishes
+/// where the rows do not contradict one another.
+pub fn plain(
+    graph: &mut Graph,
+    weight: Edge,
+    (rows, right): (&[Vec<Edge>], &[Edge]),
+    solution: &Saddle,
+) -> Vec<Edge> {
+    let rows = rows.iter().zip(right).zip(&solution.multipliers);
+    rows.map(|((row, &right), &multiplier)| {
+        let reached = graph.dot(row, &solution.xi_dot);
+        let left = graph.sub(reached, right);
+        let part = graph.mul(weight, left);
+        graph.sub(multiplier, part)
+    })
+    .collect()
+}
+
+/// What leads back to the constraints.
+#[derive(Clone, Debug)]
+pub struct Projections {
+    /// −M⁻¹ Bᵀ S⁻¹ φ(x), with what has a given rate held: the step along A that closes the loops to first order, and that
+    /// nonholonomic constraints allow.
+    pub position: Vec<Edge>,
+    /// ξ − M⁻¹ Bᵀ S⁻¹ B ξ: the velocities nearest in kinetic energy that satisfy B ξ = 0.
+    pub velocity: Vec<Edge>,
+}
+
+/// The projections of a model; its constraints are those that are kept.
+pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Projections {
+    let rest = vec![graph.zero(); model.n()];
+    let held = vec![graph.zero(); model.accelerated.len()];
+    let residuals = model.constraints.iter().map(|c| -c.residual);
+    let residuals: Vec<Edge> = residuals.chain(held.iter().copied()).collect();
+    let mut position = factored.solve(graph, &rest, &residuals).xi_dot;
+    let speeds: Vec<Edge> = model
+        .constraints
+        .iter()
+        .map(|c| -c.speed(graph, &model.xi))
+        .chain(held)
+        .collect();
+    let mut change = factored.solve(graph, &rest, &speeds).xi_dot;
+    // Exactly held, also where S is raised.
+    for &(place, _) in &model.accelerated {
+        (position[place], change[place]) = (graph.zero(), graph.zero());
+    }
+    let velocity = model
+        .xi
+        .iter()
+        .zip(change)
+        .map(|(&xi, change)| graph.add(xi, change))
+        .collect();
+    Projections { position, velocity }
+}
+
+/// L D Lᵀ.
+#[derive(Clone, Debug)]
+struct Factors {
+    lower: Vec<Vec<Edge>>,
+    pivots: Vec<Edge>,
+    inverses: Vec<Edge>,
+}
+
+fn factor(graph: &mut Graph, a: &mut [Vec<Edge>]) -> Option<Factors> {
+    let (n, zero) = (a.len(), graph.zero());
+    let mut lower = vec![vec![zero; n]; n];
+    let (mut pivots, mut inverses) = (Vec::new(), Vec::new());
+    for c in 0..n {
+        let pivot = a[c][c];
+        let inverse = graph.div(graph.one(), pivot)?;
+        for r in c + 1..n {
+            lower[r][c] = graph.mul(a[r][c], inverse);
+        }
+        for r in c + 1..n {
+            for s in c + 1..=r {
+                if lower[r][c] != zero && a[s][c] != zero {
+                    let product = graph.mul(lower[r][c], a[s][c]);
+                    a[r][s] = graph.sub(a[r][s], product);
+                    a[s][r] = a[r][s];
+                }
+            }
+        }
+        pivots.push(pivot);
+        inverses.push(inverse);
+    }
+    Some(Factors {
+        lower,
+        pivots,
+        inverses,
+    })
+}
+
+/// L⁻¹ v.
+fn forward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
+    for c in 0..v.len() {
+        for r in c + 1..v.len() {
+            let product = graph.mul(factors.lower[r][c], v[c]);
+            v[r] = graph.sub(v[r], product);
+        }
+    }
+}
+
+/// L⁻ᵀ v.
+fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
+    for c in (0..v.len()).rev() {
+        for r in c + 1..v.len() {
+            let product = graph.mul(factors.lower[r][c], v[r]);
+            v[c] = graph.sub(v[c], product);
+        }
+    }
+}
+
+/// ξ̇ and λ in numbers modulo p.
+pub struct Solved {
+    /// ξ̇.
+    pub xi_dot: Vec<Fp>,
+    /// λ of the constraints, then of velocities whose rates are given.
+    pub multipliers: Vec<Fp>,
+}
+
+/// ξ̇ and λ in numbers modulo p, by plain elimination: what the emitted code has to agree with. The parts are M, the forces, B by
+/// rows, and the right side of B ξ̇; then come velocities whose rates are given. Of the lane is what `Raised` multiplies by
+/// where the system is overconstrained. Where M is raised by w BᵀB, w Bᵀ b is added to forces that `balance` it, as in ξ̇; steps
+/// back to constraints have no forces.
+pub fn solve_at(
+    model: &Model,
+    [mass, force, rows, right]: [&[Fp]; 4],
+    given: &[(usize, Fp)],
+    balance: bool,
+    lane: &Lane,
+) -> Option<Solved> {
+    let n = force.len();
+    let (mut mass, mut force) = (mass.to_vec(), force.to_vec());
+    let (mut rows, mut right) = (rows.to_vec(), right.to_vec());
+    for &(place, rate) in given {
+        rows.extend((0..n).map(|j| if j == place { Fp::ONE } else { Fp::ZERO }));
+        right.push(rate);
+    }
+    let m = right.len();
+    let raising = raising(&model.constraints, given.len());
+    let mut weight = Fp::ZERO;
+    if model.augmented {
+        let mut trace = (0..n).fold(Fp::ZERO, |sum, i| sum + mass[i * n + i]);
+        if trace.is_zero() {
+            trace = Fp::ONE;
+        }
+        let squares = rows.iter().fold(Fp::ZERO, |sum, &b| sum + b * b);
+        weight = trace * squares.inv()?;
+        for (row, &right) in rows.chunks(n).zip(&right) {
+            for (i, &b) in row.iter().enumerate() {
+                if balance {
+                    force[i] = force[i] + weight * b * right;
+                }
+                (0..n).for_each(|j| mass[i * n + j] = mass[i * n + j] + weight * b * row[j]);
+            }
+        }
+    }
+    let mut columns: Vec<Vec<Fp>> = vec![force];
+    columns.extend(rows.chunks(n.max(1)).map(<[Fp]>::to_vec));
+    let solved = solve_columns(&mass, n, &columns)?;
+    let (free, bonds) = solved.split_first()?;
+    let dot = |a: &[Fp], b: &[Fp]| a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y);
+    let row = |i: usize| &rows[i * n..(i + 1) * n];
+    let schur: Vec<Fp> = (0..m)
+        .flat_map(|i| bonds.iter().map(move |bond| dot(row(i), bond)))
+        .collect();
+    let factor = match model.overconstrained {
+        true => lane
+            .clone()
+            .function(Function::Raised, Fp::ONE, &Vec::new()),
+        false => Fp::ONE,
+    };
+    let wanted: Vec<Fp> = (0..m).map(|i| right[i] - dot(row(i), free)).collect();
+    let mut multipliers = multipliers_at(&schur, &raising, wanted, factor)?;
+    let moved = (0..n).map(|k| {
+        let column: Vec<Fp> = bonds.iter().map(|bond| bond[k]).collect();
+        free[k] + dot(&column, &multipliers)
+    });
+    let mut xi_dot: Vec<Fp> = moved.collect();
+    // As in `plain`.
+    for (i, multiplier) in multipliers.iter_mut().enumerate() {
+        *multiplier = *multiplier - weight * (dot(row(i), &xi_dot) - right[i]);
+    }
+    for &(place, rate) in given {
+        xi_dot[place] = rate;
+    }
+    Some(Solved {
+        xi_dot,
+        multipliers,
+    })
+}
+
+/// A⁻¹ b for several b.
+pub(super) fn solve_columns(a: &[Fp], n: usize, columns: &[Vec<Fp>]) -> Option<Vec<Vec<Fp>>> {
+    let mut rows: Vec<Vec<Fp>> = (0..n)
+        .map(|i| {
+            let right = columns.iter().map(|column| column[i]);
+            a[i * n..(i + 1) * n].iter().copied().chain(right).collect()
+        })
+        .collect();
+    for c in 0..n {
+        let pivot = (c..n).find(|&r| !rows[r][c].is_zero())?;
+        rows.swap(c, pivot);
+        let inverse = rows[c][c].inv()?;
+        let scaled: Vec<Fp> = rows[c].iter().map(|&entry| entry * inverse).collect();
+        for (r, row) in rows.iter_mut().enumerate() {
+            let factor = row[c];
+            if r != c {
+                row.iter_mut()
+                    .zip(&scaled)
+                    .for_each(|(entry, &by)| *entry = *entry - factor * by);
+            }
+        }
+        rows[c] = scaled;
+    }
+    Some(
+        (0..columns.len())
+            .map(|j| rows.iter().map(|row| row[n + j]).collect())
+            .collect(),
+    )
+}

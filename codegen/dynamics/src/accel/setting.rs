@@ -1,0 +1,123 @@
+//! The velocity coordinates in which ξ̇ is computed: the user's, or a body's own twist.
+//!
+//! Where one body's twist η = B ξ has as many entries as ξ and B is orthogonal on X (a body with
+//! world velocities), M is constant in η, and ξ̇ = Bᵀ η̇ + (dBᵀ/dt) η.
+
+use crate::calculus::{Calculus, into_frame};
+use hamel_algebra::derivation::Derivation;
+use hamel_algebra::graph::Edge;
+use hamel_algebra::linear::{multiply, transpose};
+use hamel_language::model::Model;
+
+/// A model with the velocity coordinates that are used inside.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// The model; A and the generalised forces are those of the inner velocities.
+    pub model: Model,
+    /// ∂ᵢ along the inner frame, and d/dt at constant inner velocities.
+    pub calculus: Calculus,
+    /// How to get back to ξ̇, where the inner velocities are not ξ.
+    pub back: Option<Back>,
+}
+
+/// ξ̇ = Bᵀ η̇ + drift.
+#[derive(Clone, Debug)]
+pub struct Back {
+    /// B, n rows of n.
+    pub b: Vec<Vec<Edge>>,
+    /// (dBᵀ/dt) η.
+    pub drift: Vec<Edge>,
+}
+
+impl Setting {
+    /// The user's velocities.
+    pub fn given(model: &Model) -> Self {
+        Setting {
+            model: model.clone(),
+            calculus: Calculus::new(model),
+            back: None,
+        }
+    }
+
+    /// The twist of the only body, in its axes; `None` where that is no orthogonal change of
+    /// velocities, or none at all.
+    pub fn twist(model: &Model) -> Option<Self> {
+        let [body] = model.bodies.as_slice() else {
+            return None;
+        };
+        let mut model = model.clone();
+        let mut calculus = Calculus::new(&model);
+        let zero = model.graph.zero();
+        if model.kinetic != zero || !model.particles.is_empty() {
+            return None;
+        }
+        let frame = model.frames[body.frame].clone();
+        let graph = &mut model.graph;
+        let spins = calculus.spin_jacobian(graph, &frame.rotation);
+        let columns: Vec<Vec<Edge>> = calculus
+            .point_jacobian(graph, frame.position)
+            .into_iter()
+            .zip(spins)
+            .map(|(v, w)| {
+                into_frame(graph, &frame.rotation, v)
+                    .into_iter()
+                    .chain(w)
+                    .collect()
+            })
+            .collect();
+        let mut b = transpose(&columns);
+        b.retain(|row| row.iter().any(|&entry| entry != zero));
+        let n = model.xi.len();
+        let identity = |product: &[Vec<Edge>], one: Edge| {
+            (0..n).all(|i| (0..n).all(|j| product[i][j] == if i == j { one } else { zero }))
+        };
+        if b.len() != n || identity(&b, graph.one()) {
+            return None;
+        }
+        let back = transpose(&b);
+        if !identity(&multiply(graph, &b, &back), graph.one()) {
+            return None;
+        }
+        let eta: Vec<Edge> = b.iter().map(|row| graph.dot(row, &model.xi)).collect();
+        // Along the motion B changes with x alone.
+        let mut along = Derivation::new(
+            model
+                .x
+                .iter()
+                .zip(&model.rate)
+                .map(|(x, &rate)| (x.node(), rate)),
+        );
+        let drift: Vec<Edge> = back
+            .iter()
+            .map(|row| {
+                let change = along.all(graph, row);
+                graph.dot(&change, &eta)
+            })
+            .collect();
+        model.a = multiply(graph, &model.a, &back);
+        model.generalized = b
+            .iter()
+            .map(|row| graph.dot(row, &model.generalized))
+            .collect();
+        let calculus = Calculus::with_drift(&model, &drift);
+        Some(Setting {
+            model,
+            calculus,
+            back: Some(Back { b, drift }),
+        })
+    }
+
+    /// ξ̇ from η̇.
+    pub fn leave(&self, graph: &mut hamel_algebra::graph::Graph, eta_dot: Vec<Edge>) -> Vec<Edge> {
+        let Some(back) = &self.back else {
+            return eta_dot;
+        };
+        (0..eta_dot.len())
+            .map(|j| {
+                let column: Vec<Edge> = back.b.iter().map(|row| row[j]).collect();
+                let turned = graph.dot(&column, &eta_dot);
+                graph.add(turned, back.drift[j])
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,285 @@
+//! Other velocity coordinates for the same motion, and what ξ̇ costs in them.
+//!
+//! With ξ = B(x) ξ', where B = Y A' for the A' of closed-form rates, the description in ξ' has
+//! A' = A B, f' = Bᵀ f, and all else as it was. Rotations turn in body or world axes, points move in
+//! world axes or in those of a body, and chains of angles turn absolutely or relative to one another.
+
+mod rates;
+
+use super::accel::accel;
+use super::care::Care;
+use super::kinematics;
+use hamel_algebra::derivation::Derivation;
+use hamel_algebra::graph::{Edge, Function, Node};
+use hamel_algebra::linear::transpose;
+use hamel_algebra::transplant::substitute;
+use hamel_language::model::{Coordinate, Model};
+use hamel_language::syntax::ast::CoordKind;
+use hamel_program::count::{Count, count};
+use rates::RateDraft;
+
+/// More combinations than this are not tried.
+const MOST: usize = 24;
+
+/// One choice of velocity coordinates.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// The choice in words.
+    pub label: String,
+    /// The statements that make it.
+    pub statements: Vec<String>,
+    /// Whether the description has these velocities already, up to their order.
+    pub as_written: bool,
+    /// Operations of ξ̇.
+    pub accel: Count,
+    /// Operations of ẋ.
+    pub rate: Count,
+    /// The description in these velocities.
+    pub model: Model,
+}
+
+/// The choices that exist, cheapest first; the error says why there are none.
+pub fn advise(model: &Model) -> Result<Vec<Choice>, String> {
+    if !model.points.constraints.is_empty() {
+        return Err(
+            "the coordinates obey constraints of the description: their rates have no other closed form"
+                .into(),
+        );
+    }
+    if model.clock.is_some() {
+        return Err("the description has `time`, which keeps its velocity 1".into());
+    }
+    if model.is_constrained() {
+        return Err(
+            "its velocities are constrained, by a loop, `nonholonomic`, `inactive` or `prescribe`: what is counted is ξ̇ before that"
+                .into(),
+        );
+    }
+    let dimension: usize = model.blocks.iter().map(|block| block.dimension()).sum();
+    if dimension != model.n() {
+        return Err("there are fewer velocities than directions of the coordinates".into());
+    }
+    let mut choices = vec![written(model)?];
+    for combination in combinations(&parts(model)) {
+        let choice = rewritten(model, &combination)?;
+        if choice.as_written {
+            choices[0].label = format!("{}, as written", choice.label);
+            choices[0].statements = choice.statements;
+        } else {
+            choices.push(choice);
+        }
+    }
+    choices.sort_by_key(|choice| (choice.accel.weight(), choice.rate.weight()));
+    Ok(choices)
+}
+
+/// Something that moves, with the ways it can.
+struct Part {
+    moves: Move,
+    options: Vec<Way>,
+}
+
+/// What moves.
+#[derive(Clone)]
+enum Move {
+    /// A rotation, by its coordinate.
+    Rotation(usize),
+    /// A point, by its coordinate.
+    Point(usize),
+    /// Angles, by their coordinates.
+    Chain(Vec<usize>),
+    /// Anything else.
+    Plain(usize),
+}
+
+/// How it moves.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// In the axes of the world; each coordinate by itself.
+    World,
+    /// In the axes of the rotation of this coordinate.
+    Body(usize),
+    /// q̇ᵢ = uᵢ − uᵢ₋₁: relative angles by absolute rates.
+    Differences,
+    /// q̇ᵢ = u₁ + … + uᵢ: absolute angles by relative rates.
+    Sums,
+}
+
+fn is_rotation(kind: CoordKind) -> bool {
+    matches!(kind, CoordKind::SO3 | CoordKind::S3 | CoordKind::SE3)
+}
+
+fn parts(model: &Model) -> Vec<Part> {
+    let rotations: Vec<usize> = (0..model.coordinates.len())
+        .filter(|&index| is_rotation(model.coordinates[index].kind))
+        .collect();
+    let mut all = Vec::new();
+    let mut chain = Vec::new();
+    for (index, coordinate) in model.coordinates.iter().enumerate() {
+        match coordinate.kind {
+            CoordKind::S1 => chain.push(index),
+            CoordKind::Real if is_angle(model, coordinate) => chain.push(index),
+            CoordKind::Real => all.push(Part {
+                moves: Move::Plain(index),
+                options: vec![Way::World],
+            }),
+            CoordKind::Euclidean(3) => all.push(Part {
+                moves: Move::Point(index),
+                options: std::iter::once(Way::World)
+                    .chain(rotations.iter().map(|&rotation| Way::Body(rotation)))
+                    .collect(),
+            }),
+            CoordKind::Euclidean(_) => all.push(Part {
+                moves: Move::Plain(index),
+                options: vec![Way::World],
+            }),
+            CoordKind::SE3 => {
+                let options = vec![Way::World, Way::Body(index)];
+                all.push(Part {
+                    moves: Move::Point(index),
+                    options: options.clone(),
+                });
+                all.push(Part {
+                    moves: Move::Rotation(index),
+                    options,
+                });
+            }
+            CoordKind::SO3 | CoordKind::S3 => all.push(Part {
+                moves: Move::Rotation(index),
+                options: vec![Way::Body(index), Way::World],
+            }),
+        }
+    }
+    if !chain.is_empty() {
+        let options = match chain.len() {
+            1 => vec![Way::World],
+            _ => vec![Way::World, Way::Differences, Way::Sums],
+        };
+        all.push(Part {
+            moves: Move::Chain(chain),
+            options,
+        });
+    }
+    all
+}
+
+/// Whether a number stands in the argument of a sine or cosine.
+fn is_angle(model: &Model, coordinate: &Coordinate) -> bool {
+    let graph = &model.graph;
+    let symbol = model.x.get(coordinate.offset).map(|edge| edge.node());
+    (0..graph.len() as u32).any(|id| match graph.node(id) {
+        Node::Apply(Function::Sin | Function::Cos, argument) => graph
+            .reachable(&[argument])
+            .into_iter()
+            .any(|inner| Some(inner) == symbol),
+        _ => false,
+    })
+}
+
+/// All combinations of ways, the first ways first.
+fn combinations(parts: &[Part]) -> Vec<Vec<(Move, Way)>> {
+    let mut all: Vec<Vec<(Move, Way)>> = vec![Vec::new()];
+    for part in parts {
+        all = all
+            .into_iter()
+            .flat_map(|head| {
+                part.options.iter().map(move |&way| {
+                    let mut longer = head.clone();
+                    longer.push((part.moves.clone(), way));
+                    longer
+                })
+            })
+            .take(MOST)
+            .collect();
+    }
+    all
+}
+
+fn written(model: &Model) -> Result<Choice, String> {
+    Choice::counted("as written".into(), Vec::new(), true, model.clone())
+}
+
+impl Choice {
+    fn counted(
+        label: String,
+        statements: Vec<String>,
+        as_written: bool,
+        model: Model,
+    ) -> Result<Self, String> {
+        let Some((chosen, _)) = accel(&model, &Care::default()) else {
+            return Err("the mass matrix is singular for every configuration".into());
+        };
+        Ok(Choice {
+            label,
+            statements,
+            as_written,
+            accel: chosen.count,
+            rate: count(&model.graph, &model.rate),
+            model,
+        })
+    }
+}
+
+/// The description in other velocities.
+fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, String> {
+    let mut own = model.clone();
+    let rows = kinematics::left_inverse(&mut own)
+        .ok_or("the rates of this description leave A without a left inverse")?;
+    let mut rates = RateDraft::new(model, &mut own.graph);
+    for (moves, way) in combination {
+        rates.take(moves, *way);
+    }
+    let (lines, label) = (rates.statements(), rates.label.join(", "));
+    let rate = rates.rate;
+    let graph = &mut own.graph;
+    // A' and B = Y A'.
+    let mut by: Vec<Derivation> = own
+        .xi
+        .iter()
+        .map(|xi| Derivation::new([(xi.node(), graph.one())]))
+        .collect();
+    let a: Vec<Vec<Edge>> = rate
+        .iter()
+        .map(|&entry| by.iter_mut().map(|d| d.of(graph, entry)).collect())
+        .collect();
+    let columns = |a: &[Vec<Edge>]| {
+        let mut columns = transpose(a);
+        columns.sort();
+        columns
+    };
+    let as_written = columns(&a) == columns(&model.a);
+    let b: Vec<Vec<Edge>> = rows
+        .iter()
+        .map(|row| {
+            (0..own.xi.len())
+                .map(|j| {
+                    let column: Vec<Edge> = a.iter().map(|entries| entries[j]).collect();
+                    graph.dot(row, &column)
+                })
+                .collect()
+        })
+        .collect();
+    let old: Vec<Edge> = b.iter().map(|row| graph.dot(row, &own.xi)).collect();
+    let set: Vec<(usize, Edge)> = own
+        .xi
+        .iter()
+        .zip(&old)
+        .filter_map(|(xi, &value)| Some((graph.as_symbol(*xi)?, value)))
+        .collect();
+    // All that ξ stands in.
+    own.kinetic = substitute(graph, &[own.kinetic], &set)[0];
+    let force = substitute(graph, &own.generalized, &set);
+    own.generalized = transpose(&b)
+        .iter()
+        .map(|column| graph.dot(column, &force))
+        .collect();
+    for wrench in &mut own.wrenches {
+        for part in [&mut wrench.force, &mut wrench.torque] {
+            let moved = substitute(graph, &part[..], &set);
+            part.copy_from_slice(&moved);
+        }
+    }
+    own.a = a;
+    own.rate = rate;
+    Choice::counted(label, lines, as_written, own)
+}

@@ -1,0 +1,401 @@
+//! The program of a model: every function that is emitted, validated before it leaves.
+
+use super::accel::cheapest::Computation;
+use super::accel::{Acceleration, accel, forces};
+use super::calculus::Calculus;
+use super::candidates::Candidates;
+use super::care::{self, Care};
+use super::multipliers::with_accelerations;
+use super::program::{Builder, MOST_LITERAL, shape_of};
+use super::reduction::Reduction;
+use super::regressor::Regressor;
+use super::structure::{self, Found, Functions};
+use super::{correction, energy, inertia, kinematics};
+use Argument::{Accelerations, Coordinates, Inputs, Velocities};
+use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
+use hamel_algebra::transplant::{copy, rebuild};
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::functions::Needs;
+use hamel_language::model::{Model, class};
+use hamel_program::structure::Structure;
+use hamel_program::{Argument, Cause, Function, FunctionId, Program};
+use rustc_hash::FxHashSet;
+
+/// In larger graphs T is not traced a second time.
+const MOST_TRACED: usize = 3000;
+
+/// Derives the functions of a model that are wanted; `reduction` solves its constraints, `regressor` are its base
+/// parameters where they are wanted. The program is
+/// the cheapest one, or, where rounding takes too much of that, the one that keeps more digits.
+pub fn assemble(
+    full: &Model,
+    reduction: Option<&Reduction>,
+    regressor: Option<&Regressor>,
+    linearized: bool,
+) -> Result<Program, Diagnostic> {
+    let model = reduction.map_or(full, |reduction| &reduction.model);
+    let (mut program, mass) =
+        put_together(full, reduction, regressor, linearized, &Care::default())?;
+    // Rows that depend on one another amplify how far a start is off the loop, whatever is emitted.
+    if !model.overconstrained {
+        let mut losses = care::losses(model, &program);
+        let excess = care::excess(model, &program, &mass, &losses);
+        if excess > 0.0 {
+            let (careful, mass) =
+                put_together(full, reduction, regressor, linearized, &Care::of(model))?;
+            let kept = care::losses(model, &careful);
+            if care::excess(model, &careful, &mass, &kept) < excess {
+                (program, losses) = (careful, kept);
+            }
+        }
+        care::note(&mut program, &losses);
+    }
+    Ok(program)
+}
+
+/// The program before it is validated, and M in its graph.
+fn put_together(
+    full: &Model,
+    reduction: Option<&Reduction>,
+    regressor: Option<&Regressor>,
+    linearized: bool,
+    care: &Care,
+) -> Result<(Program, Vec<Vec<Edge>>), Diagnostic> {
+    let model = reduction.map_or(full, |reduction| &reduction.model);
+    let mut reference = model.clone();
+    let inverts = model.asked.needs() == Needs::Inverse;
+    if model.n() <= MOST_LITERAL && inverts {
+        let mut calculus = Calculus::new(&reference);
+        let mass = inertia::mass_matrix(&mut reference, &mut calculus);
+        inertia::positive_definite(model, &reference.graph, &mass)?;
+    }
+    let alone = (!inverts)
+        .then(|| forces(model, care))
+        .flatten()
+        .map(|computed| (Acceleration::none(model.graph.clone()), computed));
+    let Some((chosen, computed)) = alone.or_else(|| accel(model, care)) else {
+        // Elimination at the start tells which velocity is the first without inertia.
+        let (graph, mass) = match forces(model, care) {
+            Some(Computation { graph, parts }) => (graph, parts.mass),
+            None => {
+                let mut calculus = Calculus::new(&reference);
+                let mass = inertia::mass_matrix(&mut reference, &mut calculus);
+                (reference.graph, mass)
+            }
+        };
+        inertia::positive_definite(model, &graph, &mass)?;
+        return Err(Diagnostic::new(
+            model.span,
+            "the mass matrix is singular for every configuration",
+        )
+        .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it")
+        .lacking(Needs::Inverse));
+    };
+    if model.n() > MOST_LITERAL && inverts {
+        inertia::positive_definite(model, &computed.graph, &computed.parts.mass)?;
+    }
+    let potential = energy::potential(&mut reference);
+    let mut builder = Builder::new(model, chosen, computed, care);
+    builder.kinematics();
+    builder.dynamics(&reference.graph, potential);
+    builder.momentum();
+    if linearized {
+        builder.linearize(full, reduction);
+    }
+    builder.dissipation();
+    builder.variety(full)?;
+    builder.outputs();
+    builder.frames();
+    builder.centroidal(full)?;
+    builder.inverse_slopes(full, reduction);
+    builder.parameter_slopes(full)?;
+    if let Some(regressor) = regressor {
+        builder.regressor(regressor);
+    }
+    builder.invariants();
+    if let Some(reduction) = reduction {
+        builder.constraint_force(full, reduction);
+        builder.projections();
+    }
+    let Computation { graph, parts } = &builder.shared;
+    let found = structure::analyse(full, model, graph, parts);
+    let mut others = Vec::new();
+    if found.functions.is_some() && model.n() <= MOST_LITERAL {
+        // Apart from what ξ̇ is computed from.
+        let mut apart = model.graph.clone();
+        let parts = builder.parts.shared(&builder.graph, &mut apart);
+        others.extend(structure::analyse(full, model, &apart, &parts).functions);
+    }
+    let structure = builder.splitting(found, &others)?;
+    let mass = builder.parts.mass.clone();
+    Ok((builder.finish(structure), mass))
+}
+
+impl Builder<'_> {
+    fn kinematics(&mut self) {
+        let model = self.model;
+        let rate = rebuild(&model.graph, &mut self.graph, &model.rate);
+        let x = model.x.clone();
+        let chart = kinematics::chart_rates(&mut self.graph, &model.blocks, &x, &rate);
+        self.push(FunctionId::Rate, rate);
+        self.push(FunctionId::ChartRate, chart);
+    }
+
+    fn dynamics(&mut self, reference: &Graph, potential: Edge) {
+        let guards = self.guards();
+        let route = format!("Route: {}.", self.chosen.route);
+        let mut rates = self.chosen.xi_dot.clone();
+        let stateful = !self.model.states.is_empty();
+        if stateful {
+            rates.extend(self.state_rates(&rates));
+        }
+        self.push_guarded(FunctionId::Accel, rates, guards);
+        if let (Some(accel), true) = (self.functions.last_mut(), stateful) {
+            let text = "The rates ż of the states follow ξ̇.";
+            accel.docs.push(text.into());
+        }
+        if let Some(accel) = self.functions.last_mut() {
+            accel.docs.push(route);
+        }
+        let mass = self.parts.mass.clone();
+        let graph = &mut self.graph;
+        let bias: Vec<Edge> = self.parts.inertia.iter().map(|&edge| -edge).collect();
+        let slope: Vec<Edge> = self.parts.conservative.iter().map(|&edge| -edge).collect();
+        let applied = self.parts.applied.clone();
+        let momentum = self.parts.momentum_of(graph, self.model);
+        let inverse = self.parts.inverse_dynamics_of(graph, self.model);
+        let [kinetic, energy] = self.energies(&momentum, reference, potential);
+        let potential = rebuild(reference, &mut self.graph, &[potential])[0];
+        self.push(FunctionId::InverseDynamics, inverse);
+        self.push(FunctionId::MassMatrix, mass.concat());
+        self.push(FunctionId::Bias, bias);
+        self.push(FunctionId::PotentialForce, slope);
+        self.push(FunctionId::GeneralizedForce, applied);
+        self.push(FunctionId::Momentum, momentum);
+        let gyroscopic = self.model.gyroscopic != self.model.graph.zero();
+        self.push(FunctionId::KineticEnergy, vec![kinetic]);
+        if let (Some(function), true) = (self.functions.last_mut(), gyroscopic) {
+            let text = "Of what is written as `kinetic`, T₂ − T₀ by degrees in ẋ: with it T + V is ẋ · ∂L/∂ẋ − L.";
+            function.docs.push(text.into());
+        }
+        self.push(FunctionId::PotentialEnergy, vec![potential]);
+        self.push(FunctionId::Energy, vec![energy]);
+        if let (Some(function), true) = (self.functions.last_mut(), gyroscopic) {
+            let text =
+                "Of what is written as `kinetic`, T₂ − T₀ by degrees in ẋ: this is ẋ · ∂L/∂ẋ − L.";
+            function.docs.push(text.into());
+        }
+    }
+
+    /// The parts of T in the energy, and with V the energy, V in a graph of its own: by ½ ξ · p, or by the velocities of points and bodies, whichever takes less.
+    fn energies(&mut self, momentum: &[Edge], reference: &Graph, potential: Edge) -> [Edge; 2] {
+        let [mut kinetic, mut energy] = [(); 2].map(|()| Candidates::with(&self.care));
+        let mut offer = |graph: Graph, t: Edge| {
+            let mut around = graph.clone();
+            let v = rebuild(reference, &mut around, &[potential])[0];
+            let sum = around.add(t, v);
+            energy.offer_own(around, vec![sum]);
+            kinetic.offer_own(graph, vec![t]);
+        };
+        let mut graph = self.graph.clone();
+        let by_momentum = self.parts.kinetic_of(&mut graph, self.model, momentum);
+        let value = graph.value(by_momentum);
+        offer(graph, by_momentum);
+        if self.model.graph.len() < MOST_TRACED {
+            let mut model = self.model.clone();
+            let mut calculus = Calculus::new(&model);
+            let traced = energy::traced(&mut model, &mut calculus);
+            let traced = energy::part_of_energy(&mut model, traced);
+            // Armatures, and M that was written, are in p alone.
+            if model.graph.value(traced) == value {
+                offer(model.graph, traced);
+            }
+        }
+        let [kinetic, energy] = [kinetic, energy].map(|all| all.cheapest(&mut self.graph)[0]);
+        [kinetic, energy]
+    }
+
+    /// ż, with ξ̇ as it is computed there.
+    pub(super) fn state_rates(&mut self, xi_dot: &[Edge]) -> Vec<Edge> {
+        let model = self.model;
+        let rates = rebuild(&model.graph, &mut self.graph, &model.state_rates);
+        with_accelerations(&mut self.graph, &rates, xi_dot)
+    }
+
+    /// D, where there is one.
+    fn dissipation(&mut self) {
+        let model = self.model;
+        let asked = model.asked.names(FunctionId::Dissipation);
+        if model.dissipation == model.graph.zero() && !asked {
+            return;
+        }
+        let value = rebuild(&model.graph, &mut self.graph, &[model.dissipation]);
+        self.push(FunctionId::Dissipation, value);
+    }
+
+    /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
+    fn variety(&mut self, model: &Model) -> Result<(), Diagnostic> {
+        let mut free = model.points.free.clone();
+        let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
+        let correction = correction::correction(model, &mut free).ok_or_else(|| {
+            Diagnostic::new(model.span, "no Ψ was found: [Y; Φ] has no inverse on X")
+                .help("write the constraints such that their derivatives are independent")
+        })?;
+        let mut phi = copy(&free, &mut self.graph, &rows);
+        phi.extend(self.loops());
+        let correction = copy(&free, &mut self.graph, &correction);
+        self.push(FunctionId::Constraint, phi);
+        self.push(FunctionId::Correction, correction);
+        Ok(())
+    }
+
+    fn outputs(&mut self) {
+        for (name, value) in &self.model.outputs {
+            let entries = rebuild(&self.model.graph, &mut self.graph, &value.entries());
+            let shape = shape_of(value);
+            let docs = format!("Output `{name}` of the description.");
+            let arguments = self.arguments(&entries);
+            self.functions
+                .push(Function::described(name, docs, &arguments, shape, entries));
+        }
+    }
+
+    /// What expressions depend on, as arguments of a function.
+    fn arguments(&self, entries: &[Edge]) -> Vec<Argument> {
+        let states: Vec<NodeId> = self.model.z().iter().map(|z| z.node()).collect();
+        let of = |id: NodeId| match self.graph.class(id) {
+            _ if states.contains(&id) => Some(Velocities),
+            class::COORD | class::TIME => Some(Coordinates),
+            class::VELOCITY => Some(Velocities),
+            class::ACCEL => Some(Accelerations),
+            class::INPUT => Some(Inputs),
+            _ => None,
+        };
+        let reached = self.graph.reachable(entries).into_iter();
+        let symbols = reached.filter(|&id| matches!(self.graph.node(id), Node::Symbol(_)));
+        let found: Vec<Argument> = symbols.filter_map(of).collect();
+        let all = [Coordinates, Velocities, Accelerations, Inputs];
+        all.into_iter()
+            .filter(|argument| found.contains(argument))
+            .collect()
+    }
+
+    /// What the methods for systems that split call; an error where it is asked for in vain.
+    fn splitting(&mut self, found: Found, others: &[Functions]) -> Result<Structure, Diagnostic> {
+        let model = self.model;
+        if let (Err(reasons), true) = (
+            &found.structure.split,
+            model.asked.names(FunctionId::Splitting),
+        ) {
+            let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
+            return Err(Diagnostic::new(
+                model.span,
+                format!("the equations do not split: {}", reasons.join("; ")),
+            )
+            .help(
+                "leave `splitting` out of `generate`; `accel` serves the methods for any system",
+            ));
+        }
+        if let (Some(functions), true) =
+            (&found.functions, model.asked.wants(FunctionId::Splitting))
+        {
+            let pivots = functions.add(others, self);
+            let graph = &self.graph;
+            let varies = |pivot: &Edge| !graph.is_free(pivot.node());
+            if self.chosen.pivots.iter().any(varies) {
+                self.constant_guards.extend(pivots);
+            }
+        }
+        Ok(found.structure)
+    }
+
+    fn finish(mut self, structure: Structure) -> Program {
+        let model = self.model;
+        let names = names(model, &mut self.graph);
+        self.functions.retain(|function| match function.id {
+            Some(id) => model.asked.wants(id),
+            None => model.asked.wants_output(&function.name),
+        });
+        let constants = &model.completion.constants;
+        let first = self.kinematic_guards.len();
+        self.kinematic_guards
+            .extend(rebuild(&model.graph, &mut self.graph, constants));
+        let all = self.kinematic_guards.iter().copied().enumerate();
+        let new = all.map(|(number, pivot)| (pivot, Cause::Kinematics(number)));
+        self.causes.splice(first..first, new.skip(first));
+        // Numbers were found positive when M was.
+        let of_parameters = |edge: &Edge| {
+            self.graph.is_free(edge.node()) && self.graph.as_rational(*edge).is_none()
+        };
+        let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
+        let mut constant_guards: Vec<Edge> = if self.functions.iter().any(|f| f.fallible) {
+            self.chosen
+                .pivots
+                .iter()
+                .copied()
+                .filter(of_parameters)
+                .chain(kinematic)
+                .collect()
+        } else {
+            Vec::new()
+        };
+        constant_guards.extend(&self.constant_guards);
+        // What fails first is told: later pivots are computed from earlier ones.
+        constant_guards.sort_by_key(|guard| guard.node());
+        constant_guards.dedup();
+        let loops = self.loops().len();
+        let kinds: usize = model.blocks.iter().map(|block| block.constraints()).sum();
+        // What is a number, or guards nothing, asks nobody.
+        let guards = self.functions.iter().flat_map(|function| &function.guards);
+        let guards: FxHashSet<Edge> = guards.chain(&constant_guards).copied().collect();
+        let mut causes = self.causes;
+        causes.retain(|(pivot, _)| guards.contains(pivot));
+        Program {
+            name: model.name.clone(),
+            public: model.public,
+            docs: model.docs.clone(),
+            graph: self.graph,
+            params: model.params.clone(),
+            defaults: model.defaults.clone(),
+            coordinates: model.coordinates.clone(),
+            blocks: model.blocks.clone(),
+            velocities: model.velocities.clone(),
+            inputs: model.inputs.clone(),
+            states: model.states.clone(),
+            joints: model.joints.clone(),
+            nu: model.nu(),
+            n: model.n(),
+            m: model.m(),
+            n_z: model.state_rates.len(),
+            phi: model.phi.len() + loops,
+            clock: model.clock.map(|clock| clock.x),
+            embedded: model.completion.independent.len() > kinds,
+            start_x: model.start_x.clone(),
+            start_xi: [&model.start_xi[..], &model.start_z].concat(),
+            names,
+            constant_guards,
+            causes,
+            functions: self.functions,
+            structure,
+        }
+    }
+}
+
+/// Names of temporaries from the user's `let`s: `p`, and `p_1` … for the entries of a vector.
+fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
+    let mut names = Vec::new();
+    for (name, value) in &model.lets {
+        let entries = rebuild(&model.graph, graph, &value.entries());
+        if let [only] = entries.as_slice() {
+            names.push((name.clone(), *only));
+        } else {
+            names.extend(
+                entries
+                    .into_iter()
+                    .enumerate()
+                    .map(|(i, edge)| (format!("{name}_{}", i + 1), edge)),
+            );
+        }
+    }
+    names
+}

@@ -1,0 +1,179 @@
+//! Poses with what is known from the start: of two expressions with one value a graph keeps the first.
+//!
+//! Sums of angles about parallel axes: with R(a) R(b) = R(a + b) a pose behind such joints takes one rotation. And the ways
+//! from frames to the last one, which the columns of its Jacobian need, are parts of its position.
+
+use super::{by_velocities, chain, relative};
+use crate::calculus::Calculus;
+use hamel_algebra::graph::{Edge, Function, Graph};
+use hamel_algebra::linear::{Mat3, Vec3, add3, apply3, identity3, multiply3, transpose3, zero3};
+use hamel_algebra::transplant::rebuild;
+use hamel_language::model::Model;
+
+/// How poses along a chain are multiplied where sums of angles are known.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Order {
+    /// As the description does, from the world outwards.
+    Given,
+    /// R₀ (R₁ R₂), what turns about parallel axes first.
+    Outwards,
+    /// The same from the frame towards the world.
+    Inwards,
+    /// The ways to the frame, from the frame towards the world.
+    Ways,
+}
+
+/// What turns about parallel axes one after the other, before a frame.
+struct Runs {
+    /// Signs and coordinates of the joints.
+    joints: Vec<Vec<(bool, usize)>>,
+    /// The frames that begin a run, or another motion.
+    begins: Vec<usize>,
+}
+
+/// The model in graphs in which the sines and cosines of sums of angles about parallel axes, where there are such before
+/// the frame, or the ways to the frame are known from the start, so that all that is equal to them is they.
+pub fn with_known(model: &Model, index: usize) -> Vec<Model> {
+    let runs = runs(model, index);
+    let orders: &[Order] = match runs.joints.is_empty() {
+        true => &[Order::Ways],
+        false => &[Order::Given, Order::Outwards, Order::Inwards, Order::Ways],
+    };
+    let orders = orders.iter();
+    orders
+        .map(|&order| known(model, index, &runs, order))
+        .collect()
+}
+
+/// The runs of joints with parallel axes.
+fn runs(model: &Model, index: usize) -> Runs {
+    let mut graph = model.graph.clone();
+    let mut calculus = Calculus::new(model);
+    let mut runs: Vec<Vec<(bool, usize)>> = Vec::new();
+    let mut begins = Vec::new();
+    let mut last: Option<Vec3> = None;
+    for at in chain(model, index) {
+        let frame = &model.frames[at];
+        let moved = relative(&mut graph, &mut calculus, frame);
+        let none = zero3(&graph);
+        let joints = by_velocities(model, &mut graph, moved);
+        let mut turning = joints
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, turn))| *turn != none);
+        let (first, second) = (turning.next(), turning.next());
+        let Some((velocity, (_, turn))) = first else {
+            continue;
+        };
+        let coordinate = model
+            .rate
+            .iter()
+            .position(|rate| *rate == model.xi[velocity]);
+        let (None, Some(coordinate)) = (second, coordinate) else {
+            last = None;
+            begins.push(at);
+            continue;
+        };
+        let axis = apply3(&mut graph, &frame.rotation, *turn);
+        let same = last == Some(axis);
+        match (runs.last_mut(), last) {
+            (Some(run), Some(before)) if same || axis.map(|entry| -entry) == before => {
+                let sign = run.last().is_some_and(|(sign, _)| *sign);
+                run.push((sign == same, coordinate));
+            }
+            _ => {
+                runs.push(vec![(false, coordinate)]);
+                begins.push(at);
+            }
+        }
+        last = Some(axis);
+    }
+    runs.retain(|run| run.len() > 1);
+    Runs {
+        joints: runs,
+        begins,
+    }
+}
+
+/// The model in such a graph.
+fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
+    let mut known = model.graph.fresh();
+    let symbols = model.graph.symbols().iter().enumerate();
+    let mut reals = Vec::new();
+    for (place, symbol) in symbols {
+        let value = model.graph.value(Edge::of(symbol.node));
+        known.symbol(&symbol.name, symbol.class, value);
+        reals.push(model.graph.reals(place));
+    }
+    known.set_reals(reals);
+    for run in &runs.joints {
+        for first in 0..run.len() {
+            let angles = run[first..].iter().map(|&(sign, coordinate)| {
+                let symbol = known.symbols()[model.points.first + coordinate].node;
+                Edge::of(symbol).signed(sign != run[first].0)
+            });
+            let mut sum = known.zero();
+            for angle in angles.collect::<Vec<Edge>>() {
+                sum = known.add(sum, angle);
+                known.apply(Function::Sin, sum);
+                known.apply(Function::Cos, sum);
+            }
+        }
+    }
+    let graph = &mut known;
+    let mut poses: Vec<(bool, Pose)> = Vec::new();
+    for at in chain(model, index) {
+        let (rotation, position) = &model.frames[at].relative;
+        let entries = [rotation.concat(), position.to_vec()].concat();
+        let entries = rebuild(&model.graph, graph, &entries);
+        let rotation: Mat3 = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entries[3 * i + j]));
+        let position: Vec3 = [9, 10, 11].map(|i| entries[i]);
+        poses.push((runs.begins.contains(&at), (rotation, position)));
+    }
+    let identity: Pose = (identity3(graph), zero3(graph));
+    let (mut base, mut inner) = (identity, identity);
+    match order {
+        Order::Given => {}
+        Order::Outwards => {
+            for (begins, pose) in &poses {
+                if *begins {
+                    base = placed(graph, &base, &inner);
+                    inner = identity;
+                }
+                inner = placed(graph, &inner, pose);
+                placed(graph, &base, &inner);
+            }
+        }
+        Order::Inwards => {
+            for (begins, (rotation, position)) in poses.iter().rev() {
+                let back = transpose3(rotation);
+                let moved = apply3(graph, &back, *position);
+                inner = placed(graph, &inner, &(back, moved.map(|entry| -entry)));
+                let whole = placed(graph, &base, &inner);
+                if *begins {
+                    (base, inner) = (whole, identity);
+                }
+            }
+        }
+        Order::Ways => {
+            let mut way = zero3(graph);
+            for (_, (rotation, position)) in poses.iter().rev() {
+                let turned = apply3(graph, rotation, way);
+                way = add3(graph, *position, turned);
+            }
+        }
+    }
+    model.transplanted(known, rebuild)
+}
+
+/// Axes by columns, origin.
+type Pose = (Mat3, Vec3);
+
+/// The pose of what is placed on a frame.
+fn placed(graph: &mut Graph, frame: &Pose, on: &Pose) -> Pose {
+    let moved = apply3(graph, &frame.0, on.1);
+    (
+        multiply3(graph, &frame.0, &on.0),
+        add3(graph, frame.1, moved),
+    )
+}

@@ -1,0 +1,55 @@
+//! What falls apart: indices that a table connects, and the ones that it does not.
+
+use hamel_algebra::graph::{Edge, Graph};
+
+/// How an entry of M depends on x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entry {
+    /// 0 everywhere.
+    Zero,
+    /// The same at every x.
+    Constant,
+    /// It changes with x.
+    Varying,
+}
+
+/// The connected components of 0..n under some links, in order of their first members.
+pub fn components(n: usize, links: impl IntoIterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
+    let mut label: Vec<usize> = (0..n).collect();
+    for (a, b) in links {
+        let (from, to) = (label[a].max(label[b]), label[a].min(label[b]));
+        for entry in &mut label {
+            if *entry == from {
+                *entry = to;
+            }
+        }
+    }
+    let firsts = (0..n).filter(|&i| label[i] == i);
+    firsts
+        .map(|first| (0..n).filter(|&i| label[i] == first).collect())
+        .collect()
+}
+
+/// The blocks of γ: i, j, k belong together where γᵢⱼᵏ ≠ 0. The ∂ᵢ of different blocks commute.
+pub fn commuting_blocks(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<usize>> {
+    let n = gamma.len();
+    let zero = graph.zero().node();
+    let mut links = Vec::new();
+    for i in 0..n {
+        for j in 0..n {
+            for k in 0..n {
+                if gamma[i][j][k].node() != zero {
+                    links.extend([(i, j), (i, k)]);
+                }
+            }
+        }
+    }
+    components(n, links)
+}
+
+/// The blocks of M: i, j belong together where M_ij ≠ 0.
+pub fn inertia_blocks(pattern: &[Vec<Entry>]) -> Vec<Vec<usize>> {
+    let n = pattern.len();
+    let all = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+    components(n, all.filter(|&(i, j)| pattern[i][j] != Entry::Zero))
+}

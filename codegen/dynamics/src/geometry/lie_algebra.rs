@@ -1,0 +1,208 @@
+//! A Lie algebra over Q by its structure constants, [eᵢ, eⱼ] = cᵢⱼᵏ eₖ, and what does not depend on
+//! the basis: derived algebra, centre, Killing form.
+
+use hamel_algebra::echelon::{Echelon, signature};
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+
+/// A vector of coordinates.
+pub type Vector = Vec<BigRational>;
+
+/// Structure constants `c[i][j][k]` = cᵢⱼᵏ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LieAlgebra {
+    constants: Vec<Vec<Vector>>,
+}
+
+impl LieAlgebra {
+    /// The algebra of antisymmetric constants that satisfy Jacobi's identity; `None` for others.
+    pub fn new(constants: Vec<Vec<Vector>>) -> Option<Self> {
+        let algebra = LieAlgebra { constants };
+        let n = algebra.dimension();
+        let unit = |i: usize| algebra.unit(i);
+        for i in 0..n {
+            for j in 0..n {
+                let sum = add(&algebra.constants[i][j], &algebra.constants[j][i]);
+                if !sum.iter().all(Zero::is_zero) {
+                    return None;
+                }
+                for k in 0..n {
+                    let term = |a: usize, b: usize, c: usize| {
+                        algebra.bracket(&unit(a), &algebra.constants[b][c])
+                    };
+                    let sum = add(&add(&term(i, j, k), &term(j, k, i)), &term(k, i, j));
+                    if !sum.iter().all(Zero::is_zero) {
+                        return None;
+                    }
+                }
+            }
+        }
+        Some(algebra)
+    }
+
+    /// Its dimension.
+    pub fn dimension(&self) -> usize {
+        self.constants.len()
+    }
+
+    fn unit(&self, i: usize) -> Vector {
+        let mut unit = vec![BigRational::zero(); self.dimension()];
+        unit[i] = BigRational::one();
+        unit
+    }
+
+    /// [a, b].
+    pub fn bracket(&self, a: &[BigRational], b: &[BigRational]) -> Vector {
+        let n = self.dimension();
+        let mut result = vec![BigRational::zero(); n];
+        for (i, x) in a.iter().enumerate().filter(|(_, x)| !x.is_zero()) {
+            for (j, y) in b.iter().enumerate().filter(|(_, y)| !y.is_zero()) {
+                let scale = x * y;
+                for (entry, constant) in result.iter_mut().zip(&self.constants[i][j]) {
+                    *entry += &scale * constant;
+                }
+            }
+        }
+        result
+    }
+
+    /// A basis of the span of [a, b] over a ∈ `left`, b ∈ `right`.
+    pub fn brackets(&self, left: &[Vector], right: &[Vector]) -> Vec<Vector> {
+        let all = left
+            .iter()
+            .flat_map(|a| right.iter().map(|b| self.bracket(a, b)));
+        Echelon::new(all.collect()).rows
+    }
+
+    /// The basis vectors.
+    pub fn basis(&self) -> Vec<Vector> {
+        (0..self.dimension()).map(|i| self.unit(i)).collect()
+    }
+
+    /// A basis of the derived algebra [L, L].
+    pub fn derived(&self) -> Vec<Vector> {
+        let basis = self.basis();
+        self.brackets(&basis, &basis)
+    }
+
+    /// Whether [a, b] = 0 for all a, b of a subspace.
+    pub fn is_abelian_on(&self, subspace: &[Vector]) -> bool {
+        self.brackets(subspace, subspace).is_empty()
+    }
+
+    /// A basis of the centre {z : [z, eⱼ] = 0 for all j}.
+    pub fn centre(&self) -> Vec<Vector> {
+        let n = self.dimension();
+        let mut rows = Vec::new();
+        for j in 0..n {
+            for k in 0..n {
+                rows.push((0..n).map(|i| self.constants[i][j][k].clone()).collect());
+            }
+        }
+        Echelon::new(rows).null_space(n)
+    }
+
+    /// The matrix of ad z = [z, ·], `m[k][j]`.
+    pub fn adjoint(&self, z: &[BigRational]) -> Vec<Vector> {
+        let columns: Vec<Vector> = self.basis().iter().map(|e| self.bracket(z, e)).collect();
+        (0..self.dimension())
+            .map(|k| columns.iter().map(|column| column[k].clone()).collect())
+            .collect()
+    }
+
+    /// Killing's form K(eᵢ, eⱼ) = tr(ad eᵢ ad eⱼ) = cᵢₛᵗ cⱼₜˢ.
+    pub fn killing(&self) -> Vec<Vector> {
+        let n = self.dimension();
+        let c = &self.constants;
+        (0..n)
+            .map(|i| {
+                (0..n)
+                    .map(|j| {
+                        let mut trace = BigRational::zero();
+                        for s in 0..n {
+                            for t in 0..n {
+                                trace += &c[i][s][t] * &c[j][t][s];
+                            }
+                        }
+                        trace
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// Numbers of positive and negative squares of Killing's form.
+    pub fn killing_signature(&self) -> (usize, usize) {
+        signature(&self.killing())
+    }
+
+    /// The dimensions of L, [L, L], [[L, L], [L, L]] … until they repeat.
+    pub fn derived_series(&self) -> Vec<usize> {
+        let mut space = self.basis();
+        let mut dimensions = vec![space.len()];
+        loop {
+            let next = self.brackets(&space, &space);
+            if next.len() == space.len() {
+                return dimensions;
+            }
+            dimensions.push(next.len());
+            space = next;
+        }
+    }
+
+    /// L = I ⊕ Rᵏ with I without an abelian summand: I, and k. The summand is what of the centre
+    /// lies outside [L, L]; any subspace that contains [L, L] is an ideal.
+    pub fn without_abelian_summand(&self) -> Option<(LieAlgebra, usize)> {
+        let derived = self.derived();
+        let independent = |known: &[Vector], vector: &Vector| {
+            let mut rows = known.to_vec();
+            rows.push(vector.clone());
+            Echelon::new(rows).rank() > known.len()
+        };
+        // [L, L], then the summand A of the centre, then what is left of L.
+        let mut spanned = derived.clone();
+        let mut summand = 0;
+        for vector in self.centre() {
+            if independent(&spanned, &vector) {
+                spanned.push(vector);
+                summand += 1;
+            }
+        }
+        let mut ideal = derived;
+        for vector in self.basis() {
+            if independent(&spanned, &vector) {
+                spanned.push(vector.clone());
+                ideal.push(vector);
+            }
+        }
+        Some((self.restricted(&ideal)?, summand))
+    }
+
+    /// The subalgebra of a basis; `None` where brackets leave its span.
+    pub fn restricted(&self, basis: &[Vector]) -> Option<LieAlgebra> {
+        let coordinates = |vector: &Vector| {
+            let rows = (0..self.dimension()).map(|k| {
+                let mut row: Vector = basis.iter().map(|b| b[k].clone()).collect();
+                row.push(vector[k].clone());
+                row
+            });
+            hamel_algebra::echelon::solution(rows.collect())
+        };
+        let constants: Option<Vec<Vec<Vector>>> = basis
+            .iter()
+            .map(|a| {
+                basis
+                    .iter()
+                    .map(|b| coordinates(&self.bracket(a, b)))
+                    .collect()
+            })
+            .collect();
+        Some(LieAlgebra {
+            constants: constants?,
+        })
+    }
+}
+
+fn add(a: &[BigRational], b: &[BigRational]) -> Vector {
+    a.iter().zip(b).map(|(x, y)| x + y).collect()
+}

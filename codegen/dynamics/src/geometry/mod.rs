@@ -1,0 +1,279 @@
+//! What the symbols say about the geometry of a system: integrable velocity coordinates, the Lie
+//! algebra of the frame, the pattern of M, symmetries.
+//!
+//! | file | object |
+//! |---|---|
+//! | `potential` | f with ξᵏ = df/dt |
+//! | `lie_algebra` | structure constants and what they imply in any basis |
+//! | `recognise` | the names of Lie algebras |
+//! | `side` | left- or right-invariant |
+//! | `blocks` | blocks of γ and of M |
+//! | `symmetry` | symmetries of T and V |
+
+pub mod blocks;
+pub mod lie_algebra;
+pub mod potential;
+pub mod recognise;
+pub mod side;
+pub mod symmetry;
+
+use super::calculus::Calculus;
+use super::loads::applied_force;
+use super::normal::without_coordinates;
+use super::tables::Geometry;
+use blocks::Entry;
+use hamel_algebra::graph::{Edge, Graph, Node};
+use hamel_algebra::linear::matrix;
+use hamel_language::model::{Model, class};
+use lie_algebra::LieAlgebra;
+use num_rational::BigRational;
+use num_traits::Zero;
+use recognise::{Name, abelian, recognise};
+use side::{Side, is_constant};
+use symmetry::Symmetry;
+
+/// A velocity coordinate.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Velocity {
+    /// Its name.
+    pub name: String,
+    /// γᵢⱼᵏ = 0 for all i, j: it is the rate of something, at least locally.
+    pub integrable: bool,
+    /// What it is the rate of, where that was found.
+    pub potential: Option<String>,
+    /// Symmetries along its direction.
+    pub symmetry: Symmetry,
+}
+
+/// A block of velocity coordinates that do not commute with one another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Indices of its velocities.
+    pub members: Vec<usize>,
+    /// Whether its γ are the same at every x.
+    pub constant: bool,
+    /// Its Lie algebra; `None` where γ depends on x, or is no rational function of parameters.
+    pub algebra: Option<Name>,
+    /// Whether γ depends on parameters, whose default values were taken.
+    pub at_defaults: bool,
+    /// Body or world axes.
+    pub side: Option<Side>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Inspection {
+    /// The velocity coordinates, in order.
+    pub velocities: Vec<Velocity>,
+    /// The blocks of γ that are not zero.
+    pub blocks: Vec<Block>,
+    /// Velocities that commute with all others.
+    pub commuting: Vec<usize>,
+    /// x = q, ξ = q̇: A = I, so that Γ are the Christoffel symbols of M.
+    pub coordinate_rates: bool,
+    /// Whether there is M: else nothing is said of it, and of symmetries that of V alone.
+    pub has_inertia: bool,
+    /// How every entry of M depends on x.
+    pub pattern: Vec<Vec<Entry>>,
+    /// The blocks of M.
+    pub inertia_blocks: Vec<Vec<usize>>,
+}
+
+impl Inspection {
+    /// Inspects a model; `None` where AᵀA is singular, which the model's checks exclude.
+    pub fn new(model: &Model) -> Option<Self> {
+        let mut geometry = Geometry::new(model)?;
+        let n = geometry.model.n();
+        let integrable: Vec<usize> = (0..n)
+            .filter(|&k| potential::is_integrable(&geometry, k))
+            .collect();
+        let found = potential::potentials(&mut geometry, &integrable);
+        let applied = applied_force(&mut geometry.model, &mut geometry.calculus);
+        let symmetries = symmetry::symmetries(&mut geometry, &applied);
+        let velocities = names(&geometry.model)
+            .into_iter()
+            .zip(symmetries)
+            .enumerate()
+            .map(|(k, (name, symmetry))| {
+                let place = integrable.iter().position(|&i| i == k);
+                let potential = place.and_then(|place| found.get(place).cloned().flatten());
+                Velocity {
+                    name,
+                    integrable: place.is_some(),
+                    potential,
+                    symmetry,
+                }
+            })
+            .collect();
+        let groups = blocks::commuting_blocks(&geometry.model.graph, &geometry.gamma);
+        let (noncommuting, single): (Vec<_>, Vec<_>) =
+            groups.into_iter().partition(|members| members.len() > 1);
+        let blocks = noncommuting
+            .into_iter()
+            .map(|members| block(&mut geometry, members))
+            .collect();
+        let pattern = pattern(&mut geometry);
+        Some(Inspection {
+            velocities,
+            blocks,
+            commuting: single.concat(),
+            coordinate_rates: rates_of_coordinates(&geometry.model),
+            has_inertia: geometry.model.has_inertia,
+            inertia_blocks: blocks::inertia_blocks(&pattern),
+            pattern,
+        })
+    }
+
+    /// Whether no entry of M depends on x.
+    pub fn constant_mass(&self) -> bool {
+        let mut entries = self.pattern.iter().flatten();
+        entries.all(|&entry| entry != Entry::Varying)
+    }
+
+    /// The Lie algebra of the whole frame, `se(3) ⊕ R`; `None` where some γ depends on x, or a block
+    /// has no name.
+    pub fn algebra(&self) -> Option<String> {
+        let mut parts = Vec::new();
+        for block in &self.blocks {
+            match &block.algebra {
+                Some(Name::Sum(names)) => parts.extend(names.iter().cloned()),
+                _ => return None,
+            }
+        }
+        if !self.commuting.is_empty() {
+            parts.push(abelian(self.commuting.len()));
+        }
+        Some(parts.join(" ⊕ "))
+    }
+
+    /// The side of all blocks together: on which side the inertia is invariant where M is constant.
+    pub fn side(&self) -> Option<Side> {
+        let first = self.blocks.first()?.side?;
+        self.blocks
+            .iter()
+            .all(|block| block.side == Some(first))
+            .then_some(first)
+    }
+
+    /// The names of some velocities, with commas.
+    pub fn list(&self, members: &[usize]) -> String {
+        let names = members.iter().filter_map(|&i| self.velocities.get(i));
+        let names: Vec<&str> = names.map(|velocity| velocity.name.as_str()).collect();
+        names.join(", ")
+    }
+}
+
+fn names(model: &Model) -> Vec<String> {
+    let symbols = model.graph.symbols();
+    let name = |edge: &Edge| match model.graph.node(edge.node()) {
+        Node::Symbol(index) => symbols.get(index as usize).map(|s| s.name.clone()),
+        _ => None,
+    };
+    model.xi.iter().filter_map(name).collect()
+}
+
+/// The Lie algebra of a block of γ.
+fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
+    let mut entries: Vec<Edge> = members
+        .iter()
+        .flat_map(|&i| members.iter().map(move |&j| (i, j)))
+        .flat_map(|(i, j)| members.iter().map(move |&k| (i, j, k)))
+        .map(|(i, j, k)| geometry.gamma[i][j][k])
+        .collect();
+    let (graph, calculus) = (&mut geometry.model.graph, &mut geometry.calculus);
+    let mut forms = None;
+    for entry in &mut entries {
+        let points = &geometry.model.points;
+        *entry = without_coordinates(graph, calculus, points, &mut forms, *entry);
+    }
+    let constant = entries
+        .iter()
+        .all(|&edge| is_constant(graph, calculus, edge));
+    let at_defaults = constant
+        && entries
+            .iter()
+            .any(|edge| graph.class(edge.node()) & class::PARAM != 0);
+    let numbers = constant
+        .then(|| numbers(&geometry.model, &entries))
+        .flatten();
+    let m = members.len();
+    let algebra = numbers.and_then(|numbers| {
+        let planes = numbers.chunks((m * m).max(1));
+        let constants = planes.map(|plane| matrix(plane, m));
+        LieAlgebra::new(constants.collect())
+    });
+    Block {
+        constant,
+        algebra: algebra.as_ref().map(recognise),
+        at_defaults,
+        side: side::side(geometry, &members),
+        members,
+    }
+}
+
+/// Exact numbers of expressions at the parameters' default values; `None` where they are written
+/// with more than parameters and the four operations.
+fn numbers(model: &Model, edges: &[Edge]) -> Option<Vec<BigRational>> {
+    let graph = &model.graph;
+    let mut values = vec![BigRational::zero(); graph.len()];
+    let read = |values: &[BigRational], edge: Edge| {
+        let value = values[edge.node() as usize].clone();
+        if edge.is_negative() { -value } else { value }
+    };
+    for id in graph.reachable(edges) {
+        values[id as usize] = match graph.node(id) {
+            Node::Constant(index) => graph.constant(index).clone(),
+            Node::Symbol(index) => {
+                // Symbol 0 is π; parameters follow.
+                let place = (index as usize).checked_sub(1)?;
+                BigRational::from_float(*model.defaults.get(place)?)?
+            }
+            Node::Add(a, b) => read(&values, a) + read(&values, b),
+            Node::Mul(a, b) => read(&values, a) * read(&values, b),
+            Node::Div(a, b) => {
+                let divisor = read(&values, b);
+                if divisor.is_zero() {
+                    return None;
+                }
+                read(&values, a) / divisor
+            }
+            _ => return None,
+        };
+    }
+    Some(edges.iter().map(|&edge| read(&values, edge)).collect())
+}
+
+/// A = I.
+fn rates_of_coordinates(model: &Model) -> bool {
+    let graph: &Graph = &model.graph;
+    model.nu() == model.n()
+        && model.a.iter().enumerate().all(|(alpha, row)| {
+            row.iter().enumerate().all(|(i, &entry)| {
+                entry
+                    == if alpha == i {
+                        graph.one()
+                    } else {
+                        graph.zero()
+                    }
+            })
+        })
+}
+
+fn pattern(geometry: &mut Geometry) -> Vec<Vec<Entry>> {
+    let zero = geometry.model.graph.zero().node();
+    let (graph, calculus): (&mut Graph, &mut Calculus) =
+        (&mut geometry.model.graph, &mut geometry.calculus);
+    geometry
+        .mass
+        .iter()
+        .map(|row| {
+            row.iter()
+                .map(|&entry| match entry.node() == zero {
+                    true => Entry::Zero,
+                    false if is_constant(graph, calculus, entry) => Entry::Constant,
+                    false => Entry::Varying,
+                })
+                .collect()
+        })
+        .collect()
+}

@@ -1,0 +1,58 @@
+//! Symmetries of the kinetic energy and of the potential, direction by direction.
+//!
+//! Along ∂ᵢ the metric changes by (L_{∂ᵢ} M)_jk = ∂ᵢM_jk − γᵢⱼˢ M_sk − γᵢₖˢ M_sj. Where that is 0, the
+//! flow of ∂ᵢ keeps T, and by Noether's theorem dpᵢ/dt = fᵢ − ∂ᵢV with p = M ξ.
+
+use super::Geometry;
+use hamel_algebra::graph::Edge;
+
+/// What is known of the direction ∂ᵢ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Symmetry {
+    /// ∂ᵢM_jk = 0 for all j, k: the entries of M do not change along ∂ᵢ.
+    pub mass_constant: bool,
+    /// L_{∂ᵢ} M = 0: the flow of ∂ᵢ keeps T.
+    pub keeps_kinetic: bool,
+    /// ∂ᵢV = 0.
+    pub keeps_potential: bool,
+    /// fᵢ = 0 for all applied loads.
+    pub unloaded: bool,
+}
+
+impl Symmetry {
+    /// Whether pᵢ is conserved.
+    pub fn conserves_momentum(&self) -> bool {
+        self.keeps_kinetic && self.keeps_potential && self.unloaded
+    }
+}
+
+/// The symmetries of all directions; `applied`: the generalised forces of the loads.
+pub fn symmetries(geometry: &mut Geometry, applied: &[Edge]) -> Vec<Symmetry> {
+    let n = geometry.model.n();
+    let zero = geometry.model.graph.zero().node();
+    let (mass, gamma) = (&geometry.mass, &geometry.gamma);
+    let constrained = geometry.model.is_constrained();
+    let graph = &mut geometry.model.graph;
+    (0..n)
+        .map(|i| {
+            let (mut mass_constant, mut keeps_kinetic) = (true, true);
+            for j in 0..n {
+                for k in 0..=j {
+                    let change = geometry.calculus.along(graph, i, mass[j][k]);
+                    let first = graph.dot(&gamma[i][j], &mass[k]);
+                    let second = graph.dot(&gamma[i][k], &mass[j]);
+                    let turned = graph.add(first, second);
+                    mass_constant &= change.node() == zero;
+                    keeps_kinetic &= graph.sub(change, turned).node() == zero;
+                }
+            }
+            let slope = geometry.calculus.along(graph, i, geometry.potential);
+            Symmetry {
+                mass_constant,
+                keeps_kinetic,
+                keeps_potential: slope.node() == zero,
+                unloaded: applied.get(i).is_none_or(|force| force.node() == zero) && !constrained,
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,67 @@
+//! The symbols of the formalism, one file each, and the cheapest way to ξ̇.
+//!
+#![doc = include_str!("../README.md")]
+//!
+//! | file | object | KR18 |
+//! |---|---|---|
+//! | `calculus` | ∂ᵢ, d/dt along ẋ = A ξ, frame Jacobians | (9) |
+//! | `kinematics` | Y, chart rates | (5) |
+//! | `complement` | Φ and Ψ | (5), (6) |
+//! | `correction` | the stabilising term −Ψ φ | (8) |
+//! | `commutation` | Hamel coefficients γ | (12), (13) |
+//! | `inertia` | mass matrix M | (20) |
+//! | `idle` | what has no inertia where M is singular | |
+//! | `connection` | connection coefficients Γ | (23) |
+//! | `loads` | potential, gravity, applied forces | (28) |
+//! | `energy` | T, V, momentum | |
+//! | `momentum` | ṗ, and ξ from p | (30a) |
+//! | `linearize` | the linearisation, in displacement coordinates | (12) |
+//! | `centroidal` | the centre of mass, the momentum about it and its map | |
+//! | `frames` | poses, twists, Jacobians and bias accelerations of frames | |
+//! | `accel` | ξ̇ by the cheapest of several routes | (30) |
+//! | `tree` | links and joints: inverse dynamics, M, ξ̇ and slopes by recursion | |
+//! | `regressor` | forces as linear functions of inertial parameters, and base parameters | |
+//! | `adviser` | other velocity coordinates for the same motion, and their cost | |
+//! | `program`, `assemble` | the program of all generated functions | |
+//! | `multipliers`, `undetermined` | λ of constraints, and which of them are not determined | |
+//! | `quantity` | momenta and energies that claims of constancy are about | |
+//! | `further` | momenta, the linearisation and invariants as functions | |
+//! | `structure` | whether a system splits into free motion and kicks; which method fits | |
+//! | `geometry` | integrability, Lie algebras, patterns, symmetries | 2.5 |
+
+pub mod accel;
+pub mod adviser;
+pub mod assemble;
+pub mod calculus;
+mod candidates;
+pub mod care;
+pub mod centroidal;
+pub mod commutation;
+pub mod complement;
+pub mod connection;
+pub mod correction;
+mod derivatives;
+pub mod energy;
+mod frames;
+mod further;
+pub mod geometry;
+mod idle;
+pub mod inertia;
+pub mod kinematics;
+pub mod linearize;
+pub mod loads;
+pub mod momentum;
+pub mod multipliers;
+pub mod normal;
+mod norms;
+mod program;
+pub mod quantity;
+mod reactions;
+pub mod reduction;
+pub mod regressor;
+pub mod structure;
+pub mod tables;
+// Open to tests, which compare the recursions with derivations that know no trees.
+#[doc(hidden)]
+pub mod tree;
+pub mod undetermined;

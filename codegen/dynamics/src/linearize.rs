@@ -1,0 +1,403 @@
+//! The linearisation, without redundant directions: with δx = A(x) h and ξ̇ = F(x, ξ, u)
+//!
+//! ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = (∂ⱼF) hʲ + (∂F/∂ξ) δξ + (∂F/∂u) δu.
+//!
+//! Where constraints leave ξ = C(x) ξₐ, the n displacements h stay, of ξ only ξₐ varies, and the
+//! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ. States of first order add rows and columns.
+
+use super::accel::best::NEAR;
+use super::accel::recursions;
+use super::accel::recursive::{RatesAndSlopes, Recursion};
+use super::accel::setting::Setting;
+use super::calculus::Calculus;
+use super::care::Care;
+use super::multipliers::with_accelerations;
+use super::reduction::Reduction;
+use super::{commutation, kinematics};
+use crate::normal::{NormalForms, build};
+use hamel_algebra::derivation::Derivation;
+use hamel_algebra::graph::{Edge, Graph, NodeId};
+use hamel_algebra::linear::solve_symmetric;
+use hamel_algebra::resubstitute::resubstitute;
+use hamel_algebra::transplant::{map_symbols, rebuild};
+use hamel_language::model::Model;
+use hamel_program::Cause;
+use hamel_program::count::count;
+
+/// Systems with more velocities are not expanded.
+const MOST_EXPANDED: usize = 8;
+/// Entries with more terms are not expanded.
+const MOST_TERMS: usize = 40;
+/// Intermediate polynomials with more terms are not expanded: what cancels modulo φ leaves a tenth of them, or more.
+const MOST_INTERMEDIATE_TERMS: usize = 400;
+/// Products and sums of terms after which the expansion is given up: the traced entries stand.
+const MOST_WORK: usize = 200_000;
+
+/// ξ̇ = F as edges of a graph that grew from the model's.
+pub struct ForwardDynamics<'a> {
+    /// The graph.
+    pub graph: &'a Graph,
+    /// F, one entry for each active velocity.
+    pub xi_dot: &'a [Edge],
+    /// Pivots that have to be positive where there is F, those that vary, and what they are of.
+    pub guards: &'a [(Edge, Cause)],
+    /// The displacements.
+    pub displacements: Displacements,
+    /// M and f − Γ ξ ξ − ∂V of the active velocities, where M F = right-hand side holds.
+    pub implicit: Option<(&'a [Vec<Edge>], &'a [Edge])>,
+}
+
+/// [A B]: n + nₐ rows of n + nₐ + m, for (h, δξ, δu).
+pub struct Linear {
+    /// The graph that it lives in.
+    pub graph: Graph,
+    /// The rows.
+    pub rows: Vec<Vec<Edge>>,
+    /// The pivots of F in this graph, and what they are of.
+    pub guards: Vec<(Edge, Cause)>,
+    /// F, where it comes out on the way.
+    pub rates: Vec<Edge>,
+}
+
+impl Linear {
+    /// Rows made from F as it is.
+    fn of(motion: &ForwardDynamics, graph: Graph, rows: Vec<Vec<Edge>>) -> Self {
+        Linear {
+            graph,
+            rows,
+            guards: motion.guards.to_vec(),
+            rates: Vec::new(),
+        }
+    }
+
+    /// The rows and the guards.
+    fn results(&self) -> Vec<Edge> {
+        let guards = self.guards.iter().map(|(guard, _)| *guard);
+        self.rows.iter().flatten().copied().chain(guards).collect()
+    }
+
+    /// Its operations: weight and number.
+    pub fn cost(&self) -> (usize, usize) {
+        let count = count(&self.graph, &self.results());
+        (count.weight(), count.flops())
+    }
+
+    /// All that is computed: rows, guards, F.
+    pub fn roots(&self) -> Vec<Edge> {
+        [self.results(), self.rates.clone()].concat()
+    }
+
+    /// Edges of another graph that stand for the roots there, apart.
+    pub fn apart(&self, mut roots: Vec<Edge>) -> Apart {
+        let columns = self.rows.first().map_or(1, |row| row.len().max(1));
+        let rates = roots.split_off(roots.len() - self.rates.len());
+        let guards = roots.split_off(roots.len() - self.guards.len());
+        let causes = self.guards.iter().map(|&(_, cause)| cause);
+        let rows = roots.chunks(columns).map(<[Edge]>::to_vec).collect();
+        (rows, guards.into_iter().zip(causes).collect(), rates)
+    }
+}
+
+/// Rows, guards and F of a linearisation.
+type Apart = (Vec<Vec<Edge>>, Vec<(Edge, Cause)>, Vec<Edge>);
+
+/// The frame that displacements are measured in, as edges of the graph of F.
+pub struct Displacements {
+    /// A of the full frame, ν rows of n; without the column of ξ⁰.
+    pub a: Vec<Vec<Edge>>,
+    /// Y of the full frame, n rows of ν; without the row of ξ⁰.
+    pub y: Vec<Vec<Edge>>,
+    /// The places of the displacements in ξ: all but that of ξ⁰, as the time is not displaced.
+    places: Vec<usize>,
+    /// ξ = C ξₐ.
+    xi: Vec<Edge>,
+    /// γ of the full frame.
+    gamma: Vec<Vec<Vec<Edge>>>,
+}
+
+impl Displacements {
+    /// Those of a model, in the graph of its program.
+    pub fn new(full: &Model, reduction: Option<&Reduction>, graph: &mut Graph) -> Option<Self> {
+        let mut own = full.clone();
+        let mut calculus = Calculus::new(&own);
+        let rows = kinematics::left_inverse(&mut own)?;
+        let gamma = commutation::gamma(&mut own, &mut calculus, &rows);
+        let images =
+            reduction.map(|reduction| rebuild(&reduction.model.graph, graph, &reduction.images));
+        let mut carry = |edges: &[Edge]| match &images {
+            Some(images) => map_symbols(&own.graph, graph, edges, images),
+            None => rebuild(&own.graph, graph, edges),
+        };
+        let time = full.clock.map(|clock| clock.xi);
+        let places: Vec<usize> = (0..own.n()).filter(|&i| Some(i) != time).collect();
+        let displaced = |row: &Vec<Edge>| places.iter().map(|&i| row[i]).collect::<Vec<_>>();
+        Some(Displacements {
+            a: own.a.iter().map(|row| carry(&displaced(row))).collect(),
+            y: places.iter().map(|&i| carry(&rows[i])).collect(),
+            places: places.clone(),
+            xi: carry(&own.xi),
+            gamma: gamma
+                .iter()
+                .map(|table| table.iter().map(|row| carry(row)).collect())
+                .collect(),
+        })
+    }
+
+    /// Number of displacements.
+    pub fn n(&self) -> usize {
+        self.places.len()
+    }
+}
+
+/// The rows of a model with states of first order, (h, δξ, δz): those of ż follow, and the columns of z stand before
+/// those of u. F is given in the graph of the rows.
+pub fn with_states(
+    model: &Model,
+    displacements: &Displacements,
+    (graph, mut rows): (&mut Graph, Vec<Vec<Edge>>),
+    xi_dot: &[Edge],
+) -> Vec<Vec<Edge>> {
+    let inputs = displacements.n() + model.n();
+    for row in &mut rows {
+        row[inputs..].rotate_left(model.m());
+    }
+    let changes = rows[displacements.n()..].to_vec();
+    let below = slopes(
+        model,
+        displacements,
+        graph,
+        &model.state_rates,
+        (&changes, xi_dot),
+    );
+    rows.extend(below);
+    rows
+}
+
+/// The slopes of expressions of the model by (h, δξ, δz, δu), by rows, in a graph that grew from the model's: ξ̇ is F
+/// there, and moves as the rows of δξ̇ say.
+pub fn slopes(
+    model: &Model,
+    displacements: &Displacements,
+    graph: &mut Graph,
+    expressions: &[Edge],
+    (changes, xi_dot): (&[Vec<Edge>], &[Edge]),
+) -> Vec<Vec<Edge>> {
+    let expressions = rebuild(&model.graph, graph, expressions);
+    let n = displacements.n();
+    let one = graph.one();
+    // z stands before u.
+    let (u, z) = model.u.split_at(model.m());
+    let moved: Vec<Edge> = [&model.xi, z, u].concat();
+    let columns: Vec<Vec<Edge>> = (0..n + moved.len())
+        .map(|j| {
+            let mut seeds: Vec<(NodeId, Edge)> = match j.checked_sub(n) {
+                None => {
+                    let x = model.x.iter().zip(&displacements.a);
+                    x.map(|(x, row)| (x.node(), row[j])).collect()
+                }
+                Some(i) => vec![(moved[i].node(), one)],
+            };
+            let rates = model.xi_dot.iter().zip(changes);
+            seeds.extend(rates.map(|(rate, row)| (rate.node(), row[j])));
+            Derivation::new(seeds).all(graph, &expressions)
+        })
+        .collect();
+    let slopes = with_accelerations(graph, &columns.concat(), xi_dot);
+    let row = |i: usize| slopes.iter().skip(i).step_by(expressions.len());
+    (0..expressions.len())
+        .map(|i| row(i).copied().collect())
+        .collect()
+}
+
+/// Linearises; `model` is that of the active velocities. The cheapest of four ways is taken: of a tree of links, by recursion,
+/// where F comes out on the way; F itself differentiated; M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all
+/// columns; the entries expanded, their coefficients computed when parameters are set.
+pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear {
+    let upper = upper(model, motion);
+    let recursions = recursions(&Setting::given(model), care);
+    // Beyond a few links the recursion is certainly cheapest.
+    let long = recursions.first().is_some_and(Recursion::is_long);
+    let plain = motion.displacements.n() == model.n() && motion.implicit.is_some();
+    let traced = recursions.iter().filter(|_| plain);
+    let mut candidates: Vec<Linear> = traced
+        .filter_map(|recursion| recursive(recursion, &upper))
+        .collect();
+    if candidates.is_empty() || !(long || model.n() > MOST_EXPANDED) {
+        let explicit = explicit(model, motion, &upper);
+        if model.n() <= MOST_EXPANDED && !care.is_taken() {
+            candidates.extend(expanded(model, &explicit, motion));
+        }
+        candidates.extend(implicit(model, motion, &upper));
+        candidates.push(explicit);
+    }
+    let cost = |linear: &Linear| {
+        let loss = care.loss(&linear.graph, &linear.rows.concat(), &[]);
+        let (weight, number) = linear.cost();
+        (loss, weight, number)
+    };
+    let costs: Vec<_> = candidates.iter().map(cost).collect();
+    let (loss, weight, _) = costs.iter().min().copied().unwrap_or_default();
+    // What is far behind before it is polished is behind afterwards.
+    let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
+    let near = candidates.into_iter().zip(costs);
+    let near = near.filter(|(_, cost)| *cost <= most);
+    let polished = near.map(|(linear, before)| match polished(&linear, model, motion) {
+        Some(linear) if cost(&linear) < before => (cost(&linear), linear),
+        _ => (before, linear),
+    });
+    // The first of equals; there is always one.
+    let best = polished.min_by_key(|(cost, _)| *cost);
+    best.map_or_else(|| explicit(model, motion, &upper), |(_, linear)| linear)
+}
+
+/// After resubstitution, where that finds something: above what F is made from, or what the model is, where F comes out on
+/// the way.
+fn polished(linear: &Linear, model: &Model, motion: &ForwardDynamics) -> Option<Linear> {
+    let base = match linear.rates.is_empty() {
+        true => motion.graph,
+        false => &model.graph,
+    };
+    let (graph, roots) = resubstitute(&linear.graph, &linear.roots(), base)?;
+    let (rows, guards, rates) = linear.apart(roots);
+    Some(Linear {
+        graph,
+        rows,
+        guards,
+        rates,
+    })
+}
+
+/// The rows of ḣ.
+fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
+    let mut graph = motion.graph.clone();
+    let displacements = &motion.displacements;
+    let mut columns = columns(model, &mut graph, displacements);
+    let rows = (displacements.places.iter())
+        .map(|&k| {
+            let mut row: Vec<Edge> = columns
+                .iter_mut()
+                .map(|column| column.of(&mut graph, displacements.xi[k]))
+                .collect();
+            for (entry, &j) in row.iter_mut().zip(&displacements.places) {
+                for i in 0..displacements.xi.len() {
+                    let product = graph.mul(displacements.gamma[i][j][k], displacements.xi[i]);
+                    *entry = graph.sub(*entry, product);
+                }
+            }
+            row
+        })
+        .collect();
+    Linear::of(motion, graph, rows)
+}
+
+/// The derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
+fn columns(model: &Model, graph: &mut Graph, displacements: &Displacements) -> Vec<Derivation> {
+    let one = graph.one();
+    let along = |j: usize| {
+        let seeds = model.x.iter().zip(&displacements.a);
+        Derivation::new(seeds.map(|(x, row)| (x.node(), row[j])))
+    };
+    let by = |symbol: &Edge| Derivation::new([(symbol.node(), one)]);
+    (0..displacements.n())
+        .map(along)
+        .chain(model.xi.iter().map(by))
+        .chain(model.u.iter().map(by))
+        .collect()
+}
+
+/// F differentiated as it stands.
+fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
+    let mut graph = motion.graph.clone();
+    let mut columns = columns(model, &mut graph, &motion.displacements);
+    let mut rows = rebuilt(upper, &mut graph);
+    rows.extend(motion.xi_dot.iter().map(|&rate| {
+        let entries = columns.iter_mut().map(|column| column.of(&mut graph, rate));
+        entries.collect::<Vec<Edge>>()
+    }));
+    Linear::of(motion, graph, rows)
+}
+
+/// M δξ̇ = ∂(M F) − (∂M) F, all columns with one factorisation.
+fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<Linear> {
+    let (mass, right) = motion.implicit?;
+    let mut graph = motion.graph.clone();
+    let mut columns = columns(model, &mut graph, &motion.displacements);
+    let changes: Vec<Vec<Edge>> = mass
+        .iter()
+        .zip(right)
+        .map(|(row, &force)| {
+            columns
+                .iter_mut()
+                .map(|column| {
+                    let change = column.of(&mut graph, force);
+                    let masses = column.all(&mut graph, row);
+                    let held = graph.dot(&masses, motion.xi_dot);
+                    graph.sub(change, held)
+                })
+                .collect()
+        })
+        .collect();
+    let solved = solve_symmetric(&mut graph, mass, &changes)?;
+    let mut rows = rebuilt(upper, &mut graph);
+    rows.extend(solved);
+    Some(Linear::of(motion, graph, rows))
+}
+
+/// The same for a tree of links, by recursion; M factored from the leaves to the root.
+fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
+    let RatesAndSlopes {
+        mut graph,
+        xi_dot,
+        pivots,
+        rows: below,
+    } = recursion.rates_and_slopes()?;
+    let mut rows = rebuilt(upper, &mut graph);
+    rows.extend(below);
+    let guards = pivots.into_iter().enumerate();
+    let guards = guards.filter(|(_, pivot)| !graph.is_free(pivot.node()));
+    Some(Linear {
+        guards: guards
+            .map(|(i, pivot)| (pivot, Cause::Velocity(i)))
+            .collect(),
+        graph,
+        rows,
+        rates: xi_dot,
+    })
+}
+
+/// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
+fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
+    let mut forms = NormalForms::within(&model.points, MOST_WORK)
+        .of_terms(MOST_INTERMEDIATE_TERMS)
+        .keeping_powers();
+    let mut source = explicit.graph.clone();
+    let mut polynomials = Vec::new();
+    for &edge in explicit.rows.iter().flatten() {
+        let polynomial = forms.expand(&source, edge)?;
+        let reduced = forms.reduce(&source, &polynomial);
+        let shorter = if reduced.terms().len() <= polynomial.terms().len() {
+            reduced
+        } else {
+            polynomial
+        };
+        if shorter.terms().len() > MOST_TERMS {
+            return None;
+        }
+        polynomials.push(shorter);
+    }
+    let built: Vec<Edge> = polynomials
+        .iter()
+        .map(|polynomial| build(&mut source, polynomial))
+        .collect();
+    let mut graph = motion.graph.clone();
+    let entries = rebuild(&source, &mut graph, &built);
+    let columns = explicit.rows.first().map_or(1, |row| row.len().max(1));
+    let rows = entries.chunks(columns).map(<[Edge]>::to_vec).collect();
+    Some(Linear::of(motion, graph, rows))
+}
+
+/// The rows of ḣ in another graph.
+fn rebuilt(upper: &Linear, graph: &mut Graph) -> Vec<Vec<Edge>> {
+    let rows = upper.rows.iter();
+    rows.map(|row| rebuild(&upper.graph, graph, row)).collect()
+}

@@ -1,0 +1,99 @@
+//! Generalised forces: fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ of applied loads, KR18 (28), and −∂ᵢV.
+
+use super::calculus::{Calculus, into_frame};
+use hamel_algebra::graph::Edge;
+use hamel_algebra::linear::{add3, cross};
+use hamel_language::model::{Model, Wrench};
+use hamel_language::syntax::ast::Axes;
+
+/// The generalised force of one wrench: F·(vᵢ + ωᵢ × at) + τ·ωᵢ in the axes it is given in.
+pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Vec<Edge> {
+    let frame = model.frames[wrench.frame].clone();
+    let graph = &mut model.graph;
+    let spins = calculus.spin_jacobian(graph, &frame.rotation);
+    let velocities = calculus.point_jacobian(graph, frame.position);
+    let zero = graph.zero();
+    let pure_torque = wrench.force.iter().all(|&edge| edge == zero);
+    match wrench.axes {
+        Axes::Body => {
+            let lever = cross(graph, wrench.at, wrench.force);
+            let torque = add3(graph, wrench.torque, lever);
+            velocities
+                .into_iter()
+                .zip(spins)
+                .map(|(v, w)| {
+                    let v = if pure_torque {
+                        [zero; 3]
+                    } else {
+                        into_frame(graph, &frame.rotation, v)
+                    };
+                    let (force, turn) = (graph.dot(&v, &wrench.force), graph.dot(&w, &torque));
+                    graph.add(force, turn)
+                })
+                .collect()
+        }
+        Axes::World => {
+            // The torque about the frame's origin, taken into the frame's axes for ωᵢ.
+            let force = into_frame(graph, &frame.rotation, wrench.force);
+            let lever = cross(graph, wrench.at, force);
+            let turned = into_frame(graph, &frame.rotation, wrench.torque);
+            let torque = add3(graph, turned, lever);
+            velocities
+                .into_iter()
+                .zip(spins)
+                .map(|(v, w)| {
+                    let (force, turn) = (graph.dot(&v, &wrench.force), graph.dot(&w, &torque));
+                    graph.add(force, turn)
+                })
+                .collect()
+        }
+    }
+}
+
+/// −∂ᵢV of everything but gravity on bodies, which has routes of its own.
+pub fn potential(model: &mut Model, calculus: &mut Calculus, potential: Edge) -> Vec<Edge> {
+    (0..model.n())
+        .map(|i| -calculus.along(&mut model.graph, i, potential))
+        .collect()
+}
+
+/// −∂ᵢV of the same, where springs along lines act by their wrenches.
+pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+    let mut sum = potential(model, calculus, model.elements.scalar_potential);
+    for spring in model.elements.springs.clone() {
+        for load in &spring.wrenches {
+            let force = wrench(model, calculus, load);
+            for (sum, force) in sum.iter_mut().zip(force) {
+                *sum = model.graph.add(*sum, force);
+            }
+        }
+    }
+    sum
+}
+
+/// Applied forces fᵢᴱ, one vector for every load: wrenches, then generalised forces.
+pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
+    let mut loads: Vec<Vec<Edge>> = Vec::new();
+    for load in model.wrenches.clone() {
+        loads.push(wrench(model, calculus, &load));
+    }
+    if model
+        .generalized
+        .iter()
+        .any(|&edge| edge != model.graph.zero())
+    {
+        loads.push(model.generalized.clone());
+    }
+    loads
+}
+
+/// Applied forces summed, for the reference of validation.
+pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+    let all = applied(model, calculus);
+    (0..model.n())
+        .map(|i| {
+            let column: Vec<Edge> = all.iter().map(|load| load[i]).collect();
+            model.graph.sum(&column)
+        })
+        .collect()
+}

@@ -1,0 +1,124 @@
+//! The multipliers λ of all constraints: M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ.
+//!
+//! Rows that are kept have theirs from the solution for ξ̇. The others follow from the rows of the
+//! equations of motion that the solved velocities belong to, by the pivots of the reduction.
+
+use super::accel::Acceleration;
+use super::accel::parts::{Reference, Variant, parts};
+use super::calculus::Calculus;
+use super::reduction::Reduction;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::solve_symmetric;
+use hamel_algebra::transplant::{map_symbols, rebuild};
+use hamel_language::model::{Model, class};
+use hamel_language::syntax::ast::Axes;
+
+/// M ξ̇ + h + ∂V − f of some velocities of the full frame, with ξ̇ₐ as symbols: bodies traced in the full frame.
+pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (Graph, Vec<Edge>) {
+    let mut model = full.clone();
+    model.graph = reduction.graph.clone();
+    let mut calculus = Calculus::new(&model);
+    let variant = Variant {
+        axes: Axes::Body,
+        reference: Reference::Com,
+        shift: None,
+    };
+    let parts = parts(&mut model, &mut calculus, variant);
+    let residuals: Vec<Edge> = velocities
+        .iter()
+        .map(|&velocity| {
+            let inner = &mut model.graph;
+            let inertial = inner.dot(&parts.mass[velocity], &model.xi_dot);
+            let column: Vec<Edge> = parts.groups.iter().map(|group| group[velocity]).collect();
+            let sum = inner.sum(&column);
+            inner.sub(inertial, sum)
+        })
+        .collect();
+    let mut graph = reduction.model.graph.clone();
+    let residuals = map_symbols(&model.graph, &mut graph, &residuals, &reduction.images);
+    (graph, residuals)
+}
+
+/// λ in the graph of the program, in order of the constraints, then the forces of drives whose rates are given; from the
+/// residuals of the velocities that were solved for and of those that are driven. Rows that were dropped have none.
+pub fn multipliers(
+    full: &Model,
+    reduction: &Reduction,
+    chosen: &Acceleration,
+    (from, residuals): (&Graph, &[Edge]),
+    graph: &mut Graph,
+) -> Option<Vec<Edge>> {
+    let rows: Vec<Edge> = full
+        .constraints
+        .iter()
+        .flat_map(|c| c.row.clone())
+        .collect();
+    let images = rebuild(&reduction.model.graph, graph, &reduction.images);
+    let residuals = rebuild(from, graph, residuals);
+    let mut residuals = with_accelerations(graph, &residuals, &chosen.xi_dot);
+    let drives = residuals.split_off(reduction.solved.len());
+    let rows = map_symbols(&full.graph, graph, &rows, &images);
+    let n = full.n();
+    let mut multipliers = vec![graph.zero(); full.constraints.len()];
+    for (&row, &multiplier) in reduction.kept.iter().zip(&chosen.multipliers) {
+        multipliers[row] = multiplier;
+    }
+    let right: Vec<Vec<Edge>> = reduction
+        .solved
+        .iter()
+        .zip(residuals)
+        .map(|(&(_, velocity), residual)| {
+            let known = reduction.kept.iter().fold(residual, |sum, &row| {
+                let product = graph.mul(rows[row * n + velocity], multipliers[row]);
+                graph.sub(sum, product)
+            });
+            vec![known]
+        })
+        .collect();
+    let matrix: Vec<Vec<Edge>> = reduction
+        .solved
+        .iter()
+        .map(|&(_, velocity)| {
+            let row = |&(row, _): &(usize, usize)| rows[row * n + velocity];
+            reduction.solved.iter().map(row).collect()
+        })
+        .collect();
+    let solution = solve_symmetric(graph, &matrix, &right)?;
+    for (&(row, _), value) in reduction.solved.iter().zip(&solution) {
+        multipliers[row] = value[0];
+    }
+    // What the constraints do not bring up, the drives do.
+    let drives = full.accelerated.iter().zip(drives);
+    let drives: Vec<Edge> = drives
+        .map(|(&(velocity, _), residual)| {
+            (multipliers.iter().enumerate()).fold(residual, |sum, (row, &multiplier)| {
+                let product = graph.mul(rows[row * n + velocity], multiplier);
+                graph.sub(sum, product)
+            })
+        })
+        .collect();
+    let rows = full.constraints.iter().zip(multipliers);
+    let rows = rows.filter(|(constraint, _)| !constraint.redundant);
+    Some(
+        rows.map(|(_, multiplier)| multiplier)
+            .chain(drives)
+            .collect(),
+    )
+}
+
+/// The expressions with ξ̇ₐ put in for its symbols.
+pub(super) fn with_accelerations(graph: &mut Graph, edges: &[Edge], xi_dot: &[Edge]) -> Vec<Edge> {
+    let from = graph.clone();
+    let mut values = xi_dot.iter();
+    let images: Vec<Edge> = from
+        .symbols()
+        .iter()
+        .map(|symbol| {
+            let value = (symbol.class == class::ACCEL)
+                .then(|| values.next())
+                .flatten();
+            value.copied().unwrap_or(Edge::of(symbol.node))
+        })
+        .collect();
+    map_symbols(&from, graph, edges, &images)
+}

@@ -1,0 +1,281 @@
+//! Normal forms modulo φ of small expressions: what people read, and what is expanded to be
+//! factored anew.
+
+use crate::calculus::Calculus;
+use hamel_algebra::graph::{Edge, Function, Graph, Node};
+use hamel_algebra::poly::buchberger::{Limits, groebner};
+use hamel_algebra::poly::ideals;
+use hamel_algebra::poly::monomial::{Monomial, Var};
+use hamel_algebra::poly::normal_form::Basis;
+use hamel_algebra::poly::order::Order;
+use hamel_algebra::poly::polynomial::Poly;
+use hamel_algebra::topoly::{Expander, OPAQUE};
+use hamel_language::model::layout::Block;
+use hamel_language::model::points::Points;
+use num_rational::BigRational;
+use std::collections::BTreeMap;
+
+/// Polynomials with their normal forms modulo the ideal of φ; one instance serves one graph, which
+/// may grow.
+pub struct NormalForms {
+    /// Polynomials as they stand.
+    expander: Expander,
+    /// Those in normal form.
+    reduced: Expander,
+    ideal: Ideal,
+}
+
+/// Products and sums of terms that are made for one normal form: those of entries that people read take a tenth of it.
+const MOST_WORK: usize = 60_000;
+
+/// Longest normal form on the way to one that is asked for.
+const MOST_REDUCED: usize = 200;
+
+impl NormalForms {
+    /// The Gröbner bases of φ; constraints whose basis is too large are left out.
+    pub fn new(points: &Points) -> Self {
+        NormalForms::within(points, usize::MAX)
+    }
+
+    /// The same, with so many products and sums of terms for all expansions together: what is not
+    /// expanded by then is too large.
+    pub fn within(points: &Points, work: usize) -> Self {
+        let mut expander = Expander::default();
+        let mut generators: Vec<Vec<Poly<BigRational>>> = Vec::new();
+        let mut place = points.first as Var;
+        for &block in &points.blocks {
+            match block {
+                Block::Flat(_) => {}
+                Block::Circle => generators.push(ideals::circle(place, place + 1)),
+                Block::Quaternion => {
+                    generators.push(ideals::quaternion(std::array::from_fn(|i| {
+                        place + i as Var
+                    })))
+                }
+                Block::Rotation => {
+                    generators.push(ideals::rotation(std::array::from_fn(|i| place + i as Var)))
+                }
+            }
+            place += block.len() as Var;
+        }
+        for &constraint in &points.constraints {
+            let Some(polynomial) = expander.expand(&points.free, constraint) else {
+                continue;
+            };
+            // A function or a quotient is a node of the free graph, which means nothing elsewhere.
+            if polynomial.variables().iter().any(|v| *v >= OPAQUE) {
+                continue;
+            }
+            // Joined with the ideals that share coordinates with it.
+            let mut joined = vec![polynomial];
+            let mut rest = Vec::new();
+            for ideal in generators {
+                let first = points.first as Var;
+                let shares = |a: &Poly<BigRational>| {
+                    joined.iter().any(|b| {
+                        a.variables()
+                            .iter()
+                            .any(|v| *v >= first && b.variables().contains(v))
+                    })
+                };
+                if ideal.iter().any(shares) {
+                    joined.extend(ideal)
+                } else {
+                    rest.push(ideal)
+                }
+            }
+            generators = rest;
+            generators.push(joined);
+        }
+        let bases = generators
+            .iter()
+            .filter_map(|ideal| groebner(ideal, Order::Grevlex, Limits::default()).ok())
+            .collect();
+        NormalForms {
+            expander: Expander::within(work),
+            reduced: Expander::default().of_terms(MOST_REDUCED),
+            ideal: Ideal {
+                angles: Angles::default(),
+                bases,
+                circles: BTreeMap::new(),
+            },
+        }
+    }
+
+    /// Gives up on expressions with an intermediate polynomial of more terms than this.
+    pub fn of_terms(mut self, most: usize) -> Self {
+        self.expander = self.expander.of_terms(most);
+        self
+    }
+
+    /// Gives up on normal forms with one on the way of more terms than this, from now on.
+    pub fn limit_terms(&mut self, most: usize) {
+        self.reduced.limit_terms(most);
+    }
+
+    /// The same with powers of linear forms as they are: digits of (x − c)³ near c.
+    pub fn keeping_powers(mut self) -> Self {
+        self.expander = self.expander.keeping_powers();
+        self
+    }
+
+    /// The polynomial of an expression, as it stands.
+    pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
+        self.expander.expand(graph, edge)
+    }
+
+    /// The normal form of a polynomial.
+    pub fn reduce(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> Poly<BigRational> {
+        self.ideal.reduce(graph, polynomial.clone())
+    }
+
+    /// The normal form of an expression, whose polynomials on the way are in normal form, too, where they are long.
+    pub fn normal_form(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
+        let ideal = &mut self.ideal;
+        let mut reduce = |graph: &Graph, polynomial| ideal.reduce(graph, polynomial);
+        let polynomial = self
+            .reduced
+            .expand_modulo(graph, edge, MOST_WORK, &mut reduce)?;
+        Some(self.ideal.reduce(graph, polynomial))
+    }
+}
+
+/// The ideal of φ, and those of the circles of cos a and sin a.
+struct Ideal {
+    angles: Angles,
+    bases: Vec<Basis<BigRational>>,
+    circles: BTreeMap<Var, Option<Basis<BigRational>>>,
+}
+
+impl Ideal {
+    fn reduce(&mut self, graph: &Graph, polynomial: Poly<BigRational>) -> Poly<BigRational> {
+        let mut result = polynomial;
+        for basis in &self.bases {
+            if !basis.is_reduced(&result) {
+                result = basis.normal_form(&result);
+            }
+        }
+        for var in result.variables() {
+            if let Some((cos, sin)) = self.angles.pair(graph, var) {
+                let ideal =
+                    || groebner(&ideals::circle(cos, sin), Order::Grevlex, Limits::default()).ok();
+                let Some(basis) = self.circles.entry(cos).or_insert_with(ideal) else {
+                    continue;
+                };
+                if !basis.is_reduced(&result) {
+                    result = basis.normal_form(&result);
+                }
+            }
+        }
+        result
+    }
+}
+
+/// The nodes of sin a and cos a, by angle; the graph is scanned once as it grows.
+#[derive(Default)]
+struct Angles {
+    scanned: u32,
+    known: BTreeMap<Edge, [Option<Var>; 2]>,
+}
+
+impl Angles {
+    /// The variables of cos a and sin a where a variable is one of them and both exist.
+    fn pair(&mut self, graph: &Graph, var: Var) -> Option<(Var, Var)> {
+        let Node::Apply(Function::Sin | Function::Cos, angle) =
+            graph.node(var.checked_sub(OPAQUE)?)
+        else {
+            return None;
+        };
+        for id in self.scanned..graph.len() as u32 {
+            if let Node::Apply(function @ (Function::Sin | Function::Cos), angle) = graph.node(id) {
+                self.known.entry(angle.abs()).or_default()[(function == Function::Sin) as usize]
+                    .get_or_insert(OPAQUE + id);
+            }
+        }
+        self.scanned = graph.len() as u32;
+        let [cos, sin] = self.known.get(&angle.abs())?;
+        Some(((*cos)?, (*sin)?))
+    }
+}
+
+/// The node that a variable stands for.
+pub fn variable_node(graph: &Graph, var: Var) -> Edge {
+    match var.checked_sub(OPAQUE) {
+        Some(id) => Edge::of(id),
+        None => Edge::of(graph.symbols()[var as usize].node),
+    }
+}
+
+/// A polynomial in the variables that vary at run time, its coefficients being expressions that do not.
+pub type Collected = BTreeMap<Monomial, Edge>;
+
+/// Sorts a polynomial by its run-time monomials; coefficients are built in the graph.
+pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
+    let mut collected = Collected::new();
+    for (monomial, number) in polynomial.terms() {
+        let mut coefficient = graph.rational(number);
+        let mut powers = Vec::new();
+        for &(var, exponent) in monomial.powers() {
+            let node = variable_node(graph, var);
+            if graph.is_free(node.node()) {
+                for _ in 0..exponent {
+                    coefficient = graph.mul(coefficient, node);
+                }
+            } else {
+                powers.push((var, exponent));
+            }
+        }
+        let entry = collected
+            .entry(Monomial::from_powers(powers))
+            .or_insert(graph.zero());
+        *entry = graph.add(*entry, coefficient);
+    }
+    collected.retain(|_, coefficient| *coefficient != graph.zero());
+    collected
+}
+
+/// An expression that has the same value everywhere on X, written without coordinates: where all
+/// ∂ᵢf = 0 the normal form has no coordinate left. Others are handed back as they are.
+/// The bases are found when they are first needed.
+pub fn without_coordinates(
+    graph: &mut Graph,
+    calculus: &mut Calculus,
+    points: &Points,
+    forms: &mut Option<NormalForms>,
+    edge: Edge,
+) -> Edge {
+    let coord = hamel_language::model::class::COORD;
+    if graph.class(edge.node()) & coord == 0
+        || (0..calculus.n()).any(|i| calculus.along(graph, i, edge) != graph.zero())
+    {
+        return edge;
+    }
+    let forms = forms.get_or_insert_with(|| NormalForms::new(points));
+    let Some(polynomial) = forms.expand(graph, edge) else {
+        return edge;
+    };
+    let reduced = forms.reduce(graph, &polynomial);
+    let result = build(graph, &reduced);
+    if graph.class(result.node()) & coord == 0 {
+        result
+    } else {
+        edge
+    }
+}
+
+/// The expression of a polynomial, term by term.
+pub fn build(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Edge {
+    let collected = collect(graph, polynomial);
+    let mut sum = graph.zero();
+    for (monomial, coefficient) in collected {
+        let mut term = coefficient;
+        for &(var, exponent) in monomial.powers() {
+            let node = variable_node(graph, var);
+            for _ in 0..exponent {
+                term = graph.mul(term, node);
+            }
+        }
+        sum = graph.add(sum, term);
+    }
+    sum
+}

@@ -1,0 +1,34 @@
+//! The norm and the inverse of a matrix of numbers.
+
+#[cfg(test)]
+mod tests;
+
+/// The greatest sum of sizes in a row.
+pub fn norm(rows: &[Vec<f64>]) -> f64 {
+    greatest(rows.iter().map(|row| row.iter().map(|e| e.abs()).sum()))
+}
+
+/// The greatest of numbers that are not negative; infinite where one is none.
+pub fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(0.0, |most, number| match number.is_nan() {
+        true => f64::INFINITY,
+        false => most.max(number),
+    })
+}
+
+/// The inverse of a positive definite matrix, by Gauss and Jordan without exchange.
+pub fn inverse(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let n = rows.len();
+    for k in 0..n {
+        let pivot = std::mem::replace(&mut rows[k][k], 1.0);
+        rows[k].iter_mut().for_each(|entry| *entry /= pivot);
+        let own = rows[k].clone();
+        for row in (0..n).filter(|&row| row != k) {
+            let factor = std::mem::replace(&mut rows[row][k], 0.0);
+            for (entry, other) in rows[row].iter_mut().zip(&own) {
+                *entry -= factor * other;
+            }
+        }
+    }
+    rows
+}

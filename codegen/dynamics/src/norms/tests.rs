@@ -1,0 +1,30 @@
+//! Norms and inverses of matrices of numbers.
+
+use super::{greatest, inverse, norm};
+
+#[test]
+fn inverses_and_norms() {
+    let rows = vec![
+        vec![4.0, 1.0, 0.0],
+        vec![1.0, 3.0, -1.0],
+        vec![0.0, -1.0, 2.0],
+    ];
+    let inverted = inverse(rows.clone());
+    for i in 0..3 {
+        for j in 0..3 {
+            let entry: f64 = (0..3).map(|k| rows[i][k] * inverted[k][j]).sum();
+            let unit = if i == j { 1.0 } else { 0.0 };
+            assert!((entry - unit).abs() < 1e-15);
+        }
+    }
+    assert_eq!(norm(&rows), 5.0);
+}
+
+/// M that has no number at a state says nothing of its condition: it counts as any number.
+#[test]
+fn what_is_no_number_is_no_small_one() {
+    assert_eq!(greatest([f64::NAN, 2.0].into_iter()), f64::INFINITY);
+    assert_eq!(greatest([2.0, f64::NAN].into_iter()), f64::INFINITY);
+    assert_eq!(norm(&[vec![1.0, f64::NAN], vec![0.0, 1.0]]), f64::INFINITY);
+    assert_eq!(greatest(std::iter::empty()), 0.0);
+}

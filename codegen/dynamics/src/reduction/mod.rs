@@ -1,0 +1,358 @@
+//! The velocities that constraints B(x, t) ξ = 0 and the time leave: ξ = C ξₐ + c, and the model in ξₐ. Without time
+//! c = 0; with it c is what ξ⁰ = 1 puts in, so that a row B ξ = b ξ⁰ becomes affine.
+//!
+//! A row is solved for a velocity whose factor is constant at run time, so that nothing is divided
+//! by what may vanish on X; rows without such a factor are kept and get multipliers. So do loops that are not straight,
+//! since a velocity that was solved for lets its coordinate drift away from the loop. With C the
+//! equations of motion are Cᵀ (M ξ̇ + Γ ξ ξ + ∂V − f) = 0: for an inactive velocity of an adapted
+//! frame these are the active rows of KR18 (30).
+
+mod carrier;
+mod kinetic;
+mod redundant;
+mod rows;
+
+pub use kinetic::drift;
+
+use crate::inertia;
+use carrier::Carrier;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::numeric::evaluate;
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::model::pfaffian::{Kind, Pfaffian};
+use hamel_language::model::{FullFrame, Model};
+use hamel_language::syntax::ast::Span;
+pub use redundant::warnings;
+use redundant::{contradicting, redundant};
+pub use rows::{independent, unit};
+use rows::{keep, start_numbers};
+use std::sync::Arc;
+
+/// A factor is no pivot where another one of its row, or of its velocity in other rows, is so many times larger at the start:
+/// a solution by it would lose twice as many digits as that ratio has. A row without pivots gets a multiplier.
+const LONGEST: f64 = 30.0;
+
+/// ξ = C ξₐ + c, in the graph of the full model.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// C, n rows of as many entries as ξₐ has.
+    pub complement: Vec<Vec<Edge>>,
+    /// c, n entries.
+    pub shift: Vec<Edge>,
+}
+
+/// The active velocities, and the model in them.
+#[derive(Clone, Debug)]
+pub struct Reduction {
+    /// The model in ξₐ; its constraints are the rows that are kept.
+    pub model: Model,
+    /// Places of ξₐ in ξ.
+    pub active: Vec<usize>,
+    /// Rows that were solved, and the velocities that they give.
+    pub solved: Vec<(usize, usize)>,
+    /// Rows that are kept, by their places among the constraints.
+    pub kept: Vec<usize>,
+    /// Rows that follow from the others everywhere and are left out, by their places among the constraints.
+    pub dropped: Vec<usize>,
+    /// ξ = C ξₐ + c, in the graph below.
+    pub section: Section,
+    /// The graph of the full model, with C and c.
+    pub graph: Graph,
+    /// What every symbol of the full model becomes, in the graph of the reduced one.
+    pub images: Vec<Edge>,
+}
+
+/// Solves the constraints of a model as far as constant factors allow.
+/// `None` where there are none.
+pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
+    if !model.is_constrained() {
+        return Ok(None);
+    }
+    let mut full = model.clone();
+    let Echelon {
+        rows,
+        solved,
+        mut dropped,
+    } = eliminate(&mut full)?;
+    let n = full.n();
+    let active: Vec<usize> = (0..n)
+        .filter(|&i| model.clock.is_none_or(|clock| clock.xi != i))
+        .filter(|&i| solved.iter().all(|&(_, velocity)| velocity != i))
+        .collect();
+    let (kept, rank) = keep(&full, &rows, &solved, &mut dropped)?;
+    accelerated(&full, &rows, &kept, &active)?;
+    let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
+    let driven = model.constraints.iter().any(drives);
+    // Where drives leave nothing to move by itself, the equations of motion give the forces that they need.
+    if active.len() < rank || active.len() == rank && !driven {
+        let span = model.constraints.last().map_or(model.span, |c| c.span);
+        return Err(Diagnostic::new(
+            span,
+            format!(
+                "the constraints leave no motion: {} rows for {n} velocities",
+                solved.len() + rank
+            ),
+        )
+        .help("remove a constraint, or add velocities"));
+    }
+    let graph = &mut full.graph;
+    let mut complement = vec![vec![graph.zero(); active.len()]; n];
+    for (place, &i) in active.iter().enumerate() {
+        complement[i][place] = graph.one();
+    }
+    let mut shift = vec![graph.zero(); n];
+    if let Some(clock) = model.clock {
+        shift[clock.xi] = graph.one();
+    }
+    let mut pivots = Vec::new();
+    for &(row, velocity) in &solved {
+        let pivot = rows[row][velocity];
+        for (place, &i) in active.iter().enumerate() {
+            complement[velocity][place] = graph
+                .div(-rows[row][i], pivot)
+                .ok_or_else(|| Diagnostic::new(model.constraints[row].span, "division by zero"))?;
+        }
+        if let Some(clock) = model.clock {
+            shift[velocity] = graph
+                .div(-rows[row][clock.xi], pivot)
+                .ok_or_else(|| Diagnostic::new(model.constraints[row].span, "division by zero"))?;
+        }
+        if graph.as_rational(pivot).is_none() {
+            pivots.push(graph.mul(pivot, pivot));
+        }
+    }
+    let zero = graph.zero();
+    let rows: Vec<(Vec<Edge>, Edge)> = kept
+        .iter()
+        .map(|&row| {
+            let shift = model.clock.map_or(zero, |clock| rows[row][clock.xi]);
+            (active.iter().map(|&i| rows[row][i]).collect(), shift)
+        })
+        .collect();
+    let graph = full.graph.clone();
+    // Whether ξ is ξₐ and what is given ahead, nothing else.
+    let given = kept.is_empty()
+        && model.clock.is_some()
+        && (0..n).all(|i| active.contains(&i) || complement[i].iter().all(|&entry| entry == zero));
+    let section = Section { complement, shift };
+    let before = full.clone();
+    let carrier = Carrier::new(full, &active, &section);
+    let images = carrier.images.clone();
+    let mut model = carrier.model(&rows, &kept, &pivots);
+    model.overconstrained = kept.len() > rank;
+    model.augmented = !kept.is_empty() && inertia::is_singular(&model);
+    model.full_frame = given.then(|| FullFrame {
+        full: Arc::new(before),
+        images: images.clone(),
+        active: active.clone(),
+    });
+    Ok(Some(Reduction {
+        model,
+        graph,
+        images,
+        active,
+        solved,
+        kept,
+        dropped,
+        section,
+    }))
+}
+
+/// B in echelon form by constant pivots.
+struct Echelon {
+    rows: Vec<Vec<Edge>>,
+    /// The pivots: (row, velocity).
+    solved: Vec<(usize, usize)>,
+    /// Rows of which nothing is left.
+    dropped: Vec<usize>,
+}
+
+fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
+    let numbers = start_numbers(model);
+    let constraints = model.constraints.clone();
+    let graph = &mut model.graph;
+    let zero = graph.zero();
+    let mut rows: Vec<Vec<Edge>> = constraints.iter().map(|c| c.row.clone()).collect();
+    let mut solved: Vec<(usize, usize)> = Vec::new();
+    let is_time = |velocity: usize| model.clock.is_some_and(|clock| clock.xi == velocity);
+    let stays = |velocity: usize| {
+        model
+            .independent
+            .iter()
+            .any(|(place, _)| *place == velocity)
+    };
+    let sizes = |graph: &Graph, row: &[Edge]| -> Vec<f64> {
+        let values = evaluate(graph, row, &numbers);
+        values.into_iter().map(f64::abs).collect()
+    };
+    let mut at_start: Vec<Vec<f64>> = rows.iter().map(|row| sizes(graph, row)).collect();
+    let kept: Vec<bool> = constraints.iter().map(|c| returns(graph, c)).collect();
+    loop {
+        // The largest entry of each column in the rows that are left.
+        let open = (0..rows.len()).filter(|i| solved.iter().all(|&(row, _)| row != *i));
+        let tallest = open.fold(vec![0.0_f64; model.xi.len()], |most, i| {
+            let pairs = most.iter().zip(&at_start[i]);
+            pairs.map(|(most, size)| most.max(*size)).collect()
+        });
+        let mut best = None;
+        for i in 0..constraints.len() {
+            if kept[i] || solved.iter().any(|&(row, _)| row == i) {
+                continue;
+            }
+            // The two largest entries of the row: beside a single one, nothing is lost.
+            let moving = at_start[i].iter().enumerate();
+            let moving = moving.filter(|&(k, _)| !is_time(k));
+            let [top, second] =
+                moving.fold([(0, 0.0); 2], |[top, second], (k, &size)| match size {
+                    size if size > top.1 => [(k, size), top],
+                    size if size > second.1 => [top, (k, size)],
+                    _ => [top, second],
+                });
+            // A rate that is prescribed is no result of the constraints, where they can give another velocity or a multiplier.
+            let alone = (0..rows[i].len())
+                .filter(|&j| rows[i][j] != zero && !is_time(j))
+                .count()
+                == 1;
+            let driven = |j: usize| !alone && model.accelerated.iter().any(|given| given.0 == j);
+            for (j, &entry) in rows[i].iter().enumerate() {
+                let unfit = entry == zero || is_time(j) || stays(j) || driven(j);
+                if unfit || !graph.is_free(entry.node()) {
+                    continue;
+                }
+                let beside = if j == top.0 { second.1 } else { top.1 };
+                if beside > 0.0 && at_start[i][j] * LONGEST < beside.max(tallest[j]) {
+                    continue;
+                }
+                let effort = match graph.as_rational(entry) {
+                    Some(_) if entry.abs() == graph.one() => 0,
+                    Some(_) => 1,
+                    None if evaluate(graph, &[entry], &numbers)[0].abs() > 1e-9 => 2,
+                    None => continue,
+                };
+                let others = rows.iter().filter(|row| row[j] != zero).count();
+                let key = (effort, others, i, j);
+                if best.is_none_or(|least| key < least) {
+                    best = Some(key);
+                }
+            }
+        }
+        let Some((_, _, row, velocity)) = best else {
+            break;
+        };
+        let pivot_row = rows[row].clone();
+        for (other, entries) in rows.iter_mut().enumerate() {
+            if other == row || entries[velocity] == zero {
+                continue;
+            }
+            let Some(factor) = graph.div(entries[velocity], pivot_row[velocity]) else {
+                continue;
+            };
+            for (entry, &pivot) in entries.iter_mut().zip(&pivot_row) {
+                let product = graph.mul(factor, pivot);
+                *entry = graph.sub(*entry, product);
+            }
+            at_start[other] = sizes(graph, entries);
+        }
+        solved.push((row, velocity));
+    }
+    let mut dropped = Vec::new();
+    for (i, row) in rows.iter().enumerate() {
+        if row.iter().all(|&entry| entry == zero) {
+            if matches!(constraints[i].kind, Kind::Drive { .. }) {
+                return Err(redundant(&constraints, i, ""));
+            }
+            dropped.push(i);
+            continue;
+        }
+        if (0..row.len()).all(|j| row[j] == zero || is_time(j)) {
+            return Err(contradicting(&constraints, i));
+        }
+        if !kept[i] && solved.iter().all(|&(row, _)| row != i) {
+            impossible(model, &model.graph, (row, &constraints[i]))?;
+        }
+    }
+    Ok(Echelon {
+        rows,
+        solved,
+        dropped,
+    })
+}
+
+/// Whether runs are led back to a constraint, which takes its multiplier: to those that are stabilised, and to loops that are
+/// not straight. A straight one, such as the ratio of gears, has constant factors; every method keeps to it by itself.
+fn returns(graph: &Graph, constraint: &Pfaffian) -> bool {
+    let bent = |entry: &Edge| !graph.is_free(entry.node());
+    constraint.stabilized.is_some()
+        || constraint.kind == Kind::Loop && constraint.row.iter().any(bent)
+}
+
+/// A row that could be solved for velocities that the user wants to stay, and for no others.
+fn impossible(
+    model: &Model,
+    graph: &Graph,
+    (row, constraint): (&[Edge], &Pfaffian),
+) -> Result<(), Diagnostic> {
+    let fits = |&&(place, _): &&(usize, Span)| {
+        row[place] != graph.zero() && graph.is_free(row[place].node())
+    };
+    let Some(&(place, span)) = model.independent.iter().find(fits) else {
+        return Ok(());
+    };
+    let others = (0..row.len()).filter(|&j| row[j] != graph.zero() && j != place);
+    let name = entry_name(model, place);
+    let message = match others.count() {
+        0 => format!("`{name}` cannot be independent: a constraint gives it"),
+        _ => format!("`{name}` cannot be independent: a constraint can be solved for nothing else"),
+    };
+    let error = Diagnostic::new(span, message).help(
+        "leave one velocity of this constraint out of `independent` whose factor in it is constant",
+    );
+    Err(error.note(constraint.span, "this constraint"))
+}
+
+/// The name of an entry of ξ.
+fn entry_name(model: &Model, place: usize) -> String {
+    let node = model.xi[place].node();
+    let mut symbols = model.graph.symbols().iter();
+    symbols
+        .find(|s| s.node == node)
+        .map_or(String::new(), |s| s.name.clone())
+}
+
+/// Velocities whose rates are given have to stay, and to be free at the start of what is kept.
+fn accelerated(
+    full: &Model,
+    rows: &[Vec<Edge>],
+    kept: &[usize],
+    active: &[usize],
+) -> Result<(), Diagnostic> {
+    let edges: Vec<Edge> = (kept.iter())
+        .flat_map(|&row| active.iter().map(move |&i| rows[row][i]))
+        .collect();
+    let values = evaluate(&full.graph, &edges, &start_numbers(full));
+    let mut given: Vec<Vec<f64>> = values.chunks(active.len().max(1)).map(unit).collect();
+    let mut rank = independent(given.clone()).len();
+    for &(velocity, _) in &full.accelerated {
+        let place = active.iter().position(|&i| i == velocity);
+        if let Some(place) = place {
+            let entries = (0..active.len()).map(|i| f64::from(i == place));
+            given.push(entries.collect());
+            if independent(given.clone()).len() > rank {
+                rank += 1;
+                continue;
+            }
+        }
+        let name = entry_name(full, velocity);
+        let message = match place {
+            Some(_) => format!(
+                "the rate of `{name}` is prescribed, and the constraints leave it none of its own at the start"
+            ),
+            None => {
+                format!("the rate of `{name}` is prescribed, and a constraint gives this velocity")
+            }
+        };
+        let error = Diagnostic::new(full.velocity_spans[velocity], message);
+        return Err(error.help("prescribe the rate of a velocity that the constraints, and the rates that are prescribed before it, leave free"));
+    }
+    Ok(())
+}

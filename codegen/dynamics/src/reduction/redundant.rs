@@ -1,0 +1,74 @@
+//! What is said of rows that follow from the others, and of rows that contradict them.
+
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::model::pfaffian::{Kind, Pfaffian};
+
+/// The error of a row that follows from the others, where it cannot be left out.
+pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
+    let error = Diagnostic::new(
+        constraints[row].span,
+        format!("this constraint is redundant{when}: it follows from the others"),
+    )
+    .help("remove it; its multiplier would have no value");
+    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
+        Some((_, other)) => error.note(other.span, "one of the others"),
+        None => error,
+    }
+}
+
+/// The error of a row that asks for another velocity than the others leave.
+pub fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
+    let message = "this row contradicts the others: it asks for another velocity than they leave";
+    let error = Diagnostic::new(constraints[row].span, message).help("remove one of them");
+    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
+        Some((_, other)) => error.note(other.span, "one of the others"),
+        None => error,
+    }
+}
+
+/// A warning for every equation of which rows were dropped, in the order of the text.
+pub fn warnings(constraints: &[Pfaffian], dropped: &[usize]) -> Vec<Diagnostic> {
+    let mut equations: Vec<Vec<&Pfaffian>> = Vec::new();
+    for row in dropped.iter().filter_map(|&place| constraints.get(place)) {
+        let same = |other: &&mut Vec<&Pfaffian>| {
+            let first = other.first();
+            first.is_some_and(|first| {
+                first.span.range() == row.span.range() && first.written == row.written
+            })
+        };
+        match equations.iter_mut().find(same) {
+            Some(rows) => rows.push(row),
+            None => equations.push(vec![row]),
+        }
+    }
+    let warnings = equations
+        .iter()
+        .filter_map(|rows| Some(following(rows.first()?, rows)));
+    warnings.collect()
+}
+
+/// The warning about rows of one equation.
+fn following(first: &Pfaffian, rows: &[&Pfaffian]) -> Diagnostic {
+    let what = match first.kind {
+        Kind::Inactive => "inactive velocity",
+        Kind::Nonholonomic => "nonholonomic constraint",
+        Kind::Loop => "loop",
+        Kind::Drive { .. } => "prescribed motion",
+    };
+    let entries: Vec<&str> = rows.iter().map(|row| row.entry.as_str()).collect();
+    let message = match entries[..] {
+        [""] => format!("this {what} follows from the other constraints, and is left out"),
+        [entry] => {
+            format!("entry {entry} of this {what} follows from the other rows, and is left out")
+        }
+        _ => format!(
+            "entries {} of this {what} follow from the other rows, and are left out",
+            entries.join(", ")
+        ),
+    };
+    let help = match entries[..] {
+        [""] => "remove it: it says nothing that the others do not say",
+        _ => "write the other entries one by one, as in `a[1] = b[1], a[2] = b[2]`",
+    };
+    Diagnostic::new(first.span, message).help(help)
+}

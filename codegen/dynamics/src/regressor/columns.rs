@@ -1,0 +1,387 @@
+//! The columns of Y for the inertia of links: the generalised forces of the wrenches that a unit of each parameter needs. A
+//! wrench (force f, torque t) has the generalised force S_ω·t + S_v·f at a joint with the column S = (S_ω, S_v); where the
+//! joint turns about a point c that others turn about, too, this is S_ω·(t − c × f).
+
+use super::parameters::Link;
+use super::wrenches::{AXES, Axes, Motions};
+use crate::tree::inverse::{Wrench, to_parent};
+use crate::tree::{Link as TreeLink, Tree};
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{Vec3, add3, cross, scale3, sub3, zero3};
+use hamel_algebra::transplant::rebuild;
+use hamel_language::model::Model;
+use hamel_program::count::count;
+
+/// How the generalised force Sᵀ f of a wrench f at the joints before is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Route {
+    /// f is transformed from link to link.
+    Wrenches,
+    /// The same for wrenches with a force; for pure torques, which are those of second moments, columns S of all joints before are
+    /// transformed to the link.
+    Mixed,
+    /// Columns S are transformed for all wrenches.
+    Twists {
+        /// As angular velocities alone where axes meet: there f acts by its torque about the point.
+        meeting: bool,
+        /// To the link before, and f to its origin: where both share axes this is a shift.
+        carried: bool,
+    },
+}
+
+const fn twists(meeting: bool, carried: bool) -> Route {
+    Route::Twists { meeting, carried }
+}
+
+/// All of them.
+const ROUTES: [Route; 6] = [
+    Route::Wrenches,
+    Route::Mixed,
+    twists(false, false),
+    twists(false, true),
+    twists(true, false),
+    twists(true, true),
+];
+
+/// Routes of which the cheapest is taken for link after link: without points of meeting, and with them.
+const TRIED_TOGETHER: [&[Route]; 2] = [
+    &[
+        Route::Wrenches,
+        Route::Mixed,
+        twists(false, false),
+        twists(false, true),
+    ],
+    &[Route::Wrenches, twists(true, false)],
+];
+
+/// How many changes of single routes are tried at most.
+const MOST_CHANGES: usize = 60;
+
+/// The columns of all links, ten of each, of second moments in the place of Θ on its diagonal.
+pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
+    let motions = Motions::new(model, tree, Axes::Own);
+    let all: Vec<usize> = (0..10).collect();
+    let links = links.iter().enumerate();
+    links
+        .flat_map(|link| of_link(&mut model.graph, &motions, link, &all, Route::Wrenches))
+        .collect()
+}
+
+/// The same, those that are kept at the least cost: in the cheapest axes, and by the cheapest routes of each link.
+pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) -> Vec<Vec<Edge>> {
+    let kept: Vec<Vec<usize>> = (0..links.len())
+        .map(|index| {
+            let own = (0..10).filter(|k| kept.contains(&(10 * index + k)));
+            own.collect()
+        })
+        .collect();
+    let search = Search {
+        model,
+        tree,
+        links,
+        kept: &kept,
+    };
+    let Some(way) = search.best() else {
+        return Vec::new();
+    };
+    // Those that are kept come first: what is equal is computed as they need it.
+    let motions = Motions::new(model, tree, way.axes);
+    let mut columns: Vec<Option<Vec<Edge>>> = vec![None; 10 * links.len()];
+    for first in [true, false] {
+        for (index, link) in links.iter().enumerate() {
+            let own = (0..10).filter(|k| kept[index].contains(k) == first);
+            let own: Vec<usize> = own.collect();
+            let route = way.routes[index];
+            let found = of_link(&mut model.graph, &motions, (index, link), &own, route);
+            for (k, column) in own.into_iter().zip(found) {
+                columns[10 * index + k] = Some(column);
+            }
+        }
+    }
+    columns.into_iter().flatten().collect()
+}
+
+/// The search for the cheapest way.
+struct Search<'a> {
+    model: &'a Model,
+    tree: &'a Tree,
+    links: &'a [Link],
+    /// Which parameters of each link are kept.
+    kept: &'a [Vec<usize>],
+}
+
+/// The axes of all links and the route of each, with what they cost.
+struct Way {
+    cost: usize,
+    axes: Axes,
+    routes: Vec<Route>,
+}
+
+impl Search<'_> {
+    /// The best way: link by link, after those before it; then with other routes of single links, since what is transformed
+    /// serves several of them.
+    fn best(&self) -> Option<Way> {
+        let ways = AXES.iter().flat_map(|&axes| {
+            let mut tried = self.model.clone();
+            let motions = Motions::new(&mut tried, self.tree, axes);
+            let graph = tried.graph;
+            TRIED_TOGETHER.map(|allowed| {
+                let (cost, routes) = self.one_by_one(&graph, &motions, allowed);
+                Way { cost, axes, routes }
+            })
+        });
+        let mut best = ways.min_by_key(|way| way.cost)?;
+        let mut tried = self.model.clone();
+        let motions = Motions::new(&mut tried, self.tree, best.axes);
+        let mut left = MOST_CHANGES;
+        loop {
+            let before = best.cost;
+            for (index, route) in self
+                .costly()
+                .rev()
+                .flat_map(|i| ROUTES.map(|route| (i, route)))
+            {
+                if left == 0 || best.routes[index] == route {
+                    continue;
+                }
+                left -= 1;
+                let mut routes = best.routes.clone();
+                routes[index] = route;
+                let mut graph = tried.graph.clone();
+                let all = self.costly();
+                let roots = all.flat_map(|i| self.kept_columns(&mut graph, &motions, i, routes[i]));
+                let roots: Vec<Edge> = roots.collect();
+                let cost = count(&graph, &roots).weight();
+                if cost < best.cost {
+                    best = Way {
+                        cost,
+                        routes,
+                        ..best
+                    };
+                }
+            }
+            if best.cost == before {
+                return Some(best);
+            }
+        }
+    }
+
+    fn costly(&self) -> impl DoubleEndedIterator<Item = usize> {
+        (0..self.links.len()).filter(|&index| !self.kept[index].is_empty())
+    }
+
+    fn kept_columns(
+        &self,
+        graph: &mut Graph,
+        motions: &Motions,
+        index: usize,
+        route: Route,
+    ) -> Vec<Edge> {
+        let link = (index, &self.links[index]);
+        of_link(graph, motions, link, &self.kept[index], route).concat()
+    }
+
+    /// The cheapest of some routes for each link after the other.
+    fn one_by_one(
+        &self,
+        graph: &Graph,
+        motions: &Motions,
+        allowed: &[Route],
+    ) -> (usize, Vec<Route>) {
+        let mut taken = vec![Route::Wrenches; self.links.len()];
+        let (mut least, mut graph, mut roots) = (0, graph.clone(), Vec::new());
+        for index in self.costly() {
+            let tried = allowed.iter().map(|&route| {
+                let mut graph = graph.clone();
+                let found = self.kept_columns(&mut graph, motions, index, route);
+                let roots = [&roots[..], &found].concat();
+                (count(&graph, &roots).weight(), route, graph, roots)
+            });
+            if let Some(best) = tried.min_by_key(|(cost, ..)| *cost) {
+                (least, taken[index], graph, roots) = best;
+            }
+        }
+        (least, taken)
+    }
+}
+
+/// The columns of some parameters of a link.
+fn of_link(
+    graph: &mut Graph,
+    motions: &Motions,
+    (index, link): (usize, &Link),
+    own: &[usize],
+    route: Route,
+) -> Vec<Vec<Edge>> {
+    let tree = &motions.tree;
+    let wrenches = motions.wrenches(graph, index, link);
+    let zero = zero3(graph);
+    let (meeting, carried) = match route {
+        Route::Wrenches | Route::Mixed => (false, false),
+        Route::Twists { meeting, carried } => (meeting, carried),
+    };
+    let before = tree.links[index].parent.filter(|_| carried);
+    let mut path = Path::new(tree, before.unwrap_or(index));
+    if meeting {
+        path.find_meetings(graph, tree);
+    }
+    let mut of = |wrench: Wrench| match route {
+        Route::Wrenches => by_wrenches(graph, tree, index, wrench),
+        Route::Mixed if wrench.force != zero => by_wrenches(graph, tree, index, wrench),
+        Route::Mixed => path.by_twists(graph, tree, wrench),
+        Route::Twists { .. } if before.is_none() => path.by_twists(graph, tree, wrench),
+        Route::Twists { .. } => {
+            let link = &tree.links[index];
+            let carried = to_parent(graph, link, &wrench);
+            let mut forces = path.by_twists(graph, tree, carried);
+            link.add_forces(graph, &wrench, &mut forces);
+            forces
+        }
+    };
+    own.iter().map(|&k| of(wrenches[k])).collect()
+}
+
+/// The links from the root to one of them.
+struct Path {
+    links: Vec<usize>,
+    /// For each of them, once they have been looked for, the point in which the axes of its joint meet those of joints around it, if there is one: the
+    /// place of a link that it is fixed to, and the point in the axes of that link.
+    meeting: Vec<Option<(usize, Vec3)>>,
+}
+
+/// Where the axes of one joint or of several in turn meet, in the axes of the last one's link.
+#[derive(Clone, Copy)]
+enum Meeting {
+    /// Anywhere on this axis through the origin.
+    On(Vec3),
+    /// Here.
+    At(Vec3),
+}
+
+impl Path {
+    fn new(tree: &Tree, link: usize) -> Self {
+        let before = |&index: &usize| tree.links[index].parent;
+        let mut links: Vec<usize> = std::iter::successors(Some(link), before).collect();
+        links.reverse();
+        let meeting = vec![None; links.len()];
+        Path { links, meeting }
+    }
+
+    /// Finds where axes meet. Nothing of how the points are found stays in the graph: equal expressions are computed as the
+    /// first one says.
+    fn find_meetings(&mut self, graph: &mut Graph, tree: &Tree) {
+        let mut found = graph.clone();
+        let mut first = 0;
+        let mut met: Option<Meeting> = None;
+        for (place, &index) in self.links.iter().enumerate() {
+            let link = &tree.links[index];
+            let joined = met.and_then(|met| met.joined(&mut found, link));
+            if joined.is_none() {
+                first = place;
+            }
+            met = joined.or_else(|| Meeting::alone(&found, link));
+            if let Some(Meeting::At(point)) = met {
+                let point = rebuild(&found, graph, &point);
+                self.meeting[first..=place].fill(Some((place, [point[0], point[1], point[2]])));
+            }
+        }
+    }
+
+    /// The generalised force of a wrench on the last link by the power of the twists of all joints before.
+    fn by_twists(&self, graph: &mut Graph, tree: &Tree, wrench: Wrench) -> Vec<Edge> {
+        let zero = zero3(graph);
+        let mut forces = vec![graph.zero(); tree.armature.len()];
+        for (place, &index) in self.links.iter().enumerate() {
+            let meeting = self.meeting[place].filter(|_| wrench.force != zero);
+            let wrench = match meeting {
+                // About the point: torque − s × force.
+                Some((at, point)) => {
+                    let mut s = point;
+                    for &after in &self.links[at + 1..] {
+                        let link = &tree.links[after];
+                        let seen = sub3(graph, s, link.position);
+                        s = link.from_parent_axes(graph, seen);
+                    }
+                    let lever = cross(graph, s, wrench.force);
+                    Wrench {
+                        force: zero,
+                        torque: sub3(graph, wrench.torque, lever),
+                    }
+                }
+                None => wrench,
+            };
+            for freedom in &tree.links[index].freedoms {
+                let mut twist = freedom.clone();
+                for &after in &self.links[place + 1..] {
+                    let link = &tree.links[after];
+                    if wrench.force != zero {
+                        let lever = cross(graph, twist.angular, link.position);
+                        let linear = add3(graph, twist.linear, lever);
+                        twist.linear = link.from_parent_axes(graph, linear);
+                    }
+                    twist.angular = link.from_parent_axes(graph, twist.angular);
+                }
+                twist.add_force(graph, &wrench, &mut forces);
+            }
+        }
+        forces
+    }
+}
+
+impl Meeting {
+    /// Of one joint: its axes have to go through the origin of its link.
+    fn alone(graph: &Graph, link: &TreeLink) -> Option<Self> {
+        let zero = zero3(graph);
+        if link.freedoms.iter().any(|freedom| freedom.linear != zero) {
+            return None;
+        }
+        match link.freedoms.as_slice() {
+            [] => None,
+            [freedom] => Some(Meeting::On(freedom.angular)),
+            _ => Some(Meeting::At(zero)),
+        }
+    }
+
+    /// With the axes of the joint that follows; `None` where they miss this point at some configuration.
+    fn joined(self, graph: &mut Graph, link: &TreeLink) -> Option<Self> {
+        let zero = zero3(graph);
+        let position = link.position;
+        let point = match (self, Meeting::alone(graph, link)?) {
+            (Meeting::At(point), Meeting::At(_)) => (point == position).then_some(position),
+            (Meeting::On(axis), Meeting::At(_)) => {
+                (cross(graph, axis, position) == zero).then_some(position)
+            }
+            (Meeting::At(point), Meeting::On(other)) => {
+                let axis = link.to_parent_axes(graph, other);
+                let from = sub3(graph, point, position);
+                (cross(graph, axis, from) == zero).then_some(point)
+            }
+            (Meeting::On(axis), Meeting::On(other)) => {
+                // λ axis = position + μ other, crossed with the other axis.
+                let other = link.to_parent_axes(graph, other);
+                let normal = cross(graph, axis, other);
+                let distance = cross(graph, position, other);
+                let (over, under) = (graph.dot(&distance, &normal), graph.dot(&normal, &normal));
+                let along = graph.div(over, under)?;
+                let point = scale3(graph, along, axis);
+                let from = sub3(graph, point, position);
+                (cross(graph, other, from) == zero).then_some(point)
+            }
+        }?;
+        let from = sub3(graph, point, position);
+        Some(Meeting::At(link.from_parent_axes(graph, from)))
+    }
+}
+
+/// The generalised force of a wrench on a link, transformed from link to link.
+fn by_wrenches(graph: &mut Graph, tree: &Tree, link: usize, wrench: Wrench) -> Vec<Edge> {
+    let mut forces = vec![graph.zero(); tree.armature.len()];
+    let (mut at, mut wrench) = (Some(link), wrench);
+    while let Some(index) = at {
+        let link = &tree.links[index];
+        link.add_forces(graph, &wrench, &mut forces);
+        wrench = to_parent(graph, link, &wrench);
+        at = link.parent;
+    }
+    forces
+}

@@ -1,0 +1,357 @@
+//! The standard parameters: of every link Θ (kg m²) about its frame's origin, m s (kg m) and m (kg), of joints their armatures,
+//! dampers and springs; and the moments of a link about its origin that they are.
+
+use super::candidates::Relation;
+use crate::calculus::Calculus;
+use crate::tree::Tree;
+use crate::tree::draft::Carrier;
+use crate::tree::mass::Mass;
+use crate::tree::turn::Turn;
+use hamel_algebra::graph::{Edge, Graph, Node};
+use hamel_algebra::linear::{Mat3, transpose3, zero3};
+use hamel_language::model::Model;
+use hamel_language::model::elements::Along;
+
+/// The ten parameters of a link, in their order.
+pub const PLACES: [&str; 10] = [
+    "Theta_xx", "Theta_xy", "Theta_xz", "Theta_yy", "Theta_yz", "Theta_zz", "h_x", "h_y", "h_z",
+    "m",
+];
+
+/// Rows and columns of the entries of Θ in this order.
+pub const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+/// What a parameter is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Of a link: Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h = m s, m, by their places in this order.
+    Inertia(usize),
+    /// J of a joint.
+    Armature,
+    /// Coefficient of a damper.
+    Damping,
+    /// Stiffness of a spring.
+    Stiffness,
+}
+
+/// A standard parameter.
+#[derive(Clone, Debug)]
+pub struct Standard {
+    /// What it is.
+    pub kind: Kind,
+    /// The frame of the link, or the velocity or coordinate that it belongs to.
+    pub of: String,
+    /// Its value in the description.
+    pub value: Edge,
+    /// Whether it is there: links without mass have parameters for the sake of relations alone.
+    pub present: bool,
+}
+
+impl Standard {
+    /// Its name in the text.
+    pub fn name(&self) -> String {
+        let own = match self.kind {
+            Kind::Inertia(place) => PLACES[place],
+            Kind::Armature => "armature",
+            Kind::Damping => "damping",
+            Kind::Stiffness => "stiffness",
+        };
+        format!("{}.{own}", self.of)
+    }
+}
+
+/// A link with the frame that stands for it.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// The frame's name.
+    pub name: String,
+    /// The frame's index in the model.
+    pub frame: usize,
+    /// The frame's axes in those of the link.
+    pub axes: Mat3,
+    /// The link before.
+    pub parent: Option<usize>,
+    /// Whether it has mass.
+    pub present: bool,
+    /// Its parameters.
+    pub standard: Vec<Standard>,
+    /// The moments of a unit of each of its parameters.
+    moments: Vec<Vec<Edge>>,
+}
+
+/// The links of a tree.
+pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> {
+    let pairs = tree.links.iter().zip(carriers);
+    pairs
+        .map(|(link, carrier)| {
+            let graph = &mut model.graph;
+            let back = Turn::By(transpose3(&carrier.axes));
+            let mass = carrier.mass.turned(graph, &back);
+            let name = model.frames[carrier.frame].name.clone();
+            let values = standard_of(graph, &mass);
+            let present = values.iter().any(|&value| value != graph.zero());
+            let standard = values.into_iter().enumerate();
+            let (zero, one) = (graph.zero(), graph.one());
+            let back = carrier.origin.map(|entry| -entry);
+            let unit = |place: usize| {
+                let mut ten = [zero; 10];
+                ten[place] = one;
+                let mass = of_standard(graph, &ten).shifted(graph, back);
+                moments_of(&mass)
+            };
+            Link {
+                moments: (0..10).map(unit).collect(),
+                standard: standard
+                    .map(|(place, value)| Standard {
+                        kind: Kind::Inertia(place),
+                        of: name.clone(),
+                        value,
+                        present,
+                    })
+                    .collect(),
+                name,
+                frame: carrier.frame,
+                axes: carrier.axes,
+                parent: link.parent,
+                present,
+            }
+        })
+        .collect()
+}
+
+/// The inertia of ten standard parameters.
+pub fn of_standard(graph: &mut Graph, ten: &[Edge]) -> Mass {
+    let mut second: Mat3 = [zero3(graph); 3];
+    let trace = graph.sum(&DIAGONAL.map(|k| ten[k]));
+    let half = graph.ratio(1, 2);
+    let half = graph.mul(half, trace);
+    for (&(i, j), &entry) in ENTRIES.iter().zip(ten) {
+        second[i][j] = if i == j {
+            graph.sub(half, entry)
+        } else {
+            -entry
+        };
+        second[j][i] = second[i][j];
+    }
+    Mass {
+        mass: ten[9],
+        first: std::array::from_fn(|i| ten[6 + i]),
+        second,
+    }
+}
+
+/// The ten standard parameters of an inertia.
+pub fn standard_of(graph: &mut Graph, mass: &Mass) -> Vec<Edge> {
+    let theta = mass.inertia(graph);
+    let mut ten = ENTRIES.map(|(i, j)| theta[i][j]).to_vec();
+    ten.extend(mass.first);
+    ten.push(mass.mass);
+    ten
+}
+
+/// The places of the diagonal among the ten parameters.
+pub const DIAGONAL: [usize; 3] = [0, 3, 5];
+
+/// Names of second moments, which stand at the places of the diagonal.
+pub const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
+
+/// The ten moments of an inertia: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
+fn moments_of(mass: &Mass) -> Vec<Edge> {
+    let second = ENTRIES.map(|(i, j)| {
+        let entry = mass.second[i][j];
+        if i == j { entry } else { -entry }
+    });
+    let mut ten = second.to_vec();
+    ten.extend(mass.first);
+    ten.push(mass.mass);
+    ten
+}
+
+/// Columns of the standard parameters from those of moments: what a unit of a parameter needs is what its moments need.
+pub fn standard_columns(
+    graph: &mut Graph,
+    links: &[Link],
+    moments: &[Vec<Edge>],
+) -> Vec<Vec<Edge>> {
+    let pairs = links.iter().zip(moments.chunks(10));
+    let column = |graph: &mut Graph, ten: &[Vec<Edge>], unit: &[Edge]| {
+        let rows = 0..ten[0].len();
+        let row = |row: usize| {
+            let entries: Vec<Edge> = ten.iter().map(|column| column[row]).collect();
+            graph.dot(unit, &entries)
+        };
+        rows.map(row).collect()
+    };
+    pairs
+        .flat_map(|(link, ten)| link.moments.iter().map(move |unit| (ten, unit)))
+        .map(|(ten, unit)| column(graph, ten, unit))
+        .collect()
+}
+
+/// A relation between the columns of standard parameters as one between those of moments.
+pub fn between_moments(graph: &mut Graph, links: &[Link], relation: &Relation) -> Relation {
+    let zero = graph.zero();
+    let mut factors = vec![zero; 10 * links.len()];
+    let mut all = Relation::new();
+    for &(k, factor) in relation {
+        let Some(link) = links.get(k / 10) else {
+            all.push((k, factor));
+            continue;
+        };
+        let ten = &mut factors[k - k % 10..][..10];
+        for (entry, &unit) in ten.iter_mut().zip(&link.moments[k % 10]) {
+            let share = graph.mul(factor, unit);
+            *entry = graph.add(*entry, share);
+        }
+    }
+    let of_links = factors.into_iter().enumerate();
+    all.extend(of_links.filter(|(_, factor)| *factor != zero));
+    all
+}
+
+/// A sum over moments as one over the standard parameters, those of the link or joint of the parameter that is kept first.
+pub fn standard_terms(
+    graph: &mut Graph,
+    links: &[Link],
+    kept: usize,
+    terms: impl Iterator<Item = (usize, Edge)>,
+) -> Vec<(usize, Edge)> {
+    let zero = graph.zero();
+    let mut factors = vec![zero; 10 * links.len()];
+    let mut all = Vec::new();
+    for (k, factor) in terms {
+        match factors.get_mut(k) {
+            Some(entry) => *entry = factor,
+            None => all.push((k, factor)),
+        }
+    }
+    for (index, (link, ten)) in links.iter().zip(factors.chunks(10)).enumerate() {
+        for (place, unit) in link.moments.iter().enumerate() {
+            let factor = graph.dot(unit, ten);
+            if factor != zero {
+                all.push((10 * index + place, factor));
+            }
+        }
+    }
+    let own = kept < factors.len();
+    all.sort_by_key(|&(k, _)| {
+        let of_own = match own {
+            true => k / 10 == kept / 10,
+            false => k == kept,
+        };
+        (!of_own, k)
+    });
+    all
+}
+
+/// What a base parameter is called: as the one standard parameter of its link in it, or else as what is kept.
+pub fn name(graph: &Graph, standard: &[Standard], kept: usize, terms: &[(usize, Edge)]) -> String {
+    let Kind::Inertia(place) = standard[kept].kind else {
+        return standard[kept].name();
+    };
+    let Some(axis) = DIAGONAL.iter().position(|&k| k == place) else {
+        return standard[kept].name();
+    };
+    let of_link = |&&(k, _): &&(usize, Edge)| {
+        matches!(standard[k].kind, Kind::Inertia(_)) && k / 10 == kept / 10
+    };
+    match terms.iter().filter(of_link).collect::<Vec<_>>()[..] {
+        [&(k, factor)] if factor == graph.one() => standard[k].name(),
+        _ => format!("{}.{}", standard[kept].of, MOMENTS[axis]),
+    }
+}
+
+/// Parameters of joints with their columns, and what is no parameter.
+pub struct OfJoints {
+    /// The parameters, each with its column.
+    pub parameters: Vec<(Standard, Vec<Edge>)>,
+    /// What else acts.
+    pub besides: Vec<&'static str>,
+    /// ∂ᵢ of all potentials but those of gravity and of these springs.
+    pub other_potentials: Vec<Edge>,
+}
+
+/// Armatures, dampers and springs.
+pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
+    let n = model.n();
+    let zero = model.graph.zero();
+    let mut parameters = Vec::new();
+    let standard = |kind, of: String, value| Standard {
+        kind,
+        of,
+        value,
+        present: true,
+    };
+    for i in 0..n {
+        if model.armature[i] != zero {
+            let mut column = vec![zero; n];
+            column[i] = model.xi_dot[i];
+            let name = named(model, model.xi[i]).unwrap_or_default();
+            parameters.push((standard(Kind::Armature, name, model.armature[i]), column));
+        }
+    }
+    let mut lines = false;
+    for (place, damper) in model.elements.dampers.clone().into_iter().enumerate() {
+        let Along::Scalar(rate) = damper.along else {
+            lines = true;
+            continue;
+        };
+        let column = (0..n).map(|i| {
+            let seeds = [(model.xi[i].node(), model.graph.one())];
+            let slope =
+                hamel_algebra::derivation::Derivation::new(seeds).of(&mut model.graph, rate);
+            model.graph.mul(rate, slope)
+        });
+        let column = column.collect();
+        let name = named(model, rate).unwrap_or_else(|| format!("damper_{}", place + 1));
+        parameters.push((standard(Kind::Damping, name, damper.coefficient), column));
+    }
+    let mut potential = model.potential;
+    for (place, spring) in model.elements.springs.clone().into_iter().enumerate() {
+        let Along::Scalar(length) = spring.along else {
+            lines = true;
+            continue;
+        };
+        let stretch = model.graph.sub(length, spring.length);
+        let half = model.graph.ratio(1, 2);
+        let energy = [half, spring.stiffness, stretch, stretch].into_iter();
+        let energy = energy.fold(model.graph.one(), |product, by| {
+            model.graph.mul(product, by)
+        });
+        potential = model.graph.sub(potential, energy);
+        let column = (0..n).map(|i| {
+            let slope = calculus.along(&mut model.graph, i, length);
+            model.graph.mul(stretch, slope)
+        });
+        let column = column.collect();
+        let name = named(model, length).unwrap_or_else(|| format!("spring_{}", place + 1));
+        parameters.push((standard(Kind::Stiffness, name, spring.stiffness), column));
+    }
+    let slopes = (0..n).map(|i| calculus.along(&mut model.graph, i, potential));
+    let other_potentials = slopes.collect();
+    let elements = &model.elements;
+    let mut besides = Vec::new();
+    let all = [
+        (lines, "springs and dampers along lines"),
+        (elements.potential != zero, "the potential"),
+        (elements.dissipation != zero, "the dissipation"),
+    ];
+    besides.extend(
+        all.iter()
+            .filter(|(there, _)| *there)
+            .map(|(_, what)| *what),
+    );
+    OfJoints {
+        parameters,
+        besides,
+        other_potentials,
+    }
+}
+
+/// The name of a symbol.
+fn named(model: &Model, edge: Edge) -> Option<String> {
+    match model.graph.node(edge.node()) {
+        Node::Symbol(index) => Some(model.graph.symbols()[index as usize].name.clone()),
+        _ => None,
+    }
+}

@@ -1,0 +1,191 @@
+//! Elimination with exact factors, and the base parameters that it leaves.
+
+use super::candidates::{Known, Relation, candidates, holds, joined};
+use super::parameters::{Link, between_moments};
+use super::samples::Samples;
+use crate::tree::Tree;
+use hamel_algebra::echelon::Echelon;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::numeric::evaluate;
+use hamel_language::model::Model;
+
+/// The least factor that a parameter is solved for, as a part of the largest one of its kind: β has no factors that are much
+/// larger, however little an axis is tilted. First moments, second moments and masses are of different kinds.
+const LEAST: f64 = 0.1;
+
+/// What each of the ten parameters of a link is: of second order, of first order, a mass.
+const KINDS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
+
+/// A base parameter: the place of the moment that is kept, and all terms, its own with the factor 1 first.
+pub type Found = (usize, Vec<(usize, Edge)>);
+
+/// Finds all relations between standard parameters, and solves them as relations between moments, of which some are kept.
+pub fn find(
+    model: &mut Model,
+    samples: &Samples,
+    tree: &Tree,
+    links: &[Link],
+    total: usize,
+) -> Result<Vec<Found>, String> {
+    let massless = |k: usize| links.get(k / 10).is_some_and(|link| !link.present);
+    let present: Vec<usize> = (0..total).filter(|&k| !massless(k)).collect();
+    let rank = Echelon::new(samples.of(&present)).rank();
+    // Links without mass give nothing away: their parameters are eliminated first; the last ones after them.
+    let mut order: Vec<usize> = (0..total).filter(|&k| massless(k)).collect();
+    let nothing = order.len();
+    order.extend(present.iter().rev());
+    let known = Known::new(model, samples);
+    let mut relations = candidates(model, samples, &known, tree, links);
+    let numbers = model.numbers(&model.defaults, &model.start_x, &[], &[], &[]);
+    let ordered = (&order[..], nothing);
+    let mut solved = solve(&mut model.graph, &numbers, &relations, ordered, links.len());
+    if solved.len() + rank < present.len() {
+        let dependent: Vec<usize> = solved.iter().map(|(pivot, _)| *pivot).collect();
+        let left: Vec<usize> = present
+            .iter()
+            .copied()
+            .filter(|k| !dependent.contains(k))
+            .collect();
+        for values in samples.relations(&left) {
+            let exact = known.all(&mut model.graph, &values).ok_or(
+                "it has relations between parameters whose coefficients are neither plain fractions nor built of one or two entries of its poses: write lengths as numbers with few digits, or place frames one on the other by joints",
+            )?;
+            relations.push(joined(&model.graph, &left, &exact));
+        }
+        solved = solve(&mut model.graph, &numbers, &relations, ordered, links.len());
+    }
+    let graph = &model.graph;
+    if solved.len() + rank != present.len()
+        || !solved
+            .iter()
+            .all(|(_, relation)| holds(graph, samples, relation))
+    {
+        return Err(
+            "internal check failed: its relations do not agree with the rank of the regressor"
+                .into(),
+        );
+    }
+    let graph = &mut model.graph;
+    let relations: Vec<Relation> = relations
+        .iter()
+        .map(|relation| between_moments(graph, links, relation))
+        .collect();
+    let solved = solve(graph, &numbers, &relations, ordered, links.len());
+    if solved.len() + rank != present.len() {
+        return Err("internal check failed: its relations cannot be solved for moments".into());
+    }
+    let kept = present
+        .iter()
+        .copied()
+        .filter(|k| solved.iter().all(|(pivot, _)| pivot != k));
+    // Y_p = −Σ v_k Y_k, so that β_k = π_k − Σ v_k π_p.
+    let base = kept.map(|k| {
+        let mut terms = vec![(k, graph.one())];
+        for (pivot, relation) in &solved {
+            let factor = relation.iter().find(|(place, _)| *place == k);
+            terms.extend(factor.map(|&(_, factor)| (*pivot, -factor)));
+        }
+        (k, terms)
+    });
+    Ok(base.collect())
+}
+
+/// A factor, and its value with the parameters of the description.
+type Factor = (Edge, f64);
+
+/// Reduces relations: each of the result has the factor 1 at its pivot, where all others have 0. Columns are taken in
+/// the order given, where factors are not small; what is solved for the first `nothing` of them is left out.
+fn solve(
+    graph: &mut Graph,
+    numbers: &[f64],
+    relations: &[Relation],
+    (order, nothing): (&[usize], usize),
+    links: usize,
+) -> Vec<(usize, Relation)> {
+    let (zero, one) = (graph.zero(), graph.one());
+    let mut symbols = numbers.to_vec();
+    symbols.resize(graph.symbols().len(), f64::NAN);
+    let mut rows: Vec<Vec<Factor>> = relations
+        .iter()
+        .map(|relation| {
+            let factors: Vec<Edge> = relation.iter().map(|&(_, factor)| factor).collect();
+            let values = evaluate(graph, &factors, &symbols);
+            let mut row = vec![(zero, 0.0); order.len()];
+            for (&(k, factor), value) in relation.iter().zip(values) {
+                row[k] = (factor, value);
+            }
+            row
+        })
+        .collect();
+    let mut pivots: Vec<usize> = Vec::new();
+    // What has only small factors comes last.
+    for least in [LEAST, 0.0] {
+        for &column in order {
+            if pivots.contains(&column) {
+                continue;
+            }
+            let done = pivots.len();
+            // The pivot 1 first, then the shortest row.
+            let cost = |row: &Vec<Factor>| {
+                let plain = row[column].0.abs() == one;
+                let length = row.iter().filter(|(entry, _)| *entry != zero).count();
+                (!plain, length)
+            };
+            let open = (done..rows.len()).filter(|&row| {
+                rows[row][column].0 != zero && !is_small(&rows[row], column, links, least)
+            });
+            let Some(found) = open.min_by_key(|&row| cost(&rows[row])) else {
+                continue;
+            };
+            rows.swap(done, found);
+            let pivot = rows[done][column];
+            let divided = rows[done]
+                .iter()
+                .map(|entry| Some((graph.div(entry.0, pivot.0)?, entry.1 / pivot.1)));
+            let Some(row) = divided.collect::<Option<Vec<Factor>>>() else {
+                continue;
+            };
+            for (index, other) in rows.iter_mut().enumerate() {
+                let factor = other[column];
+                if index == done || factor.0 == zero {
+                    continue;
+                }
+                for (entry, &by) in other.iter_mut().zip(&row) {
+                    if by.0 != zero {
+                        let product = graph.mul(factor.0, by.0);
+                        entry.0 = graph.sub(entry.0, product);
+                        entry.1 -= factor.1 * by.1;
+                    }
+                }
+            }
+            rows[done] = row;
+            pivots.push(column);
+        }
+    }
+    let all: Vec<usize> = (0..order.len()).collect();
+    let solved = pivots
+        .iter()
+        .zip(&rows)
+        .filter(|(pivot, _)| !order[..nothing].contains(pivot));
+    solved
+        .map(|(&pivot, row)| {
+            let factors: Vec<Edge> = row.iter().map(|&(factor, _)| factor).collect();
+            (pivot, joined(graph, &all, &factors))
+        })
+        .collect()
+}
+
+/// Whether the factor of a column is small beside another one of the same kind and link; what joints have beside links, such as
+/// an armature, is of a kind of its own.
+fn is_small(row: &[Factor], column: usize, links: usize, least: f64) -> bool {
+    if column >= 10 * links {
+        return false;
+    }
+    let (link, kind) = (column / 10, KINDS[column % 10]);
+    let alike = row.iter().enumerate().skip(10 * link).take(10);
+    let alike = alike.filter(|(k, _)| KINDS[k % 10] == kind);
+    let largest = alike.fold(0.0, |largest, (_, (_, value))| {
+        f64::max(largest, value.abs())
+    });
+    row[column].1.abs() < least * largest
+}

@@ -1,0 +1,102 @@
+//! The columns of Y at random states modulo p. What is constant at run time has the same value at all of them: symbols
+//! of parameters one random value each, functions of constants those of one lane.
+
+use hamel_algebra::echelon::Echelon;
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::tape::Tape;
+use hamel_language::model::{Model, class};
+
+/// Values of constants that are tried until all have one.
+const TRIES: u64 = 12;
+/// States that are tried for one that has values.
+const STATES: u64 = 40;
+/// States beyond those that the rank needs.
+const SPARE: usize = 10;
+/// Fewest states: one joint alone has to tell the parameters of two links apart.
+const FEWEST: usize = 40;
+
+/// Y at random states, the rows of all of them.
+pub struct Samples {
+    /// Rows, with an entry for every column.
+    pub rows: Vec<Vec<Fp>>,
+    /// A point at which what is constant has the same values.
+    lane: Lane,
+}
+
+impl Samples {
+    /// Evaluates columns; `None` where there are too few states with values.
+    pub fn new(model: &Model, columns: &[Vec<Edge>]) -> Option<Self> {
+        let tape = Tape::new(&model.graph, &columns.concat())?;
+        (1..=TRIES).find_map(|seed| Samples::at(model, &tape, columns.len(), seed))
+    }
+
+    fn at(model: &Model, tape: &Tape, columns: usize, seed: u64) -> Option<Self> {
+        let n = model.n().max(1);
+        let wanted = FEWEST.max(2 * columns / n + SPARE);
+        let mut rows = Vec::new();
+        let mut last = None;
+        let mut tried = 0;
+        while rows.len() < wanted * n {
+            tried += 1;
+            if tried > STATES + 2 * wanted as u64 {
+                return None;
+            }
+            let lane = lane(model, seed, tried)?;
+            let Some(values) = tape.values(&lane) else {
+                if rows.is_empty() && tried > STATES {
+                    return None;
+                }
+                continue;
+            };
+            // Values stand by columns, n of each.
+            rows.extend((0..n).map(|i| (0..columns).map(|k| values[k * n + i]).collect()));
+            last = Some(lane);
+        }
+        Some(Samples { rows, lane: last? })
+    }
+
+    /// The values of what is constant at run time; `None` where something has none.
+    pub fn constants(&self, graph: &Graph, edges: &[Edge]) -> Option<Vec<Fp>> {
+        evaluate_at(graph, edges, &mut self.lane.clone())
+    }
+
+    /// The columns of these parameters alone, without rows of zeros.
+    pub fn of(&self, columns: &[usize]) -> Vec<Vec<Fp>> {
+        let rows = self.rows.iter();
+        let rows = rows.map(|row| columns.iter().map(|&k| row[k]).collect::<Vec<Fp>>());
+        rows.filter(|row| row.iter().any(|entry| !entry.is_zero()))
+            .collect()
+    }
+
+    /// A basis of the relations Σ v_k Y_k = 0 between these columns, in which the last columns lead.
+    pub fn relations(&self, columns: &[usize]) -> Vec<Vec<Fp>> {
+        Echelon::new(self.of(columns)).null_space(columns.len())
+    }
+
+    /// Whether Σ v_k Y_k = 0 at all states.
+    pub fn vanishes(&self, terms: &[(usize, Fp)]) -> bool {
+        self.rows.iter().all(|row| {
+            let sum = terms.iter().fold(Fp::ZERO, |sum, &(k, v)| sum + v * row[k]);
+            sum.is_zero()
+        })
+    }
+}
+
+/// A random state at the constants of a seed.
+fn lane(model: &Model, seed: u64, state: u64) -> Option<Lane> {
+    let random = &mut Random::new(seed.wrapping_mul(0x6a09_e667) ^ (state << 32));
+    let mut values = model.points.choose(random)?;
+    let frozen = &mut Random::new(seed ^ 0x3c6e_f372);
+    for (value, symbol) in values.iter_mut().zip(model.graph.symbols()) {
+        if symbol.class == class::PARAM && *value != Fp::PI {
+            *value = frozen.element();
+        }
+    }
+    let mut lane = Lane::new();
+    lane.roots = model.points.roots;
+    values.into_iter().for_each(|value| lane.push_symbol(value));
+    Some(lane)
+}

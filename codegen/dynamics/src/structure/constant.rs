@@ -1,0 +1,66 @@
+//! Expressions that have the same value everywhere, written without what they do not depend on.
+
+use super::rates::Part;
+use super::variation::Variation;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::transplant::substitute;
+use hamel_language::model::Model;
+use hamel_language::model::layout::identity;
+
+/// A symbol, by its number, and what stands in its place.
+pub type Substitution = Vec<(usize, Edge)>;
+
+/// Numbers for all coordinates: no rotation, angle 0, and this number for plain ones.
+pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> Substitution {
+    let mut set = Substitution::new();
+    for part in parts {
+        let flat = !part.turns() && part.block.len() == part.block.dimension();
+        for (&entry, value) in part.entries(&model.x).iter().zip(identity(part.block)) {
+            let value = if flat { plain } else { value as i64 };
+            let number = graph.ratio(value, 1);
+            set.extend(graph.as_symbol(entry).map(|index| (index, number)));
+        }
+    }
+    set
+}
+
+/// The expressions, those that change with no coordinate and no velocity written without them.
+/// What cannot be written so stays as it is.
+pub fn settle(
+    model: &Model,
+    graph: &mut Graph,
+    parts: &[Part],
+    variation: &Variation,
+    edges: &[Edge],
+) -> Vec<Edge> {
+    let open = edges.iter().any(|edge| !graph.is_free(edge.node()));
+    if !open {
+        return edges.to_vec();
+    }
+    let moved: Vec<Edge> = model.x.iter().chain(&model.xi).copied().collect();
+    let changes = variation.changes(graph, edges, &moved);
+    let zero = graph.zero();
+    let mut settled = edges.to_vec();
+    // What changes is left alone: with numbers in the place of symbols its own would grow without bound.
+    let places: Vec<usize> = (0..edges.len())
+        .filter(|&index| !changes[index] && !graph.is_free(edges[index].node()))
+        .collect();
+    let constant: Vec<Edge> = places.iter().map(|&index| edges[index]).collect();
+    for plain in [0, 1] {
+        let mut set = resting(model, graph, parts, plain);
+        set.extend(
+            model
+                .xi
+                .iter()
+                .filter_map(|&xi| Some((graph.as_symbol(xi)?, zero))),
+        );
+        let images = substitute(graph, &constant, &set);
+        for (&index, image) in places.iter().zip(images) {
+            let same = graph.value(image) == graph.value(edges[index]);
+            if same && !graph.is_free(settled[index].node()) {
+                settled[index] = image;
+            }
+        }
+    }
+    settled
+}

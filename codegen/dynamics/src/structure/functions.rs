@@ -1,0 +1,315 @@
+//! The functions of a system that splits, as the trait `Split` of the runtime has them.
+//!
+//! With η = T B ξ the rates of the shifted coordinates, the momenta are ẏ and θ̇ as they are, and
+//! P = J ω for rotors. The generalised force in the rates η is T⁻ᵀ Nᵀ f: the torque of a rotor about
+//! its centre of mass or fixed point, and for all else a force that D⁻¹ makes an acceleration.
+
+use super::centre::matrix_of;
+use super::constant::settle;
+use super::inertia::Separated;
+use super::rates::Part;
+use super::setting::Setting;
+use crate::candidates::Candidates;
+use crate::program::Builder;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{
+    Mat3, Vec3, apply_transposed, apply3, multiply, solve_symmetric, transpose,
+};
+use hamel_algebra::transplant::rebuild;
+use hamel_language::model::class;
+use hamel_language::model::layout::Block;
+use hamel_program::FunctionId;
+use hamel_program::count::count;
+use hamel_program::structure::{Inertia, RotorForm, Symmetry};
+
+/// The functions, in a graph of their own.
+pub struct Functions {
+    graph: Graph,
+    /// y of x; `None` where they are the same.
+    centre: Option<Vec<Edge>>,
+    uncentre: Option<Vec<Edge>>,
+    momenta: Vec<Edge>,
+    /// The momenta once more, each in a graph of its own.
+    turned: Vec<(Graph, Vec<Edge>)>,
+    velocities: Vec<Edge>,
+    kick: Vec<Edge>,
+    /// J₁, J₂, J₃ or J by rows, for one rotor after the other.
+    inertia: Vec<Edge>,
+    /// What has to be positive for J and D to be inertias.
+    pivots: Vec<Edge>,
+    /// The forms of the rotors.
+    pub rotors: Vec<RotorForm>,
+}
+
+impl Functions {
+    /// Builds the functions; `None` where an inertia is singular for all parameters.
+    pub(super) fn new(
+        setting: &Setting,
+        mut graph: Graph,
+        separated: &Separated,
+        force: &[Edge],
+    ) -> Option<Self> {
+        let model = setting.model;
+        let before = graph.clone();
+        let graph = &mut graph;
+        let n = model.n();
+        let Separated {
+            rates,
+            shift,
+            rotors,
+            uniform,
+            block,
+        } = separated;
+        let (one, zero) = (graph.one(), graph.zero());
+        let unit = |n: usize| -> Vec<Vec<Edge>> {
+            (0..n)
+                .map(|i| (0..n).map(|j| if i == j { one } else { zero }).collect())
+                .collect()
+        };
+        let mut pivots = Vec::new();
+        let turning: Vec<_> = setting.parts.iter().filter(|part| part.turns()).collect();
+
+        // η = w + K w, first by vectors, then by one matrix: whichever costs less.
+        let matrix = |graph: &mut Graph, sign: bool| -> Vec<Vec<Edge>> {
+            let mut rows = unit(n);
+            for (row, rate) in rows.iter_mut().zip(&shift.rate) {
+                for (entry, &k) in row.iter_mut().zip(rate) {
+                    *entry = graph.add(*entry, k.signed(sign));
+                }
+            }
+            rows
+        };
+        let forward = matrix(graph, false);
+        let backward = matrix(graph, true);
+        let times = |graph: &mut Graph, rows: &[Vec<Edge>], v: &[Edge]| -> Vec<Edge> {
+            rows.iter().map(|row| graph.dot(row, v)).collect()
+        };
+        let w = times(graph, &rates.of_velocities, &model.xi);
+        let stepwise = times(graph, &forward, &w);
+        let product = multiply(graph, &forward, &rates.of_velocities);
+        let at_once = times(graph, &product, &model.xi);
+        let of_velocities = product;
+        let mut momenta = cheaper(graph, stepwise, at_once);
+        let mut eta = model.momenta.clone();
+        for (part, inertia) in turning.iter().zip(rotors) {
+            let spin: Vec<Edge> = part.rates().map(|i| momenta[i]).collect();
+            let p: Vec<Edge> = part.rates().map(|i| eta[i]).collect();
+            let rows: Vec<Vec<Edge>> = inertia.iter().map(|row| row.to_vec()).collect();
+            pivots.extend(leading(graph, &rows));
+            let inverse = solve_symmetric(graph, &rows, &unit(3))?;
+            for (i, place) in part.rates().enumerate() {
+                momenta[place] = graph.dot(&rows[i], &spin);
+                eta[place] = graph.dot(&inverse[i], &p);
+            }
+        }
+        let w = times(graph, &backward, &eta);
+        let stepwise = times(graph, &rates.to_velocities, &w);
+        let product = multiply(graph, &rates.to_velocities, &backward);
+        let at_once = times(graph, &product, &eta);
+        let velocities = cheaper(graph, stepwise, at_once);
+
+        // T⁻ᵀ Nᵀ f.
+        let stepwise = times(graph, &transpose(&rates.to_velocities), force);
+        let stepwise = times(graph, &transpose(&backward), &stepwise);
+        let at_once = times(graph, &transpose(&product), force);
+        let kick = cheaper(graph, stepwise, at_once);
+        let settled = |graph: &mut Graph, edges: &[Edge]| {
+            settle(model, graph, setting.parts, setting.variation, edges)
+        };
+        let mut kick = settled(graph, &kick);
+        pivots.extend(leading(graph, block));
+        let inverse = solve_symmetric(graph, block, &unit(uniform.len()))?;
+        let push: Vec<Edge> = uniform.iter().map(|&i| kick[i]).collect();
+        for (row, &place) in inverse.iter().zip(uniform) {
+            kick[place] = graph.dot(row, &push);
+        }
+        let kick = settled(graph, &kick);
+
+        let shifted = |graph: &mut Graph, sign: bool| -> Option<Vec<Edge>> {
+            let moved = shift.offset.iter().any(|&edge| edge != zero);
+            moved.then(|| {
+                let sum = |(&x, &by): (&Edge, &Edge)| graph.add(x, by.signed(sign));
+                model.x.iter().zip(&shift.offset).map(sum).collect()
+            })
+        };
+        let centre = shifted(graph, false);
+        let uncentre = shifted(graph, true);
+        let forms: Vec<RotorForm> = turning
+            .iter()
+            .zip(rotors)
+            .map(|(part, inertia)| RotorForm {
+                name: part.name.clone(),
+                inertia: form(graph, inertia),
+                steered: kick[part.rates()]
+                    .iter()
+                    .any(|edge| graph.class(edge.node()) & class::CONFIGURATION != 0),
+            })
+            .collect();
+        let inertia = forms
+            .iter()
+            .zip(rotors)
+            .flat_map(|(form, j)| match form.inertia.entries() {
+                3 => vec![j[0][0], j[1][1], j[2][2]],
+                _ => j.concat(),
+            })
+            .collect();
+        let positive = |pivot: &Edge| graph.as_rational(*pivot).is_none();
+        pivots.retain(positive);
+        Some(Functions {
+            turned: in_body_axes(graph, &before, setting, &of_velocities, rotors),
+            centre,
+            uncentre,
+            momenta,
+            velocities,
+            kick,
+            inertia,
+            pivots,
+            rotors: forms,
+            graph: graph.clone(),
+        })
+    }
+
+    /// Whether no force acts.
+    pub fn is_free(&self) -> bool {
+        self.kick.iter().all(|&edge| edge == self.graph.zero())
+    }
+
+    /// The value of a function; none where it is not needed.
+    fn value(&self, id: FunctionId) -> Option<&Vec<Edge>> {
+        match id {
+            FunctionId::Centre => self.centre.as_ref(),
+            FunctionId::Uncentre => self.uncentre.as_ref(),
+            FunctionId::SplitMomenta => Some(&self.momenta),
+            FunctionId::SplitVelocities => Some(&self.velocities),
+            FunctionId::Kick => Some(&self.kick),
+            FunctionId::RotorInertia => (!self.rotors.is_empty()).then_some(&self.inertia),
+            _ => None,
+        }
+    }
+
+    /// Adds the functions to a program, each as it is cheapest here or in `others`, which were found from
+    /// other computations of M and the forces; returns the pivots that have to be positive.
+    pub fn add(&self, others: &[Functions], builder: &mut Builder) -> Vec<Edge> {
+        for &id in FunctionId::ALL {
+            let Some(outputs) = self.value(id) else {
+                continue;
+            };
+            let mut candidates = Candidates::with(&builder.care);
+            candidates.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
+            if id == FunctionId::SplitMomenta {
+                for (graph, momenta) in &self.turned {
+                    candidates.offer(graph, momenta.clone());
+                }
+            }
+            for other in others.iter().filter(|other| other.rotors == self.rotors) {
+                if let Some(outputs) = other.value(id) {
+                    candidates.offer_both(other.graph.clone(), outputs.clone(), &builder.graph);
+                }
+            }
+            let outputs = candidates.cheapest(&mut builder.graph);
+            builder.push(id, outputs);
+        }
+        rebuild(&self.graph, &mut builder.graph, &self.pivots)
+    }
+}
+
+/// The momenta where rates of points are taken in the axes of a rotor, ẏ = R (Rᵀ ẏ): of a point of a body Rᵀ ẏ is
+/// v + ω × s. One candidate for every rotor, in a graph where ẏ is not computed yet; η = `rows` ξ, in `from`.
+fn in_body_axes(
+    from: &Graph,
+    before: &Graph,
+    setting: &Setting,
+    rows: &[Vec<Edge>],
+    rotors: &[Mat3],
+) -> Vec<(Graph, Vec<Edge>)> {
+    let (model, parts) = (setting.model, setting.parts);
+    let points = parts.iter().filter(|part| part.block == Block::Flat(3));
+    let points: Vec<&Part> = points.collect();
+    let turning: Vec<&Part> = parts.iter().filter(|part| part.turns()).collect();
+    let mut candidates = Vec::new();
+    for rotor in turning.iter().filter(|_| !points.is_empty()) {
+        let mut graph = before.clone();
+        let rows: Vec<Vec<Edge>> = rows
+            .iter()
+            .map(|row| rebuild(from, &mut graph, row))
+            .collect();
+        let Some(axes) = matrix_of(&mut graph, rotor, rotor.entries(&model.x)) else {
+            continue;
+        };
+        let mut momenta: Vec<Option<Edge>> = vec![None; rows.len()];
+        for point in &points {
+            let first = point.rates().start;
+            let columns: Vec<Vec3> = (0..model.n())
+                .map(|j| {
+                    let column = std::array::from_fn(|i| rows[first + i][j]);
+                    apply_transposed(&mut graph, &axes, column)
+                })
+                .collect();
+            let inner = std::array::from_fn(|i| {
+                let row: Vec<Edge> = columns.iter().map(|column| column[i]).collect();
+                graph.dot(&row, &model.xi)
+            });
+            let rate = apply3(&mut graph, &axes, inner);
+            (0..3).for_each(|i| momenta[first + i] = Some(rate[i]));
+        }
+        let mut rate = |graph: &mut Graph, place: usize| {
+            *momenta[place].get_or_insert_with(|| graph.dot(&rows[place], &model.xi))
+        };
+        let mut all: Vec<Edge> = (0..rows.len()).map(|i| rate(&mut graph, i)).collect();
+        for (part, inertia) in turning.iter().zip(rotors) {
+            let spin: Vec<Edge> = part.rates().map(|i| all[i]).collect();
+            for (row, place) in inertia.iter().zip(part.rates()) {
+                let row = rebuild(from, &mut graph, row);
+                all[place] = graph.dot(&row, &spin);
+            }
+        }
+        candidates.push((graph, all));
+    }
+    candidates
+}
+
+/// Of two ways to write the same, the one with fewer operations.
+fn cheaper(graph: &Graph, a: Vec<Edge>, b: Vec<Edge>) -> Vec<Edge> {
+    if count(graph, &b).weight() < count(graph, &a).weight() {
+        b
+    } else {
+        a
+    }
+}
+
+/// The pivots of a symmetric matrix.
+fn leading(graph: &mut Graph, rows: &[Vec<Edge>]) -> Vec<Edge> {
+    let n = rows.len();
+    let mut rows = rows.to_vec();
+    for k in 0..n {
+        for i in k + 1..n {
+            let Some(factor) = graph.div(rows[i][k], rows[k][k]) else {
+                return Vec::new();
+            };
+            for j in k..n {
+                let product = graph.mul(factor, rows[k][j]);
+                rows[i][j] = graph.sub(rows[i][j], product);
+            }
+        }
+    }
+    (0..n).map(|k| rows[k][k]).collect()
+}
+
+/// What is known of an inertia whatever the parameters are.
+fn form(graph: &Graph, j: &Mat3) -> Inertia {
+    let zero = graph.zero();
+    let diagonal = (0..3).all(|a| (0..3).all(|b| a == b || j[a][b] == zero));
+    if !diagonal {
+        return Inertia::General;
+    }
+    let equal: Vec<usize> = (0..3)
+        .filter(|&axis| j[(axis + 1) % 3][(axis + 1) % 3] == j[(axis + 2) % 3][(axis + 2) % 3])
+        .collect();
+    let numbers = (0..3).all(|a| graph.as_rational(j[a][a]).is_some());
+    match equal.as_slice() {
+        [] if numbers => Inertia::Principal(Symmetry::None),
+        [] => Inertia::Moments,
+        [axis] => Inertia::Principal(Symmetry::Axial(*axis)),
+        _ => Inertia::Principal(Symmetry::Spherical),
+    }
+}

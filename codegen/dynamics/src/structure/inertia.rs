@@ -1,0 +1,149 @@
+//! What is left of inertia when plain coordinates are shifted to centres of mass: one constant matrix
+//! for each rotor, one for plain and circular coordinates together.
+
+use super::centre::{Shift, shift};
+use super::constant::settle;
+use super::rates::{Part, RateMaps, dependence, measure_alike, rates};
+use super::setting::Setting;
+use crate::accel::parts::Parts;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{Mat3, matrix, multiply, solve_symmetric, transpose};
+use hamel_language::model::layout::Block;
+use hamel_program::structure::Reason;
+
+/// A system whose inertia falls apart.
+pub struct Separated {
+    /// w = B ξ, ξ = N w.
+    pub rates: RateMaps,
+    /// y − x and its rate.
+    pub shift: Shift,
+    /// J of every rotor, in order.
+    pub rotors: Vec<Mat3>,
+    /// Places among the rates of plain and circular coordinates.
+    pub uniform: Vec<usize>,
+    /// Their inertia.
+    pub block: Vec<Vec<Edge>>,
+}
+
+/// Separates, or says what stands in the way.
+pub fn separate(
+    setting: &Setting,
+    graph: &mut Graph,
+    traced: &Parts,
+) -> Result<Separated, Vec<Reason>> {
+    let Setting {
+        model,
+        parts,
+        variation,
+    } = *setting;
+    let n = model.n();
+    let zero = graph.zero();
+    let Some(rates) = rates(model, graph) else {
+        return Err(vec![Reason::Rates]);
+    };
+    let depends = |graph: &Graph, edges: &[Edge]| {
+        let on = dependence(variation, graph, parts, &model.x, edges);
+        vec![Reason::Mass { on }]
+    };
+    let mn = multiply(graph, &traced.mass, &rates.to_velocities);
+    let inertia = multiply(graph, &transpose(&rates.to_velocities), &mn);
+    let plain: Vec<usize> = parts
+        .iter()
+        .filter(|part| matches!(part.block, Block::Flat(_)))
+        .flat_map(Part::rates)
+        .collect();
+    let square = |places: &[usize]| -> Vec<Edge> {
+        let rows = places.iter();
+        rows.flat_map(|&i| places.iter().map(move |&j| (i, j)))
+            .map(|(i, j)| inertia[i][j])
+            .collect()
+    };
+    let of_plain = square(&plain);
+    if variation
+        .changes(graph, &of_plain, &model.x)
+        .contains(&true)
+    {
+        return Err(depends(graph, &inertia.concat()));
+    }
+    let of_plain = settle(model, graph, parts, variation, &of_plain);
+    // K = D⁻¹ M, rows of plain rates.
+    let right: Vec<Vec<Edge>> = plain.iter().map(|&f| inertia[f].clone()).collect();
+    let of_plain: Vec<Vec<Edge>> = matrix(&of_plain, plain.len());
+    let Some(coupling) = solve_symmetric(graph, &of_plain, &right) else {
+        return Err(depends(graph, &inertia.concat()));
+    };
+    let shift = shift(model, graph, parts, &plain, &coupling);
+    // T⁻¹ = I − K, as K leads from turning rates to plain ones.
+    let mut back: Vec<Vec<Edge>> = shift
+        .rate
+        .iter()
+        .map(|row| row.iter().map(|&edge| -edge).collect())
+        .collect();
+    for (i, row) in back.iter_mut().enumerate() {
+        row[i] = graph.one();
+    }
+    let left = multiply(graph, &inertia, &back);
+    let left = multiply(graph, &transpose(&back), &left);
+    if variation
+        .changes(graph, &left.concat(), &model.x)
+        .contains(&true)
+    {
+        let on = depends(graph, &inertia.concat());
+        return Err(on);
+    }
+    if !measure_alike(model, graph, &rates) {
+        return Err(vec![Reason::Rates]);
+    }
+    let left = settle(model, graph, parts, variation, &left.concat());
+    if left.iter().any(|edge| !graph.is_free(edge.node())) {
+        return Err(depends(graph, &inertia.concat()));
+    }
+    let coupled = coupled(parts, |i, j| left[i * n + j] != zero);
+    if !coupled.is_empty() {
+        return Err(coupled);
+    }
+    let uniform: Vec<usize> = parts
+        .iter()
+        .filter(|part| !part.turns())
+        .flat_map(Part::rates)
+        .collect();
+    let block = uniform
+        .iter()
+        .map(|&i| uniform.iter().map(|&j| left[i * n + j]).collect())
+        .collect();
+    let rotors = parts
+        .iter()
+        .filter(|part| part.turns())
+        .map(|part| {
+            std::array::from_fn(|i| {
+                std::array::from_fn(|j| left[(part.rate + i) * n + part.rate + j])
+            })
+        })
+        .collect();
+    Ok(Separated {
+        rates,
+        shift,
+        rotors,
+        uniform,
+        block,
+    })
+}
+
+/// Rotors that are not on their own.
+fn coupled(parts: &[Part], linked: impl Fn(usize, usize) -> bool) -> Vec<Reason> {
+    let mut found = Vec::new();
+    for (place, rotor) in parts.iter().enumerate().filter(|(_, part)| part.turns()) {
+        for (index, other) in parts.iter().enumerate() {
+            if index == place || (other.turns() && index < place) {
+                continue;
+            }
+            if rotor.rates().any(|i| other.rates().any(|j| linked(i, j))) {
+                found.push(Reason::Coupled {
+                    rotor: rotor.name.clone(),
+                    other: other.name.clone(),
+                });
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,192 @@
+//! What a system is made of, as far as methods of integration ask: whether it splits into torque-free
+//! rotors, uniform motions and kicks, in whatever coordinates and velocities it was described.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `variation` | on what expressions depend, modulo p |
+//! | `rates` | the rates of the coordinates, w = B ξ, ξ = N w |
+//! | `constant` | constant expressions, written without coordinates |
+//! | `centre`, `tetrahedron` | the shift to centres of mass |
+//! | `inertia` | what is left of inertia after it: rotors, and one constant block |
+//! | `forces` | what makes forces depend on velocities |
+//! | `functions` | centre, momenta, velocities, kicks as functions |
+//! | `choice` | the method that fits |
+//!
+//! M_c = Nᵀ M N is the inertia in the rates w. A system splits where, after the shift of plain
+//! coordinates that removes their coupling with turning ones, it is constant and falls apart in one
+//! block for each rotor and one for all else, and where forces do not depend on velocities.
+
+mod centre;
+pub mod choice;
+mod constant;
+mod forces;
+mod functions;
+mod inertia;
+pub mod rates;
+mod setting;
+mod tetrahedron;
+mod variation;
+
+pub(super) use functions::Functions;
+
+use super::accel::parts::Parts;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_language::model::pfaffian::Kind;
+use hamel_language::model::{Model, class};
+use hamel_program::structure::{Reason, Splitting, Structure};
+use rates::{Part, parts};
+use setting::Setting;
+use variation::Variation;
+
+/// What was found, and the functions of a system that splits.
+pub struct Found {
+    /// The verdicts.
+    pub structure: Structure,
+    /// What the methods for such systems call.
+    pub(super) functions: Option<Functions>,
+}
+
+/// Analyses a model; `model` is `full` in the velocities that its constraints leave, `traced` its M
+/// and forces, in `graph`.
+pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Found {
+    let mut graph = graph.clone();
+    let blocks = parts(model);
+    let force: Vec<Edge> = (0..model.n())
+        .map(|i| graph.add(traced.conservative[i], traced.applied[i]))
+        .collect();
+    let zero = graph.zero();
+    let mass: Vec<Edge> = traced.mass.concat();
+    let roots: Vec<Edge> = mass.iter().chain(&force).copied().collect();
+    let variation = Variation::new(model, &graph, &roots);
+    let damped = match &variation {
+        Some(variation) => forces::damped(full, model, &graph, variation, &force),
+        None => Vec::new(),
+    };
+    let constrained = constrained(full);
+    let mut structure = Structure {
+        split: Err(Vec::new()),
+        canonical: match &constrained {
+            Some(reason) => Err(reason.clone()),
+            None => Ok(()),
+        },
+        mass: dependence(model, &graph, &blocks, variation.as_ref(), &mass),
+        conservative: traced.applied.iter().all(|&force| force == zero),
+        damped,
+        multipliers: !model.constraints.is_empty(),
+    };
+    let directions = model.blocks.iter().map(|block| block.dimension()).sum();
+    let found = if let Some(reason) = constrained {
+        Err(vec![reason])
+    } else if directions != model.n() {
+        Err(vec![Reason::Tied {
+            directions,
+            velocities: model.n(),
+        }])
+    } else if let Some(variation) = &variation {
+        let setting = Setting {
+            model,
+            parts: &blocks,
+            variation,
+        };
+        inertia::separate(&setting, &mut graph, traced)
+    } else {
+        Err(vec![Reason::Rates])
+    };
+    let mut reasons = found.as_ref().err().cloned().unwrap_or_default();
+    reasons.extend(structure.damped.iter().cloned());
+    let (Ok(separated), Some(variation), true) = (found, &variation, reasons.is_empty()) else {
+        structure.split = Err(reasons);
+        return Found {
+            structure,
+            functions: None,
+        };
+    };
+    let setting = Setting {
+        model,
+        parts: &blocks,
+        variation,
+    };
+    let functions = Functions::new(&setting, graph, &separated, &force);
+    structure.split = match &functions {
+        Some(functions) => Ok(Splitting {
+            rotors: functions.rotors.clone(),
+            free: functions.is_free(),
+        }),
+        None => Err(vec![Reason::Rates]),
+    };
+    Found {
+        structure,
+        functions,
+    }
+}
+
+/// The coordinates that M depends on. Coordinates that a description ties to one another are not
+/// moved one by one: there an entry depends on those that it is written in.
+fn dependence(
+    model: &Model,
+    graph: &Graph,
+    parts: &[Part],
+    variation: Option<&Variation>,
+    mass: &[Edge],
+) -> Vec<String> {
+    match variation {
+        Some(variation) if model.points.constraints.is_empty() => {
+            rates::dependence(variation, graph, parts, &model.x, mass)
+        }
+        _ => {
+            let reached = graph.reachable(mass);
+            let written = parts.iter().filter(|part| {
+                let entries = part.entries(&model.x);
+                entries.iter().any(|x| reached.contains(&x.node()))
+                    && mass
+                        .iter()
+                        .any(|edge| graph.class(edge.node()) & class::CONFIGURATION != 0)
+            });
+            written.map(|part| part.name.clone()).collect()
+        }
+    }
+}
+
+/// The constraints on velocities, in words, or states of first order, or the time.
+fn constrained(full: &Model) -> Option<Reason> {
+    let count = |kind: Kind| {
+        let rows = full.constraints.iter();
+        rows.filter(|c| c.kind == kind && !c.redundant).count()
+    };
+    let words = [
+        (Kind::Inactive, "inactive velocity", "inactive velocities"),
+        (Kind::Nonholonomic, "nonholonomic row", "nonholonomic rows"),
+        (Kind::Loop, "row of closed loops", "rows of closed loops"),
+        (
+            Kind::Drive { position: true },
+            "prescribed coordinate",
+            "prescribed coordinates",
+        ),
+        (
+            Kind::Drive { position: false },
+            "prescribed velocity",
+            "prescribed velocities",
+        ),
+    ];
+    let found: Vec<String> = words
+        .iter()
+        .filter_map(|(kind, one, many)| match count(*kind) {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            number => Some(format!("{number} {many}")),
+        })
+        .collect();
+    let mut found = found;
+    match full.accelerated.len() {
+        0 => {}
+        1 => found.push("1 prescribed rate".into()),
+        number => found.push(format!("{number} prescribed rates")),
+    }
+    match found.as_slice() {
+        [] if !full.states.is_empty() => Some(Reason::States),
+        [] => full.clock.map(|_| Reason::Time),
+        found => Some(Reason::Constrained {
+            by: found.join(" and "),
+        }),
+    }
+}

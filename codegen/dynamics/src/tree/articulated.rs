@@ -1,0 +1,203 @@
+//! Forward dynamics by articulated bodies (Featherstone 1983): linear in the number of links.
+//!
+//! The articulated inertia of a link and all that moves freely beyond it, [[J, H], [Hᵀ, M]], is reduced by
+//! the joint's own freedom and transformed to the link before. Forces at ξ̇ = 0 come from the recursion of
+//! inverse dynamics, so that only accelerations due to ξ̇ are propagated here.
+
+use super::inverse::{Wrench, to_parent};
+use super::mass::Mass;
+use super::{Freedom, Link, Tree};
+use crate::accel::solve::Solution;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{Mat3, Vec3, add3, cross, identity3, scale3, zero3};
+use hamel_language::model::rotations::hat;
+
+/// Torque = J α + H a, force = Hᵀ α + M a.
+#[derive(Clone, Copy, Debug)]
+struct Inertia {
+    j: Mat3,
+    h: Mat3,
+    m: Mat3,
+}
+
+/// How a freedom was eliminated.
+struct Pivot {
+    /// The wrench of one unit of its acceleration, over the pivot.
+    share: Wrench,
+    /// 1 / pivot.
+    inverse: Edge,
+    /// The joint's force less that of the bias wrench.
+    residual: Edge,
+}
+
+/// ξ̇ for forces that the joints have to bring up (load − bias at ξ̇ = 0 less the links' wrenches);
+/// `None` where a pivot vanishes identically. Every velocity has to be the rate of one freedom, but for those that
+/// are given ahead: their accelerations are in the wrenches, and they yield to no force (Featherstone 2008, 9.2).
+pub fn forward(
+    graph: &mut Graph,
+    tree: &Tree,
+    given: &[usize],
+    wrenches: &[Wrench],
+    load: &[Edge],
+) -> Option<Solution> {
+    let zero = graph.zero();
+    let mut inertia: Vec<Inertia> = Vec::with_capacity(tree.links.len());
+    for link in &tree.links {
+        inertia.push(Inertia::rigid(graph, &link.mass));
+    }
+    let mut bias = wrenches.to_vec();
+    let mut pivots: Vec<Vec<Pivot>> = tree.links.iter().map(|_| Vec::new()).collect();
+    let mut guards = vec![graph.one(); load.len()];
+    for (index, link) in tree.links.iter().enumerate().rev() {
+        for freedom in link.freedoms.iter().filter(|f| !f.is_given(given)) {
+            let response = inertia[index].wrench(graph, freedom.angular, freedom.linear);
+            let &[(i, _)] = freedom.rate.as_slice() else {
+                return None;
+            };
+            let apparent = freedom.force_of(graph, &response);
+            let pivot = graph.add(apparent, tree.armature[i]);
+            let inverse = graph.div(graph.one(), pivot)?;
+            guards[i] = pivot;
+            let bias_force = freedom.force_of(graph, &bias[index]);
+            let residual = graph.sub(load[i], bias_force);
+            let share = response.scaled(graph, inverse);
+            inertia[index].reduce(graph, &response, &share);
+            let yielded = share.scaled(graph, residual);
+            bias[index] = bias[index].plus(graph, &yielded);
+            pivots[index].push(Pivot {
+                share,
+                inverse,
+                residual,
+            });
+        }
+        if let Some(parent) = link.parent {
+            let moved = inertia[index].to_parent(graph, link);
+            inertia[parent].add(graph, &moved);
+            let moved = to_parent(graph, link, &bias[index]);
+            bias[parent] = bias[parent].plus(graph, &moved);
+        }
+    }
+    let mut xi_dot = vec![zero; load.len()];
+    let mut motions: Vec<(Vec3, Vec3)> = Vec::with_capacity(tree.links.len());
+    for (index, link) in tree.links.iter().enumerate() {
+        let none = zero3(graph);
+        let (alpha, a) = link.parent.map_or((none, none), |parent| motions[parent]);
+        let tangential = cross(graph, alpha, link.position);
+        let a = add3(graph, a, tangential);
+        let mut motion = (
+            link.from_parent_axes(graph, alpha),
+            link.from_parent_axes(graph, a),
+        );
+        let freedoms = link.freedoms.iter().filter(|f| !f.is_given(given));
+        let freedoms: Vec<&Freedom> = freedoms.collect();
+        for (freedom, pivot) in freedoms.into_iter().zip(&pivots[index]).rev() {
+            let alone = graph.mul(pivot.residual, pivot.inverse);
+            let (t, f) = (
+                graph.dot(&pivot.share.torque, &motion.0),
+                graph.dot(&pivot.share.force, &motion.1),
+            );
+            let from_parent = graph.add(t, f);
+            let rate = graph.sub(alone, from_parent);
+            let (w, v) = (
+                scale3(graph, rate, freedom.angular),
+                scale3(graph, rate, freedom.linear),
+            );
+            motion = (add3(graph, motion.0, w), add3(graph, motion.1, v));
+            if let Some(&(i, _)) = freedom.rate.first() {
+                xi_dot[i] = rate;
+            }
+        }
+        motions.push(motion);
+    }
+    Some(Solution {
+        xi_dot,
+        pivots: guards,
+    })
+}
+
+impl Inertia {
+    fn rigid(graph: &mut Graph, mass: &Mass) -> Self {
+        let j = mass.inertia(graph);
+        let identity = identity3(graph);
+        Inertia {
+            j,
+            h: hat(graph, mass.first),
+            m: identity.map(|row| row.map(|entry| graph.mul(entry, mass.mass))),
+        }
+    }
+
+    fn wrench(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> Wrench {
+        let torque = std::array::from_fn(|i| {
+            let (x, y) = (graph.dot(&self.j[i], &alpha), graph.dot(&self.h[i], &a));
+            graph.add(x, y)
+        });
+        let force = std::array::from_fn(|i| {
+            let column = self.h.map(|row| row[i]);
+            let (x, y) = (graph.dot(&column, &alpha), graph.dot(&self.m[i], &a));
+            graph.add(x, y)
+        });
+        Wrench { force, torque }
+    }
+
+    /// Less the part that the freedom yields.
+    fn reduce(&mut self, graph: &mut Graph, response: &Wrench, share: &Wrench) {
+        for i in 0..3 {
+            for k in 0..3 {
+                if k <= i {
+                    let product = graph.mul(response.torque[i], share.torque[k]);
+                    self.j[i][k] = graph.sub(self.j[i][k], product);
+                    self.j[k][i] = self.j[i][k];
+                    let product = graph.mul(response.force[i], share.force[k]);
+                    self.m[i][k] = graph.sub(self.m[i][k], product);
+                    self.m[k][i] = self.m[i][k];
+                }
+                let product = graph.mul(response.torque[i], share.force[k]);
+                self.h[i][k] = graph.sub(self.h[i][k], product);
+            }
+        }
+    }
+
+    /// About the origin and in the axes of the link before: H' = H + p̂ M,
+    /// J' = J + p̂ Hᵀ − H' p̂.
+    fn to_parent(self, graph: &mut Graph, link: &Link) -> Self {
+        let mut turned = self;
+        for turn in link.turns.iter().rev() {
+            turned = Inertia {
+                j: turn.symmetric(graph, &turned.j),
+                h: turn.general(graph, &turned.h),
+                m: turn.symmetric(graph, &turned.m),
+            };
+        }
+        let p = link.position;
+        let mut h = turned.h;
+        for column in 0..3 {
+            let lever = cross(graph, p, turned.m.map(|row| row[column]));
+            for (row, term) in h.iter_mut().zip(lever) {
+                row[column] = graph.add(row[column], term);
+            }
+        }
+        let mut j = turned.j;
+        // Column k of p̂ Hᵀ is p × (row k of H); column k of −H' p̂ᵀ… is row-wise −(H' p̂).
+        for i in 0..3 {
+            for k in 0..=i {
+                let left = cross(graph, p, turned.h[k])[i];
+                let right = cross(graph, p, h[i])[k];
+                j[i][k] = graph.sum(&[j[i][k], left, right]);
+                j[k][i] = j[i][k];
+            }
+        }
+        Inertia { j, h, m: turned.m }
+    }
+
+    fn add(&mut self, graph: &mut Graph, other: &Inertia) {
+        for i in 0..3 {
+            self.h[i] = add3(graph, self.h[i], other.h[i]);
+            for k in 0..=i {
+                for (mine, other) in [(&mut self.j, &other.j), (&mut self.m, &other.m)] {
+                    mine[i][k] = graph.add(mine[i][k], other[i][k]);
+                    mine[k][i] = mine[i][k];
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! M by composite bodies: each freedom moves all that hangs on its joint as one body, whose wrench
+//! acts on the joints before (Walker and Orin 1982).
+
+use super::Tree;
+use super::inverse::{Wrench, to_parent};
+use super::mass::Mass;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::resubstitute::resubstitute;
+use hamel_program::count::count;
+
+/// Whether inertias about hinges, which turns about these leave alone, are entered into the graph apart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Polar {
+    Apart,
+    OfS,
+}
+
+/// A matrix in the graph that it was built in.
+type Way = (Graph, Vec<Vec<Edge>>);
+
+/// M, n rows of n, by the fewest operations before resubstitution: what M⁻¹ begins with.
+pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
+    shortest(graph, mass_matrices(graph, tree, n))
+}
+
+/// M by the fewest operations, for those who want M itself.
+pub fn mass_matrix_alone(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
+    let mut ways = mass_matrices(graph, tree, n);
+    let polished = |(way, matrix): &Way| {
+        let (way, entries) = resubstitute(way, &matrix.concat(), graph)?;
+        Some((
+            way,
+            entries.chunks(n.max(1)).map(<[Edge]>::to_vec).collect(),
+        ))
+    };
+    let polished: Vec<Way> = ways.iter().filter_map(polished).collect();
+    ways.extend(polished);
+    shortest(graph, ways)
+}
+
+fn shortest(graph: &mut Graph, mut ways: Vec<Way>) -> Vec<Vec<Edge>> {
+    let weight = |(graph, matrix): &Way| count(graph, &matrix.concat()).weight();
+    let least = (0..ways.len()).min_by_key(|&way| weight(&ways[way]));
+    let (chosen, matrix) = ways.swap_remove(least.unwrap_or(0));
+    *graph = chosen;
+    matrix
+}
+
+/// M by the same inertias as slopes of forces are.
+pub fn by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
+    by_composites(graph, tree, n, Polar::OfS)
+}
+
+/// M from second moments alone and, where hinges are parallel, from inertias about them: each in a copy of the graph,
+/// since a value that is known already is not computed anew in another way.
+pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<Way> {
+    let mut links = tree.links.iter();
+    let parallel = links.any(|link| link.turns.is_empty() || tree.parallel(graph, link).is_some());
+    let ways: &[Polar] = match parallel {
+        true => &[Polar::OfS, Polar::Apart],
+        false => &[Polar::OfS],
+    };
+    let by = |&way: &Polar| {
+        let mut graph = graph.clone();
+        let matrix = by_composites(&mut graph, tree, n, way);
+        (graph, matrix)
+    };
+    ways.iter().map(by).collect()
+}
+
+/// For each link the inertia of it and of all that hangs on it, about its origin.
+fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
+    if way == Polar::Apart {
+        tree.know_polars(graph);
+    }
+    let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
+    for (index, link) in tree.links.iter().enumerate().rev() {
+        if let Some(parent) = link.parent {
+            let mut turned = composite[index];
+            for turn in link.turns.iter().rev() {
+                if way == Polar::Apart {
+                    // What a turn about the third axis leaves alone is known before it.
+                    turned.polar(graph);
+                }
+                turned = turned.turned(graph, turn);
+            }
+            let moved = turned.shifted(graph, link.position);
+            if way == Polar::Apart {
+                let polar = turned.polar(graph);
+                let moments = [turned.first, moved.first];
+                let arms = moments.map(|h| graph.dot(&link.position[..2], &h[..2]));
+                let polar = arms.iter().fold(polar, |sum, &arm| graph.add(sum, arm));
+                let own = composite[parent].polar(graph);
+                graph.add(own, polar);
+            }
+            composite[parent] = composite[parent].plus(graph, &moved);
+        }
+    }
+    composite
+}
+
+/// M by the wrenches of composite bodies.
+fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: Polar) -> Vec<Vec<Edge>> {
+    let composite = composites(graph, tree, way);
+    let mut matrix = vec![vec![graph.zero(); n]; n];
+    for (index, link) in tree.links.iter().enumerate() {
+        for (place, freedom) in link.freedoms.iter().enumerate() {
+            let (force, torque) = composite[index].wrench(graph, freedom.angular, freedom.linear);
+            let mut wrench = Wrench { force, torque };
+            let mut at = Some(index);
+            while let Some(here) = at {
+                let link = &tree.links[here];
+                let others = if here == index {
+                    &link.freedoms[..=place]
+                } else {
+                    &link.freedoms[..]
+                };
+                for (other_place, other) in others.iter().enumerate() {
+                    let entry = other.force_of(graph, &wrench);
+                    let itself = here == index && other_place == place;
+                    for &(i, k) in &freedom.rate {
+                        for &(j, l) in &other.rate {
+                            let factor = graph.mul(k, l);
+                            let part = graph.mul(factor, entry);
+                            matrix[i][j] = graph.add(matrix[i][j], part);
+                            if !itself {
+                                matrix[j][i] = graph.add(matrix[j][i], part);
+                            }
+                        }
+                    }
+                }
+                if link.parent.is_some() {
+                    wrench = to_parent(graph, link, &wrench);
+                }
+                at = link.parent;
+            }
+        }
+    }
+    for (i, &armature) in tree.armature.iter().enumerate() {
+        matrix[i][i] = graph.add(matrix[i][i], armature);
+    }
+    matrix
+}

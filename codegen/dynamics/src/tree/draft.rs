@@ -1,0 +1,346 @@
+//! Links and joints from frames: what a frame's pose in its parent depends on makes the joint.
+
+use super::mass::Mass;
+use super::revolute::{Hinge, hinge};
+use super::turn::Turn;
+use super::{Freedom, Link};
+use crate::calculus::Calculus;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{
+    Mat3, Vec3, add3, apply_transposed, apply3, identity3, multiply3, zero3,
+};
+use hamel_language::model::Model;
+
+/// A link whose frame may still be moved.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    /// The link before.
+    pub parent: Option<usize>,
+    /// Constant axes of the joint in those of the link before.
+    pub base: Mat3,
+    /// The origin in axes of the link before.
+    pub position: Vec3,
+    /// How the link moves.
+    pub motion: JointMotion,
+    /// Its inertia.
+    pub mass: Mass,
+}
+
+/// How a link moves against the one before.
+#[derive(Clone, Debug)]
+pub enum JointMotion {
+    /// It turns about the third axis of its frame.
+    Hinge {
+        /// Cosine and sine of the angle as the description has them.
+        angle: (Edge, Edge),
+        /// Cosine and sine of the constant angle that is added.
+        phase: (Edge, Edge),
+        /// The plane rotations that `base` is the product of, but for one about the third axis.
+        turns: Vec<Turn>,
+        /// The rate.
+        rate: Vec<(usize, Edge)>,
+    },
+    /// Any other joint: its rotation after `base`, freedoms, their velocity product.
+    Other(Option<Mat3>, Vec<Freedom>, (Vec3, Vec3)),
+}
+
+impl Draft {
+    /// The link itself.
+    pub fn finish(self, graph: &mut Graph) -> Link {
+        let zero = zero3(graph);
+        let (turns, freedoms, velocity_product) = match self.motion {
+            JointMotion::Hinge {
+                angle: (cos, sin),
+                phase: (c, s),
+                mut turns,
+                rate,
+            } => {
+                let (cc, ss) = (graph.mul(cos, c), graph.mul(sin, s));
+                let (sc, cs) = (graph.mul(sin, c), graph.mul(cos, s));
+                turns.push(Turn::About {
+                    axis: 2,
+                    cos: graph.sub(cc, ss),
+                    sin: graph.add(sc, cs),
+                });
+                let freedom = Freedom {
+                    angular: [graph.zero(), graph.zero(), graph.one()],
+                    linear: zero,
+                    rate,
+                };
+                (turns, vec![freedom], (zero, zero))
+            }
+            JointMotion::Other(rotation, freedoms, velocity_product) => {
+                let mut turns = Vec::new();
+                let identity = identity3(graph);
+                match rotation {
+                    Some(rotation) if is_permutation(graph, &self.base) => {
+                        turns.push(Turn::By(multiply3(graph, &self.base, &rotation)));
+                    }
+                    rotation => {
+                        if self.base != identity {
+                            turns.push(Turn::By(self.base));
+                        }
+                        turns.extend(rotation.map(Turn::By));
+                    }
+                }
+                (turns, freedoms, velocity_product)
+            }
+        };
+        Link {
+            parent: self.parent,
+            turns,
+            position: self.position,
+            freedoms,
+            velocity_product,
+            mass: self.mass,
+            unshared: self.mass,
+        }
+    }
+}
+
+/// Whether a matrix only exchanges axes.
+fn is_permutation(graph: &Graph, matrix: &Mat3) -> bool {
+    let plain = |edge: &Edge| *edge == graph.zero() || edge.abs() == graph.one();
+    matrix.iter().flatten().all(plain)
+}
+
+/// Where a frame of the description is: its link, and its constant pose in the link's frame.
+#[derive(Clone, Copy)]
+struct Place {
+    link: Option<usize>,
+    rotation: Mat3,
+    position: Vec3,
+}
+
+/// The links of a model.
+pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
+    Some(draft_with_carriers(model, calculus)?.0)
+}
+
+/// The frame that a joint carries.
+#[derive(Clone, Copy, Debug)]
+pub struct Carrier {
+    /// Its index in the model.
+    pub frame: usize,
+    /// Its axes in those of the link.
+    pub axes: Mat3,
+    /// The origin of the link, in this frame.
+    pub origin: Vec3,
+    /// The inertia of the link about the origin of this frame, in axes of the link.
+    pub mass: Mass,
+}
+
+/// The links of a model, and the frame that each of them was made from.
+pub fn draft_with_carriers(
+    model: &mut Model,
+    calculus: &mut Calculus,
+) -> Option<(Vec<Draft>, Vec<Carrier>)> {
+    if model.bodies.len() + model.particles.len() == 0 || has_more_inertia(model) {
+        return None;
+    }
+    let mut links: Vec<Draft> = Vec::new();
+    let mut places: Vec<Place> = Vec::new();
+    let mut carriers: Vec<Carrier> = Vec::new();
+    for (index, frame) in model.frames.clone().into_iter().enumerate() {
+        let world = Place {
+            link: None,
+            rotation: identity3(&model.graph),
+            position: zero3(&model.graph),
+        };
+        let on = frame
+            .parent
+            .map_or(Some(world), |parent| places.get(parent).copied())?;
+        let (turn, shift) = frame.relative;
+        let graph = &mut model.graph;
+        let constant =
+            |graph: &Graph, edges: &[Edge]| edges.iter().all(|e| graph.is_free(e.node()));
+        let moved = apply3(graph, &on.rotation, shift);
+        let position = add3(graph, on.position, moved);
+        if constant(graph, &turn.concat()) && constant(graph, &shift) {
+            places.push(Place {
+                link: on.link,
+                rotation: multiply3(graph, &on.rotation, &turn),
+                position,
+            });
+            continue;
+        }
+        let (motion, base, rotation) = joint(model, calculus, &on.rotation, &turn, shift)?;
+        let graph = &model.graph;
+        links.push(Draft {
+            parent: on.link,
+            base,
+            position,
+            motion,
+            mass: Mass::none(graph),
+        });
+        carriers.push(Carrier {
+            frame: index,
+            axes: rotation,
+            origin: zero3(graph),
+            mass: Mass::none(graph),
+        });
+        places.push(Place {
+            link: Some(links.len() - 1),
+            rotation,
+            position: zero3(graph),
+        });
+    }
+    for body in model.bodies.clone() {
+        let mass = Mass::of(&mut model.graph, &body);
+        load(&mut model.graph, &mut links, places.get(body.frame)?, &mass);
+    }
+    for particle in model.particles.clone() {
+        let (frame, position) = carrier(model, particle.position)?;
+        let mass = Mass::point(&model.graph, particle.mass).shifted(&mut model.graph, position);
+        load(&mut model.graph, &mut links, places.get(frame)?, &mass);
+    }
+    for (carrier, link) in carriers.iter_mut().zip(&links) {
+        carrier.mass = link.mass;
+    }
+    Some((links, carriers))
+}
+
+/// Whether there is kinetic energy beside that of bodies, particles and armatures.
+pub fn has_more_inertia(model: &mut Model) -> bool {
+    let graph = &mut model.graph;
+    let half = graph.ratio(1, 2);
+    let mut rest = model.kinetic;
+    for (&xi, &armature) in model.xi.iter().zip(&model.armature) {
+        let factors = [half, armature, xi, xi];
+        let energy = factors
+            .into_iter()
+            .fold(graph.one(), |a, b| graph.mul(a, b));
+        rest = graph.sub(rest, energy);
+    }
+    rest != graph.zero()
+}
+
+/// A frame that a point is fixed to, and its place there.
+fn carrier(model: &mut Model, point: Vec3) -> Option<(usize, Vec3)> {
+    let frames = model.frames.clone();
+    frames.iter().enumerate().find_map(|(index, frame)| {
+        let graph = &mut model.graph;
+        let away: Vec3 = std::array::from_fn(|i| graph.sub(point[i], frame.position[i]));
+        let place = apply_transposed(graph, &frame.rotation, away);
+        let fixed = place.iter().all(|entry| graph.is_free(entry.node()));
+        fixed.then_some((index, place))
+    })
+}
+
+/// Adds what is fixed to a frame to the link that the frame is part of.
+fn load(graph: &mut Graph, links: &mut [Draft], place: &Place, mass: &Mass) {
+    let Some(link) = place.link.and_then(|link| links.get_mut(link)) else {
+        return;
+    };
+    let mass = mass
+        .turned(graph, &Turn::By(place.rotation))
+        .shifted(graph, place.position);
+    link.mass = link.mass.plus(graph, &mass);
+}
+
+/// The joint of a relative pose: its motion, its constant base in axes of the link before (where
+/// the frame it hangs on has the axes `on`), and the axes of the frame in those of the new link.
+fn joint(
+    model: &mut Model,
+    calculus: &mut Calculus,
+    on: &Mat3,
+    turn: &Mat3,
+    shift: Vec3,
+) -> Option<(JointMotion, Mat3, Mat3)> {
+    let moving = columns(model, calculus, turn, shift);
+    let graph = &mut model.graph;
+    let free3 = |graph: &Graph, v: &Vec3| v.iter().all(|e| graph.is_free(e.node()));
+    let zero = zero3(graph);
+    let constant = |graph: &Graph, pick: fn(&(usize, Vec3, Vec3)) -> Vec3| {
+        moving.iter().all(|column| free3(graph, &pick(column)))
+    };
+    if constant(graph, |c| c.1)
+        && moving.iter().all(|c| c.2 == zero)
+        && free3(graph, &shift)
+        && let Some(found) = hinge(model, turn, &moving)
+    {
+        let Hinge {
+            base,
+            axes,
+            angle,
+            rate,
+        } = found;
+        let graph = &mut model.graph;
+        let motion = JointMotion::Hinge {
+            angle,
+            phase: (graph.one(), graph.zero()),
+            turns: Vec::new(),
+            rate,
+        };
+        let base = multiply3(graph, on, &base);
+        return Some((motion, base, hamel_algebra::linear::transpose3(&axes)));
+    }
+    let graph = &mut model.graph;
+    let identity = identity3(graph);
+    let sliding = turn.iter().all(|row| free3(graph, row));
+    // What only slides keeps the axes of the link before.
+    let (base, rotation, frame) = if sliding {
+        (identity, None, multiply3(graph, on, turn))
+    } else {
+        (*on, Some(*turn), identity)
+    };
+    let mut velocity_product = (zero, zero);
+    let mut freedoms = Vec::new();
+    for (i, angular, linear) in moving {
+        // Into the axes of the link: those of the frame, or of the link before where it slides.
+        let into = |graph: &mut Graph, v: Vec3| apply3(graph, &frame, v);
+        for (sum, column) in [
+            (&mut velocity_product.0, angular),
+            (&mut velocity_product.1, linear),
+        ] {
+            if !free3(&model.graph, &column) {
+                let rate = calculus.rate3(&mut model.graph, column);
+                let rate = rate.map(|rate| model.graph.mul(rate, model.xi[i]));
+                let rate = into(&mut model.graph, rate);
+                *sum = add3(&mut model.graph, *sum, rate);
+            }
+        }
+        let one = model.graph.one();
+        freedoms.push(Freedom {
+            angular: into(&mut model.graph, angular),
+            linear: into(&mut model.graph, linear),
+            rate: vec![(i, one)],
+        });
+    }
+    Some((
+        JointMotion::Other(rotation, freedoms, velocity_product),
+        base,
+        frame,
+    ))
+}
+
+/// For every velocity that moves a frame in its parent the columns vee(Eᵀ ∂ᵢE) and Eᵀ ∂ᵢp.
+fn columns(
+    model: &mut Model,
+    calculus: &mut Calculus,
+    turn: &Mat3,
+    shift: Vec3,
+) -> Vec<(usize, Vec3, Vec3)> {
+    let graph = &mut model.graph;
+    let mut roots = turn.concat();
+    roots.extend(shift);
+    let nodes = graph.reachable(&roots);
+    let moves = |i: usize| {
+        let coordinates = model.x.iter().zip(&model.a);
+        coordinates
+            .filter(|(_, row)| row[i] != Edge::of(0))
+            .any(|(x, _)| nodes.binary_search(&x.node()).is_ok())
+    };
+    let moving: Vec<usize> = (0..model.xi.len()).filter(|&i| moves(i)).collect();
+    let zero = zero3(graph);
+    let mut columns = Vec::new();
+    for i in moving {
+        let angular = calculus.spin_along(graph, i, turn);
+        let change = shift.map(|entry| calculus.along(graph, i, entry));
+        let linear = apply_transposed(graph, turn, change);
+        if angular != zero || linear != zero {
+            columns.push((i, angular, linear));
+        }
+    }
+    columns
+}

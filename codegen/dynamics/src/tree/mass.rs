@@ -1,0 +1,151 @@
+//! Mass, first and second moments of a link about the origin of its frame: m, h = ∫ r dm and
+//! S = ∫ r rᵀ dm; Θ = tr(S) I − S.
+
+use super::Link;
+use super::turn::Turn;
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{Mat3, Vec3, add3, cross, scale3, zero3};
+use hamel_language::model::Body;
+
+/// m, h and S.
+#[derive(Clone, Copy, Debug)]
+pub struct Mass {
+    /// Mass (kg).
+    pub mass: Edge,
+    /// First moment (kg m).
+    pub first: Vec3,
+    /// Second moment (kg m²).
+    pub second: Mat3,
+}
+
+impl Mass {
+    /// No mass.
+    pub fn none(graph: &Graph) -> Self {
+        Mass {
+            mass: graph.zero(),
+            first: zero3(graph),
+            second: [zero3(graph); 3],
+        }
+    }
+
+    /// That of a particle at the origin.
+    pub fn point(graph: &Graph, mass: Edge) -> Self {
+        Mass {
+            mass,
+            ..Mass::none(graph)
+        }
+    }
+
+    /// That of a body, in its frame: S = ½ tr(Θ) I − Θ about the centre of mass, and shifted.
+    pub fn of(graph: &mut Graph, body: &Body) -> Self {
+        let theta = &body.inertia_com;
+        let trace = graph.sum(&[theta[0][0], theta[1][1], theta[2][2]]);
+        let half = graph.ratio(1, 2);
+        let half = graph.mul(half, trace);
+        let second = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                if i == j {
+                    graph.sub(half, theta[i][j])
+                } else {
+                    -theta[i][j]
+                }
+            })
+        });
+        let central = Mass {
+            mass: body.mass,
+            first: zero3(graph),
+            second,
+        };
+        central.shifted(graph, body.com)
+    }
+
+    /// About another origin, where a point at r comes to r + `by`:
+    /// h' = h + m by, S' = S + by hᵀ + h' byᵀ.
+    pub fn shifted(&self, graph: &mut Graph, by: Vec3) -> Self {
+        let far = scale3(graph, self.mass, by);
+        let first = add3(graph, self.first, far);
+        let mut second = self.second;
+        for i in 0..3 {
+            for j in 0..=i {
+                let (a, b) = (graph.mul(by[i], self.first[j]), graph.mul(first[i], by[j]));
+                second[i][j] = graph.sum(&[second[i][j], a, b]);
+                second[j][i] = second[i][j];
+            }
+        }
+        Mass {
+            mass: self.mass,
+            first,
+            second,
+        }
+    }
+
+    /// In turned axes, where a point at r comes to R r.
+    pub fn turned(&self, graph: &mut Graph, turn: &Turn) -> Self {
+        Mass {
+            mass: self.mass,
+            first: turn.rotate(graph, self.first),
+            second: turn.symmetric(graph, &self.second),
+        }
+    }
+
+    /// That of a link as one of the link before.
+    pub fn to_parent(&self, graph: &mut Graph, link: &Link) -> Self {
+        let turns = link.turns.iter().rev();
+        let turned = turns.fold(*self, |mass, turn| mass.turned(graph, turn));
+        turned.shifted(graph, link.position)
+    }
+
+    /// Both together.
+    pub fn plus(&self, graph: &mut Graph, other: &Mass) -> Self {
+        Mass {
+            mass: graph.add(self.mass, other.mass),
+            first: add3(graph, self.first, other.first),
+            second: std::array::from_fn(|i| {
+                let (i, row) = (i, other.second[i]);
+                add3(graph, self.second[i], row)
+            }),
+        }
+    }
+
+    /// Force and torque about the origin for a spatial acceleration without velocity:
+    /// m a + α × h and Θ α + h × a.
+    pub fn wrench(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> (Vec3, Vec3) {
+        let push = scale3(graph, self.mass, a);
+        let tangential = cross(graph, alpha, self.first);
+        let lever = cross(graph, self.first, a);
+        let spin = self.spun(graph, alpha);
+        (add3(graph, push, tangential), add3(graph, spin, lever))
+    }
+
+    /// Θ_zz = S_xx + S_yy.
+    pub fn polar(&self, graph: &mut Graph) -> Edge {
+        graph.add(self.second[0][0], self.second[1][1])
+    }
+
+    /// Θ = tr(S) I − S.
+    pub fn inertia(&self, graph: &mut Graph) -> Mat3 {
+        let s = &self.second;
+        std::array::from_fn(|i| {
+            std::array::from_fn(|k| {
+                if i == k {
+                    graph.add(s[(i + 1) % 3][(i + 1) % 3], s[(i + 2) % 3][(i + 2) % 3])
+                } else {
+                    -s[i][k]
+                }
+            })
+        })
+    }
+
+    /// Θ α = tr(S) α − S α.
+    pub fn spun(&self, graph: &mut Graph, alpha: Vec3) -> Vec3 {
+        let s = &self.second;
+        std::array::from_fn(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let polar = graph.add(s[j][j], s[k][k]);
+            let axial = graph.mul(polar, alpha[i]);
+            let (a, b) = (graph.mul(s[i][j], alpha[j]), graph.mul(s[i][k], alpha[k]));
+            let other = graph.add(a, b);
+            graph.sub(axial, other)
+        })
+    }
+}

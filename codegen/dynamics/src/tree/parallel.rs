@@ -1,0 +1,149 @@
+//! Axes that parallel hinges share.
+//!
+//! The equations of the recursions hold between vectors and tensors, in whatever axes these have at an instant. Links whose hinges
+//! are parallel take the axes of the first of them before it turns: then nothing has to be turned between them, and only
+//! what a link itself weighs is turned, by the sum of the angles. So does the last link of a chain, whose inertia is all
+//! that there is to turn.
+
+use super::turn::Turn;
+use super::{Link, Tree};
+use hamel_algebra::graph::{Edge, Graph};
+
+impl Tree {
+    /// The same links, in shared axes, and for each the turn of its own axes in those, where it has given them up.
+    pub fn sharing_axes(&self, graph: &mut Graph) -> (Tree, Vec<Option<Turn>>) {
+        let shares = self.shares(graph);
+        let mut lags: Vec<Option<Plane>> = Vec::with_capacity(self.links.len());
+        let mut links = Vec::with_capacity(self.links.len());
+        for (link, shares) in self.links.iter().zip(shares) {
+            let before = link.parent.and_then(|parent| lags[parent]);
+            let mut moved = link.clone();
+            if let Some(lag) = before {
+                moved.position = lag.turn().rotate(graph, link.position);
+            }
+            let (fixed, angle) = match hinge(graph, link).filter(|_| shares) {
+                Some((fixed, angle)) => (fixed, Some(angle)),
+                None => (&link.turns[..], None),
+            };
+            let level = angle.filter(|_| fixed.iter().all(|turn| is_level(graph, turn)));
+            moved.turns.clear();
+            if level.is_none() {
+                moved.turns.extend(before.map(|lag| lag.turn()));
+                moved.turns.extend(fixed);
+            }
+            let lag = level.map_or(angle, |angle| {
+                let planes = fixed.iter().filter_map(Plane::of).chain([angle]);
+                Some(
+                    planes.fold(before.unwrap_or(Plane::none(graph)), |sum, plane| {
+                        sum.plus(graph, plane)
+                    }),
+                )
+            });
+            if let Some(lag) = lag {
+                moved.mass = link.mass.turned(graph, &lag.turn());
+            }
+            lags.push(lag);
+            links.push(moved);
+        }
+        let tree = Tree {
+            links,
+            armature: self.armature.clone(),
+            tensors: self.tensors,
+        };
+        (tree, lags.iter().map(|lag| lag.map(Plane::turn)).collect())
+    }
+
+    /// Which links give up axes of their own: those whose hinge is parallel to the one before or to one behind, and the
+    /// last of each chain.
+    fn shares(&self, graph: &Graph) -> Vec<bool> {
+        let mut shares: Vec<bool> = (0..self.links.len())
+            .map(|i| !self.links.iter().any(|link| link.parent == Some(i)))
+            .collect();
+        for (i, link) in self.links.iter().enumerate() {
+            if let Some(parent) = self.parallel(graph, link) {
+                shares[i] = true;
+                shares[parent] = true;
+            }
+        }
+        shares
+    }
+
+    /// The link before, where its hinge and that of this link are parallel.
+    pub(super) fn parallel(&self, graph: &Graph, link: &Link) -> Option<usize> {
+        let parent = link.parent?;
+        hinge(graph, &self.links[parent])?;
+        let (fixed, _) = hinge(graph, link)?;
+        fixed
+            .iter()
+            .all(|turn| is_level(graph, turn))
+            .then_some(parent)
+    }
+}
+
+/// The turns before a hinge's own, and its angle.
+fn hinge<'a>(graph: &Graph, link: &'a Link) -> Option<(&'a [Turn], Plane)> {
+    let (zero, one) = (graph.zero(), graph.one());
+    let [freedom] = &link.freedoms[..] else {
+        return None;
+    };
+    if freedom.angular != [zero, zero, one] || freedom.linear != [zero; 3] {
+        return None;
+    }
+    let (last, fixed) = link.turns.split_last()?;
+    Some((fixed, Plane::of(last)?))
+}
+
+/// Whether the third axis stays.
+fn is_level(graph: &Graph, turn: &Turn) -> bool {
+    match *turn {
+        Turn::About { axis: 2, .. } => true,
+        Turn::About { cos, sin, .. } => sin.abs() == graph.zero() && cos == graph.one(),
+        Turn::By(_) => false,
+    }
+}
+
+/// An angle about the third axis.
+#[derive(Clone, Copy)]
+struct Plane {
+    cos: Edge,
+    sin: Edge,
+}
+
+impl Plane {
+    fn none(graph: &Graph) -> Self {
+        Plane {
+            cos: graph.one(),
+            sin: graph.zero(),
+        }
+    }
+
+    fn of(turn: &Turn) -> Option<Self> {
+        match *turn {
+            Turn::About { axis: 2, cos, sin } => Some(Plane { cos, sin }),
+            _ => None,
+        }
+    }
+
+    fn turn(self) -> Turn {
+        Turn::About {
+            axis: 2,
+            cos: self.cos,
+            sin: self.sin,
+        }
+    }
+
+    fn plus(self, graph: &mut Graph, other: Self) -> Self {
+        let (cc, ss) = (
+            graph.mul(self.cos, other.cos),
+            graph.mul(self.sin, other.sin),
+        );
+        let (sc, cs) = (
+            graph.mul(self.sin, other.cos),
+            graph.mul(self.cos, other.sin),
+        );
+        Plane {
+            cos: graph.sub(cc, ss),
+            sin: graph.add(sc, cs),
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Frames of hinged links after Denavit and Hartenberg: the third axis along the hinge, the first
+//! along the common normal to the hinge of the next link, so that two plane rotations and two
+//! distances lead from link to link.
+//!
+//! The foot of the common normal of two axes at a tilt α is p·z / sin² α along the axis, and rounding at
+//! a distance d costs (d / L)² units where the description has the size L. So an origin is moved only as
+//! far as `safe` allows, and a direction is taken only where its numbers keep their digits; axes that are
+//! almost parallel are placed as parallel ones are, and their tilt is turned by Rx(a) Ry(b).
+
+use super::draft::{Draft, JointMotion};
+use super::safe::Safe;
+use super::turn::Turn;
+use hamel_algebra::graph::{Edge, Function, Graph};
+use hamel_algebra::linear::{Vec3, add3, scale3};
+
+/// Moves and turns the frames of all hinged links.
+pub fn reframe(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
+    let weights = weights(links);
+    for i in 0..=links.len() {
+        // The world first, then every link.
+        let parent = i.checked_sub(1);
+        let children: Vec<usize> = (0..links.len())
+            .filter(|&j| links[j].parent == parent && is_hinge(&links[j]))
+            .collect();
+        let hinged = parent.is_some_and(|link| is_hinge(&links[link]));
+        for &j in &children {
+            if let Some(distance) = foot(graph, &links[j], hinged, safe) {
+                slide(graph, links, j, distance);
+            }
+        }
+        if let (Some(link), true) = (parent, hinged) {
+            let mut children = children.clone();
+            children.sort_by_key(|&j| std::cmp::Reverse(weights[j]));
+            if let Some(angle) = normal(graph, links, &children, safe) {
+                spin(graph, links, link, angle);
+            }
+        }
+        for j in children {
+            factor(graph, &mut links[j], safe);
+        }
+    }
+}
+
+/// Leaves the frames where they are: hinges turn about third axes, and nothing else is chosen.
+pub fn keep(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
+    for link in links.iter_mut().filter(|link| is_hinge(link)) {
+        factor(graph, link, safe);
+    }
+}
+
+/// The same, with origins moved along their hinges as above; how far, for each link.
+pub fn slide_all(graph: &mut Graph, links: &mut [Draft], safe: &Safe) -> Vec<Edge> {
+    let mut distances = vec![graph.zero(); links.len()];
+    // Each after the link before, on whose frame its own position depends.
+    for j in 0..links.len() {
+        if !is_hinge(&links[j]) {
+            continue;
+        }
+        let hinged = links[j].parent.is_some_and(|link| is_hinge(&links[link]));
+        if let Some(distance) = foot(graph, &links[j], hinged, safe) {
+            slide(graph, links, j, distance);
+            distances[j] = distance;
+        }
+    }
+    keep(graph, links, safe);
+    distances
+}
+
+fn is_hinge(link: &Draft) -> bool {
+    matches!(link.motion, JointMotion::Hinge { .. })
+}
+
+/// The number of links that hang on each, itself included.
+fn weights(links: &[Draft]) -> Vec<usize> {
+    let mut weights = vec![1; links.len()];
+    for j in (0..links.len()).rev() {
+        if let Some(parent) = links[j].parent {
+            weights[parent] += weights[j];
+        }
+    }
+    weights
+}
+
+/// The axis of a link's hinge in axes of the link before.
+fn axis(link: &Draft) -> Vec3 {
+    std::array::from_fn(|row| link.base[row][2])
+}
+
+/// Numbers, not parameters: what is decided by them holds for all parameters.
+fn numeric(graph: &Graph, edges: &[Edge]) -> bool {
+    edges.iter().all(|edge| graph.class(edge.node()) == 0)
+}
+
+/// How far along its hinge the origin of a link is best moved: to the foot of the common normal
+/// with the hinge before, or to where a coordinate vanishes.
+fn foot(graph: &mut Graph, link: &Draft, hinged: bool, safe: &Safe) -> Option<Edge> {
+    let (z, p) = (axis(link), link.position);
+    let zero = graph.zero();
+    if !numeric(graph, &z) {
+        return None;
+    }
+    let along: Vec<usize> = (0..3).filter(|&k| z[k] != zero).collect();
+    if let [k] = along[..] {
+        return (!hinged || k == 2 || p[k] != zero).then(|| -graph.mul(p[k], z[k]));
+    }
+    if !hinged {
+        return None;
+    }
+    let (x, y) = (graph.mul(z[0], z[0]), graph.mul(z[1], z[1]));
+    let square = graph.add(x, y);
+    let forward = graph.dot(&p[..2], &z[..2]);
+    let distance = -graph.div(forward, square)?;
+    if safe.is_near(graph, distance) {
+        return Some(distance);
+    }
+    // Almost parallel: to the height of the hinge before, as for parallel axes.
+    let level = -graph.div(p[2], z[2])?;
+    safe.is_near(graph, level).then_some(level)
+}
+
+/// Cosine and sine of the angle by which a link's axes are best turned about its hinge.
+fn normal(
+    graph: &mut Graph,
+    links: &[Draft],
+    children: &[usize],
+    safe: &Safe,
+) -> Option<(Edge, Edge)> {
+    let zero = graph.zero();
+    let directions: Vec<(Edge, Edge)> = children
+        .iter()
+        .map(|&j| axis(&links[j]))
+        .filter(|z| numeric(graph, z) && safe.has_direction(graph, &z[..2]))
+        .map(|z| (-z[1], z[0]))
+        .collect();
+    let oblique = |&(x, y): &(Edge, Edge)| x.abs() != zero || y.abs() != zero;
+    for (x, y) in directions.into_iter().filter(oblique) {
+        let (c, s) = direction(graph, x, y)?;
+        if safe.is_sharp(graph, &[c, s]) {
+            return Some((c, s));
+        }
+    }
+    let arms = children.iter().map(|&j| links[j].position);
+    for p in arms.filter(|p| p[0] != zero && p[1] != zero) {
+        if numeric(graph, &p[..2]) && safe.has_direction(graph, &p[..2]) {
+            let (c, s) = direction(graph, p[0], p[1])?;
+            if safe.is_sharp(graph, &[c, s]) {
+                return Some((c, s));
+            }
+        }
+    }
+    None
+}
+
+/// (x, y) / √(x² + y²); `None` where that is no turn at all.
+fn direction(graph: &mut Graph, x: Edge, y: Edge) -> Option<(Edge, Edge)> {
+    let zero = graph.zero();
+    if y.abs() == zero {
+        return None;
+    }
+    if x.abs() == zero {
+        return Some((zero, graph.one()));
+    }
+    let length = hypotenuse(graph, x, y);
+    Some((graph.div(x, length)?, graph.div(y, length)?))
+}
+
+/// Moves the origin of a link along its hinge.
+fn slide(graph: &mut Graph, links: &mut [Draft], j: usize, distance: Edge) {
+    if distance.abs() == graph.zero() {
+        return;
+    }
+    let step = scale3(graph, distance, axis(&links[j]));
+    links[j].position = add3(graph, links[j].position, step);
+    let zero = graph.zero();
+    let back = [zero, zero, -distance];
+    links[j].mass = links[j].mass.shifted(graph, back);
+    for link in links.iter_mut().filter(|link| link.parent == Some(j)) {
+        link.position = add3(graph, link.position, back);
+    }
+}
+
+/// Turns the axes of a link about its hinge.
+fn spin(graph: &mut Graph, links: &mut [Draft], i: usize, (c, s): (Edge, Edge)) {
+    let back = Turn::About {
+        axis: 2,
+        cos: c,
+        sin: -s,
+    };
+    links[i].mass = links[i].mass.turned(graph, &back);
+    advance(graph, &mut links[i], (c, s));
+    for link in links.iter_mut().filter(|link| link.parent == Some(i)) {
+        link.position = back.rotate(graph, link.position);
+        turn_base(graph, link, &back);
+    }
+}
+
+/// base := R base.
+fn turn_base(graph: &mut Graph, link: &mut Draft, turn: &Turn) {
+    for column in 0..3 {
+        let v = turn.rotate(graph, std::array::from_fn(|row| link.base[row][column]));
+        for (row, entry) in link.base.iter_mut().zip(v) {
+            row[column] = entry;
+        }
+    }
+}
+
+/// Adds a constant to the angle of a link's hinge.
+fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
+    if let JointMotion::Hinge { phase, .. } = &mut link.motion {
+        let (cc, ss) = (graph.mul(phase.0, c), graph.mul(phase.1, s));
+        let (sc, cs) = (graph.mul(phase.1, c), graph.mul(phase.0, s));
+        *phase = (graph.sub(cc, ss), graph.add(sc, cs));
+    }
+}
+
+/// base = Rz(β) Rx(α) Rz(γ), or Rx(a) Ry(b) Rz(γ) where a small tilt hides β: the first two are kept, the
+/// last goes into the angle.
+fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
+    let Some(first) = tilt(graph, axis(link), safe) else {
+        return;
+    };
+    let mut rest = link.base;
+    for turn in &first {
+        for column in 0..3 {
+            let v = turn.rotate_back(graph, std::array::from_fn(|row| rest[row][column]));
+            for (row, entry) in rest.iter_mut().zip(v) {
+                row[column] = entry;
+            }
+        }
+    }
+    advance(graph, link, (rest[0][0], rest[1][0]));
+    if let JointMotion::Hinge { turns, .. } = &mut link.motion {
+        turns.extend(first);
+    }
+}
+
+/// Two plane rotations that take the third axis to z = (x, y, w):
+/// Rz(β) Rx(α) with (sin β, −cos β) = (x, y) / sin α, or Rx(a) Ry(b) with sin b = x and
+/// (−sin a, cos a) = (y, w) / cos b.
+fn tilt(graph: &mut Graph, z: Vec3, safe: &Safe) -> Option<[Turn; 2]> {
+    let zero = graph.zero();
+    let [x, y, w] = z;
+    let about = |axis, cos, sin| Turn::About { axis, cos, sin };
+    if x.abs() == zero {
+        return Some([about(2, graph.one(), zero), about(0, w, -y)]);
+    }
+    if y.abs() == zero {
+        return Some([about(2, zero, graph.one()), about(0, w, x)]);
+    }
+    if safe.has_direction(graph, &[x, y]) {
+        let length = hypotenuse(graph, x, y);
+        let (c, s) = (-graph.div(y, length)?, graph.div(x, length)?);
+        if safe.is_sharp(graph, &[c, s]) {
+            return Some([about(2, c, s), about(0, w, length)]);
+        }
+    }
+    let length = hypotenuse(graph, y, w);
+    let (c, s) = (graph.div(w, length)?, -graph.div(y, length)?);
+    Some([about(0, c, s), about(1, length, x)])
+}
+
+/// √(x² + y²); the number whose square that is, where there is one.
+fn hypotenuse(graph: &mut Graph, x: Edge, y: Edge) -> Edge {
+    let (a, b) = (graph.mul(x, x), graph.mul(y, y));
+    let square = graph.add(a, b);
+    graph.apply(Function::Sqrt, square)
+}

@@ -1,0 +1,119 @@
+//! Rotations as products of plane ones: what is zero or one in them costs nothing.
+
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::linear::{Mat3, Vec3, apply_transposed, apply3, multiply3, transpose3};
+
+/// One factor of a rotation.
+#[derive(Clone, Copy, Debug)]
+pub enum Turn {
+    /// About the axis `axis` (0, 1, 2) by the angle with this cosine and sine.
+    About {
+        /// Which axis.
+        axis: usize,
+        /// Its cosine.
+        cos: Edge,
+        /// Its sine.
+        sin: Edge,
+    },
+    /// Any rotation matrix.
+    By(Mat3),
+}
+
+impl Turn {
+    /// R v.
+    pub fn rotate(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        match *self {
+            Turn::By(ref matrix) => apply3(graph, matrix, v),
+            Turn::About { axis, cos, sin } => plane(graph, axis, cos, sin, v),
+        }
+    }
+
+    /// Rᵀ v.
+    pub fn rotate_back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        match *self {
+            Turn::By(ref matrix) => apply_transposed(graph, matrix, v),
+            Turn::About { axis, cos, sin } => plane(graph, axis, cos, -sin, v),
+        }
+    }
+
+    /// R S Rᵀ of a symmetric matrix: in the plane, with t = (a − d) sin + 2 b cos, a − sin t,
+    /// d + sin t and cos t − b.
+    pub fn symmetric(&self, graph: &mut Graph, s: &Mat3) -> Mat3 {
+        match *self {
+            Turn::By(ref matrix) => {
+                let left = multiply3(graph, matrix, s);
+                let turned = multiply3(graph, &left, &transpose3(matrix));
+                std::array::from_fn(|i| std::array::from_fn(|j| turned[i.max(j)][i.min(j)]))
+            }
+            Turn::About { axis, cos, sin } => {
+                if sin == graph.zero() && cos == graph.one() {
+                    return *s;
+                }
+                let (k, i, j) = (axis, (axis + 1) % 3, (axis + 2) % 3);
+                let mut turned = *s;
+                let (a, b, d) = (s[i][i], s[i][j], s[j][j]);
+                let double = graph.add(cos, cos);
+                let t = {
+                    let difference = graph.sub(a, d);
+                    let first = graph.mul(difference, sin);
+                    let second = graph.mul(double, b);
+                    graph.add(first, second)
+                };
+                let (along, across) = (graph.mul(sin, t), graph.mul(cos, t));
+                turned[i][i] = graph.sub(a, along);
+                turned[j][j] = graph.add(d, along);
+                turned[i][j] = graph.sub(across, b);
+                turned[j][i] = turned[i][j];
+                let pair = pair(graph, cos, sin, (s[i][k], s[j][k]));
+                (turned[i][k], turned[j][k]) = pair;
+                (turned[k][i], turned[k][j]) = pair;
+                turned
+            }
+        }
+    }
+
+    /// R H Rᵀ of any matrix.
+    pub fn general(&self, graph: &mut Graph, h: &Mat3) -> Mat3 {
+        match *self {
+            Turn::By(ref matrix) => {
+                let left = multiply3(graph, matrix, h);
+                multiply3(graph, &left, &transpose3(matrix))
+            }
+            Turn::About { axis, cos, sin } => {
+                if sin == graph.zero() && cos == graph.one() {
+                    return *h;
+                }
+                let (k, i, j) = (axis, (axis + 1) % 3, (axis + 2) % 3);
+                let mut turned = *h;
+                let t = {
+                    let (difference, sum) =
+                        (graph.sub(h[i][i], h[j][j]), graph.add(h[i][j], h[j][i]));
+                    let (first, second) = (graph.mul(difference, sin), graph.mul(sum, cos));
+                    graph.add(first, second)
+                };
+                let (along, across) = (graph.mul(sin, t), graph.mul(cos, t));
+                turned[i][i] = graph.sub(h[i][i], along);
+                turned[j][j] = graph.add(h[j][j], along);
+                turned[i][j] = graph.sub(across, h[j][i]);
+                turned[j][i] = graph.sub(across, h[i][j]);
+                (turned[i][k], turned[j][k]) = pair(graph, cos, sin, (h[i][k], h[j][k]));
+                (turned[k][i], turned[k][j]) = pair(graph, cos, sin, (h[k][i], h[k][j]));
+                turned
+            }
+        }
+    }
+}
+
+/// (c a − s b, s a + c b).
+fn pair(graph: &mut Graph, cos: Edge, sin: Edge, (a, b): (Edge, Edge)) -> (Edge, Edge) {
+    let (ca, sb) = (graph.mul(cos, a), graph.mul(sin, b));
+    let (sa, cb) = (graph.mul(sin, a), graph.mul(cos, b));
+    (graph.sub(ca, sb), graph.add(sa, cb))
+}
+
+fn plane(graph: &mut Graph, axis: usize, cos: Edge, sin: Edge, v: Vec3) -> Vec3 {
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut turned = v;
+    (turned[i], turned[j]) = pair(graph, cos, sin, (v[i], v[j]));
+    turned
+}

@@ -1,0 +1,93 @@
+//! Which multipliers are not determined: those of rows of B that depend on other rows. λ is unique up to what Bᵀ maps to 0, so
+//! that the multiplier of a row is unique where the row is independent of all others. What was dropped as redundant takes part:
+//! it shares the force of the rows that it follows from.
+
+use super::reduction::{independent, unit};
+use hamel_algebra::fp::Random;
+use hamel_algebra::numeric::evaluate;
+use hamel_language::model::Model;
+use hamel_language::model::closure::{Closure, normalise};
+
+/// How far from the start rows are looked at, too, in the units of the coordinates: a start may be singular.
+const ASIDE: f64 = 0.1;
+/// How many such places there are.
+const PLACES: u64 = 3;
+
+/// For each constraint of the full frame that says something, and then for each drive whose rate is given, whether its force is
+/// not determined where the loops are closed, but for singular positions.
+pub fn undetermined(full: &Model) -> Vec<bool> {
+    let shown = || {
+        let constraints = full.constraints.iter().map(|row| !row.redundant);
+        constraints.chain(full.accelerated.iter().map(|_| true))
+    };
+    let mut best: Option<(usize, Vec<bool>)> = None;
+    for x in places(full) {
+        let rows = rows(full, &x);
+        let rank = independent(rows.clone()).len();
+        if best.as_ref().is_some_and(|(most, _)| *most >= rank) {
+            continue;
+        }
+        let depends = (0..rows.len()).map(|i| {
+            let mut others = rows.clone();
+            others.remove(i);
+            independent(others).len() == rank
+        });
+        best = Some((rank, depends.collect()));
+    }
+    let depends = best.map_or(Vec::new(), |(_, depends)| depends);
+    let shown = shown().zip(depends).filter(|(shown, _)| *shown);
+    shown.map(|(_, depends)| depends).collect()
+}
+
+/// Configurations that close the loops: some beside the start, then the start.
+fn places(full: &Model) -> Vec<Vec<f64>> {
+    let closure = Closure::of(full, &full.defaults);
+    let time = full.clock.map(|clock| clock.x);
+    let beside = (0..PLACES).filter_map(|place| {
+        let mut random = Random::new(0x57a7 + place);
+        let mut x = full.start_x.clone();
+        for (alpha, entry) in x.iter_mut().enumerate() {
+            let number = (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+            if Some(alpha) != time {
+                *entry += ASIDE * number;
+            }
+        }
+        normalise(&full.blocks, &mut x);
+        let given: Vec<bool> = (0..x.len()).map(|alpha| Some(alpha) == time).collect();
+        closure.close_loops(&mut x, &given).ok()?;
+        Some(x)
+    });
+    let mut places: Vec<Vec<f64>> = beside.collect();
+    places.push(full.start_x.clone());
+    places
+}
+
+/// The rows of B and those of drives, each over its length, without the column of the time.
+fn rows(full: &Model, x: &[f64]) -> Vec<Vec<f64>> {
+    let n = full.n();
+    let numbers = full.numbers(
+        &full.defaults,
+        x,
+        &full.start_xi,
+        &vec![0.0; full.u.len()],
+        &vec![0.0; n],
+    );
+    let edges: Vec<_> = full
+        .constraints
+        .iter()
+        .flat_map(|row| row.row.clone())
+        .collect();
+    let values = evaluate(&full.graph, &edges, &numbers);
+    let time = full.clock.map(|clock| clock.xi);
+    let given = full.accelerated.iter();
+    let given =
+        given.map(|&(velocity, _)| (0..n).map(|i| f64::from(u8::from(i == velocity))).collect());
+    let rows = values.chunks(n.max(1)).map(<[f64]>::to_vec).chain(given);
+    rows.map(|mut row| {
+        if let Some(time) = time {
+            row[time] = 0.0;
+        }
+        unit(&row)
+    })
+    .collect()
+}

@@ -1,0 +1,302 @@
+//! The statements of a function in C: one after the other, or in parts that are functions of their own.
+
+use super::language::{C, Origins};
+use super::nearest::nearest;
+use super::{Texts, comment, helpers, returns_number};
+use crate::chunk::Part;
+use crate::function::{Drawing, Spec, statements};
+use crate::language::{Array, Language};
+use crate::names::argument;
+use crate::print::{Access, Printer, Used};
+use hamel_algebra::graph::NodeId;
+use hamel_program::statements::Body;
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
+
+/// Instructions are short where they read within so many bytes before and behind what a pointer points to.
+const NEAR: usize = 128;
+
+/// Lines set in.
+pub fn indented(text: &str) -> String {
+    let lines = text.lines();
+    lines.map(|line| format!("    {line}\n")).collect()
+}
+
+/// The statements of a function that is not in parts.
+pub fn whole(texts: &Texts, drawing: &Drawing) -> String {
+    let mut printer = drawing.printer();
+    let mut text = String::new();
+    // Pivots are looked at last: gcc keeps fewer values in memory where no function ends in its middle.
+    let (values, checks): (Vec<_>, Vec<_>) =
+        (drawing.body.statements.iter().cloned()).partition(|statement| statement.is_let());
+    let body = Body {
+        statements: [values, checks].concat(),
+        outputs: drawing.body.outputs.clone(),
+    };
+    for part in &drawing.plan.parts {
+        text.push_str(&statements(&mut printer, &body, part, |_, _| String::new()));
+    }
+    let all = results(texts, &mut printer, drawing, |_| true);
+    around(
+        texts,
+        &printer.used,
+        drawing.spec,
+        false,
+        &format!("{text}{all}"),
+    )
+}
+
+/// What returns the results, or writes those of some places.
+fn results(
+    texts: &Texts,
+    printer: &mut Printer,
+    drawing: &Drawing,
+    of: impl Fn(usize) -> bool,
+) -> String {
+    let mut results = String::new();
+    let spec = drawing.spec;
+    let number = returns_number(spec.shape, spec.fallible);
+    let outputs = &drawing.body.outputs;
+    let zero = texts.program().graph.zero();
+    let mut index = 0;
+    while index < outputs.len() {
+        let following = outputs[index..]
+            .iter()
+            .enumerate()
+            .take(helpers::MOST_ZEROS);
+        let zeros = following.take_while(|&(more, &edge)| edge == zero && of(index + more));
+        let zeros = zeros.count();
+        if !number && zeros > 1 {
+            let array = Array::Out.name();
+            results.push_str(&format!(
+                "memcpy({array} + {index}, {}, {zeros} * sizeof *{array});\n",
+                texts.names.own(helpers::ZEROS)
+            ));
+            index += zeros;
+            continue;
+        }
+        if of(index) {
+            let value = printer.signed(outputs[index]);
+            results.push_str(&match number {
+                true => format!("return {value};\n"),
+                false => format!("out[{index}] = {value};\n"),
+            });
+        }
+        index += 1;
+    }
+    if spec.fallible {
+        results.push_str(&format!("return {};\n", texts.names.done()));
+    }
+    results
+}
+
+/// A body with what it begins with; it may pass the system on.
+fn around(texts: &Texts, used: &Used, spec: &Spec, passes: bool, all: &str) -> String {
+    let number = returns_number(spec.shape, spec.fallible);
+    let mut unused = Vec::new();
+    if !used.kept && !passes && !all.contains("system->") {
+        unused.push("system");
+    }
+    let arguments = spec.arguments.iter();
+    let missing = arguments.filter(|given| !used.arguments.contains(given));
+    unused.extend(missing.map(|&given| argument(given)));
+    if !number && spec.outputs.is_empty() {
+        unused.push("out");
+    }
+    let unused: String = unused
+        .iter()
+        .map(|name| format!("(void){name};\n"))
+        .collect();
+    format!("{}{unused}{all}", bind_kept(texts, used))
+}
+
+/// The name of the kept constants, where it is used.
+fn bind_kept(texts: &Texts, used: &Used) -> String {
+    match used.kept {
+        true => format!("const {} *const k = system->k;\n", texts.names.real()),
+        false => String::new(),
+    }
+}
+
+/// The parts of a function in short parts, each a function, and the statements of the one that calls them.
+pub fn split(texts: &Texts, drawing: &Drawing) -> (String, String) {
+    let names = &texts.names;
+    let (status, done) = (names.own("status"), names.done());
+    let results_in_parts = InParts::new(drawing);
+    let mut main = drawing.printer();
+    let (mut parts, mut calls) = (String::new(), String::new());
+    let (mut crossing, mut checks, mut passes) = (false, false, false);
+    for (index, part) in drawing.plan.parts.iter().enumerate() {
+        let name = names.own(&texts.emitter.names.part(&drawing.spec.name, index + 1));
+        let printed = Printed::new(texts, drawing, part, &results_in_parts);
+        main.used.arguments.extend(&printed.used.arguments);
+        crossing |= printed.used.access(Array::Slots) > Access::None;
+        let Passed { given, taken } = printed.passed(texts, drawing);
+        passes |= printed.reads_system();
+        let call = format!("{name}({})", given.join(", "));
+        let (returned, end) = match printed.used.checks {
+            true => {
+                checks = true;
+                calls.push_str(&format!(
+                    "status = {call};\nif (status != {done}) {{\n    return status;\n}}\n"
+                ));
+                (status.as_str(), format!("return {done};\n"))
+            }
+            false => {
+                calls.push_str(&format!("{call};\n"));
+                ("void", String::new())
+            }
+        };
+        let number = format!("Part {} of {}", index + 1, drawing.plan.parts.len());
+        let what = comment::line(&format!("{number} of `{}`.", drawing.spec.name), 0);
+        let taken = taken.join(",\n    ");
+        parts.push_str(&format!(
+            "\n{what}PART {returned} {name}(\n    {taken})\n{{\n{}}}\n",
+            indented(&format!("{}{end}", printed.text))
+        ));
+    }
+    let mut text = String::new();
+    if crossing {
+        let real = names.real();
+        text.push_str(&format!("{real} slots[{}];\n", drawing.plan.size));
+    }
+    if checks {
+        text.push_str(&format!("{status} status;\n"));
+    }
+    let rest = results(texts, &mut main, drawing, |index| {
+        !results_in_parts.written.contains(&index)
+    });
+    let all = format!("{text}{calls}{rest}");
+    (parts, around(texts, &main.used, drawing.spec, passes, &all))
+}
+
+/// The results that parts write.
+struct InParts {
+    /// Their places, by the value.
+    places: FxHashMap<NodeId, Vec<usize>>,
+    /// All these places.
+    written: BTreeSet<usize>,
+}
+
+impl InParts {
+    fn new(drawing: &Drawing) -> Self {
+        let mut places: FxHashMap<NodeId, Vec<usize>> = FxHashMap::default();
+        let mut written = BTreeSet::new();
+        for (index, edge) in drawing.body.outputs.iter().enumerate() {
+            if drawing.plan.results.contains_key(&edge.node()) {
+                places.entry(edge.node()).or_default().push(index);
+                written.insert(index);
+            }
+        }
+        InParts { places, written }
+    }
+}
+
+/// The statements of a part.
+struct Printed {
+    text: String,
+    used: Used,
+    origins: Origins,
+}
+
+/// What a part is given, and takes.
+struct Passed {
+    given: Vec<String>,
+    taken: Vec<String>,
+}
+
+impl Printed {
+    /// A part that is given its arrays from where most of what it reads and writes is near.
+    fn new(texts: &Texts, drawing: &Drawing, part: &Part, results: &InParts) -> Self {
+        let first = Printed::from(texts, drawing, part, results, Origins::default());
+        let near = NEAR / texts.precision.bytes();
+        let origin = |array: Array| {
+            let length = match array {
+                Array::Slots => drawing.plan.size,
+                Array::Out | Array::Slopes => drawing.body.outputs.len(),
+            };
+            let places = first.used.entries.iter();
+            let places = places.filter(|(of, _)| *of == array);
+            nearest(places.map(|&(_, place)| place), near, length)
+        };
+        let origins = Origins {
+            slots: origin(Array::Slots),
+            out: origin(Array::Out),
+        };
+        Printed::from(texts, drawing, part, results, origins)
+    }
+
+    fn from(
+        texts: &Texts,
+        drawing: &Drawing,
+        part: &Part,
+        results: &InParts,
+        origins: Origins,
+    ) -> Self {
+        let language = C {
+            names: &texts.names,
+            precision: texts.precision,
+            origins,
+        };
+        let mut printer = Printer {
+            language: &language,
+            ..drawing.printer()
+        };
+        let [mut values, mut pivots, mut writes] = [const { String::new() }; 3];
+        for statement in &drawing.body.statements[part.statements.clone()] {
+            let text = printer.statement(statement);
+            match statement.is_let() {
+                true => values.push_str(&text),
+                false => pivots.push_str(&text),
+            }
+            for node in statement.defined() {
+                for &place in results.places.get(&node).into_iter().flatten() {
+                    printer.used.touch(Array::Out, place, Access::Written);
+                    let value = printer.signed(drawing.body.outputs[place]);
+                    let entry = language.entry(Array::Out, drawing.spec.shape, place);
+                    writes.push_str(&format!("{entry} = {value};\n"));
+                }
+            }
+        }
+        let used = printer.used;
+        let text = format!("{}{values}{pivots}{writes}", bind_kept(texts, &used));
+        Printed {
+            text,
+            used,
+            origins,
+        }
+    }
+
+    fn reads_system(&self) -> bool {
+        self.text.contains("system->")
+    }
+
+    fn passed(&self, texts: &Texts, drawing: &Drawing) -> Passed {
+        let (names, used) = (&texts.names, &self.used);
+        let (real, restrict) = (names.real(), format!("{}_RESTRICT", names.capitals));
+        let (mut given, mut taken) = (Vec::new(), Vec::new());
+        if self.reads_system() {
+            given.push("system".into());
+            taken.push(format!("const {} *{restrict} system", names.own("system")));
+        }
+        let arguments = drawing.spec.arguments.iter();
+        for &read in arguments.filter(|read| used.arguments.contains(read)) {
+            given.push(argument(read).into());
+            taken.push(format!("const {real} *{restrict} {}", argument(read)));
+        }
+        for array in [Array::Slots, Array::Out] {
+            let constant = match used.access(array) {
+                Access::None => continue,
+                Access::Read => "const ",
+                Access::Written => "",
+            };
+            let name = array.name();
+            given.push(match self.origins.of(array) {
+                0 => name.into(),
+                origin => format!("{name} + {origin}"),
+            });
+            taken.push(format!("{constant}{real} *{restrict} {name}"));
+        }
+        Passed { given, taken }
+    }
+}

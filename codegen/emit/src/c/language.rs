@@ -1,0 +1,204 @@
+//! How C spells statements and numbers.
+
+use super::names::Identifiers;
+use super::returns_number;
+use crate::chunk::When;
+use crate::language::{Array, Language, Operand};
+use hamel_algebra::graph::{Function, Graph, Node, NodeId};
+use hamel_program::{Cause, Program, Shape};
+use num_traits::ToPrimitive;
+use std::fmt;
+use std::str::FromStr;
+
+/// The numbers of generated C.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// `double`
+    #[default]
+    Double,
+    /// `float`
+    Float,
+}
+
+impl Precision {
+    /// The type.
+    pub fn name(self) -> &'static str {
+        match self {
+            Precision::Double => "double",
+            Precision::Float => "float",
+        }
+    }
+
+    /// Bytes of a number.
+    pub(super) fn bytes(self) -> usize {
+        match self {
+            Precision::Double => 8,
+            Precision::Float => 4,
+        }
+    }
+
+    /// What literals and functions of `<math.h>` end in.
+    pub(super) fn suffix(self) -> &'static str {
+        match self {
+            Precision::Double => "",
+            Precision::Float => "f",
+        }
+    }
+
+    /// The shortest literal that reads as this number.
+    pub fn literal(self, value: f64) -> String {
+        let (digits, infinity) = match self {
+            Precision::Double => (format!("{value:?}"), "HUGE_VAL"),
+            #[allow(clippy::cast_possible_truncation, reason = "the nearest is meant")]
+            Precision::Float => (format!("{:?}f", value as f32), "HUGE_VALF"),
+        };
+        let text = match digits.trim_end_matches('f') {
+            "NaN" | "-NaN" => "NAN".into(),
+            "in" | "inf" => infinity.into(),
+            "-in" | "-inf" => format!("-{infinity}"),
+            _ => digits,
+        };
+        match text.strip_prefix('-') {
+            Some(_) => format!("({text})"),
+            None => text,
+        }
+    }
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.name())
+    }
+}
+
+impl FromStr for Precision {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "double" => Ok(Precision::Double),
+            "float" => Ok(Precision::Float),
+            _ => Err(format!("`{name}` is neither `double` nor `float`")),
+        }
+    }
+}
+
+/// C, with the names of one program.
+pub struct C<'a> {
+    /// Its names.
+    pub names: &'a Identifiers,
+    /// Its numbers.
+    pub precision: Precision,
+    /// What places of arrays are counted from.
+    pub origins: Origins,
+}
+
+/// The places that arrays are given to a part from.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Origins {
+    /// Of values that cross parts.
+    pub slots: usize,
+    /// Of results.
+    pub out: usize,
+}
+
+impl Origins {
+    /// Of an array.
+    pub fn of(self, array: Array) -> usize {
+        match array {
+            Array::Slots => self.slots,
+            Array::Out | Array::Slopes => self.out,
+        }
+    }
+}
+
+impl Language for C<'_> {
+    fn when(&self, shape: Shape, fallible: bool) -> When {
+        match returns_number(shape, fallible) {
+            true => When::AtTheEnd,
+            false => When::BehindPivots,
+        }
+    }
+
+    fn entry(&self, array: Array, _: Shape, place: usize) -> String {
+        let (origin, array) = (self.origins.of(array), array.name());
+        match place.checked_sub(origin) {
+            Some(behind) => format!("{array}[{behind}]"),
+            None => format!("{array}[-{}]", origin - place),
+        }
+    }
+
+    fn literal(&self, graph: &Graph, node: NodeId) -> String {
+        let value = match graph.node(node) {
+            Node::Constant(index) => graph.constant(index).to_f64().unwrap_or(f64::NAN),
+            _ => std::f64::consts::PI,
+        };
+        self.precision.literal(value)
+    }
+
+    fn number(&self, graph: &Graph, node: NodeId, _: &str) -> String {
+        self.literal(graph, node)
+    }
+
+    fn number_binding(&self, _: &Graph, _: NodeId, _: &str) -> String {
+        String::new()
+    }
+
+    fn zero(&self) -> String {
+        self.precision.literal(0.0)
+    }
+
+    fn binding(&self, name: &str, value: &str) -> String {
+        format!("const {} {name} = {value};\n", self.names.real())
+    }
+
+    fn pair(&self, names: [Option<&str>; 2], angle: &Operand) -> String {
+        let (real, angle) = (self.names.real(), angle.signed());
+        match names {
+            [Some(sine), Some(cosine)] => format!(
+                "{real} {sine}, {cosine};\n{}({angle}, &{sine}, &{cosine});\n",
+                self.names.own("sin_cos")
+            ),
+            [Some(sine), None] => {
+                self.binding(sine, &format!("{}({angle})", self.names.own("sin")))
+            }
+            [None, Some(cosine)] => {
+                self.binding(cosine, &format!("{}({angle})", self.names.own("cos")))
+            }
+            [None, None] => String::new(),
+        }
+    }
+
+    fn fused(&self, [a, b, c]: &[Operand; 3]) -> String {
+        format!("FUSED({}, {}, {})", a.signed(), b.signed(), c.signed())
+    }
+
+    fn atan2(&self, [y, x]: &[Operand; 2]) -> String {
+        let suffix = self.precision.suffix();
+        format!("atan2{suffix}({}, {})", y.signed(), x.signed())
+    }
+
+    fn select(&self, [c, a, b]: &[Operand; 3]) -> String {
+        let select = self.names.own("select");
+        format!("{select}({}, {}, {})", c.signed(), a.signed(), b.signed())
+    }
+
+    fn function(&self, function: Function, operand: &Operand) -> String {
+        let suffix = self.precision.suffix();
+        let name = match function {
+            Function::Sign => self.names.own("sign"),
+            Function::Inverse => self.names.own("inverse_of_length"),
+            Function::Raised => self.names.own("raised"),
+            Function::Abs => format!("fabs{suffix}"),
+            // Names of the others are those of C.
+            _ => format!("{}{suffix}", function.name()),
+        };
+        format!("{name}({})", operand.signed())
+    }
+
+    fn check(&self, pivot: &Operand, cause: Cause, _: &Program) -> String {
+        let positive = self.names.own("is_positive");
+        let (pivot, status) = (pivot.signed(), self.names.status(cause));
+        format!("if (!{positive}({pivot})) {{\n    return {status};\n}}\n")
+    }
+}

@@ -1,0 +1,122 @@
+//! Identifiers of generated C.
+//!
+//! | what | pattern |
+//! |---|---|
+//! | functions | prefix + name as in Rust: `free_body_accel` |
+//! | types | prefix + `_real`, `_parameters`, `_system`, `_status` |
+//! | macros, constants | the same in capitals: `FREE_BODY_RESTRICT`, `FREE_BODY_X_R`, `FREE_BODY_STATUS_OK` |
+//! | fields of parameters, temporaries | as in Rust |
+//!
+//! The prefix is the name of the system in snake case. A word that C, C++, their headers or Rust want for
+//! themselves gets `_`, whether it would do harm in its place or not: so a name depends on nothing but itself.
+
+use super::words::legal;
+use crate::names::{Names, Unique, Words, snake};
+use hamel_program::{Cause, Program};
+
+/// Local names that a function may use besides those of its values.
+const LOCALS: &[&str] = &[
+    "x",
+    "xi",
+    "u",
+    "xi_dot",
+    "momentum",
+    "k",
+    "slots",
+    "out",
+    "system",
+    "parameters",
+    "next",
+    "status",
+];
+
+/// What the generated text calls its own types and functions, after the prefix.
+const OWN: &[&str] = &[
+    "real",
+    "parameters",
+    "system",
+    "status",
+    "set_parameters",
+    "default_parameters",
+    "sin_cos",
+    "sin",
+    "cos",
+    "sign",
+    "select",
+    "inverse_of_length",
+    "raised",
+    "is_positive",
+    "far",
+    "zeros",
+];
+
+/// The identifiers of a program.
+pub struct Identifiers {
+    /// In front of all others.
+    pub prefix: String,
+    /// The same in capitals.
+    pub capitals: String,
+    /// The functions with their prefix, in order.
+    pub functions: Vec<String>,
+    /// Fields of the parameter groups, in order.
+    pub fields: Vec<String>,
+}
+
+impl Identifiers {
+    /// Those of a program, and its names as in Rust.
+    pub fn of(program: &Program) -> (Self, Names) {
+        let names = Names::beside(program, OWN);
+        let prefix = snake(&program.name).trim_end_matches('_').to_string();
+        // In C++ a member cannot be called as a type that its struct mentions.
+        let own: Vec<String> = OWN.iter().map(|name| format!("{prefix}_{name}")).collect();
+        let mut members = Unique::new(&own.iter().map(String::as_str).collect::<Vec<_>>());
+        let identifiers = Identifiers {
+            capitals: prefix.to_ascii_uppercase(),
+            functions: (names.functions.iter())
+                .map(|name| legal(format!("{prefix}_{name}")))
+                .collect(),
+            fields: (names.fields.iter())
+                .map(|name| members.claim(&legal(name.clone())))
+                .collect(),
+            prefix,
+        };
+        (identifiers, names)
+    }
+
+    /// One of the generated text's own types or functions.
+    pub fn own(&self, name: &str) -> String {
+        format!("{}_{name}", self.prefix)
+    }
+
+    /// The type of numbers.
+    pub fn real(&self) -> String {
+        self.own("real")
+    }
+
+    /// The words that values of a function cannot be called.
+    pub fn words(&self) -> Words {
+        let own: Vec<String> = OWN.iter().map(|name| self.own(name)).collect();
+        let own = own.iter().map(String::as_str);
+        let taken: Vec<&str> = LOCALS.iter().copied().chain(own).collect();
+        Words {
+            locals: Unique::new(&taken),
+            legal,
+        }
+    }
+
+    /// The name of a status.
+    pub fn status(&self, cause: Cause) -> String {
+        let capitals = &self.capitals;
+        match cause {
+            Cause::Velocity(place) => format!("{capitals}_STATUS_INERTIA_{place}"),
+            Cause::Mass => format!("{capitals}_STATUS_INERTIA"),
+            Cause::Constraint(row) => format!("{capitals}_STATUS_CONSTRAINT_{row}"),
+            Cause::Kinematics(number) => format!("{capitals}_STATUS_KINEMATICS_{number}"),
+        }
+    }
+
+    /// The status of a function that has a value.
+    pub fn done(&self) -> String {
+        format!("{}_STATUS_OK", self.capitals)
+    }
+}

@@ -1,0 +1,15 @@
+//! Arrays of C are given from where most is near.
+
+use super::nearest;
+
+#[test]
+fn arrays_are_given_from_where_most_is_near() {
+    let from = |places: &[usize]| nearest(places.iter().copied(), 16, 100);
+    assert_eq!(from(&[]), 0);
+    assert_eq!(from(&[0, 5, 15, 40]), 0);
+    // 0 to 31 are near 16.
+    assert_eq!(from(&[0, 5, 15, 31, 40]), 16);
+    assert_eq!(from(&[3, 60, 61, 75]), 76);
+    // Within the array, and one behind it at most.
+    assert_eq!(from(&[3, 97, 98, 99]), 100);
+}

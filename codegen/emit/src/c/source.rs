@@ -1,0 +1,177 @@
+//! `name.c`: what the header declares.
+
+use super::body::{self, indented};
+use super::header::{prototype, prototypes};
+use super::language::Origins;
+use super::{C, Texts, draw, helpers};
+use crate::function::statements;
+use crate::parameters;
+use hamel_language::syntax::ast::ShapeKind;
+
+/// The source without its header.
+pub fn text(texts: &Texts) -> String {
+    let names = &texts.names;
+    let [default, set, start] = prototypes(texts);
+    let mut functions = format!(
+        "{default}\n{{\n{}}}\n\n{}{set}\n{{\n{}}}\n\n{start}\n{{\n{}}}\n",
+        indented(&defaults(texts)),
+        constants(texts),
+        indented(&setting(texts)),
+        indented(&beginning(texts)),
+    );
+    let language = language(texts);
+    let read = expressions(texts, "system->parameters.");
+    for (spec, name) in texts.functions() {
+        let prototype = prototype(texts, &spec, name);
+        let mut parts = String::new();
+        let body = draw(&texts.emitter, &spec, &language, &read, |drawing| {
+            if drawing.plan.parts.len() <= 1 {
+                return body::whole(texts, drawing);
+            }
+            let body;
+            (parts, body) = body::split(texts, drawing);
+            body
+        });
+        functions.push_str(&format!(
+            "{parts}\n{prototype}\n{{\n{}}}\n",
+            indented(&body)
+        ));
+    }
+    let [before, after] = helpers::around(&functions, names, texts.precision);
+    let everything = format!("{before}{functions}");
+    let headers: String = [
+        ("float.h", ["FLT_RADIX", "FLT_EVAL"].as_slice()),
+        ("math.h", &["("]),
+        ("stdint.h", &["uint32_t", "uint64_t"]),
+        ("string.h", &["memcpy"]),
+    ]
+    .iter()
+    .filter(|(_, words)| words.iter().any(|word| everything.contains(word)))
+    .map(|(header, _)| format!("#include <{header}>\n"))
+    .collect();
+    format!("{headers}\n{everything}{after}")
+}
+
+fn language<'a>(texts: &'a Texts) -> C<'a> {
+    C {
+        names: &texts.names,
+        precision: texts.precision,
+        origins: Origins::default(),
+    }
+}
+
+/// The parameters, whose names stand behind `owner`.
+fn expressions(texts: &Texts, owner: &str) -> Vec<String> {
+    parameters::expressions(texts.program(), &texts.names.fields, owner)
+}
+
+/// `parameters->m = 1.3;` and so on.
+fn defaults(texts: &Texts) -> String {
+    let program = texts.program();
+    let groups = program.params.iter().zip(&texts.names.fields);
+    let mut text = String::new();
+    for (group, field) in groups {
+        let mut set = |index: String, place: usize| {
+            let value = program.defaults.get(group.offset + place);
+            let value = texts.precision.literal(value.copied().unwrap_or_default());
+            let value = value.trim_start_matches('(').trim_end_matches(')');
+            text.push_str(&format!("parameters->{field}{index} = {value};\n"));
+        };
+        match group.shape {
+            // All entries, so that nobody reads what was not written.
+            ShapeKind::Symmetric(n) => {
+                let upper = |i: usize, j: usize| i * n - i * (i + 1) / 2 + j;
+                for i in 0..n {
+                    for j in 0..n {
+                        set(format!("[{i}][{j}]"), upper(i.min(j), i.max(j)));
+                    }
+                }
+            }
+            shape => {
+                for (place, index) in parameters::indices(shape).into_iter().enumerate() {
+                    set(index, place);
+                }
+            }
+        }
+    }
+    if program.params.is_empty() {
+        text.push_str(&format!(
+            "parameters->none = {};\n",
+            texts.precision.literal(0.0)
+        ));
+    }
+    text
+}
+
+/// The function that computes what depends on parameters alone; nothing where there is nothing.
+fn constants(texts: &Texts) -> String {
+    if texts.emitter.kept.is_empty() {
+        return String::new();
+    }
+    let spec = texts.emitter.constants();
+    let read = expressions(texts, "parameters->");
+    let language = language(texts);
+    let body = draw(&texts.emitter, &spec, &language, &read, |drawing| {
+        let mut printer = drawing.printer();
+        let mut text = String::new();
+        for part in &drawing.plan.parts {
+            text.push_str(&statements(&mut printer, drawing.body, part, |_, _| {
+                String::new()
+            }));
+        }
+        for (index, &edge) in drawing.body.outputs.iter().enumerate() {
+            let value = printer.signed(edge);
+            text.push_str(&format!("k[{index}] = {value};\n"));
+        }
+        match text.contains("parameters->") {
+            true => text,
+            false => format!("(void)parameters;\n{text}"),
+        }
+    });
+    format!(
+        "/* What depends on parameters alone. */\nstatic void {}(const {} *parameters, {} *k)\n{{\n{}}}\n\n",
+        texts.names.own(&texts.emitter.names.constants),
+        texts.names.own("parameters"),
+        texts.names.real(),
+        indented(&body)
+    )
+}
+
+/// Computes constants apart, and keeps them where all pivots are positive.
+fn setting(texts: &Texts) -> String {
+    let emitter = &texts.emitter;
+    let names = &texts.names;
+    let mut text = format!(
+        "{} next;\nnext.parameters = *parameters;\n",
+        names.own("system")
+    );
+    if !emitter.kept.is_empty() {
+        let constants = names.own(&emitter.names.constants);
+        text.push_str(&format!("{constants}(parameters, next.k);\n"));
+    }
+    let read = expressions(texts, "next.parameters.");
+    text.push_str(&parameters::checks(
+        emitter,
+        &language(texts),
+        "next.k",
+        &read,
+    ));
+    text + &format!("*system = next;\nreturn {};\n", names.done())
+}
+
+/// x and ξ at the start.
+fn beginning(texts: &Texts) -> String {
+    let program = texts.program();
+    let mut text = String::new();
+    for (array, values) in [("x", &program.start_x), ("xi", &program.start_xi)] {
+        if values.is_empty() {
+            text.push_str(&format!("(void){array};\n"));
+        }
+        for (index, &value) in values.iter().enumerate() {
+            let value = texts.precision.literal(value);
+            let value = value.trim_start_matches('(').trim_end_matches(')');
+            text.push_str(&format!("{array}[{index}] = {value};\n"));
+        }
+    }
+    text
+}

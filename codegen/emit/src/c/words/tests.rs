@@ -1,0 +1,13 @@
+//! Words that C wants for itself are not given to anything else.
+
+use super::legal;
+
+#[test]
+fn words_of_c_and_of_its_headers_are_left_to_them() {
+    for word in ["int", "y0", "sin", "sinf", "linux", "xor", "gamma"] {
+        assert_eq!(legal(word.into()), format!("{word}_"));
+    }
+    for word in ["of", "f", "sine", "m", "k", "infinity"] {
+        assert_eq!(legal(word.into()), word);
+    }
+}

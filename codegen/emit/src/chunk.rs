@@ -1,0 +1,281 @@
+//! Functions of bounded size.
+//!
+//! rustc nests one debug scope in each `let` and overflows its stack at about 3,000 of them; code
+//! that keeps all values in memory compiles slowly. So a long body is cut in parts of plain
+//! `let`s, and only values that are read in a later part go through an array of slots.
+//!
+//! A function that is larger than the cache of instructions takes as long as its code takes to come from the next one,
+//! so that the shortest code is the fastest. Where most values are read far from where they are computed, as in the
+//! slopes of a robot with legs, that is code in short parts: a long one would read a value from its slot, soon put it
+//! on the stack for want of registers, and read it from there again.
+
+use hamel_algebra::graph::{Edge, NodeId};
+use hamel_program::places::{Place, Places, Time};
+use hamel_program::statements::Body;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+/// The fewest `let`s that a part is allowed: one statement with its numbers has to fit.
+const SMALLEST: usize = 8;
+
+/// The most `let`s of a short part.
+const SHORT: usize = 70;
+
+/// A function of at most this many statements fits in the cache of instructions, 32 KB on most machines.
+const FITS: usize = 3000;
+
+/// Parts are short where more than this many values for so many statements cross them.
+const MANY: (usize, usize) = (21, 20);
+
+/// A run of statements that becomes one function.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Its statements.
+    pub statements: Range<usize>,
+    /// The numbers that it reads, in order of first use.
+    pub numbers: Vec<NodeId>,
+}
+
+/// How a body is cut.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Whether the body is small enough for one function.
+    pub whole: bool,
+    /// The parts, in order; a single one where the body is whole.
+    pub parts: Vec<Part>,
+    /// The slot of every value that is read in a later part.
+    pub slots: FxHashMap<NodeId, usize>,
+    /// Number of slots.
+    pub size: usize,
+    /// The results that later parts read where they were written, by their place. In short parts that is the case of
+    /// all: neighbours in a row are then often computed from neighbours, which processors do at once.
+    pub results: FxHashMap<NodeId, usize>,
+}
+
+/// Cuts a body in parts of at most `limit` `let`s: statements, numbers, and the constants' name. Parts write results at
+/// once, or leave them in slots.
+pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) -> Plan {
+    let none = FxHashMap::default();
+    let plan = cut(body, places, time, limit, &none, &FxHashSet::default());
+    // What depends on parameters alone is computed once.
+    if time != Time::Call || body.statements.len() <= FITS {
+        return plan;
+    }
+    let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
+    let computed = results.filter(|&(_, node)| places.of(node, time) == Place::Temporary);
+    // Of equal ones the first.
+    let mut results: FxHashMap<NodeId, usize> =
+        computed.map(|(place, node)| (node, place)).rev().collect();
+    let kept = match when {
+        When::AtOnce => 0,
+        When::BehindPivots => {
+            let pivot = body.statements.iter().rposition(|s| !s.is_let());
+            pivot.unwrap_or(0)
+        }
+        When::AtTheEnd => body.statements.len(),
+    };
+    let kept = body.statements[..kept].iter();
+    let known = kept.flat_map(|statement| statement.defined());
+    let last = known
+        .filter(|node| results.remove(node).is_some())
+        .collect();
+    let short = cut(body, places, time, limit.min(SHORT), &results, &last);
+    let (values, statements) = MANY;
+    if statements * crossings(body, &short.parts) <= values * body.statements.len() {
+        return plan;
+    }
+    let slots = most_used_first(body, &short);
+    Plan {
+        slots,
+        results,
+        ..short
+    }
+}
+
+/// When parts write results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// Where they are computed.
+    AtOnce,
+    /// Those that are known before the last pivot is behind all parts: nothing is written where it is not positive.
+    BehindPivots,
+    /// All behind all parts.
+    AtTheEnd,
+}
+
+/// How many values parts read that others computed, counted for each part that reads them, and once for the one that
+/// computes them.
+fn crossings(body: &Body, parts: &[Part]) -> usize {
+    let mut home: FxHashMap<NodeId, usize> = FxHashMap::default();
+    for (index, part) in parts.iter().enumerate() {
+        let statements = &body.statements[part.statements.clone()];
+        let defined = statements.iter().flat_map(|statement| statement.defined());
+        home.extend(defined.map(|node| (node, index)));
+    }
+    let mut crossing: FxHashSet<NodeId> = FxHashSet::default();
+    let mut reads = 0;
+    for (index, part) in parts.iter().enumerate() {
+        let statements = &body.statements[part.statements.clone()];
+        let operands = statements.iter().flat_map(|s| s.operation.operands());
+        let foreign = |node: &NodeId| home.get(node).is_some_and(|&home| home != index);
+        let read: FxHashSet<NodeId> = operands.map(Edge::node).filter(foreign).collect();
+        reads += read.len();
+        crossing.extend(read);
+    }
+    reads + crossing.len()
+}
+
+/// The parts, and slots for all values that cross them and are not among the results, and for those read `last`, behind
+/// all of them.
+fn cut(
+    body: &Body,
+    places: &Places,
+    time: Time,
+    limit: usize,
+    results: &FxHashMap<NodeId, usize>,
+    last: &FxHashSet<NodeId>,
+) -> Plan {
+    let limit = limit.max(SMALLEST);
+    let is_number = |edge: &Edge| places.of(edge.node(), time) == Place::Number;
+    let mut parts: Vec<Part> = Vec::new();
+    let mut start = 0;
+    while start < body.statements.len() {
+        let part = longest(body, start, limit, is_number, results);
+        start = part.statements.end;
+        parts.push(part);
+    }
+    let mut whole = parts.len() <= 1;
+    if whole {
+        let mut part = parts.pop().unwrap_or_default();
+        let lets = body.statements.iter().filter(|s| s.is_let()).count();
+        // A single body binds the numbers among its results too.
+        let read = part.numbers.len();
+        let outputs = body.outputs.iter().filter(|edge| is_number(edge));
+        for node in outputs.map(|edge| edge.node()) {
+            if !part.numbers.contains(&node) {
+                part.numbers.push(node);
+            }
+        }
+        whole = 1 + lets + part.numbers.len() <= limit;
+        if !whole {
+            part.numbers.truncate(read);
+        }
+        if whole || !part.statements.is_empty() {
+            parts.push(part);
+        }
+    }
+    let (slots, size) = slots(body, &parts, results, last);
+    Plan {
+        whole,
+        parts,
+        slots,
+        size,
+        results: FxHashMap::default(),
+    }
+}
+
+/// The longest part that begins with a statement. It ends behind one of the results that later parts read, if half of
+/// it still does: neighbours in a row are then more often computed together.
+fn longest(
+    body: &Body,
+    start: usize,
+    limit: usize,
+    is_number: impl Fn(&Edge) -> bool,
+    results: &FxHashMap<NodeId, usize>,
+) -> Part {
+    let mut numbers: Vec<NodeId> = Vec::new();
+    let mut seen: FxHashSet<NodeId> = FxHashSet::default();
+    let (mut end, mut lets) = (start, 1);
+    let mut behind_result = (start, 0);
+    for statement in &body.statements[start..] {
+        let read = statement.operation.operands().filter(&is_number);
+        let read = read.map(Edge::node).filter(|node| !seen.contains(node));
+        let new: BTreeSet<NodeId> = read.collect();
+        lets += usize::from(statement.is_let()) + new.len();
+        if lets > limit && end > start {
+            let (earlier, count) = behind_result;
+            if 2 * (earlier - start) >= end - start {
+                end = earlier;
+                numbers.truncate(count);
+            }
+            break;
+        }
+        seen.extend(&new);
+        numbers.extend(new);
+        end += 1;
+        if statement.defined().any(|node| results.contains_key(&node)) {
+            behind_result = (end, numbers.len());
+        }
+    }
+    Part {
+        statements: start..end,
+        numbers,
+    }
+}
+
+/// Slots by liveness: one is used again after the last part that reads its value.
+fn slots(
+    body: &Body,
+    parts: &[Part],
+    results: &FxHashMap<NodeId, usize>,
+    at_the_end: &FxHashSet<NodeId>,
+) -> (FxHashMap<NodeId, usize>, usize) {
+    let mut last: FxHashMap<NodeId, usize> = FxHashMap::default();
+    for (index, part) in parts.iter().enumerate() {
+        for statement in &body.statements[part.statements.clone()] {
+            for edge in statement.operation.operands() {
+                last.insert(edge.node(), index);
+            }
+        }
+    }
+    last.extend(at_the_end.iter().map(|&node| (node, parts.len())));
+    let mut slots = FxHashMap::default();
+    let mut size = 0;
+    let mut free: BTreeSet<usize> = BTreeSet::new();
+    let mut ends: Vec<Vec<usize>> = vec![Vec::new(); parts.len() + 1];
+    for (index, part) in parts.iter().enumerate() {
+        let statements = &body.statements[part.statements.clone()];
+        for node in statements.iter().flat_map(|statement| statement.defined()) {
+            let Some(&end) = last
+                .get(&node)
+                .filter(|&&end| end > index && !results.contains_key(&node))
+            else {
+                continue;
+            };
+            let slot = free.pop_first().unwrap_or_else(|| {
+                size += 1;
+                size - 1
+            });
+            ends[end].push(slot);
+            slots.insert(node, slot);
+        }
+        free.extend(ends[index].drain(..));
+    }
+    (slots, size)
+}
+
+/// Slots numbered by how many parts use them: the offsets of the first are shorter, and they are next to one another.
+fn most_used_first(body: &Body, plan: &Plan) -> FxHashMap<NodeId, usize> {
+    let mut uses = vec![0_usize; plan.size];
+    for part in &plan.parts {
+        let statements = &body.statements[part.statements.clone()];
+        let values = statements.iter().flat_map(|statement| {
+            let operands = statement.operation.operands().map(Edge::node);
+            operands.chain(statement.defined())
+        });
+        let here: FxHashSet<NodeId> = values.collect();
+        for &slot in here.iter().filter_map(|node| plan.slots.get(node)) {
+            uses[slot] += 1;
+        }
+    }
+    let mut order: Vec<usize> = (0..plan.size).collect();
+    order.sort_by_key(|&slot| Reverse(uses[slot]));
+    let mut places = vec![0; plan.size];
+    for (place, &slot) in order.iter().enumerate() {
+        places[slot] = place;
+    }
+    let slots = plan.slots.iter();
+    slots.map(|(&node, &slot)| (node, places[slot])).collect()
+}

@@ -1,0 +1,270 @@
+//! Doc comments.
+
+use super::names;
+use hamel_algebra::graph::NodeId;
+use hamel_language::model::layout::Block;
+use hamel_language::model::{Coordinate, Group};
+use hamel_language::syntax::ast::{CoordKind, ShapeKind};
+use hamel_program::count::{Count, count_nodes};
+use hamel_program::{Argument, Cause, Function, Program, Shape};
+
+/// Width at which lists of names are broken.
+const WIDTH: usize = 90;
+
+/// Lines as a doc comment.
+pub fn comment(lines: &[String]) -> String {
+    let mut text = String::new();
+    for line in lines.iter().flat_map(|line| line.split(['\n', '\r'])) {
+        let line = line.trim_end();
+        let space = if line.is_empty() || line.starts_with(' ') {
+            ""
+        } else {
+            " "
+        };
+        text.push_str(&format!("///{space}{}\n", spelled(line)));
+    }
+    text
+}
+
+/// A line of a comment in which what turns the direction of writing is spelled out: rustc refuses it.
+pub fn spelled(line: &str) -> String {
+    let turns = |letter| matches!(letter, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let mut text = String::with_capacity(line.len());
+    for letter in line.chars() {
+        match turns(letter) {
+            true => text.extend(letter.escape_unicode()),
+            false => text.push(letter),
+        }
+    }
+    text
+}
+
+/// "66 mul, 54 add; parameters hoisted".
+pub fn operations(count: Count, end: &str) -> String {
+    let counts = [
+        (count.mul, "mul"),
+        (count.add, "add"),
+        (count.div, "div"),
+        (count.sqrt, "sqrt"),
+        (count.sincos, "sincos"),
+        (count.other, "other functions"),
+    ];
+    let nonzero = counts.iter().filter(|(number, _)| *number > 0);
+    let list: Vec<String> = nonzero
+        .map(|(number, name)| format!("{number} {name}"))
+        .collect();
+    if list.is_empty() {
+        "No operations.".into()
+    } else {
+        format!("Operations: {}{end}.", list.join(", "))
+    }
+}
+
+/// The documentation of a function in Rust: what it evaluates, its cost, arguments, result, errors.
+pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
+    let mut lines = described(program, function, nodes);
+    let result = result(function.shape);
+    lines.extend([String::new(), format!("Returns {result}.")]);
+    if function.fallible {
+        lines.extend(errors(program, function));
+    }
+    lines
+}
+
+/// The section on errors.
+pub fn errors(program: &Program, function: &Function) -> [String; 3] {
+    let why = missing(program, function);
+    [
+        String::new(),
+        "# Errors".into(),
+        format!("`Singular` where {why}."),
+    ]
+}
+
+/// When a function has no value: what its guards see.
+pub fn missing(program: &Program, function: &Function) -> String {
+    let causes = function.guards.iter().map(|&guard| program.cause(guard));
+    let causes: Vec<Cause> = causes.collect();
+    let has = |of: fn(&Cause) -> bool| causes.iter().any(of);
+    let reasons = [
+        (
+            has(|cause| matches!(cause, Cause::Constraint(_))),
+            "constraints depend on one another",
+        ),
+        (
+            has(|cause| matches!(cause, Cause::Kinematics(_))),
+            "the mechanism is at a kinematic singularity, where a pivot of [Y; Φ] changes its sign",
+        ),
+    ];
+    let mut text = String::from("the mass matrix is not positive definite");
+    for (_, reason) in reasons.iter().filter(|(holds, _)| *holds) {
+        text += ", or ";
+        text += reason;
+    }
+    text
+}
+
+/// What a function evaluates, its cost, and its arguments.
+pub fn described(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
+    let mut lines = function.docs.clone();
+    if lines.is_empty() {
+        lines.push(format!("`{}`.", function.name));
+    }
+    let count = count_nodes(&program.graph, nodes);
+    let hoisted = if program.params.is_empty() {
+        ""
+    } else {
+        "; parameters hoisted"
+    };
+    lines.extend([String::new(), operations(count, hoisted)]);
+    if !function.arguments.is_empty() {
+        lines.push(String::new());
+    }
+    for &argument in &function.arguments {
+        let prefix = match argument {
+            Argument::Accelerations => "derivatives of ",
+            Argument::Momenta => "momenta dual to ",
+            _ => "",
+        };
+        let size = numbers(program.length(argument));
+        lines.push(format!(
+            "- `{}`: {size}, {prefix}`[{}]`",
+            names::argument(argument),
+            groups(program, argument).join(", ")
+        ));
+    }
+    lines
+}
+
+/// A shape in words.
+pub fn result(shape: Shape) -> String {
+    match shape {
+        Shape::Scalar => "a number".into(),
+        Shape::Vector(n) => numbers(n),
+        Shape::Matrix(1, columns) => format!("1 row of {}", numbers(columns)),
+        Shape::Matrix(rows, columns) => format!("{rows} rows of {}", numbers(columns)),
+    }
+}
+
+fn numbers(n: usize) -> String {
+    if n == 1 {
+        "1 number".into()
+    } else {
+        format!("{n} numbers")
+    }
+}
+
+/// The names that an argument consists of, those of a vector as a range.
+pub fn groups(program: &Program, argument: Argument) -> Vec<String> {
+    match argument {
+        Argument::Coordinates => program.coordinates.iter().flat_map(coordinate).collect(),
+        Argument::Velocities | Argument::Accelerations => {
+            let groups = program.velocities.iter().chain(&program.states);
+            groups.map(group).collect()
+        }
+        Argument::Momenta => program.velocities.iter().map(group).collect(),
+        Argument::Inputs => program.inputs.iter().map(group).collect(),
+    }
+}
+
+fn coordinate(coordinate: &Coordinate) -> Vec<String> {
+    let name = &coordinate.name;
+    match coordinate.kind {
+        CoordKind::Real => vec![name.clone()],
+        CoordKind::Euclidean(n) => vec![vector(name, n)],
+        CoordKind::S1 => vec![format!("{name}.c"), format!("{name}.s")],
+        CoordKind::S3 => vec![vector(name, 4)],
+        CoordKind::SO3 => vec![matrix(name, 3)],
+        CoordKind::SE3 => vec![
+            vector(&format!("{name}.p"), 3),
+            matrix(&format!("{name}.R"), 3),
+        ],
+    }
+}
+
+fn group(group: &Group) -> String {
+    match group.shape {
+        ShapeKind::Scalar => group.name.clone(),
+        ShapeKind::Vector(n) => vector(&group.name, n),
+        ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => matrix(&group.name, n),
+    }
+}
+
+fn vector(name: &str, n: usize) -> String {
+    if n == 1 {
+        format!("{name}[1]")
+    } else {
+        format!("{name}[1..{n}]")
+    }
+}
+
+fn matrix(name: &str, n: usize) -> String {
+    format!("{name}[1..{n}, 1..{n}]")
+}
+
+/// A shape as written in a description.
+pub fn shape(shape: ShapeKind) -> String {
+    match shape {
+        ShapeKind::Scalar => "a number".into(),
+        ShapeKind::Vector(n) => format!("a vector of {n}"),
+        ShapeKind::Matrix(n) => format!("a {n}×{n} matrix by rows"),
+        ShapeKind::Symmetric(n) => format!("a symmetric {n}×{n} matrix by rows"),
+    }
+}
+
+/// The sizes of lists of numbers: a name, what it is, the number of the first symbol, the size.
+pub fn sizes(program: &Program) -> Vec<(&'static str, &'static str, usize, usize)> {
+    let [_, x, xi, u, z, ..] = program.symbols();
+    let states =
+        "The number of states of first order z, which stand behind the velocities: `xi` is (ξ, z).";
+    let mut sizes = vec![
+        (
+            "COORDINATES",
+            "ν, the number of coordinates x.",
+            x,
+            program.nu,
+        ),
+        (
+            "VELOCITIES",
+            "n, the number of velocities ξ.",
+            xi,
+            program.n,
+        ),
+        ("STATES", states, z, program.n_z),
+        ("INPUTS", "The number of inputs u.", u, program.m),
+    ];
+    sizes.retain(|(name, .., size)| *name != "STATES" || *size > 0);
+    sizes
+}
+
+/// "ν, the length of x = [r[1], r[2], …]", broken in lines; `first` is the first symbol's number.
+pub fn entries(program: &Program, what: &str, first: usize, length: usize) -> Vec<String> {
+    let symbols = program.graph.symbols().iter().skip(first).take(length);
+    let mut lines = vec![what.to_string()];
+    let names: Vec<String> = symbols.map(|symbol| format!("`{}`", symbol.name)).collect();
+    if names.is_empty() {
+        return lines;
+    }
+    lines.push(String::new());
+    let mut line = "In order:".to_string();
+    for (index, name) in names.iter().enumerate() {
+        if line.chars().count() + name.chars().count() > WIDTH {
+            lines.push(std::mem::take(&mut line));
+        }
+        let space = if line.is_empty() { "" } else { " " };
+        let end = if index + 1 == names.len() { "." } else { "," };
+        line.push_str(&format!("{space}{name}{end}"));
+    }
+    lines.push(line);
+    lines
+}
+
+/// A block of x as an expression.
+pub fn block(block: Block) -> String {
+    match block {
+        Block::Flat(n) => format!("::hamel::Block::Flat({n})"),
+        Block::Circle => "::hamel::Block::Circle".into(),
+        Block::Quaternion => "::hamel::Block::Quaternion".into(),
+        Block::Rotation => "::hamel::Block::Rotation".into(),
+    }
+}

@@ -1,0 +1,124 @@
+//! Functions in Rust: the trait of those who have them, by which the generated type is generic. A description without
+//! such functions has neither.
+
+use super::{Emitter, docs};
+use hamel_algebra::external::External;
+
+/// What stands behind `impl`: `<S: ::hamel::Scalar>`, with the functions in Rust where there are some.
+pub fn generics(emitter: &Emitter) -> String {
+    match bound(emitter) {
+        Some(bound) => format!("<S: ::hamel::Scalar, {bound}>"),
+        None => "<S: ::hamel::Scalar>".into(),
+    }
+}
+
+/// `F: NameFunctions<S>`
+fn bound(emitter: &Emitter) -> Option<String> {
+    let names = &emitter.names.externals;
+    (!names.methods.is_empty()).then(|| format!("{}: {}<S>", names.parameter, names.of))
+}
+
+/// The type with its parameters: `Name<S>`, `Name<S, F>`.
+pub fn applied(emitter: &Emitter) -> String {
+    let name = &emitter.names.type_name;
+    match has(emitter) {
+        true => format!("{name}<S, {}>", emitter.names.externals.parameter),
+        false => format!("{name}<S>"),
+    }
+}
+
+/// Whether there are functions in Rust.
+pub fn has(emitter: &Emitter) -> bool {
+    !emitter.names.externals.methods.is_empty()
+}
+
+/// Where their bound is wanted beside that of defaults.
+pub fn default_where(emitter: &Emitter) -> String {
+    match has(emitter) {
+        true => format!(
+            " where {}: ::core::default::Default",
+            emitter.names.externals.parameter
+        ),
+        false => String::new(),
+    }
+}
+
+/// The trait, with the formula and the shape of each function.
+pub fn functions(emitter: &Emitter) -> String {
+    if !has(emitter) {
+        return String::new();
+    }
+    let names = &emitter.names.externals;
+    let of = &emitter.names.type_name;
+    let mut methods = String::new();
+    let externals = emitter.program.graph.externals().iter();
+    for ((external, [value, slopes]), arguments) in
+        externals.zip(&names.methods).zip(&names.arguments)
+    {
+        let given: Vec<String> = arguments.iter().map(|name| format!("{name}: S")).collect();
+        let given = given.join(", ");
+        let (m, n) = (external.components, arguments.len());
+        let row = format!("[S; {n}]");
+        let (result, matrix) = match m {
+            1 => ("S".into(), row),
+            _ => (format!("[S; {m}]"), format!("[{row}; {m}]")),
+        };
+        let [first, second] = documentation(external);
+        methods.push_str(&format!(
+            "{}fn {value}(&self, {given}) -> {result};\n\n{}fn {slopes}(&self, {given}) -> {matrix};\n\n",
+            docs::comment(&first),
+            docs::comment(&second),
+        ));
+    }
+    let public = if emitter.program.public { "pub " } else { "" };
+    let lines = [
+        format!("The functions that the description of `{of}` calls and does not define."),
+        String::new(),
+        "What they give may depend on their arguments alone. Where one of them jumps, or the matrix".into(),
+        "is not that of its slopes, the linearisation is wrong and nothing says so.".into(),
+    ];
+    format!(
+        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, clippy::too_many_arguments, reason = \"the description's names and uses\")]\n{public}trait {}<S: ::hamel::Scalar>: ::core::clone::Clone {{\n{methods}}}\n\n",
+        docs::comment(&lines),
+        names.of
+    )
+}
+
+/// What is said of components and of slopes.
+fn documentation(external: &External) -> [Vec<String>; 2] {
+    let given = external.arguments.join(", ");
+    let (name, m, n) = (
+        &external.name,
+        external.components,
+        external.arguments.len(),
+    );
+    let call = format!("{name}({given})");
+    match m {
+        1 => [
+            vec![format!("The number f = `{call}`.")],
+            vec![format!(
+                "Its {n} slopes ∂f/∂aⱼ, in the order of the arguments a = ({given})."
+            )],
+        ],
+        _ => [
+            vec![format!(
+                "The {m} components fᵢ of `{call}`, of which the description calls the first `{call}[1]`."
+            )],
+            vec![format!(
+                "Their {m} × {n} slopes ∂fᵢ/∂aⱼ: a row for each component, in it the arguments a = ({given}) in order."
+            )],
+        ],
+    }
+}
+
+/// The field in which they are.
+pub fn field(emitter: &Emitter) -> String {
+    let names = &emitter.names.externals;
+    match has(emitter) {
+        true => format!(
+            "/// The functions that the description does not define.\n{}: {},\n",
+            names.field, names.parameter
+        ),
+        false => String::new(),
+    }
+}

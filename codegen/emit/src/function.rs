@@ -1,0 +1,311 @@
+//! One generated function.
+
+use super::chunk::{Part, Plan, plan};
+use super::docs;
+use super::language::{Array, Language, Rust};
+use super::locals::Locals;
+use super::print::{Printer, Used, Written};
+use super::{Emitter, names};
+use hamel_algebra::graph::{Edge, NodeId};
+use hamel_program::places::Time;
+use hamel_program::statements::{Body, Operation};
+use hamel_program::{Argument, Cause, Program, Shape, tape};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// The argument to which slopes are written besides a result.
+pub const SLOPES: &str = Array::Slopes.name();
+
+/// What a function is.
+pub struct Spec<'a> {
+    /// Name.
+    pub name: String,
+    /// Whether it is `pub`.
+    pub public: bool,
+    /// Documentation, one string a line.
+    pub docs: Vec<String>,
+    /// Arguments.
+    pub arguments: &'a [Argument],
+    /// Shape of the result.
+    pub shape: Shape,
+    /// Shape of what is written to the argument `slopes` besides.
+    pub beside: Option<Shape>,
+    /// Results, behind them what is written besides.
+    pub outputs: Vec<Edge>,
+    /// Pivots.
+    pub guards: Vec<Edge>,
+    /// Whether it returns a `Result`.
+    pub fallible: bool,
+    /// Nodes that it computes, children first.
+    pub nodes: Vec<NodeId>,
+    /// When it runs.
+    pub time: Time,
+}
+
+impl Spec<'_> {
+    /// The array with a result, its shape, and the place there.
+    pub fn place(&self, result: usize) -> (Array, Shape, usize) {
+        let entries = self.shape.entries();
+        match self.beside.filter(|_| result >= entries) {
+            Some(shape) => (Array::Slopes, shape, result - entries),
+            None => (Array::Out, self.shape, result),
+        }
+    }
+}
+
+/// The statements of a function, and the names that the user gave to values of it.
+pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
+    let locals = Locals::new(&emitter.words, &emitter.program.names, &spec.nodes);
+    let named = tape::named(emitter.program, &spec.nodes);
+    let places = &emitter.places;
+    let guards = spec.guards.iter();
+    let guards: Vec<(Edge, Cause)> = guards
+        .map(|&guard| (guard, emitter.program.cause(guard)))
+        .collect();
+    let body = hamel_program::statements::statements(
+        places,
+        spec.time,
+        &spec.nodes,
+        &spec.outputs,
+        &guards,
+        &named,
+    );
+    (locals, body)
+}
+
+/// The function as Rust, its parts before it.
+pub fn text(emitter: &Emitter, spec: &Spec) -> String {
+    let parameters =
+        super::parameters::expressions(emitter.program, &emitter.names.fields, "self.");
+    draw(emitter, spec, &Rust, &parameters, |drawing| {
+        if drawing.plan.whole {
+            drawing.whole()
+        } else {
+            drawing.split()
+        }
+    })
+}
+
+/// A function with its statements, names and parts, for the text of a language.
+pub fn draw(
+    emitter: &Emitter,
+    spec: &Spec,
+    language: &dyn Language,
+    parameters: &[String],
+    text: impl FnOnce(&Drawing) -> String,
+) -> String {
+    let (mut locals, body) = lower(emitter, spec);
+    let read = body
+        .statements
+        .iter()
+        .flat_map(|statement| statement.operation.operands());
+    let numbers = read.chain(body.outputs.iter().copied()).map(Edge::node);
+    locals.fill(&body.statements, numbers, &emitter.places);
+    let when = language.when(spec.shape, spec.fallible);
+    let plan = plan(&body, &emitter.places, spec.time, emitter.chunk, when);
+    let places = plan.results.iter();
+    let written = places.map(|(&node, &place)| {
+        let written = Written {
+            place: spec.place(place),
+            negative: body.outputs[place].is_negative(),
+        };
+        (node, written)
+    });
+    text(&Drawing {
+        emitter,
+        spec,
+        language,
+        locals: &locals,
+        body: &body,
+        plan: &plan,
+        written: &written.collect(),
+        parameters,
+    })
+}
+
+/// The type of a result or of an argument.
+pub fn shape_type(shape: Shape) -> String {
+    match shape {
+        Shape::Scalar => "S".into(),
+        Shape::Vector(n) => format!("[S; {n}]"),
+        Shape::Matrix(rows, columns) => format!("[[S; {columns}]; {rows}]"),
+    }
+}
+
+/// All that a function's text is made from.
+pub struct Drawing<'a> {
+    /// The program.
+    pub emitter: &'a Emitter<'a>,
+    /// The function.
+    pub spec: &'a Spec<'a>,
+    /// What it is printed in.
+    pub language: &'a dyn Language,
+    /// Names of its values.
+    pub locals: &'a Locals,
+    /// Its statements.
+    pub body: &'a Body,
+    /// How it is cut.
+    pub plan: &'a Plan,
+    /// Results that are read where they were written.
+    pub written: &'a FxHashMap<NodeId, Written>,
+    /// The parameters as expressions.
+    pub parameters: &'a [String],
+}
+
+impl Drawing<'_> {
+    /// A printer that has printed nothing.
+    pub fn printer(&self) -> Printer<'_> {
+        Printer {
+            language: self.language,
+            program: self.emitter.program,
+            places: &self.emitter.places,
+            time: self.spec.time,
+            arguments: self.spec.arguments,
+            locals: self.locals,
+            parameters: self.parameters,
+            externals: &self.emitter.names.externals,
+            slots: &self.plan.slots,
+            written: self.written,
+            here: FxHashSet::default(),
+            used: Used::default(),
+        }
+    }
+
+    /// One body.
+    fn whole(&self) -> String {
+        let mut printer = self.printer();
+        let mut text = String::new();
+        for part in &self.plan.parts {
+            text.push_str(&statements(&mut printer, self.body, part, |_, _| {
+                String::new()
+            }));
+        }
+        let results: Vec<String> = self
+            .body
+            .outputs
+            .iter()
+            .map(|&edge| printer.signed(edge))
+            .collect();
+        let (results, besides) = results.split_at(self.spec.shape.entries());
+        if let Some(shape) = self.spec.beside {
+            text.push_str(&format!("*{SLOPES} = {};\n", shaped(shape, besides)));
+        }
+        let value = shaped(self.spec.shape, results);
+        let kept = self.bind_kept(&printer.used);
+        let body = format!("{kept}{text}{}", self.value(&value));
+        self.head(&printer.used, &body)
+    }
+
+    /// The name of the kept constants, where it is used.
+    pub fn bind_kept(&self, used: &Used) -> String {
+        match used.kept {
+            true => format!("let k = &self.{};\n", self.emitter.names.kept),
+            false => String::new(),
+        }
+    }
+
+    /// The end of the function.
+    pub fn value(&self, value: &str) -> String {
+        if self.spec.fallible {
+            format!("::core::result::Result::Ok({value})\n")
+        } else {
+            format!("{value}\n")
+        }
+    }
+
+    /// The function around its body.
+    pub fn head(&self, used: &Used, body: &str) -> String {
+        let taken = |argument: Argument| used.arguments.contains(&argument);
+        head(self.emitter.program, self.spec, taken, body)
+    }
+}
+
+/// Entries in a shape.
+fn shaped(shape: Shape, entries: &[String]) -> String {
+    let list = |entries: &[String]| format!("[{}]", entries.join(", "));
+    match shape {
+        Shape::Scalar => entries.join(""),
+        Shape::Vector(_) => list(entries),
+        Shape::Matrix(_, 0) => zeros(shape),
+        Shape::Matrix(_, columns) => {
+            let rows: Vec<String> = entries.chunks(columns).map(list).collect();
+            list(&rows)
+        }
+    }
+}
+
+/// A function around its body, which depends on the arguments that are taken.
+pub fn head(
+    program: &Program,
+    spec: &Spec,
+    taken: impl Fn(Argument) -> bool,
+    body: &str,
+) -> String {
+    let mut arguments = vec!["&self".to_string()];
+    let mut unused = Vec::new();
+    for &argument in spec.arguments {
+        let name = names::argument(argument);
+        arguments.push(format!("{name}: &[S; {}]", program.length(argument)));
+        if !taken(argument) {
+            unused.push(name);
+        }
+    }
+    if let Some(shape) = spec.beside {
+        arguments.push(format!("{SLOPES}: &mut {}", shape_type(shape)));
+    }
+    let result = shape_type(spec.shape);
+    let result = match spec.fallible {
+        true => format!("::core::result::Result<{result}, ::hamel::Singular>"),
+        false => result,
+    };
+    let mut attributes = String::new();
+    if !unused.is_empty() {
+        let reason = format!("the value does not depend on {}", unused.join(", "));
+        attributes.push_str(&format!(
+            "#[allow(unused_variables, reason = \"{reason}\")]\n"
+        ));
+    }
+    if spec.public && !spec.fallible {
+        attributes.push_str("#[must_use]\n");
+    }
+    let public = if spec.public { "pub " } else { "" };
+    format!(
+        "{}{attributes}{public}fn {}({}) -> {result} {{\n{body}}}\n\n",
+        docs::comment(&spec.docs),
+        spec.name,
+        arguments.join(", ")
+    )
+}
+
+/// The statements of a part; `after` is asked for what follows each value.
+pub fn statements(
+    printer: &mut Printer,
+    body: &Body,
+    part: &Part,
+    mut after: impl FnMut(&mut Printer, NodeId) -> String,
+) -> String {
+    let mut text: String = part
+        .numbers
+        .iter()
+        .map(|&node| printer.number(node))
+        .collect();
+    for statement in &body.statements[part.statements.clone()] {
+        text.push_str(&printer.statement(statement));
+        if !matches!(statement.operation, Operation::Check(..)) {
+            for node in statement.defined() {
+                text.push_str(&after(printer, node));
+            }
+        }
+    }
+    text
+}
+
+/// Zeros in a shape.
+pub fn zeros(shape: Shape) -> String {
+    match shape {
+        Shape::Scalar => "S::default()".into(),
+        Shape::Vector(0) | Shape::Matrix(0, _) => "[]".into(),
+        Shape::Matrix(rows, 0) => format!("[[]; {rows}]"),
+        Shape::Vector(n) => format!("[S::default(); {n}]"),
+        Shape::Matrix(rows, columns) => format!("[[S::default(); {columns}]; {rows}]"),
+    }
+}

@@ -1,0 +1,72 @@
+//! The limits of joints, as constants of the type: they document the machine, and no function uses
+//! them.
+
+use super::names::{Unique, snake};
+use super::number::literal;
+use hamel_language::model::joints::Joint;
+use hamel_language::syntax::ast::JointKind;
+use hamel_program::Program;
+
+/// A documented constant of a joint.
+pub struct Limit {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub title: String,
+    /// One number, or the smallest and the largest.
+    pub values: Vec<f64>,
+}
+
+/// All limits of a program, in the order of its joints.
+pub fn limits(program: &Program) -> Vec<Limit> {
+    let mut names = Unique::default();
+    let mut all = Vec::new();
+    for joint in &program.joints {
+        let mut push = |ending: &str, what: String, values: Vec<f64>| {
+            let wanted = format!("{}_{ending}", snake(&joint.name)).to_ascii_uppercase();
+            all.push(Limit {
+                name: names.claim(&wanted),
+                title: format!("Joint `{}`: {what}.", joint.name),
+                values,
+            });
+        };
+        let [place, speed, force] = units(joint);
+        if let Some([lower, upper]) = joint.limit {
+            let what = format!("its smallest and largest coordinate ({place})");
+            push("LIMIT", what, vec![lower, upper]);
+        }
+        if let Some(most) = joint.max_speed {
+            let what = format!("the largest size of its velocity ({speed})");
+            push("MAX_SPEED", what, vec![most]);
+        }
+        if let Some(most) = joint.max_force {
+            let what = format!("the largest size of its force ({force})");
+            push("MAX_FORCE", what, vec![most]);
+        }
+    }
+    all
+}
+
+/// `pub const ELBOW_LIMIT: [f64; 2] = [-2.0, 2.0];` and the like.
+pub fn constants(program: &Program) -> String {
+    let constant = |limit: Limit| {
+        let (kind, value) = match limit.values.as_slice() {
+            &[lower, upper] => (
+                "[f64; 2]",
+                format!("[{}, {}]", literal(lower), literal(upper)),
+            ),
+            values => ("f64", values.iter().map(|&value| literal(value)).collect()),
+        };
+        let Limit { name, title, .. } = limit;
+        format!("/// {title}\npub const {name}: {kind} = {value};\n\n")
+    };
+    limits(program).into_iter().map(constant).collect()
+}
+
+/// Units of the coordinate, the velocity and the force of a joint.
+fn units(joint: &Joint) -> [&'static str; 3] {
+    match joint.kind {
+        JointKind::Prismatic => ["m", "m/s", "N"],
+        _ => ["rad", "rad/s", "N m"],
+    }
+}

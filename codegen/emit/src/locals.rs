@@ -1,0 +1,113 @@
+//! Names of the values of one function.
+
+use super::names::{Unique, Words, snake};
+use super::number;
+use hamel_algebra::graph::{Edge, NodeId};
+use hamel_program::places::Places;
+use hamel_program::statements::{Operation, Statement};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Names of temporaries and numbers.
+#[derive(Clone, Debug)]
+pub struct Locals {
+    scope: Unique,
+    legal: fn(String) -> String,
+    names: FxHashMap<NodeId, String>,
+}
+
+impl Locals {
+    /// Gives the user's names to those of his expressions that are computed here.
+    pub fn new(words: &Words, named: &[(String, Edge)], nodes: &[NodeId]) -> Self {
+        let here: FxHashSet<NodeId> = nodes.iter().copied().collect();
+        let mut locals = Locals {
+            scope: words.locals.clone(),
+            legal: words.legal,
+            names: FxHashMap::default(),
+        };
+        for (name, edge) in named {
+            let node = edge.node();
+            if here.contains(&node) && !locals.names.contains_key(&node) {
+                let sign = if edge.is_negative() { "minus_" } else { "" };
+                locals.claim(node, &format!("{sign}{}", snake(name)));
+            }
+        }
+        locals
+    }
+
+    /// The name of a value.
+    pub fn name(&self, node: NodeId) -> &str {
+        self.names.get(&node).map_or("", String::as_str)
+    }
+
+    /// Names the values of all statements, and numbers in order of first use.
+    pub fn fill(
+        &mut self,
+        statements: &[Statement],
+        numbers: impl Iterator<Item = NodeId>,
+        places: &Places,
+    ) {
+        let mut count = 0;
+        for node in numbers.filter(|&node| places.is_number(node)) {
+            if self.names.contains_key(&node) {
+                continue;
+            }
+            match number::name(places.graph(), node) {
+                Some(name) => self.claim(node, name),
+                None => self.count(node, "c", &mut count),
+            }
+        }
+        let (mut temporaries, mut angles) = (0, 0);
+        for statement in statements {
+            if let Operation::SinCos(angle) = statement.operation {
+                self.pair(angle, statement.results, &mut angles, places);
+                continue;
+            }
+            for node in statement.defined() {
+                if !self.names.contains_key(&node) {
+                    self.count(node, "t", &mut temporaries);
+                }
+            }
+        }
+    }
+
+    /// `sin_q` and `cos_q` of an entry q, `sin1` and `cos1` of another angle.
+    fn pair(
+        &mut self,
+        angle: Edge,
+        results: [Option<NodeId>; 2],
+        count: &mut usize,
+        places: &Places,
+    ) {
+        let entry = places.entry(angle.node()).filter(|_| !angle.is_negative());
+        let suffix = match entry {
+            Some(entry) => format!("_{}", snake(entry)),
+            None => {
+                *count += 1;
+                count.to_string()
+            }
+        };
+        for (node, function) in results.into_iter().zip(["sin", "cos"]) {
+            if let Some(node) = node
+                && !self.names.contains_key(&node)
+            {
+                self.claim(node, &format!("{function}{suffix}"));
+            }
+        }
+    }
+
+    /// The next free name of a numbered series.
+    fn count(&mut self, node: NodeId, letter: &str, count: &mut usize) {
+        loop {
+            *count += 1;
+            let name = format!("{letter}{count}");
+            if self.scope.is_free(&name) {
+                return self.claim(node, &name);
+            }
+        }
+    }
+
+    fn claim(&mut self, node: NodeId, wanted: &str) {
+        let name = self.scope.claim(&(self.legal)(wanted.into()));
+        self.names.insert(node, name);
+    }
+}

@@ -1,0 +1,266 @@
+//! Statements as text: what all languages share, where values are found, and signs.
+
+use super::language::{Array, Language, Operand};
+use super::locals::Locals;
+use super::names::{self, ExternalNames};
+use hamel_algebra::graph::{Edge, NodeId};
+use hamel_program::places::{Place, Places, Time};
+use hamel_program::statements::{Call, Operation, Statement};
+use hamel_program::{Argument, Program, Shape};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a text reads and writes beyond its own values.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Used {
+    /// Arguments read.
+    pub arguments: BTreeSet<Argument>,
+    /// Whether kept constants are read.
+    pub kept: bool,
+    /// Entries of arrays that are read or written, as often as they are.
+    pub entries: Vec<(Array, usize)>,
+    /// What becomes of arrays.
+    access: BTreeMap<Array, Access>,
+    /// Whether it can return an error.
+    pub checks: bool,
+}
+
+impl Used {
+    /// What becomes of an array.
+    pub fn access(&self, array: Array) -> Access {
+        self.access.get(&array).copied().unwrap_or_default()
+    }
+
+    /// Notes that an entry is read or written.
+    pub fn touch(&mut self, array: Array, place: usize, access: Access) {
+        self.entries.push((array, place));
+        let known = self.access.entry(array).or_default();
+        *known = access.max(*known);
+    }
+}
+
+/// What a text does with an array.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Access {
+    /// Nothing.
+    #[default]
+    None,
+    /// It reads entries.
+    Read,
+    /// It writes entries.
+    Written,
+}
+
+/// A result that is read where it was written.
+pub struct Written {
+    /// Its place, in an array of some shape.
+    pub place: (Array, Shape, usize),
+    /// Whether it is the negative of the value.
+    pub negative: bool,
+}
+
+/// Prints the statements of one function or part.
+pub struct Printer<'a> {
+    /// How statements are spelled.
+    pub language: &'a dyn Language,
+    /// The program.
+    pub program: &'a Program,
+    /// Where values are found.
+    pub places: &'a Places<'a>,
+    /// When the function runs.
+    pub time: Time,
+    /// What the function takes.
+    pub arguments: &'a [Argument],
+    /// Names of values.
+    pub locals: &'a Locals,
+    /// The parameters as expressions, in order.
+    pub parameters: &'a [String],
+    /// Names of functions in Rust.
+    pub externals: &'a ExternalNames,
+    /// Slots of values that cross parts.
+    pub slots: &'a FxHashMap<NodeId, usize>,
+    /// Results that are read where they were written.
+    pub written: &'a FxHashMap<NodeId, Written>,
+    /// Values computed by statements printed so far.
+    pub here: FxHashSet<NodeId>,
+    /// What was used so far.
+    pub used: Used,
+}
+
+impl Printer<'_> {
+    /// A value without its sign.
+    fn value(&mut self, node: NodeId) -> String {
+        match self.places.of(node, self.time) {
+            // The value of the function does not depend on it, as was proved, but expressions that are equal
+            // are one node. The interpreter takes 0 as well.
+            Place::Argument(argument, _) if !self.arguments.contains(&argument) => {
+                self.language.zero()
+            }
+            Place::Argument(argument, index) => {
+                self.used.arguments.insert(argument);
+                format!("{}[{index}]", names::argument(argument))
+            }
+            Place::Parameter(index) => self.parameters[index].clone(),
+            Place::Kept(index) => {
+                self.used.kept = true;
+                format!("k[{index}]")
+            }
+            Place::Number => {
+                let name = self.locals.name(node);
+                self.language.number(self.places.graph(), node, name)
+            }
+            Place::Temporary if self.here.contains(&node) => self.locals.name(node).into(),
+            Place::Temporary => match self.slots.get(&node) {
+                Some(&slot) => self.slot(slot, Access::Read),
+                // No text of any language, so that it never leaves the generator.
+                None => format!("no value for node {node}"),
+            },
+        }
+    }
+
+    /// The slot of a value that is read or written there.
+    fn slot(&mut self, slot: usize, access: Access) -> String {
+        self.used.touch(Array::Slots, slot, access);
+        let shape = Shape::Vector(self.slots.len());
+        self.language.entry(Array::Slots, shape, slot)
+    }
+
+    /// A value with its sign, as an operand.
+    pub fn signed(&mut self, edge: Edge) -> String {
+        self.operand(edge).signed()
+    }
+
+    fn operand(&mut self, edge: Edge) -> Operand {
+        let node = edge.node();
+        let negative = edge.is_negative();
+        match self
+            .written
+            .get(&node)
+            .filter(|_| !self.here.contains(&node))
+        {
+            Some(written) => {
+                let (array, shape, place) = written.place;
+                self.used.touch(array, place, Access::Read);
+                Operand {
+                    value: self.language.entry(array, shape, place),
+                    negative: negative != written.negative,
+                }
+            }
+            None => Operand {
+                value: self.value(node),
+                negative,
+            },
+        }
+    }
+
+    /// A result that is written by itself: a number stands as a literal.
+    pub fn result(&mut self, edge: Edge) -> String {
+        match self.places.of(edge.node(), self.time) {
+            Place::Number => {
+                let sign = if edge.is_negative() { "-" } else { "" };
+                let literal = self.language.literal(self.places.graph(), edge.node());
+                format!("{sign}{literal}")
+            }
+            _ => self.signed(edge),
+        }
+    }
+
+    /// The binding of a number.
+    pub fn number(&self, node: NodeId) -> String {
+        let name = self.locals.name(node);
+        self.language
+            .number_binding(self.places.graph(), node, name)
+    }
+
+    /// A statement; its values go to their slots at once.
+    pub fn statement(&mut self, statement: &Statement) -> String {
+        if let Operation::Check(cause, edge) = statement.operation {
+            self.used.checks = true;
+            let operand = self.operand(edge);
+            return self.language.check(&operand, cause, self.program);
+        }
+        let name = |node: NodeId| self.locals.name(node);
+        let mut text = match &statement.operation {
+            Operation::SinCos(angle) => {
+                let names = statement.results.map(|node| node.map(name));
+                let angle = self.operand(*angle);
+                self.language.pair(names, &angle)
+            }
+            Operation::Call(call) => {
+                let expression = self.expression(&statement.operation);
+                format!("let {} = {expression};\n", self.pattern(call))
+            }
+            operation => {
+                let name = statement.results[0].map_or("_", name);
+                let expression = self.expression(operation);
+                self.language.binding(name, &expression)
+            }
+        };
+        for node in statement.defined() {
+            self.here.insert(node);
+            if let Some(&slot) = self.slots.get(&node) {
+                let slot = self.slot(slot, Access::Written);
+                text.push_str(&format!("{slot} = {};\n", self.locals.name(node)));
+            }
+        }
+        text
+    }
+
+    /// What a function in Rust gives, by rows where it has several components.
+    fn pattern(&self, call: &Call) -> String {
+        let name = |node: &Option<NodeId>| node.map_or("_", |node| self.locals.name(node));
+        let list = |nodes: &[Option<NodeId>]| {
+            let names: Vec<&str> = nodes.iter().map(name).collect();
+            format!("[{}]", names.join(", "))
+        };
+        match (call.slopes, call.results.as_slice()) {
+            (false, [one]) => name(one).into(),
+            (false, all) => list(all),
+            (true, all) if all.len() == call.arguments.len() => list(all),
+            (true, all) => {
+                let rows = all.chunks(call.arguments.len().max(1)).map(list);
+                format!("[{}]", rows.collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+
+    fn expression(&mut self, operation: &Operation) -> String {
+        match *operation {
+            Operation::Add(a, b) => {
+                let [mut a, mut b] = [a, b].map(|edge| self.operand(edge));
+                if a.negative && !b.negative {
+                    std::mem::swap(&mut a, &mut b);
+                }
+                let sign = if b.negative { "-" } else { "+" };
+                format!("{} {sign} {}", a.signed(), b.value)
+            }
+            Operation::Multiply(a, b) => format!("{} * {}", self.signed(a), self.signed(b)),
+            Operation::Divide(a, b) => format!("{} / {}", self.signed(a), self.signed(b)),
+            Operation::Fused(a, b, c) => {
+                let operands = [a, b, c].map(|edge| self.operand(edge));
+                self.language.fused(&operands)
+            }
+            Operation::Atan2(y, x) => {
+                let operands = [y, x].map(|edge| self.operand(edge));
+                self.language.atan2(&operands)
+            }
+            Operation::Select(c, a, b) => {
+                let operands = [c, a, b].map(|edge| self.operand(edge));
+                self.language.select(&operands)
+            }
+            Operation::Apply(function, a) => {
+                let operand = self.operand(a);
+                self.language.function(function, &operand)
+            }
+            // Statements of their own.
+            Operation::SinCos(a) | Operation::Check(_, a) => self.signed(a),
+            Operation::Call(ref call) => {
+                let given: Vec<String> = call.arguments.iter().map(|&a| self.signed(a)).collect();
+                let [value, slopes] = &self.externals.methods[call.function];
+                let method = if call.slopes { slopes } else { value };
+                let field = &self.externals.field;
+                format!("self.{field}.{method}({})", given.join(", "))
+            }
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The generated type: its fields, sizes, constructor and defaults.
+
+use super::function::zeros;
+use super::parameters::{errors, group_type, kept_value, needs_update};
+use super::{Emitter, docs, externals};
+use hamel_program::{FunctionId, Shape};
+
+/// Lints that generated functions cannot obey in general.
+pub const ALLOW: &str = concat!(
+    "#[rustfmt::skip]\n",
+    "#[allow(dead_code, unreachable_pub, reason = \"a program may use a part of what is generated\")]\n",
+    "#[allow(unused_qualifications, reason = \"full paths are right whatever is imported\")]\n",
+    "#[allow(clippy::approx_constant, clippy::let_and_return, clippy::nursery, clippy::pedantic, \
+     clippy::too_many_arguments, clippy::type_complexity, clippy::wrong_self_convention, \
+     reason = \"numbers, names and shapes are those of the description\")]\n",
+);
+
+/// Lints that generated implementations of traits cannot obey in general.
+pub const ALLOW_TRAIT: &str = r#"#[rustfmt::skip]
+#[allow(unused_qualifications, clippy::approx_constant, clippy::nursery, clippy::pedantic, reason = "full paths are right whatever is imported")]
+"#;
+
+/// Whether there is a field of constants: the type has at least one field.
+pub fn has_kept(emitter: &Emitter) -> bool {
+    !emitter.kept.is_empty() || emitter.program.params.is_empty()
+}
+
+fn zero_constants(emitter: &Emitter) -> String {
+    zeros(Shape::Vector(emitter.kept.len()))
+}
+
+/// `struct Name<S> { … }`
+pub fn structure(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    let mut lines = program.docs.clone();
+    if lines.is_empty() {
+        lines.push(format!("Equations of motion of `{}`.", program.name));
+    }
+    if program.function(FunctionId::Accel).is_some() {
+        lines.push(String::new());
+        lines.extend(program.structure.documentation());
+    }
+    let mut fields = String::new();
+    for (group, field) in program.params.iter().zip(&emitter.names.fields) {
+        fields.push_str(&format!(
+            "/// Parameter `{}`.\n{field}: {},\n",
+            group.name,
+            group_type(group.shape)
+        ));
+    }
+    if has_kept(emitter) {
+        let (kept, n) = (&emitter.names.kept, emitter.kept.len());
+        fields.push_str(&format!(
+            "/// What depends on parameters alone.\n{kept}: [S; {n}],\n"
+        ));
+    }
+    fields.push_str(&externals::field(emitter));
+    let public = if program.public { "pub " } else { "" };
+    format!(
+        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, reason = \"the description's names and uses\")]\n#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
+        docs::comment(&lines),
+        externals::applied(emitter)
+    )
+}
+
+/// Sizes and `new`.
+pub fn sizes(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    let [params, x, ..] = program.symbols();
+    let mut sizes = docs::sizes(program);
+    let what = "The number of parameters, entry by entry.";
+    sizes.push(("PARAMETERS", what, params, x - params));
+    let mut text = String::new();
+    for (name, what, first, size) in sizes {
+        let lines = docs::comment(&docs::entries(program, what, first, size));
+        text.push_str(&format!("{lines}pub const {name}: usize = {size};\n\n"));
+    }
+    text + &constructor(emitter)
+}
+
+fn constructor(emitter: &Emitter) -> String {
+    let groups = || emitter.program.params.iter().zip(&emitter.names.fields);
+    let mut lines = vec!["The system with given parameters.".to_string()];
+    lines.extend(errors());
+    let mut arguments = Vec::new();
+    if !emitter.program.params.is_empty() {
+        arguments.push(format!(
+            "parameters: {}Parameters<S>",
+            emitter.names.type_name
+        ));
+    }
+    if externals::has(emitter) {
+        let names = &emitter.names.externals;
+        arguments.push(format!("{}: {}", names.field, names.parameter));
+        lines[0] = "The system with given parameters and functions.".into();
+    }
+    let argument = arguments.join(", ");
+    let values = groups().map(|(group, field)| {
+        let value = kept_value(group, &format!("parameters.{field}"));
+        format!("{field}: {value}")
+    });
+    let (mutable, update) = match needs_update(emitter) {
+        true => ("mut ", format!("system.{}()?;\n", emitter.names.update)),
+        false => ("", String::new()),
+    };
+    format!(
+        "{}pub fn new({argument}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}::core::result::Result::Ok(system)\n}}\n\n",
+        docs::comment(&lines),
+        literal(emitter, values.collect(), None)
+    )
+}
+
+/// `Self { … }` with constants not yet computed.
+fn literal(emitter: &Emitter, mut fields: Vec<String>, functions: Option<&str>) -> String {
+    if has_kept(emitter) {
+        fields.push(format!(
+            "{}: {}",
+            emitter.names.kept,
+            zero_constants(emitter)
+        ));
+    }
+    if externals::has(emitter) {
+        let field = &emitter.names.externals.field;
+        fields.push(functions.map_or_else(|| field.clone(), |value| format!("{field}: {value}")));
+    }
+    format!("Self {{ {} }}", fields.join(", "))
+}
+
+/// `impl Default`
+pub fn default(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    let fields = emitter.names.fields.iter();
+    let fields = fields.map(|field| format!("{field}: parameters.{field}"));
+    let functions = format!("{}::default()", emitter.names.externals.parameter);
+    let value = literal(emitter, fields.collect(), Some(&functions));
+    let names = &emitter.names;
+    let given = match program.params.is_empty() {
+        true => String::new(),
+        false => format!(
+            "let parameters = {}Parameters::<S>::default();\n",
+            names.type_name
+        ),
+    };
+    let body = match emitter.kept.is_empty() {
+        true => format!("{given}{value}"),
+        false => format!(
+            "{given}let mut system = {value};\nsystem.{} = system.{}();\nsystem",
+            names.kept, names.constants
+        ),
+    };
+    format!(
+        "{ALLOW_TRAIT}impl{} ::core::default::Default for {}{} {{\n/// The parameters of the description.\nfn default() -> Self {{\n{body}\n}}\n}}\n\n",
+        externals::generics(emitter),
+        externals::applied(emitter),
+        externals::default_where(emitter)
+    )
+}

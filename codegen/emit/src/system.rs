@@ -1,0 +1,160 @@
+//! `impl hamel::System`, where all that it consists of was generated.
+
+use super::function::zeros;
+use super::{Emitter, docs, externals, names, number, structure};
+use hamel_program::{Argument, Shape};
+
+const X: Argument = Argument::Coordinates;
+const XI: Argument = Argument::Velocities;
+const U: Argument = Argument::Inputs;
+
+/// The trait's methods that evaluate functions, with the arguments and result that they have there.
+const METHODS: &[(&str, &[Argument], &str)] = &[
+    ("rate", &[X, XI], "Self::Coordinates"),
+    ("chart_rate", &[X, XI], "Self::Chart"),
+    (
+        "accel",
+        &[X, XI, U],
+        "::core::result::Result<Self::Velocities, ::hamel::Singular>",
+    ),
+    ("correction", &[X], "Self::Coordinates"),
+    ("constraint", &[X], "S"),
+    ("kinetic_energy", &[X, XI], "S"),
+    ("potential_energy", &[X], "S"),
+];
+
+/// The implementation; nothing where a function is missing.
+pub fn implementation(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    let Some(methods) = METHODS
+        .iter()
+        .map(|row| method(emitter, row))
+        .collect::<Option<String>>()
+    else {
+        return String::new();
+    };
+    let mut methods = methods;
+    if let Some(place) = program.clock {
+        methods.push_str(&format!(
+            "fn clock(&self) -> ::core::option::Option<usize> {{\n::core::option::Option::Some({place})\n}}\n\n"
+        ));
+    }
+    if program.embedded {
+        methods.push_str(
+            "fn project_coordinates(&self, x: &Self::Coordinates) -> ::core::option::Option<Self::Coordinates> {\n::core::option::Option::Some(::hamel::System::correction(self, x))\n}\n\n",
+        );
+    }
+    for name in ["project_position", "project_velocity"] {
+        methods.push_str(&projection(emitter, name));
+    }
+    let chart: usize = program.blocks.iter().map(|block| block.dimension()).sum();
+    let sizes = [
+        ("Coordinates", program.nu),
+        ("Velocities", program.n + program.n_z),
+        ("Chart", chart),
+        ("Inputs", program.m),
+    ];
+    let types: String = sizes
+        .iter()
+        .map(|(name, n)| format!("type {name} = [S; {n}];\n"))
+        .collect();
+    let zeros: String = sizes
+        .iter()
+        .map(|(name, n)| {
+            let value = zeros(Shape::Vector(*n));
+            format!(
+                "fn zero_{}(&self) -> Self::{name} {{\n{value}\n}}\n\n",
+                name.to_ascii_lowercase()
+            )
+        })
+        .collect();
+    let blocks: Vec<String> = program
+        .blocks
+        .iter()
+        .map(|&block| docs::block(block))
+        .collect();
+    let [x, xi] = [&program.start_x, &program.start_xi].map(|start| {
+        let entries: Vec<String> = start.iter().map(|&value| number::scalar(value)).collect();
+        entries.join(", ")
+    });
+    format!(
+        "{}impl{} ::hamel::System for {} {{\ntype Scalar = S;\n{types}\nfn blocks(&self) -> &[::hamel::Block] {{\n&[{}]\n}}\n\n{zeros}fn start(&self) -> (Self::Coordinates, Self::Velocities) {{\n([{x}], [{xi}])\n}}\n\n{methods}}}\n",
+        structure::ALLOW_TRAIT,
+        externals::generics(emitter),
+        externals::applied(emitter),
+        blocks.join(", ")
+    )
+}
+
+fn method(emitter: &Emitter, row: &(&str, &[Argument], &str)) -> Option<String> {
+    let &(name, arguments, result) = row;
+    let index = emitter
+        .program
+        .functions
+        .iter()
+        .position(|function| function.name == name)?;
+    let function = &emitter.program.functions[index];
+    let generated = &emitter.names.functions[index];
+    if !function
+        .arguments
+        .iter()
+        .all(|argument| arguments.contains(argument))
+    {
+        return None;
+    }
+    let given = arguments.iter().map(|argument| {
+        let used = function.arguments.contains(argument);
+        let name = if used {
+            names::argument(*argument)
+        } else {
+            "_"
+        };
+        let of = match argument {
+            Argument::Coordinates => "Coordinates",
+            Argument::Inputs => "Inputs",
+            _ => "Velocities",
+        };
+        format!("{name}: &Self::{of}")
+    });
+    let signature = given.collect::<Vec<_>>().join(", ");
+    let values: Vec<&str> = function
+        .arguments
+        .iter()
+        .map(|&argument| names::argument(argument))
+        .collect();
+    let call = format!("self.{generated}({})", values.join(", "));
+    if name != "accel" && function.fallible
+        || name == "constraint" && function.shape == Shape::Scalar
+    {
+        return None;
+    }
+    Some(match name {
+        "accel" if !function.fallible => {
+            format!("fn accel(&self, {signature}) -> {result} {{\nOk({call})\n}}\n\n")
+        }
+        "constraint" => format!(
+            "fn constraint_norm(&self, {signature}) -> {result} {{\nlet mut norm = S::default();\nfor value in {call} {{\nnorm = norm.max(value.abs());\n}}\nnorm\n}}\n\n"
+        ),
+        _ => format!("fn {name}(&self, {signature}) -> {result} {{\n{call}\n}}\n\n"),
+    })
+}
+
+/// One of the projections on constraints that are kept by multipliers; nothing where there are none.
+fn projection(emitter: &Emitter, name: &str) -> String {
+    let Some(index) = emitter
+        .program
+        .functions
+        .iter()
+        .position(|f| f.name == name)
+    else {
+        return String::new();
+    };
+    let generated = &emitter.names.functions[index];
+    let (signature, values) = match name {
+        "project_position" => ("x: &Self::Coordinates", "x"),
+        _ => ("x: &Self::Coordinates, xi: &Self::Velocities", "x, xi"),
+    };
+    format!(
+        "fn {name}(&self, {signature}) -> ::core::result::Result<::core::option::Option<Self::Velocities>, ::hamel::Singular> {{\nself.{generated}({values}).map(Some)\n}}\n\n"
+    )
+}

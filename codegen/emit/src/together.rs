@@ -1,0 +1,79 @@
+//! ξ̇ and [A B] by one function, for steps with slopes: [A B] contains nearly all that ξ̇ is made from.
+
+use super::function::{self, SLOPES, Spec, zeros};
+use super::{Emitter, docs, names};
+use hamel_program::Function;
+use hamel_program::places::Time;
+use hamel_program::together::{Together, together};
+
+/// What the function is called.
+pub const NAME: &str = "accel_and_linearize";
+
+/// The place of `linearize` among the functions, and ξ̇ with [A B] in a tuple; nothing where one of them was not
+/// generated, or where too little is common to both.
+pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
+    let program = emitter.program;
+    let Together {
+        accel,
+        linearize,
+        outputs,
+        guards,
+        nodes,
+    } = together(program)?;
+    let [rates, slopes] = [accel, linearize].map(|index| &program.functions[index]);
+    let described = Function {
+        docs: vec![
+            "ξ̇ of `accel` and [A B] of `linearize`, which have most of their operations in common, in one function."
+                .into(),
+        ],
+        ..slopes.clone()
+    };
+    let mut lines = docs::described(program, &described, &nodes);
+    lines.extend([
+        format!(
+            "- `{SLOPES}`: {}, which are written",
+            docs::result(slopes.shape)
+        ),
+        String::new(),
+        format!("Returns {}.", docs::result(rates.shape)),
+    ]);
+    if slopes.fallible {
+        lines.extend(docs::errors(program, slopes));
+    }
+    Some((
+        linearize,
+        Spec {
+            name: NAME.into(),
+            public: true,
+            docs: lines,
+            arguments: &slopes.arguments,
+            shape: rates.shape,
+            beside: Some(slopes.shape),
+            outputs,
+            guards,
+            fallible: slopes.fallible,
+            nodes,
+            time: Time::Call,
+        },
+    ))
+}
+
+/// The function, and after it `linearize` by it.
+pub fn text(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
+    let given: Vec<&str> = both
+        .arguments
+        .iter()
+        .map(|&argument| names::argument(argument))
+        .collect();
+    let question = if both.fallible { "?" } else { "" };
+    let value = match both.fallible {
+        true => format!("::core::result::Result::Ok({SLOPES})"),
+        false => SLOPES.into(),
+    };
+    let body = format!(
+        "let mut {SLOPES} = {};\nself.{NAME}({}, &mut {SLOPES}){question};\n{value}\n",
+        zeros(linearize.shape),
+        given.join(", ")
+    );
+    function::text(emitter, both) + &function::head(emitter.program, linearize, |_| true, &body)
+}

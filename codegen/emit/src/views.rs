@@ -1,0 +1,335 @@
+//! Numbers by their names: structures for the parameters, for x and ξ, and for the inputs of a generated type, with
+//! the arrays that its functions take.
+//!
+//! | type | is | `default` |
+//! |---|---|---|
+//! | `NameParameters<S>` | what `new` takes | those of the description |
+//! | `NameState<S>` | x, ξ, and the states behind ξ | the start of the description |
+//! | `NameInputs<S>` | u | zeros |
+
+use super::names::{Unique, cased};
+use super::parameters::{group_type, shaped};
+use super::structure::ALLOW_TRAIT;
+use super::{Emitter, docs, externals, number};
+use hamel_language::model::{Coordinate, Group};
+use hamel_language::syntax::ast::{CoordKind, ShapeKind};
+use hamel_program::Program;
+
+/// Some entries of an array, under a name.
+pub struct Field {
+    /// Its name in the generated text.
+    pub name: String,
+    /// What it is.
+    pub docs: String,
+    /// Its shape.
+    pub shape: ShapeKind,
+    /// The array.
+    pub array: &'static str,
+    /// The place of the first entry in it.
+    pub offset: usize,
+}
+
+impl Field {
+    fn len(&self) -> usize {
+        match self.shape {
+            ShapeKind::Scalar => 1,
+            ShapeKind::Vector(n) => n,
+            ShapeKind::Matrix(n) => n * n,
+            ShapeKind::Symmetric(n) => n * (n + 1) / 2,
+        }
+    }
+
+    /// Its value, with entries that an expression of their place gives.
+    fn value(&self, entry: impl Fn(usize) -> String) -> String {
+        shaped(self.shape, |i, j| {
+            entry(
+                self.offset
+                    + match self.shape {
+                        ShapeKind::Matrix(n) => n * i + j,
+                        ShapeKind::Symmetric(n) => symmetric_entry(n, i.min(j), i.max(j)),
+                        ShapeKind::Scalar | ShapeKind::Vector(_) => j,
+                    },
+            )
+        })
+    }
+
+    /// Its entries in the order of the array, as expressions.
+    fn entries(&self) -> Vec<String> {
+        let indices = super::parameters::indices(self.shape).into_iter();
+        let name = &self.name;
+        indices.map(|index| format!("self.{name}{index}")).collect()
+    }
+}
+
+/// The fields of groups of symbols.
+fn groups(groups: &[Group], what: &str, array: &'static str) -> Vec<(String, Field)> {
+    let field = |group: &Group| {
+        let field = Field {
+            name: String::new(),
+            docs: format!("{what} `{}`, {}.", group.name, docs::shape(group.shape)),
+            shape: group.shape,
+            array,
+            offset: group.offset,
+        };
+        (group.name.clone(), field)
+    };
+    groups.iter().map(field).collect()
+}
+
+/// The fields of a coordinate: position and rotation of a pose are two.
+fn coordinate(coordinate: &Coordinate) -> Vec<(String, Field)> {
+    let Coordinate {
+        name, kind, offset, ..
+    } = coordinate;
+    let field = |suffix: &str, shape: ShapeKind, what: &str, behind: usize| {
+        let field = Field {
+            name: String::new(),
+            docs: format!("Coordinate `{name}`{what}."),
+            shape,
+            array: "x",
+            offset: offset + behind,
+        };
+        (format!("{name}{suffix}"), field)
+    };
+    match *kind {
+        CoordKind::Real => vec![field("", ShapeKind::Scalar, "", 0)],
+        CoordKind::Euclidean(n) => vec![field("", ShapeKind::Vector(n), "", 0)],
+        CoordKind::S1 => vec![field("", ShapeKind::Vector(2), ": cosine and sine", 0)],
+        CoordKind::S3 => vec![field(
+            "",
+            ShapeKind::Vector(4),
+            ", a unit quaternion, scalar first",
+            0,
+        )],
+        CoordKind::SO3 => vec![field(
+            "",
+            ShapeKind::Matrix(3),
+            ", a rotation matrix by rows",
+            0,
+        )],
+        CoordKind::SE3 => vec![
+            field("_p", ShapeKind::Vector(3), ": its position", 0),
+            field(
+                "_R",
+                ShapeKind::Matrix(3),
+                ": its rotation matrix by rows",
+                3,
+            ),
+        ],
+    }
+}
+
+/// Fields with the names that they have in Rust.
+fn named(fields: Vec<(String, Field)>) -> Vec<Field> {
+    let written: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
+    let names = cased(&written);
+    let mut unique = Unique::default();
+    let fields = fields.into_iter().zip(names);
+    let field = |((_, field), name): ((String, Field), String)| Field {
+        name: unique.claim(&name),
+        ..field
+    };
+    fields.map(field).collect()
+}
+
+/// A structure with what it says of itself, and its default.
+struct View<'a> {
+    name: String,
+    docs: String,
+    default: &'a str,
+    fields: &'a [Field],
+}
+
+impl View<'_> {
+    /// The structure, and `Default`.
+    fn text(&self, public: &str, value: impl Fn(&Field, usize) -> String) -> String {
+        let View {
+            name,
+            docs,
+            default,
+            fields,
+        } = self;
+        let field = |field: &Field| {
+            let of = group_type(field.shape);
+            format!(
+                "/// {}\npub {}: {of},\n",
+                docs::spelled(&field.docs),
+                field.name
+            )
+        };
+        let list: String = fields.iter().map(field).collect();
+        let values = fields.iter().map(|field| {
+            let value = field.value(|place| value(field, place));
+            format!("{}: {value}", field.name)
+        });
+        let values: Vec<String> = values.collect();
+        format!(
+            "{docs}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, reason = \"the description's names and uses\")]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
+             {ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::default::Default for {name}<S> {{\n/// {default}\nfn default() -> Self {{\nSelf {{ {} }}\n}}\n}}\n\n",
+            values.join(", ")
+        )
+    }
+}
+
+fn public(program: &Program) -> &'static str {
+    if program.public { "pub " } else { "" }
+}
+
+/// The parameters; nothing where there are none.
+pub fn parameters(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    if program.params.is_empty() {
+        return String::new();
+    }
+    let fields = groups(&program.params, "Parameter", "");
+    let fields: Vec<Field> = (fields.into_iter().zip(&emitter.names.fields))
+        .map(|((_, field), name)| Field {
+            name: name.clone(),
+            ..field
+        })
+        .collect();
+    let of = &emitter.names.type_name;
+    let symmetric = |group: &Group| matches!(group.shape, ShapeKind::Symmetric(_));
+    let mut lines = vec![format!("The parameters of `{of}`, by name.")];
+    if program.params.iter().any(symmetric) {
+        lines.extend([
+            String::new(),
+            "Of symmetric matrices only the upper triangle is read.".into(),
+        ]);
+    }
+    let view = View {
+        name: format!("{of}Parameters"),
+        docs: docs::comment(&lines),
+        default: "The parameters of the description.",
+        fields: &fields,
+    };
+    view.text(public(program), |_, place| {
+        number::scalar(program.defaults.get(place).copied().unwrap_or_default())
+    })
+}
+
+/// x and ξ by name; `system` tells whether there is the trait `System`.
+pub fn state(emitter: &Emitter, system: bool) -> String {
+    let program = emitter.program;
+    let of = &emitter.names.type_name;
+    let fields = state_fields(program);
+    let name = format!("{of}State");
+    let view = View {
+        name: name.clone(),
+        docs: docs::comment(&[format!(
+            "A state of `{of}`: coordinates and velocities by name."
+        )]),
+        default: "The start of the description.",
+        fields: &fields,
+    };
+    let mut text = view.text(public(program), |field, place| {
+        let start = match field.array {
+            "x" => &program.start_x,
+            _ => &program.start_xi,
+        };
+        number::scalar(start.get(place).copied().unwrap_or_default())
+    });
+    let (nu, n) = (program.nu, program.n + program.n_z);
+    let entries = |array: &str| {
+        let fields = fields.iter().filter(|field| field.array == array);
+        fields
+            .flat_map(Field::entries)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let values: Vec<String> = fields
+        .iter()
+        .map(|field| {
+            let value = field.value(|place| format!("{}[{place}]", field.array));
+            format!("{}: {value}", field.name)
+        })
+        .collect();
+    let mut ranges = Unique::default();
+    let ranges: String = fields
+        .iter()
+        .map(|field| {
+            let name = ranges.claim(&field.name.to_ascii_uppercase());
+            let (from, to) = (field.offset, field.offset + field.len());
+            format!(
+                "/// The place of `{}` in `{}`.\npub const {name}: ::core::ops::Range<usize> = {from}..{to};\n\n",
+                field.name, field.array
+            )
+        })
+        .collect();
+    let unused = match n {
+        0 => "#[allow(unused_variables, reason = \"there are no velocities\")]\n",
+        _ => "",
+    };
+    text.push_str(&format!(
+        "{}impl<S: ::hamel::Scalar> {name}<S> {{\n{ranges}/// The state that x and ξ are.\n{unused}#[must_use]\npub fn from_arrays(x: &[S; {nu}], xi: &[S; {n}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
+         /// x and ξ, as the functions of `{of}` take them.\n#[must_use]\npub fn to_arrays(&self) -> ([S; {nu}], [S; {n}]) {{\n([{}], [{}])\n}}\n}}\n\n",
+        super::structure::ALLOW,
+        values.join(", "),
+        entries("x"),
+        entries("xi"),
+    ));
+    if system {
+        let (generics, of) = (externals::generics(emitter), externals::applied(emitter));
+        text.push_str(&format!(
+            "{ALLOW_TRAIT}impl{generics} ::core::convert::From<{name}<S>> for ::hamel::State<{of}> {{\n/// The state at t = 0.\nfn from(state: {name}<S>) -> Self {{\nlet (x, xi) = state.to_arrays();\nSelf {{ t: 0.0, x, xi }}\n}}\n}}\n\n\
+             {ALLOW_TRAIT}impl{generics} ::core::convert::From<&::hamel::State<{of}>> for {name}<S> {{\nfn from(state: &::hamel::State<{of}>) -> Self {{\nSelf::from_arrays(&state.x, &state.xi)\n}}\n}}\n\n"
+        ));
+    }
+    text
+}
+
+/// The entries of x and ξ by name, states among the latter.
+pub fn state_fields(program: &Program) -> Vec<Field> {
+    let mut fields: Vec<(String, Field)> =
+        program.coordinates.iter().flat_map(coordinate).collect();
+    fields.extend(groups(&program.velocities, "Velocity", "xi"));
+    fields.extend(groups(
+        &hamel_language::model::behind(&program.states, program.n),
+        "State",
+        "xi",
+    ));
+    named(fields)
+}
+
+/// The entries of u by name.
+pub fn input_fields(program: &Program) -> Vec<Field> {
+    named(groups(&program.inputs, "Input", "u"))
+}
+
+/// u by name; nothing where there are no inputs.
+pub fn inputs(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    if program.inputs.is_empty() {
+        return String::new();
+    }
+    let of = &emitter.names.type_name;
+    let fields = input_fields(program);
+    let name = format!("{of}Inputs");
+    let view = View {
+        name: name.clone(),
+        docs: docs::comment(&[format!("The inputs of `{of}`, by name.")]),
+        default: "No input: zeros.",
+        fields: &fields,
+    };
+    let mut text = view.text(public(program), |_, _| "S::default()".into());
+    let m = program.m;
+    let entries: Vec<String> = fields.iter().flat_map(Field::entries).collect();
+    let values = fields.iter().map(|field| {
+        let value = field.value(|place| format!("u[{place}]"));
+        format!("{}: {value}", field.name)
+    });
+    let values: Vec<String> = values.collect();
+    text.push_str(&format!(
+        "{}impl<S: ::hamel::Scalar> {name}<S> {{\n/// The inputs that u is.\n#[must_use]\npub fn from_array(u: &[S; {m}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
+         /// u, as the functions of `{of}` take it.\n#[must_use]\npub fn to_array(&self) -> [S; {m}] {{\n[{}]\n}}\n}}\n\n",
+        super::structure::ALLOW,
+        values.join(", "),
+        entries.join(", "),
+    ));
+    text
+}
+
+/// The place of entry (i, j), i ≤ j, of a symmetric matrix among those on and above the diagonal, by rows.
+fn symmetric_entry(n: usize, i: usize, j: usize) -> usize {
+    i * n - i * (i + 1) / 2 + j
+}

@@ -1,0 +1,62 @@
+//! The digits that rounding takes of the functions of a program: each computed in `f64` and in twice
+//! the length at the same states.
+//!
+//! A function loses log₁₀(max ‖f − f*‖ / u max ‖f*‖) digits, where f is its result in `f64`, f* that in
+//! twice the length, both maxima are over the states, norms are largest entries, and u = 2^-53. So a
+//! result that is 0 at one state is measured by what it is at others.
+
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::rounding::{Rounded, UNIT, rounded};
+
+/// Results to be measured together: their entries, and the pivots that have to be positive for them to
+/// have a value.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured<'a> {
+    /// The entries.
+    pub outputs: &'a [Edge],
+    /// The pivots.
+    pub guards: &'a [Edge],
+}
+
+/// The digits that rounding takes of each of several functions at states, given by the values of all
+/// symbols; `None` where a function has no value at any of them, or is 0 at all.
+pub fn digits_lost(graph: &Graph, functions: &[Measured], states: &[Vec<f64>]) -> Vec<Option<f64>> {
+    let mut sizes = vec![(0.0_f64, 0.0_f64); functions.len()];
+    let roots: Vec<Edge> = functions
+        .iter()
+        .flat_map(|function| function.outputs.iter().chain(function.guards).copied())
+        .collect();
+    for state in states {
+        let values = rounded(graph, &roots, state);
+        let mut rest = values.as_slice();
+        for (function, (error, size)) in functions.iter().zip(&mut sizes) {
+            let (outputs, after) = rest.split_at(function.outputs.len());
+            let (guards, after) = after.split_at(function.guards.len());
+            rest = after;
+            if let Some((apart, largest)) = compared(outputs, guards) {
+                *error = error.max(apart);
+                *size = size.max(largest);
+            }
+        }
+    }
+    let digits =
+        |(error, size): (f64, f64)| (size > 0.0).then(|| (error / (UNIT * size)).max(1.0).log10());
+    sizes.into_iter().map(digits).collect()
+}
+
+/// The largest error and the largest entry; `None` where there is no value. What has a value but none
+/// in `f64` is infinitely far from it.
+fn compared(outputs: &[Rounded], guards: &[Rounded]) -> Option<(f64, f64)> {
+    let exists = |value: &Rounded| value.exact.to_f64().is_finite();
+    let positive = |pivot: &Rounded| pivot.exact.to_f64() > 0.0;
+    if !outputs.iter().all(exists) || !guards.iter().all(positive) {
+        return None;
+    }
+    let (mut error, mut size) = (0.0_f64, 0.0_f64);
+    for entry in outputs {
+        let apart = entry.apart();
+        error = error.max(if apart.is_nan() { f64::INFINITY } else { apart });
+        size = size.max(entry.exact.to_f64().abs());
+    }
+    Some((error, size))
+}

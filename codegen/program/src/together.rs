@@ -1,0 +1,54 @@
+//! ξ̇ and [A B] computed together: [A B] contains nearly all that ξ̇ is made from.
+
+use super::count::count_nodes;
+use super::{FunctionId, Program};
+use hamel_algebra::graph::{Edge, NodeId};
+
+/// [A B] is not computed apart where ξ̇ beside it takes at most one in so many of its operations.
+const LITTLE: usize = 100;
+
+/// What computes both.
+#[derive(Clone, Debug)]
+pub struct Together {
+    /// The place of `accel` among the functions.
+    pub accel: usize,
+    /// The place of `linearize` among the functions.
+    pub linearize: usize,
+    /// ξ̇, and behind it [A B] by rows.
+    pub outputs: Vec<Edge>,
+    /// Pivots of both.
+    pub guards: Vec<Edge>,
+    /// What varies at run time, children first.
+    pub nodes: Vec<NodeId>,
+}
+
+/// ξ̇ with [A B]; nothing where one of them was not generated, or where too little is common to both.
+pub fn together(program: &Program) -> Option<Together> {
+    let place = |id: FunctionId| program.functions.iter().position(|f| f.id == Some(id));
+    let (accel, linearize) = (place(FunctionId::Accel)?, place(FunctionId::Linearize)?);
+    let [rates, slopes] = [accel, linearize].map(|index| &program.functions[index]);
+    if rates.arguments != slopes.arguments || rates.fallible != slopes.fallible {
+        return None;
+    }
+    let mut guards = slopes.guards.clone();
+    let mut xi_dot = &slopes.rates;
+    if xi_dot.is_empty() {
+        xi_dot = &rates.outputs;
+        let more = rates.guards.iter();
+        guards.extend(more.filter(|&guard| !slopes.guards.contains(guard)));
+    }
+    let roots = |lists: &[&[Edge]]| program.graph.varying(&lists.concat());
+    let nodes = roots(&[xi_dot, &slopes.outputs, &guards]);
+    let alone = roots(&[&slopes.outputs, &slopes.guards]);
+    let [both, alone] = [&nodes, &alone].map(|nodes| count_nodes(&program.graph, nodes).weight());
+    if (both - alone) * LITTLE > alone {
+        return None;
+    }
+    Some(Together {
+        accel,
+        linearize,
+        outputs: [&xi_dot[..], &slopes.outputs].concat(),
+        guards,
+        nodes,
+    })
+}

@@ -1,0 +1,127 @@
+//! The symbols of the formalism as tables to read: text, Markdown, LaTeX, JSON.
+//!
+#![doc = include_str!("../README.md")]
+//!
+//! | file | owns |
+//! |---|---|
+//! | `kind` | which tables there are, their symbols, shapes and names |
+//! | `collect` | the entries of every table as edges of a graph |
+//! | `simplify`, `circles` | the polynomial shown for an expression, modulo φ |
+//! | `write`, `style` | nodes to expressions; what is shared gets a name |
+//! | `naming` | those names |
+//! | `polish` | polynomials to expressions, common factors in front |
+//! | `expression` | products, sums, calls |
+//! | `listing`, `rows` | entries in order, and grouped by value |
+//! | `geometry` | the report on integrable velocities, Lie algebras, symmetries |
+//! | `regressor` | base parameters, in all four forms |
+//! | `notation`, `print` | names and expressions as text or LaTeX |
+//! | `text`, `markdown`, `latex`, `json`, `typeset` | a whole set of tables |
+
+mod circles;
+mod collect;
+mod entries;
+pub mod expression;
+pub mod geometry;
+mod json;
+pub mod kind;
+mod latex;
+pub mod listing;
+mod markdown;
+mod naming;
+mod notation;
+mod polish;
+mod print;
+pub mod regressor;
+mod rows;
+mod simplify;
+mod style;
+mod text;
+mod typeset;
+mod write;
+
+pub use entries::{Definition, Entry, Group};
+pub use json::json;
+pub use kind::Table;
+pub use latex::latex;
+pub use listing::Listing;
+pub use markdown::markdown;
+pub use text::text;
+pub use typeset::typeset;
+
+use collect::Collector;
+use hamel_dynamics::geometry::Inspection;
+use hamel_language::model::Model;
+use hamel_program::Program;
+
+/// The tables that were asked for, ready to be printed.
+#[derive(Clone, Debug)]
+pub struct Tables {
+    /// Name of the system.
+    pub system: String,
+    /// Names of x, in order.
+    pub coordinates: Vec<String>,
+    /// Names of ξ, in order.
+    pub velocities: Vec<String>,
+    /// The tables, in the order asked for.
+    pub listings: Vec<Listing>,
+    /// The report on the geometry, where it was asked for.
+    pub geometry: Option<Inspection>,
+}
+
+/// A derived system, of which tables are made.
+#[derive(Clone, Copy, Debug)]
+pub struct Derivation<'a> {
+    /// The system in the full frame.
+    pub model: &'a Model,
+    /// The same in the velocities that constraints leave.
+    pub active: &'a Model,
+    /// Its functions.
+    pub program: &'a Program,
+}
+
+/// Derives tables; all of [`Table::DEFAULT`] that the system has where none is named, and the rates of states. The error says which table
+/// cannot be had, and why.
+pub fn tables(derivation: Derivation, asked: &[Table]) -> Result<Tables, String> {
+    let model = derivation.model;
+    let of = match asked {
+        [] if model.states.is_empty() => Table::DEFAULT.to_vec(),
+        [] => [&Table::DEFAULT[..], &[Table::States]].concat(),
+        of => of.to_vec(),
+    };
+    let lacking = |table: &Table| table.needs_inertia() && !model.has_inertia;
+    let of = match (asked, of.iter().copied().find(lacking)) {
+        ([], _) => of.into_iter().filter(|table| !lacking(table)).collect(),
+        (_, None) => of,
+        (_, Some(table)) => {
+            return Err(format!(
+                "there is no table `{}`: the system has no inertia",
+                table.name()
+            ));
+        }
+    };
+    let mut collector = Collector::new(derivation);
+    let mut listings: Vec<Listing> = Vec::new();
+    let mut geometry = None;
+    for table in of {
+        if table == Table::Geometry {
+            geometry = Some(Inspection::new(model).ok_or(
+                "there is no table `geometry`: the columns of A are dependent, so that no Y has Y A = I",
+            )?);
+        } else if listings.iter().all(|known| known.table != table) {
+            listings.push(collector.listing(table)?);
+        }
+    }
+    let names = |edges: &[hamel_algebra::graph::Edge]| -> Vec<String> {
+        let symbols = model.graph.symbols();
+        let of = |node| symbols.iter().find(|symbol| symbol.node == node);
+        let named = edges.iter().filter_map(|edge| of(edge.node()));
+        named.map(|symbol| symbol.name.clone()).collect()
+    };
+    Ok(Tables {
+        system: model.name.clone(),
+        coordinates: names(&model.x),
+        velocities: names(&model.xi),
+        listings,
+        geometry,
+    })
+}

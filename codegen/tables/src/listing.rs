@@ -1,0 +1,124 @@
+//! The entries of a table in order of their indices, and grouped by value as in KR18 (45).
+
+use super::entries::{Cell, Definition, Entry, Group};
+use super::expression::Term;
+use super::kind::Table;
+use super::naming::Temporaries;
+use super::polish::reads_better_negated;
+use super::rows::{Row, order, rows};
+use super::simplify::Simplifier;
+use super::style::Style;
+use super::write::Writer;
+use hamel_algebra::graph::{Edge, Graph};
+use num_rational::BigRational;
+
+/// One table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Listing {
+    /// Which.
+    pub table: Table,
+    /// Its sizes.
+    pub shape: Vec<usize>,
+    /// Every entry that is not zero, by index.
+    pub entries: Vec<Entry>,
+    /// Those that are zero, by index.
+    pub zeros: Vec<Entry>,
+    /// The same, by value.
+    pub groups: Vec<Group>,
+    /// Temporaries that depend on parameters alone.
+    pub constants: Vec<Definition>,
+    /// Other temporaries.
+    pub temporaries: Vec<Definition>,
+}
+
+impl Listing {
+    /// The entries to list one by one; those that are zero only where `all` are wanted, or where
+    /// each has a name of its own.
+    pub fn listed(&self, all: bool) -> Vec<&Entry> {
+        let mut listed: Vec<&Entry> = self.entries.iter().collect();
+        if all || matches!(self.table, Table::Accel | Table::States | Table::Outputs) {
+            listed.extend(&self.zeros);
+        }
+        listed.sort_by(|a, b| a.index.cmp(&b.index));
+        listed
+    }
+
+    /// Number of entries, zero or not.
+    pub fn size(&self) -> usize {
+        self.entries.len() + self.zeros.len()
+    }
+}
+
+/// Writes the cells of a table; `theirs` are the user's names of values.
+pub fn listing(
+    table: Table,
+    shape: Vec<usize>,
+    cells: &[Cell],
+    graph: &Graph,
+    simplifier: &mut Simplifier,
+    theirs: &[(String, Edge)],
+) -> Listing {
+    let (mut rows, places) = rows(cells, graph);
+    let roots: Vec<Edge> = rows.iter().map(|row| row.edge).collect();
+    let style = if table == Table::Accel {
+        Style::Route
+    } else {
+        Style::Table
+    };
+    let names = Temporaries::new(graph, &roots, theirs);
+    let mut writer = Writer::new(graph, simplifier, style, names);
+    writer.prepare(&roots);
+    let mut flipped = vec![false; rows.len()];
+    for (row, flip) in rows.iter_mut().zip(&mut flipped) {
+        row.polynomial = writer.polynomial(row.edge);
+        *flip = match &row.polynomial {
+            Some(polynomial) => reads_better_negated(polynomial),
+            None => row.edge.is_negative(),
+        };
+        row.edge = row.edge.signed(*flip);
+        match row
+            .polynomial
+            .take()
+            .map(|p| if *flip { p.neg() } else { p })
+        {
+            Some(polynomial) => {
+                row.value = writer.polish(&polynomial);
+                row.opposite = writer.polish(&polynomial.neg());
+                row.polynomial = Some(polynomial);
+            }
+            None => {
+                row.value = writer.value(row.edge);
+                row.opposite = writer.value(-row.edge);
+            }
+        }
+    }
+    let (mut entries, mut zeros) = (Vec::new(), Vec::new());
+    for (cell, place) in cells.iter().zip(&places) {
+        let Some((place, negative)) = *place else {
+            zeros.push(cell.entry(Term::number(BigRational::default())));
+            continue;
+        };
+        let row = &mut rows[place];
+        let negative = negative ^ flipped[place];
+        let side = if negative {
+            &mut row.minus
+        } else {
+            &mut row.plus
+        };
+        side.push(cell.index.clone());
+        let value = if negative { &row.opposite } else { &row.value };
+        entries.push(cell.entry(value.clone()));
+    }
+    rows.sort_by(order);
+    let groups = rows.into_iter().map(Row::group);
+    let (constants, temporaries) = writer.definitions();
+    Listing {
+        table,
+        shape,
+        entries,
+        zeros,
+        groups: groups.collect(),
+        constants,
+        temporaries,
+    }
+}

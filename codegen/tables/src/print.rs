@@ -1,0 +1,235 @@
+//! Expressions as text or LaTeX.
+
+use super::expression::{Atom, Term};
+use super::notation::latex_name;
+use hamel_algebra::graph::Function;
+use num_traits::{One, Signed};
+
+/// A way to write expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notation {
+    /// `(Theta[1,1] - Theta[2,2])/2`, as the language reads it.
+    Text,
+    /// `\tfrac{1}{2}(\Theta_{11} - \Theta_{22})`
+    Latex,
+}
+
+impl Notation {
+    /// An expression.
+    pub fn term(self, term: &Term) -> String {
+        let sign = if term.is_negative() { "-" } else { "" };
+        format!("{sign}{}", self.unsigned(term))
+    }
+
+    fn unsigned(self, term: &Term) -> String {
+        let number = term.coefficient.abs();
+        if let [(Atom::Sum(terms), 1)] = term.over.as_slice()
+            && number.is_one()
+            && term.under.is_empty()
+            && !term.is_negative()
+        {
+            return self.sum(terms);
+        }
+        match self {
+            Notation::Text => text_product(term, &number),
+            Notation::Latex => latex_product(term, &number),
+        }
+    }
+
+    fn sum(self, terms: &[Term]) -> String {
+        let mut text = String::new();
+        for (place, term) in terms.iter().enumerate() {
+            let sign = match (place, term.is_negative()) {
+                (0, false) => "",
+                (0, true) => "-",
+                (_, false) => " + ",
+                (_, true) => " - ",
+            };
+            text.push_str(sign);
+            text.push_str(&self.unsigned_operand(term));
+        }
+        text
+    }
+
+    /// A term behind a sign: a sum needs parentheses there.
+    fn unsigned_operand(self, term: &Term) -> String {
+        let positive = Term {
+            coefficient: term.coefficient.abs(),
+            ..term.clone()
+        };
+        if positive.bare_sum().is_some() {
+            return self.group(&self.unsigned(&positive));
+        }
+        self.unsigned(&positive)
+    }
+
+    fn group(self, text: &str) -> String {
+        match self {
+            Notation::Latex if text.contains(r"\frac") => format!(r"\left({text}\right)"),
+            Notation::Text | Notation::Latex => format!("({text})"),
+        }
+    }
+
+    fn power(self, atom: &Atom, power: u32) -> String {
+        match (self, atom, power) {
+            (_, Atom::Sum(terms), _) => raised(self, self.group(&self.sum(terms)), power),
+            (Notation::Text, Atom::Name(name), _) => raised(self, name.clone(), power),
+            (Notation::Latex, Atom::Name(name), _) => raised(self, latex_name(name), power),
+            (
+                _,
+                Atom::External {
+                    name,
+                    arguments,
+                    part,
+                },
+                _,
+            ) => {
+                let given = self.group(&self.arguments(arguments));
+                let called = match self {
+                    Notation::Text => format!("{name}{given}{part}"),
+                    Notation::Latex => {
+                        let index = part.trim_matches(['[', ']']);
+                        let name = latex_name(name);
+                        match index {
+                            "" => format!("{name}{given}"),
+                            _ => format!("{name}{given}_{{{index}}}"),
+                        }
+                    }
+                };
+                raised(self, called, power)
+            }
+            (_, Atom::Call(Function::Select, arguments), _) => {
+                raised(self, self.choice(arguments), power)
+            }
+            (Notation::Text, Atom::Call(function, arguments), _) => {
+                let name = function.name();
+                raised(
+                    self,
+                    format!("{name}({})", self.arguments(arguments)),
+                    power,
+                )
+            }
+            (Notation::Latex, Atom::Call(Function::Sqrt | Function::Norm, arguments), _) => {
+                let root = format!(r"\sqrt{{{}}}", self.arguments(arguments));
+                raised(
+                    self,
+                    if power > 1 { self.group(&root) } else { root },
+                    power,
+                )
+            }
+            (Notation::Latex, Atom::Call(function, arguments), _) => {
+                let name = raised(self, function.row().latex.into(), power);
+                format!("{name}{}", self.group(&self.arguments(arguments)))
+            }
+        }
+    }
+
+    /// a where c > 0, else b.
+    fn choice(self, arguments: &[Term]) -> String {
+        let [c, a, b] = arguments else {
+            return self.arguments(arguments);
+        };
+        let [c, a, b] = [c, a, b].map(|argument| self.term(argument));
+        match self {
+            Notation::Text => format!("(if {c} > 0 {{ {a} }} else {{ {b} }})"),
+            Notation::Latex => {
+                format!(r"\begin{{cases}} {a} & {c} > 0 \\ {b} & \text{{else}} \end{{cases}}")
+            }
+        }
+    }
+
+    fn arguments(self, arguments: &[Term]) -> String {
+        let written: Vec<String> = arguments
+            .iter()
+            .map(|argument| self.term(argument))
+            .collect();
+        written.join(", ")
+    }
+
+    fn factors(self, factors: &[(Atom, u32)]) -> Vec<String> {
+        factors
+            .iter()
+            .map(|(atom, power)| self.power(atom, *power))
+            .collect()
+    }
+}
+
+fn raised(notation: Notation, base: String, power: u32) -> String {
+    match (notation, power) {
+        (_, 1) => base,
+        (Notation::Text, _) => format!("{base}^{power}"),
+        (Notation::Latex, _) => format!("{base}^{{{power}}}"),
+    }
+}
+
+fn text_product(term: &Term, number: &num_rational::BigRational) -> String {
+    let mut over = Notation::Text.factors(&term.over);
+    let mut under = Notation::Text.factors(&term.under);
+    if !number.numer().is_one() || over.is_empty() {
+        over.insert(0, number.numer().to_string());
+    }
+    if !number.denom().is_one() {
+        under.insert(0, number.denom().to_string());
+    }
+    let over = over.join("*");
+    match under.as_slice() {
+        [] => over,
+        [one] => format!("{over}/{one}"),
+        _ => format!("{over}/({})", under.join("*")),
+    }
+}
+
+fn latex_product(term: &Term, number: &num_rational::BigRational) -> String {
+    let mut over = Notation::Latex.factors(&term.over);
+    let mut under = Notation::Latex.factors(&term.under);
+    if under.is_empty() && !number.denom().is_one() {
+        let fraction = format!(r"\tfrac{{{}}}{{{}}}", number.numer(), number.denom());
+        return format!("{fraction}{}", juxtaposed(&over));
+    }
+    if !number.numer().is_one() || over.is_empty() {
+        over.insert(0, number.numer().to_string());
+    }
+    if under.is_empty() {
+        return juxtaposed(&over);
+    }
+    if !number.denom().is_one() {
+        under.insert(0, number.denom().to_string());
+    }
+    format!(
+        r"\frac{{{}}}{{{}}}",
+        alone(&term.over, over),
+        alone(&term.under, under)
+    )
+}
+
+/// A numerator or denominator; a sum that is all of it needs no parentheses.
+fn alone(factors: &[(Atom, u32)], written: Vec<String>) -> String {
+    if let ([(Atom::Sum(terms), 1)], [_]) = (factors, written.as_slice()) {
+        return Notation::Latex.sum(terms);
+    }
+    juxtaposed(&written)
+}
+
+/// Factors side by side; between words there is a gap.
+fn juxtaposed(factors: &[String]) -> String {
+    let is_word = |factor: &String| factor.contains(r"\mathrm");
+    let mut text = String::new();
+    for (place, factor) in factors.iter().enumerate() {
+        if place > 0 {
+            let gap = is_word(factor) || is_word(&factors[place - 1]);
+            text.push_str(if gap { r" \, " } else { " " });
+        }
+        text.push_str(factor);
+    }
+    text
+}
+
+/// Indices from 1: `135` where every size is at most 9, else `1,3,15`.
+pub fn index(index: &[usize], shape: &[usize]) -> String {
+    let digits: Vec<String> = index.iter().map(usize::to_string).collect();
+    digits.join(if shape.iter().all(|&size| size <= 9) {
+        ""
+    } else {
+        ","
+    })
+}

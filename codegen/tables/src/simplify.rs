@@ -1,0 +1,154 @@
+//! The polynomial that is shown for an expression: as it stands, or in normal form modulo φ.
+
+use super::circles::{pairs, shortened};
+use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
+use hamel_algebra::poly::monomial::Var;
+use hamel_algebra::poly::polynomial::Poly;
+use hamel_algebra::topoly::{Expander, OPAQUE};
+use hamel_dynamics::normal::NormalForms;
+use hamel_language::model::class;
+use hamel_language::model::layout::Block;
+use hamel_language::model::points::Points;
+use num_rational::BigRational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Longest polynomial that is shown as one.
+pub const MOST_SHOWN: usize = 60;
+
+/// Longest polynomial on the way to one that is shown, as it stands.
+const MOST_EXPANDED: usize = 100;
+
+/// Expressions without a short polynomial after which polynomials on the way may be no longer than those that are shown:
+/// of a long chain no entry has one, and to find that out takes long for each.
+const MOST_FAILURES: usize = 100;
+
+/// Longest polynomial that is expanded inside an expression that is not.
+const MOST_INSIDE: usize = 8;
+
+/// Simplification of the expressions of one graph.
+pub struct Simplifier {
+    expander: Expander,
+    forms: Option<NormalForms>,
+    /// Expressions that had no short polynomial.
+    failures: usize,
+    /// The symbol of x₁.
+    first: NodeId,
+    /// The block of every coordinate.
+    blocks: Vec<usize>,
+    kinds: Vec<Block>,
+    inside: BTreeMap<Var, BTreeSet<usize>>,
+}
+
+impl Simplifier {
+    /// Simplification modulo φ.
+    pub fn modulo(points: &Points) -> Self {
+        let forms = Some(NormalForms::new(points));
+        Simplifier {
+            forms,
+            ..Simplifier::free(points)
+        }
+    }
+
+    /// Expansion only: for φ itself, and for functions as they are emitted.
+    pub fn free(points: &Points) -> Self {
+        let numbered = points.blocks.iter().enumerate();
+        Simplifier {
+            expander: Expander::default().of_terms(MOST_EXPANDED),
+            forms: None,
+            failures: 0,
+            first: points.first as NodeId,
+            blocks: numbered
+                .flat_map(|(i, block)| vec![i; block.len()])
+                .collect(),
+            kinds: points.blocks.clone(),
+            inside: BTreeMap::new(),
+        }
+    }
+
+    /// The polynomial to show: of the candidates that with fewest blocks of coordinates, then
+    /// fewest coordinates, then fewest terms; `None` where all are too long.
+    pub fn whole(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
+        let shortest = self.shortest(graph, node);
+        if shortest.is_none() {
+            self.failures += 1;
+            if self.failures == MOST_FAILURES
+                && let Some(forms) = &mut self.forms
+            {
+                forms.limit_terms(MOST_SHOWN);
+            }
+        }
+        shortest
+    }
+
+    fn shortest(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
+        let plain = self.expander.expand(graph, Edge::of(node));
+        let mut candidates: Vec<Poly<BigRational>> = plain.into_iter().collect();
+        if graph.class(node) & class::CONFIGURATION != 0
+            && let Some(forms) = &mut self.forms
+        {
+            candidates.extend(forms.normal_form(graph, Edge::of(node)));
+            let shorter: Vec<Poly<BigRational>> = candidates
+                .iter()
+                .map(|candidate| {
+                    let pairs = pairs(graph, self.first, &self.kinds, candidate);
+                    shortened(candidate.clone(), &pairs)
+                })
+                .collect();
+            // A candidate as it stands is taken where it is as good as one in which squares on circles are replaced.
+            candidates.truncate(1);
+            candidates.extend(shorter);
+        }
+        let costs: Vec<_> = candidates
+            .iter()
+            .map(|candidate| self.cost(graph, candidate))
+            .collect();
+        let least = (0..candidates.len()).min_by_key(|&candidate| costs[candidate])?;
+        let best = candidates.swap_remove(least);
+        // Products with quotients are shorter as they are than multiplied out.
+        let quotient = |var: Var| {
+            let id = var.checked_sub(OPAQUE);
+            id.is_some_and(|id| matches!(graph.node(id), Node::Div(..)))
+        };
+        let most = match best.variables().into_iter().any(quotient) {
+            true => MOST_INSIDE,
+            false => MOST_SHOWN,
+        };
+        (best.terms().len() <= most).then_some(best)
+    }
+
+    /// The polynomial of a part of a longer expression.
+    pub fn part(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
+        let plain = self.expander.expand(graph, Edge::of(node))?;
+        (plain.terms().len() <= MOST_INSIDE).then_some(plain)
+    }
+
+    fn cost(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> (usize, usize, usize) {
+        let mut coordinates: BTreeSet<usize> = BTreeSet::new();
+        for var in polynomial.variables() {
+            coordinates.extend(self.coordinates(graph, var));
+        }
+        let blocks: BTreeSet<usize> = coordinates.iter().map(|&c| self.blocks[c]).collect();
+        (blocks.len(), coordinates.len(), polynomial.terms().len())
+    }
+
+    /// The coordinates that a variable is written in.
+    fn coordinates(&mut self, graph: &Graph, var: Var) -> BTreeSet<usize> {
+        let (first, count) = (self.first, self.blocks.len());
+        let place = |symbol: u32| {
+            let place = symbol.checked_sub(first)? as usize;
+            (place < count).then_some(place)
+        };
+        let Some(id) = var.checked_sub(OPAQUE) else {
+            return place(var).into_iter().collect();
+        };
+        let written = self.inside.entry(var).or_insert_with(|| {
+            let nodes = graph.reachable(&[Edge::of(id)]).into_iter();
+            let symbols = nodes.filter_map(|node| match graph.node(node) {
+                Node::Symbol(index) => place(index),
+                _ => None,
+            });
+            symbols.collect()
+        });
+        written.clone()
+    }
+}

@@ -1,0 +1,256 @@
+//! The full frame, before constraints act: M, Γ ξ ξ, ∂V, f, T and V, which reduced systems are compared with, follow from the
+//! rules that the generator derives by. Here they are compared with the three forms (30a), (30b), (30c) in numbers, which
+//! share none of these rules.
+
+use crate::kernel::places;
+use crate::numbers::Numbers;
+use crate::points::{Unequal, at_fresh_points};
+use crate::reference::Reference;
+use crate::states;
+use hamel_algebra::fp::Fp;
+use hamel_algebra::graph::{Edge, Function, Graph};
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::transplant::{substitute, substitute_under_roots};
+use hamel_dynamics::accel::saddle;
+use hamel_dynamics::calculus::Calculus;
+use hamel_dynamics::reduction::{Reduction, drift};
+use hamel_dynamics::{kinematics, quantity};
+use hamel_language::model::{Model, class};
+use hamel_program::{FunctionId, Program};
+use num_rational::BigRational;
+
+/// Everything of the full frame that is compared with.
+pub(super) struct Full {
+    pub(super) reference: Reference,
+    /// Whether it agrees with the three forms in numbers, where that is known.
+    pub(super) frame: Option<bool>,
+    /// Ċ ξₐ + ċ.
+    pub(super) drift: Vec<Edge>,
+    /// C by rows, then c.
+    pub(super) complement: Vec<Edge>,
+    /// B, all rows.
+    pub(super) rows: Vec<Edge>,
+    /// The part of T in the energy.
+    pub(super) in_energy: Edge,
+    /// d/dt (T + V) at ξ̇ = 0.
+    pub(super) change: Edge,
+    /// The symbols of velocities that were solved away, with what gives them.
+    pub(super) solved: Vec<(usize, Edge)>,
+    /// The forms that they have as arguments of functions, in the reduced graph: values and coefficients.
+    pub(super) forms: Vec<Vec<(Edge, BigRational)>>,
+    /// Kept rows in ξₐ and their right sides, in the reduced graph.
+    pub(super) reduced: Model,
+    pub(super) right: Vec<Edge>,
+    /// What is claimed to be constant, by its definition.
+    pub(super) claims: Vec<(String, Vec<Edge>)>,
+}
+
+impl Full {
+    pub(super) fn new(model: &Model, reduction: &Reduction, program: &Program) -> Option<Self> {
+        let full = Model {
+            graph: reduction.graph.clone(),
+            ..model.clone()
+        };
+        let mut reference = Reference::new(&full)?;
+        let frame = agrees(model, &reference);
+        let full = &mut reference.model;
+        let xi: Vec<Edge> = reduction.active.iter().map(|&i| full.xi[i]).collect();
+        let drift = drift(full, &xi, &reduction.section);
+        let section = &reduction.section;
+        let lifted = [section.complement.concat(), section.shift.clone()].concat();
+        let mut calculus = Calculus::new(full);
+        let energy = full.graph.add(reference.kinetic, reference.potential);
+        let change = calculus.rate(&mut full.graph, energy);
+        let in_energy = in_energy(full, reference.kinetic)?;
+        let energies = (in_energy, reference.potential);
+        let claims = model.invariants.iter();
+        let claims = claims.map(|claim| {
+            let value = quantity::value(full, &mut calculus, energies, &claim.quantity);
+            (claim.name.clone(), value.entries())
+        });
+        let claims = claims.collect();
+        let place = places(&full.graph, class::VELOCITY);
+        let solved = reduction.solved.iter();
+        let solved: Vec<(usize, Edge)> = solved
+            .map(|&(_, i)| {
+                let moved = full.graph.dot(&section.complement[i], &xi);
+                (place[i], full.graph.add(moved, section.shift[i]))
+            })
+            .collect();
+        let mut reduced = states::with_rates(&reduction.model, program);
+        let forms = solved.iter().map(|(symbol, _)| {
+            let image = reduction.images[*symbol];
+            let form = reduced.graph.form(Function::Exp, image);
+            let edges = form.into_iter().map(|(atom, c)| (Edge::of(atom), c));
+            edges.collect()
+        });
+        let forms = forms.collect();
+        let mut calculus = Calculus::new(&reduced);
+        let right = saddle::right_side(&mut reduced, &mut calculus);
+        let mut full = Full {
+            drift,
+            complement: lifted,
+            rows: model
+                .constraints
+                .iter()
+                .flat_map(|c| c.row.clone())
+                .collect(),
+            in_energy,
+            change,
+            solved,
+            forms,
+            reduced,
+            right,
+            claims,
+            reference,
+            frame,
+        };
+        full.prescribe();
+        Some(full)
+    }
+
+    /// λ of all rows, with 0 for those that were dropped, then the forces of drives.
+    pub(super) fn of_all_rows(&self, lambda: Vec<Fp>) -> Vec<Fp> {
+        let mut next = lambda.into_iter();
+        let constraints = self.reference.model.constraints.iter();
+        let rows = constraints.map(|row| match row.redundant {
+            true => Fp::ZERO,
+            false => next.next().unwrap_or(Fp::ZERO),
+        });
+        let mut all: Vec<Fp> = rows.collect();
+        all.extend(next);
+        all
+    }
+
+    /// Whether the forces of drives are known, which take part in d/dt (T + V): not where they are not emitted, nor where
+    /// the forces of loops are not unique.
+    pub(super) fn power_is_known(&self, program: &Program) -> bool {
+        let model = &self.reference.model;
+        let driven = model.clock.is_some() || !model.accelerated.is_empty();
+        let forces = program.function(FunctionId::ConstraintForce).is_some()
+            || self.rows.is_empty() && model.accelerated.is_empty();
+        program.xi_dot().is_some() && (!driven || forces && !self.reduced.overconstrained)
+    }
+
+    /// Puts prescribed coordinates and ξ⁰ = 1 in, now that all derivatives are taken: at a point, sin q of a symbol q
+    /// and sin f of a sum f with the same value would differ. So would the roots of v² + 1 and of (4/9) u² + 1 where
+    /// 3 v = 2 u, by their sign: under roots, velocities that were solved away are put in as well.
+    fn prescribe(&mut self) {
+        let reference = &mut self.reference;
+        let model = &mut reference.model;
+        let (set, graph) = (given(model), &mut model.graph);
+        let solved = self.solved.iter_mut();
+        solved.for_each(|(_, edge)| *edge = substitute(graph, &[*edge], &set)[0]);
+        let put = |graph: &mut Graph, edges: &[Edge]| {
+            let edges = substitute(graph, edges, &set);
+            substitute_under_roots(graph, &edges, &self.solved)
+        };
+        let rows = [&mut reference.mass, &mut model.a];
+        let rows = rows.into_iter().flatten();
+        let lists = [
+            &mut reference.bias,
+            &mut reference.slope,
+            &mut reference.force,
+            &mut self.drift,
+            &mut self.complement,
+            &mut self.rows,
+        ];
+        let claims = self.claims.iter_mut().map(|(_, entries)| entries);
+        for list in rows.chain(lists).chain(claims) {
+            *list = put(graph, list);
+        }
+        let single = [
+            &mut reference.kinetic,
+            &mut reference.potential,
+            &mut reference.dissipation,
+            &mut self.in_energy,
+            &mut self.change,
+        ];
+        for edge in single {
+            *edge = put(graph, &[*edge])[0];
+        }
+    }
+}
+
+/// The part of T in the energy: T less T₁ + 2 T₀ of what was written, which is ½ (T(2) − T(0)) as a function of ṫ with the rates
+/// of all other coordinates held.
+fn in_energy(full: &mut Model, kinetic: Edge) -> Option<Edge> {
+    let Some(clock) = full.clock.filter(|_| full.kinetic != full.graph.zero()) else {
+        return Some(kinetic);
+    };
+    let y = kinematics::left_inverse(full)?;
+    let symbols = places(&full.graph, class::VELOCITY);
+    let graph = &mut full.graph;
+    let [still, twice] = [-1, 1].map(|more| {
+        let more = graph.ratio(more, 1);
+        let moved = full.xi.iter().zip(&y).zip(&symbols);
+        let moved = moved.map(|((&xi, row), &symbol)| {
+            let part = graph.mul(more, row[clock.x]);
+            (symbol, graph.add(xi, part))
+        });
+        let moved: Vec<(usize, Edge)> = moved.collect();
+        substitute(graph, &[full.kinetic], &moved)[0]
+    });
+    let difference = graph.sub(twice, still);
+    let half = graph.ratio(1, 2);
+    let beyond = graph.mul(half, difference);
+    Some(graph.sub(kinetic, beyond))
+}
+
+/// The symbols of prescribed coordinates with what they are prescribed to be, and ξ⁰ with 1.
+pub(super) fn given(model: &Model) -> Vec<(usize, Edge)> {
+    let first = model.points.first;
+    let given = model.prescribed.iter();
+    let given = given.map(|(place, edge)| (first + place, *edge));
+    let velocities = places(&model.graph, class::VELOCITY);
+    let time = model
+        .clock
+        .map(|clock| (velocities[clock.xi], model.graph.one()));
+    given.chain(time).collect()
+}
+
+/// Whether they agree at fresh points of X, or of a prescribed motion where roots have values only there; `None` where there are
+/// none.
+pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
+    let numbers = Numbers::new(model)?;
+    let mut roots = reference.mass.concat();
+    for list in [&reference.bias, &reference.slope, &reference.force] {
+        roots.extend(list);
+    }
+    roots.extend([
+        reference.kinetic,
+        reference.potential,
+        reference.dissipation,
+    ]);
+    let graph = &reference.model.graph;
+    let at = |lane: &Lane| {
+        let found = evaluate_at(graph, &roots, &mut lane.clone())?;
+        let Ok(values) = numbers.at(lane)? else {
+            return Some(Err(()));
+        };
+        let mut expected: Vec<Fp> = values.mass.concat();
+        for list in [&values.bias, &values.slope, &values.force] {
+            expected.extend(list);
+        }
+        expected.extend([values.kinetic, values.potential, values.dissipation]);
+        let [hamel, gibbs, levi_civita] = &values.left;
+        let same = hamel == gibbs && gibbs == levi_civita && found == expected;
+        Some(if same { Ok(()) } else { Err(()) })
+    };
+    let anywhere = |number| model.points.lane(0xf4a_3e0 + number);
+    let given = given(model);
+    let prescribed = |number| {
+        let unmoved = |_| Some(Vec::new());
+        (model.points).lane_moved(0xf4a_3e0 + number, &model.graph, &given, &unmoved)
+    };
+    let compared = match at_fresh_points(anywhere, |lane, _| at(lane)) {
+        Err(Unequal::Nowhere) => at_fresh_points(prescribed, |lane, _| at(lane)),
+        compared => compared,
+    };
+    match compared {
+        Ok(()) => Some(true),
+        Err(Unequal::Differs(())) => Some(false),
+        Err(Unequal::Nowhere) => None,
+    }
+}

@@ -1,0 +1,388 @@
+//! All that is compared at one point of a system with constraints.
+
+use super::Claim;
+use super::frame::Full;
+use super::point::{At, Values};
+use crate::charts::Charts;
+use crate::kernel::{dot, virtual_velocity};
+use crate::{centroidal, derivatives, frames, outputs, states};
+use hamel_algebra::fp::Fp;
+use hamel_algebra::graph::Edge;
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_dynamics::accel::saddle::{self, Solved};
+use hamel_dynamics::reduction::Reduction;
+use hamel_program::{FunctionId, Program};
+
+/// A point with everything there that several comparisons need.
+pub(super) struct Seen<'a> {
+    full: &'a Full,
+    reduction: &'a Reduction,
+    program: &'a Program,
+    charts: &'a Charts,
+    at: At<'a>,
+    values: Values,
+    /// B of the full frame, by rows.
+    rows: Vec<Fp>,
+    /// The rows that are kept, in ξₐ, and B ξ̇ₐ there.
+    kept: Vec<Fp>,
+    right: Vec<Fp>,
+    /// The active velocities whose rates are given, with these.
+    driven: Vec<(usize, Fp)>,
+    /// Cᵀ M C.
+    mass: Vec<Fp>,
+    /// Γ ξ ξ + M (Ċ ξₐ + ċ), in the full frame.
+    bias: Vec<Fp>,
+    /// ξ̇ₐ as emitted, and the rates of states behind it.
+    xi_dot: Option<Vec<Fp>>,
+    state_rates: Vec<Fp>,
+}
+
+impl<'a> Seen<'a> {
+    /// The point of a lane; `None` where something has no value there.
+    pub(super) fn new(
+        full: &'a Full,
+        reduction: &'a Reduction,
+        (program, charts): (&'a Program, &'a Charts),
+        lane: &Lane,
+    ) -> Option<Self> {
+        let (n, na) = (full.reference.model.n(), reduction.active.len());
+        let at = At::new(full, reduction, program, lane)?;
+        let values = at.values()?;
+        let rows = evaluate_at(&full.reference.model.graph, &full.rows, &mut lane.clone())?;
+        let reduced = &full.reduced;
+        let inner = |edges: &[Edge]| evaluate_at(&reduced.graph, edges, &mut at.inner.clone());
+        let constraints = reduced.constraints.iter();
+        let kept: Vec<Edge> = constraints.flat_map(|c| c.row.iter().copied()).collect();
+        let (kept, right) = (inner(&kept)?, inner(&full.right)?);
+        let given: Vec<Edge> = reduced.accelerated.iter().map(|(_, rate)| *rate).collect();
+        let places = reduced.accelerated.iter().map(|(place, _)| *place);
+        let driven = places.zip(inner(&given)?).collect();
+        let column = |j: usize| -> Vec<Fp> { (0..n).map(|i| at.c[i * na + j]).collect() };
+        let columns: Vec<Vec<Fp>> = (0..na).map(column).collect();
+        let product = |v: &[Fp]| -> Vec<Fp> {
+            let rows = values.mass.chunks(n.max(1));
+            rows.map(|row| dot(row, v)).collect()
+        };
+        let mass = columns.iter().flat_map(|column| {
+            let moved = product(column);
+            columns.iter().map(move |other| dot(other, &moved))
+        });
+        let mass = mass.collect();
+        let moved = product(&values.drift);
+        let bias = values.bias.iter().zip(moved);
+        let bias = bias.map(|(&bias, moved)| bias + moved).collect();
+        let accel = match program.function(FunctionId::Accel) {
+            None => None,
+            Some(f) => Some(evaluate_at(
+                &program.graph,
+                &f.outputs,
+                &mut at.inner.clone(),
+            )?),
+        };
+        let mut xi_dot = accel;
+        let state_rates = xi_dot.as_mut().map(|rates| rates.split_off(na));
+        Some(Seen {
+            full,
+            reduction,
+            program,
+            charts,
+            at,
+            values,
+            rows,
+            kept,
+            right,
+            driven,
+            mass,
+            bias,
+            xi_dot,
+            state_rates: state_rates.unwrap_or_default(),
+        })
+    }
+
+    /// Whether a claim holds here; `None` where something has no value.
+    pub(super) fn holds(&self, claim: Claim) -> Option<bool> {
+        let (full, program, inner) = (self.full, self.program, &self.at.inner);
+        Some(match claim {
+            Claim::Complement => self.solved_rows_vanish(),
+            Claim::Rate => {
+                let rate = self.at.rate()?;
+                self.equal("rate", &rate)? && self.charts.hold(&rate, inner)?
+            }
+            Claim::Balance => self.balances()?,
+            Claim::Constraint => self.is_kept()?,
+            Claim::Mass => {
+                let momentum: Vec<Fp> = (self.values.mass.chunks(self.n().max(1)))
+                    .map(|row| dot(row, &self.values.xi))
+                    .collect();
+                self.equal("mass_matrix", &self.mass)?
+                    && self.equal("momentum", &self.projected(&momentum))?
+            }
+            Claim::Bias => self.equal("bias", &self.projected(&self.bias))?,
+            Claim::Loads => self.loads()?,
+            // It is compared at points of its own.
+            Claim::Power => true,
+            Claim::Projection => self.leads_back()?,
+            Claim::Linearisation => self.at.linear()?,
+            Claim::Slopes => {
+                derivatives::hold(&full.reference.model, program, [&self.at.point, inner])?
+            }
+            Claim::States => match &self.xi_dot {
+                Some(xi_dot) => states::rates(&full.reduced, xi_dot, inner)? == self.state_rates,
+                None => true,
+            },
+            Claim::Outputs => outputs::values_hold(&self.reduction.model, program, inner)?,
+            Claim::Invariants => self.invariants()?,
+            Claim::Frames => frames::hold(&full.reduced, program, inner)?,
+            Claim::Momentum => centroidal::holds(&full.reduced, program, inner)?,
+            Claim::FullFrame => full.frame != Some(false),
+        })
+    }
+
+    fn n(&self) -> usize {
+        self.full.reference.model.n()
+    }
+
+    /// Cᵀ v.
+    fn projected(&self, v: &[Fp]) -> Vec<Fp> {
+        let na = self.reduction.active.len();
+        let entry = |j: usize| {
+            let rows = v.iter().enumerate();
+            rows.fold(Fp::ZERO, |sum, (i, &v)| sum + self.at.c[i * na + j] * v)
+        };
+        (0..na).map(entry).collect()
+    }
+
+    /// The values of an emitted function, where there is one.
+    fn emitted(&self, name: &str) -> Option<Option<Vec<Fp>>> {
+        match self.program.function(name) {
+            None => Some(None),
+            Some(f) => {
+                let values =
+                    evaluate_at(&self.program.graph, &f.outputs, &mut self.at.inner.clone());
+                values.map(Some)
+            }
+        }
+    }
+
+    fn equal(&self, name: &str, expected: &[Fp]) -> Option<bool> {
+        Some(self.emitted(name)?.is_none_or(|found| found == expected))
+    }
+
+    /// B C = 0 and B c = 0.
+    fn solved_rows_vanish(&self) -> bool {
+        let n = self.n();
+        self.reduction.solved.iter().all(|&(row, _)| {
+            let row = &self.rows[row * n..][..n];
+            let moves = (self
+                .at
+                .c
+                .chunks(self.reduction.active.len().max(1))
+                .zip(row))
+            .fold(
+                vec![Fp::ZERO; self.reduction.active.len()],
+                |sum, (c, &b)| sum.iter().zip(c).map(|(&sum, &c)| sum + b * c).collect(),
+            );
+            moves.iter().all(|entry| entry.is_zero()) && dot(row, &self.at.shift).is_zero()
+        })
+    }
+
+    /// ξ̇ₐ and λ of Cᵀ M C ξ̇ₐ = force + Bᵀ λ, B ξ̇ₐ = right, by elimination in numbers; steps have no forces.
+    fn solution(
+        &self,
+        force: Option<&[Fp]>,
+        right: &[Fp],
+        driven: &[(usize, Fp)],
+    ) -> Option<Solved> {
+        let none = vec![Fp::ZERO; self.reduction.active.len()];
+        let parts = [&self.mass[..], force.unwrap_or(&none), &self.kept, right];
+        saddle::solve_at(
+            &self.full.reduced,
+            parts,
+            driven,
+            force.is_some(),
+            &self.at.inner,
+        )
+    }
+
+    /// The ξ̇ₐ and λ that the forces imply.
+    fn implied(&self) -> Option<Solved> {
+        let Values { force, slope, .. } = &self.values;
+        let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
+        let rest: Vec<Fp> = rest.collect();
+        self.solution(Some(&self.projected(&rest)), &self.right, &self.driven)
+    }
+
+    /// M ξ̇ + h + ∂V of the full frame for active rates.
+    fn needed(&self, xi_dot: &[Fp]) -> Vec<Fp> {
+        self.values.needed(&self.values.lift(&self.at.c, xi_dot))
+    }
+
+    /// Every row of the full frame with the emitted multipliers, and along virtual velocities without them. Where ξ̇ is
+    /// not emitted, multipliers are compared with the ξ̇ that the forces imply.
+    fn balances(&self) -> Option<bool> {
+        let force = &self.values.force;
+        let lambda = self.emitted("constraint_force")?;
+        let lambda = lambda.map(|lambda| self.full.of_all_rows(lambda));
+        let xi_dot = match (&self.xi_dot, &lambda) {
+            (None, Some(_)) => Some(self.implied()?.xi_dot),
+            (emitted, _) => emitted.clone(),
+        };
+        if let (Some(xi_dot), Some(lambda)) = (&xi_dot, &lambda)
+            && !(self.bonds_balance(xi_dot, lambda)? && self.shared_is_implied(lambda)?)
+        {
+            return Some(false);
+        }
+        // A virtual velocity v has B v = 0, and moves no drive: neither multipliers nor drives do work on it.
+        if let Some(xi_dot) = &xi_dot {
+            let needed = self.needed(xi_dot);
+            let left = needed.iter().zip(force).map(|(&needed, &f)| needed - f);
+            let left = self.projected(&left.collect::<Vec<_>>());
+            let v = virtual_velocity(&self.full.reduced, &self.kept, &self.values.xi)?;
+            if !dot(&v, &left).is_zero() {
+                return Some(false);
+            }
+        }
+        // Of any ξ̇.
+        let reduced = &self.full.reduced;
+        let rates = evaluate_at(&reduced.graph, &reduced.xi_dot, &mut self.at.inner.clone())?;
+        self.equal("inverse_dynamics", &self.projected(&self.needed(&rates)))
+    }
+
+    /// The rows of the full frame with the multipliers of all constraints, then of drives; `None` where some have no value.
+    fn bonds_balance(&self, xi_dot: &[Fp], lambda: &[Fp]) -> Option<bool> {
+        let model = &self.full.reference.model;
+        let (n, force) = (self.n(), &self.values.force);
+        let needed = self.needed(xi_dot);
+        let time = model.clock.map(|clock| clock.xi);
+        // The row of ξ⁰ is no equation of motion.
+        let compared = (0..n).filter(|&i| Some(i) != time && !self.contradicts(i));
+        let mut balanced = compared.map(|i| {
+            let bonds = lambda.iter().zip(self.rows.chunks(n));
+            let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
+            // Beyond the rows of constraints stand the forces of drives whose rates are given.
+            let drives = model.accelerated.iter();
+            let drives = drives.zip(lambda.get(self.rows.len() / n..)?);
+            let drive = drives.filter(|((velocity, _), _)| *velocity == i);
+            let drive = drive.fold(Fp::ZERO, |sum, (_, &force)| sum + force);
+            Some(needed[i] == force[i] + bond + drive)
+        });
+        balanced.try_fold(true, |all, row| Some(all & row?))
+    }
+
+    /// Whether rates are given beside rows that depend on one another. Off the loops these contradict one another and the rates
+    /// that are given, which hold exactly.
+    fn is_shared(&self) -> bool {
+        let reduced = &self.full.reduced;
+        reduced.overconstrained && !reduced.accelerated.is_empty()
+    }
+
+    /// Whether the row of a velocity balances where the loops are closed alone: that of one which moves by itself.
+    fn contradicts(&self, velocity: usize) -> bool {
+        let model = &self.full.reference.model;
+        let driven = model
+            .accelerated
+            .iter()
+            .any(|&(place, _)| place == velocity);
+        self.is_shared() && !driven && self.reduction.active.contains(&velocity)
+    }
+
+    /// Whether the multipliers of kept rows are those of the elimination in numbers, where rows of the balance are not compared.
+    /// The rows that are compared give all other multipliers.
+    fn shared_is_implied(&self, lambda: &[Fp]) -> Option<bool> {
+        if !self.is_shared() {
+            return Some(true);
+        }
+        let implied = self.implied()?.multipliers;
+        let mut kept = self.reduction.kept.iter().zip(&implied);
+        Some(kept.all(|(&row, implied)| lambda.get(row) == Some(implied)))
+    }
+
+    /// The constraints, along the emitted ξ̇.
+    fn is_kept(&self) -> Option<bool> {
+        let Some(xi_dot) = &self.xi_dot else {
+            return Some(true);
+        };
+        if self.full.reduced.overconstrained {
+            return Some(self.implied()?.xi_dot == *xi_dot);
+        }
+        let mut driven = self.driven.iter();
+        let mut rows = (self.right.iter()).zip(self.kept.chunks(xi_dot.len().max(1)));
+        Some(
+            driven.all(|&(place, rate)| xi_dot[place] == rate)
+                && rows.all(|(&right, row)| dot(row, xi_dot) == right),
+        )
+    }
+
+    fn loads(&self) -> Option<bool> {
+        let values = &self.values;
+        let all = [
+            ("generalized_force", self.projected(&values.force)),
+            ("potential_force", self.projected(&values.slope)),
+            ("kinetic_energy", vec![values.in_energy]),
+            ("potential_energy", vec![values.potential]),
+            ("energy", vec![values.in_energy + values.potential]),
+            ("dissipation", vec![values.dissipation]),
+        ];
+        for (name, expected) in all {
+            if !self.equal(name, &expected)? {
+                return Some(false);
+            }
+        }
+        Some(true)
+    }
+
+    /// φ of the loops, and the steps back to φ = 0 and to B ξ + b = 0: the δ with B δ = −φ, or B δ = −(B ξ + b), that is
+    /// M⁻¹ Bᵀ times something, and moves no drive.
+    fn leads_back(&self) -> Option<bool> {
+        let (reduced, na) = (&self.full.reduced, self.reduction.active.len());
+        let inner = |edges: &[Edge]| evaluate_at(&reduced.graph, edges, &mut self.at.inner.clone());
+        let constraints = &reduced.constraints;
+        let residuals: Vec<Edge> = constraints.iter().map(|c| c.residual).collect();
+        let residuals = inner(&residuals)?;
+        let shifts: Vec<Edge> = constraints.iter().map(|c| c.shift).collect();
+        let xi = inner(&reduced.xi)?;
+        let held: Vec<(usize, Fp)> = self.driven.iter().map(|&(i, _)| (i, Fp::ZERO)).collect();
+        let back = |left: &[Fp]| {
+            let right: Vec<Fp> = left.iter().map(|&left| -left).collect();
+            let solution = self.solution(None, &right, &held)?;
+            Some(solution.xi_dot)
+        };
+        if let Some(found) = self.emitted("project_position")?
+            && found[..na] != back(&residuals)?
+        {
+            return Some(false);
+        }
+        if let Some(found) = self.emitted("project_velocity")? {
+            let rows = self.kept.chunks(na.max(1)).zip(inner(&shifts)?);
+            let speeds: Vec<Fp> = rows.map(|(row, shift)| dot(row, &xi) + shift).collect();
+            let step = back(&speeds)?;
+            let mut moved = xi.iter().zip(&step).map(|(&xi, &step)| xi + step);
+            let states = inner(reduced.z())?;
+            if !found[..na].iter().all(|&found| moved.next() == Some(found))
+                || found[na..] != states
+            {
+                return Some(false);
+            }
+        }
+        // What stands before them are the rows of φ of coordinates, which vanish on X and are proved off it.
+        let zero = reduced.graph.zero();
+        let loops = constraints.iter().zip(residuals);
+        let loops = loops.filter(|(constraint, _)| constraint.residual != zero);
+        let loops: Vec<Fp> = loops.map(|(_, residual)| residual).collect();
+        let emitted = self.emitted("constraint")?;
+        Some(emitted.is_none_or(|found| found.ends_with(&loops)))
+    }
+
+    fn invariants(&self) -> Option<bool> {
+        for (name, entries) in &self.full.claims {
+            if let Some(found) = self.emitted(name)? {
+                let graph = &self.full.reference.model.graph;
+                if found != evaluate_at(graph, entries, &mut self.at.point.clone())? {
+                    return Some(false);
+                }
+            }
+        }
+        Some(true)
+    }
+}

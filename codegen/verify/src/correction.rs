@@ -1,0 +1,87 @@
+//! The proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
+
+use super::kernel::applied;
+use super::points::{Unequal, at_fresh_points};
+use super::verdict::{failure, nowhere};
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::graph::Edge;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::tangent::{Dual, tangent_at};
+use hamel_algebra::transplant::rebuild;
+use hamel_dynamics::kinematics::left_inverse;
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::model::Model;
+use hamel_program::{FunctionId, Program};
+
+/// Proves the emitted φ of coordinates off X, at random x, and the emitted correction at fresh points of X: it is 0 there,
+/// and its derivative is −Ψ Φ = A Y − I, KR18 (6), along any direction, be it tangent or not; random ones are taken.
+pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
+    constraint(model, program)?;
+    let Some(function) = program.function(FunctionId::Correction) else {
+        return Ok(());
+    };
+    let what = "d(−Ψ φ) = A Y − I on X";
+    let failure = || failure(model, what);
+    let mut on_x = model.clone();
+    let y = left_inverse(&mut on_x).ok_or_else(failure)?;
+    let (mut free, first) = (model.points.free.clone(), model.points.first);
+    // Node by node again, in the graph where nothing was simplified modulo φ.
+    let emitted = rebuild(&program.graph, &mut free, &function.outputs);
+    let (n, nu) = (model.n(), model.nu());
+    let mut roots = on_x.a.concat();
+    roots.extend(y.iter().flatten());
+    at_fresh_points(
+        |number| model.points.lane(0xc0_44ec + number),
+        |lane, number| {
+            let values = evaluate_at(&on_x.graph, &roots, &mut lane.clone())?;
+            let (a, y) = values.split_at(nu * n);
+            let mut random = Random::new(0x9e5 + number);
+            let step: Vec<Fp> = (0..nu).map(|_| random.element()).collect();
+            let mut direction = vec![Fp::ZERO; free.symbols().len()];
+            direction[first..first + nu].copy_from_slice(&step);
+            let seen = applied(n, y, &step);
+            let tangent = applied(nu, a, &seen);
+            let slopes = tangent.iter().zip(&step).map(|(&tangent, &h)| tangent - h);
+            // It is 0 on X.
+            let expected: Vec<Dual> = slopes.map(|slope| (Fp::ZERO, slope)).collect();
+            let found = tangent_at(&free, &emitted, &mut lane.clone(), &direction)?;
+            Some(if found == expected { Ok(()) } else { Err(()) })
+        },
+    )
+    .map_err(|unequal| match unequal {
+        Unequal::Differs(()) => failure(),
+        Unequal::Nowhere => nowhere(model),
+    })
+}
+
+/// φ of coordinates, before that of loops.
+fn constraint(model: &Model, program: &Program) -> Result<(), Diagnostic> {
+    let Some(function) = program.function(FunctionId::Constraint) else {
+        return Ok(());
+    };
+    let (mut free, first) = (model.points.free.clone(), model.points.first);
+    let phi: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
+    let Some(outputs) = function.outputs.get(..phi.len()) else {
+        return Err(failure(model, "φ as described"));
+    };
+    let emitted = rebuild(&program.graph, &mut free, outputs);
+    at_fresh_points(
+        |number| {
+            let mut lane = model.points.lane(0xf1_0ff + number)?;
+            let mut random = Random::new(0x0f_f2e + number);
+            for place in first..first + model.nu() {
+                lane.set_symbol(place, random.element());
+            }
+            Some(lane)
+        },
+        |lane, _| {
+            let at = |edges: &[Edge]| evaluate_at(&free, edges, &mut lane.clone());
+            let same = at(&emitted)? == at(&phi)?;
+            Some(if same { Ok(()) } else { Err(()) })
+        },
+    )
+    .map_err(|unequal| match unequal {
+        Unequal::Differs(()) => failure(model, "φ as described"),
+        Unequal::Nowhere => nowhere(model),
+    })
+}

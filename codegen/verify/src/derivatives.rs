@@ -1,0 +1,75 @@
+//! Slopes of inverse dynamics, and of ξ̇ by parameters, at a point modulo p: by dual numbers along random directions in the
+//! functions that they are slopes of, which are proved by themselves. No derivative of the generator's own takes part.
+
+use super::kernel::applied;
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::tangent::tangent_at;
+use hamel_language::model::Model;
+use hamel_program::{FunctionId, Program};
+
+/// What is broken where they differ.
+pub(super) const WHAT: &str = "the slopes of inverse dynamics, or of ξ̇ by parameters";
+
+/// Whether the emitted slopes are those: A of the full model at its point, what is emitted at that of the program.
+pub(super) fn hold(full: &Model, program: &Program, [point, inner]: [&Lane; 2]) -> Option<bool> {
+    let emitted = |id: FunctionId| program.function(id).is_some();
+    if !(emitted(FunctionId::InverseDynamicsSlopes) || emitted(FunctionId::ParameterSlopes)) {
+        return Some(true);
+    }
+    let [params, x, xi, u, ..] = program.symbols();
+    let a = evaluate_at(&full.graph, &full.a.concat(), &mut point.clone())?;
+    let time = full.clock.map(|clock| clock.xi);
+    let displaced: Vec<usize> = (0..full.n()).filter(|&i| Some(i) != time).collect();
+    let n = displaced.len();
+    let mut seed = 1u64;
+    for entry in &a {
+        seed = seed.rotate_left(7) ^ entry.bits();
+    }
+    let mut random = Random::new(seed);
+    let mut numbers = |count: usize| -> Vec<Fp> { (0..count).map(|_| random.element()).collect() };
+    // (h, δξ), and A h.
+    let motion = numbers(n + u - xi);
+    let (h, changes) = motion.split_at(n);
+    let moved = (0..full.nu()).map(|row| {
+        let terms = displaced.iter().zip(h);
+        terms.fold(Fp::ZERO, |sum, (&i, &h)| sum + a[row * full.n() + i] * h)
+    });
+    let mut direction = vec![Fp::ZERO; program.graph.symbols().len()];
+    for (place, value) in (x..xi).zip(moved) {
+        direction[place] = value;
+    }
+    direction[xi..u].copy_from_slice(changes);
+    let inverse = [
+        FunctionId::InverseDynamicsSlopes,
+        FunctionId::InverseDynamics,
+    ];
+    if !are_slopes(program, inverse, (&motion, &direction), inner)? {
+        return Some(false);
+    }
+    let motion = numbers(x - params);
+    direction.fill(Fp::ZERO);
+    direction[params..x].copy_from_slice(&motion);
+    let rates = [FunctionId::ParameterSlopes, FunctionId::Accel];
+    are_slopes(program, rates, (&motion, &direction), inner)
+}
+
+/// Whether one function has the slopes of another along a direction: by its columns, and in the symbols.
+fn are_slopes(
+    program: &Program,
+    [slopes, of]: [FunctionId; 2],
+    (columns, direction): (&[Fp], &[Fp]),
+    lane: &Lane,
+) -> Option<bool> {
+    let Some(slopes) = program.function(slopes) else {
+        return Some(true);
+    };
+    let Some(of) = program.function(of) else {
+        return Some(false);
+    };
+    let table = evaluate_at(&program.graph, &slopes.outputs, &mut lane.clone())?;
+    let duals = tangent_at(&program.graph, &of.outputs, &mut lane.clone(), direction)?;
+    let expected: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
+    Some(applied(expected.len(), &table, columns) == expected)
+}

@@ -1,0 +1,128 @@
+//! Claims about systems with constraints on their velocities: d/dt I at exact points modulo p where
+//! B ξ = 0, with ξ̇ by the program, which has been validated.
+
+use crate::confidence::Confidence;
+use crate::kernel::at_rest;
+use crate::points::{POINTS, Unequal, at_fresh_points};
+use crate::verdict::{Identity, Verdict};
+use hamel_algebra::fp::Fp;
+use hamel_algebra::graph::Edge;
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::tangent::tangent_at;
+use hamel_dynamics::calculus::Calculus;
+use hamel_dynamics::{energy, inertia, quantity};
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::model::Model;
+use hamel_language::model::invariants::Invariant;
+use hamel_program::Program;
+
+/// Refuses false claims; `model` is that of the active velocities.
+pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
+    let loops = model
+        .constraints
+        .iter()
+        .any(|c| c.residual != model.graph.zero());
+    let mut errors = Vec::new();
+    for claim in &model.invariants {
+        let message = match refuted(model, program, claim) {
+            None => continue,
+            Some(Unequal::Nowhere) => format!(
+                "the claim `{}` cannot be checked: the motion has no value where it is claimed",
+                claim.name
+            ),
+            Some(Unequal::Differs(entry)) => format!(
+                "entry {} of `{}` is not constant along the motion: d/dt is not zero where the constraints hold",
+                entry + 1,
+                claim.name
+            ),
+        };
+        errors.push(Diagnostic::new(claim.span, message).help(if model.clock.is_some() || !model.accelerated.is_empty() {
+            "what depends on time, and what drives do work on, is not constant: T + V changes by −∂L/∂t and by their power"
+        } else if loops {
+            "claim what is constant for every position of the tree: the loops are not closed where claims are checked"
+        } else {
+            "claim what is constant, or say for which inputs and parameters it is: `when F = 0`"
+        }));
+    }
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(errors)
+    }
+}
+
+/// The claims with their verdicts.
+pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
+    let verdict = |claim: &Invariant| match refuted(model, program, claim) {
+        None => Verdict::Checked(confidence(model, program)),
+        Some(_) => Verdict::Failed("d/dt is not zero where the constraints hold".into()),
+    };
+    model
+        .invariants
+        .iter()
+        .map(|claim| Identity {
+            label: "invariant",
+            equation: format!("d/dt {} = 0 where B ξ = 0", claim.name),
+            verdict: verdict(claim),
+        })
+        .collect()
+}
+
+/// What agreement at all points says: an integral of T, V and momenta is differentiated along ξ̇.
+fn confidence(model: &Model, program: &Program) -> Confidence {
+    let mut own = model.clone();
+    let mut calculus = Calculus::new(&own);
+    let energies = energies(&mut own, &mut calculus);
+    let energies = [energies.0, energies.1];
+    let mut roots = inertia::mass_matrix(&mut own, &mut calculus).concat();
+    roots.extend(own.rate.iter().chain(&energies).copied());
+    let accel = program.xi_dot().unwrap_or_default();
+    let expressions = [(&own.graph, &roots[..]), (&program.graph, accel)];
+    let terms = 4 * (model.n() + 1);
+    Confidence::new(model, &expressions, terms, POINTS, 9)
+}
+
+/// T and V.
+fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
+    let kinetic = if model.is_affine() {
+        energy::traced(model, calculus)
+    } else {
+        let mass = inertia::mass_matrix(model, calculus);
+        energy::kinetic(model, &mass)
+    };
+    let kinetic = energy::part_of_energy(model, kinetic);
+    (kinetic, energy::potential(model))
+}
+
+/// How the claim fails, if it does: by the entry that changes.
+fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
+    let mut own = model.clone();
+    let mut calculus = Calculus::new(&own);
+    let energies = energies(&mut own, &mut calculus);
+    let value = quantity::value(&mut own, &mut calculus, energies, &claim.quantity);
+    let entries = value.entries();
+    let compared = at_fresh_points(
+        |number| {
+            let moved = |lane| at_rest(&own, lane);
+            own.points
+                .lane_moved(0x1a7f + number, &own.graph, &claim.set, &moved)
+        },
+        |lane, _| {
+            let slopes = slopes(&own, program, &entries, lane)?;
+            let changes = slopes.iter().position(|slope| !slope.is_zero());
+            Some(changes.map_or(Ok(()), Err))
+        },
+    );
+    compared.err()
+}
+
+/// d/dt of the entries at a point with B ξ = 0.
+fn slopes(model: &Model, program: &Program, entries: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
+    let graph = &model.graph;
+    let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut lane.clone())?;
+    let rate = evaluate_at(graph, &model.rate, &mut lane.clone())?;
+    let direction = super::direction(model, &rate, &xi_dot);
+    let duals = tangent_at(graph, entries, &mut lane.clone(), &direction)?;
+    Some(duals.into_iter().map(|dual| dual.1).collect())
+}

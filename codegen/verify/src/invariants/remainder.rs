@@ -1,0 +1,80 @@
+//! A polynomial as people read it: `m g s[1] R[3,2] - 1/2 d w^2`.
+
+use hamel_algebra::graph::{Edge, Graph, Node};
+use hamel_algebra::poly::monomial::Var;
+use hamel_algebra::poly::polynomial::Poly;
+use hamel_dynamics::normal::variable_node;
+use num_rational::BigRational;
+use num_traits::{One, Signed};
+
+/// Terms that are written out; the rest is counted.
+const SHOWN: usize = 6;
+
+/// The text of a polynomial; `None` where a quotient is among its variables.
+pub fn readable(graph: &Graph, polynomial: &Poly<BigRational>) -> Option<String> {
+    let mut text = String::new();
+    let terms = polynomial.terms();
+    for (index, (monomial, number)) in terms.iter().take(SHOWN).enumerate() {
+        let mut factors = Vec::new();
+        for &(var, exponent) in monomial.powers() {
+            let name = variable(graph, var)?;
+            factors.push(match exponent {
+                1 => name,
+                _ => format!("{name}^{exponent}"),
+            });
+        }
+        let size = number.abs();
+        if factors.is_empty() || !size.is_one() {
+            factors.insert(0, size.to_string());
+        }
+        text.push_str(match (index, number.is_negative()) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => " + ",
+            (_, true) => " - ",
+        });
+        text.push_str(&factors.join(" "));
+    }
+    let more = terms.len().saturating_sub(SHOWN);
+    if more > 0 {
+        text.push_str(&format!(" + … ({more} more terms)"));
+    }
+    Some(text)
+}
+
+fn variable(graph: &Graph, var: Var) -> Option<String> {
+    expression(graph, variable_node(graph, var), 0)
+}
+
+/// A node in few words: symbols, and functions of sums and products of them.
+fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
+    /// Arguments deeper than this are no reading matter.
+    const DEEPEST: usize = 6;
+    if depth > DEEPEST {
+        return None;
+    }
+    let of = |edge: Edge| expression(graph, edge, depth + 1);
+    let text = match graph.node(edge.node()) {
+        Node::Constant(index) => graph.constant(index).to_string(),
+        Node::Symbol(index) => graph.symbols().get(index as usize)?.name.clone(),
+        Node::Add(a, b) if b.is_negative() => format!("{} - {}", of(a)?, of(b.abs())?),
+        Node::Add(a, b) => format!("{} + {}", of(a)?, of(b)?),
+        Node::Mul(a, b) => {
+            let factor = |edge: Edge| match graph.node(edge.node()) {
+                Node::Add(..) => of(edge).map(|text| format!("({text})")),
+                _ => of(edge),
+            };
+            format!("{} {}", factor(a)?, factor(b)?)
+        }
+        Node::Apply(function, a) => {
+            let name = function.name();
+            format!("{name}({})", of(a)?)
+        }
+        _ => return None,
+    };
+    Some(if edge.is_negative() {
+        format!("-{text}")
+    } else {
+        text
+    })
+}

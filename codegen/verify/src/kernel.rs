@@ -1,0 +1,111 @@
+//! Points of a system with constraints on its velocities: ξ moved to where B ξ + b = 0.
+
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_language::model::points::Moved;
+use hamel_language::model::{Model, class};
+
+/// The velocities of a point moved to where all rows of a model's constraints vanish, with the symbols that they are.
+pub(super) fn at_rest(model: &Model, lane: Lane) -> Option<Moved> {
+    let rows = model.constraints.iter().flat_map(|c| c.row.clone());
+    let rows: Vec<Edge> = rows.collect();
+    rows_at_rest(model, &rows, lane)
+}
+
+/// The same with the rows of B written otherwise; in the full frame with time ξ⁰ is 1.
+pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Option<Moved> {
+    let places = places(&model.graph, class::VELOCITY);
+    let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
+    let mut xi: Vec<Fp> = places.iter().map(|&place| lane.symbol(place)).collect();
+    let time = model.clock.filter(|_| model.spans).map(|clock| clock.xi);
+    if let Some(time) = time {
+        xi[time] = Fp::ONE;
+    }
+    let mut rows = evaluate_at(&model.graph, rows, &mut lane)?;
+    let mut shifts = evaluate_at(&model.graph, &shifts, &mut lane)?;
+    if let Some(time) = time {
+        for (row, shift) in rows.chunks_mut(xi.len()).zip(&mut shifts) {
+            *shift = *shift + std::mem::replace(&mut row[time], Fp::ZERO);
+        }
+    }
+    let moved = in_kernel(&rows, &shifts, &xi)?;
+    Some(places.into_iter().zip(moved).collect())
+}
+
+/// A vector with B ξ + b = 0: by elimination, dependent entries replaced; `None` where there is none.
+pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+    let n = xi.len();
+    let mut rows: Vec<Vec<Fp>> = rows
+        .chunks(n.max(1))
+        .zip(shifts)
+        .map(|(row, &shift)| [row, &[shift]].concat())
+        .collect();
+    let mut xi = xi.to_vec();
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    for i in 0..rows.len() {
+        let Some(pivot) = (0..n).find(|&j| !rows[i][j].is_zero()) else {
+            // It follows from the others, or contradicts them.
+            if rows[i][n].is_zero() {
+                continue;
+            }
+            return None;
+        };
+        let inverse = rows[i][pivot].inv()?;
+        let row: Vec<Fp> = rows[i].iter().map(|&entry| entry * inverse).collect();
+        for (k, other) in rows.iter_mut().enumerate() {
+            if k != i {
+                let factor = other[pivot];
+                for (entry, &by) in other.iter_mut().zip(&row) {
+                    *entry = *entry - factor * by;
+                }
+            }
+        }
+        rows[i] = row;
+        pivots.push((i, pivot));
+    }
+    for &(row, pivot) in &pivots {
+        xi[pivot] = (0..n)
+            .filter(|j| pivots.iter().all(|(_, pivot)| pivot != j))
+            .fold(-rows[row][n], |sum, j| sum - rows[row][j] * xi[j]);
+    }
+    Some(xi)
+}
+
+/// The places of the symbols of a class.
+pub(super) fn places(graph: &Graph, class: u8) -> Vec<usize> {
+    let symbols = graph.symbols().iter().enumerate();
+    symbols
+        .filter(|(_, symbol)| symbol.class == class)
+        .map(|(index, _)| index)
+        .collect()
+}
+
+/// A random v with B v = 0 for the rows that are kept, in which what has a given rate stands still.
+pub(super) fn virtual_velocity(model: &Model, kept: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+    let n = model.n();
+    let mut rows = kept.to_vec();
+    for (place, _) in &model.accelerated {
+        rows.extend((0..n).map(|j| if j == *place { Fp::ONE } else { Fp::ZERO }));
+    }
+    let seed = xi
+        .iter()
+        .fold(n as u64, |seed, xi| seed.rotate_left(7) ^ xi.bits());
+    let mut random = Random::new(seed);
+    let random: Vec<Fp> = (0..n).map(|_| random.element()).collect();
+    in_kernel(&rows, &vec![Fp::ZERO; rows.len() / n.max(1)], &random)
+}
+
+/// Σ aᵢ bᵢ.
+pub fn dot(a: &[Fp], b: &[Fp]) -> Fp {
+    a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
+}
+
+/// A matrix by rows times a vector; of so many rows where they have no entries.
+pub fn applied(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
+    match vector.len() {
+        0 => vec![Fp::ZERO; count],
+        n => rows.chunks(n).map(|row| dot(row, vector)).collect(),
+    }
+}

@@ -1,0 +1,39 @@
+//! The explicit equations of motion with the connection, KR18 (30c):
+//! M_ij ξ̇ʲ + Γᵢⱼₖ ξʲ ξᵏ + ∂ᵢV = fᵢ (N or N m, n entries).
+
+use hamel_algebra::graph::Edge;
+use hamel_dynamics::calculus::Calculus;
+use hamel_language::model::Model;
+
+/// Γᵢⱼₖ ξʲ ξᵏ, contracted from the table of Γ.
+pub fn contracted(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
+    let xi = model.xi.clone();
+    let graph = &mut model.graph;
+    connection
+        .iter()
+        .map(|plane| {
+            let rows: Vec<Edge> = plane.iter().map(|row| graph.dot(row, &xi)).collect();
+            graph.dot(&rows, &xi)
+        })
+        .collect()
+}
+
+/// Left side of (30c) at (x, ξ, ξ̇), given h = Γ ξ ξ.
+pub fn levi_civita(
+    model: &mut Model,
+    calculus: &mut Calculus,
+    mass: &[Vec<Edge>],
+    bias: &[Edge],
+    potential: Edge,
+    xi_dot: &[Edge],
+) -> Vec<Edge> {
+    let graph = &mut model.graph;
+    (0..bias.len())
+        .map(|i| {
+            let inertial = graph.dot(&mass[i], xi_dot);
+            let slope = calculus.along(graph, i, potential);
+            let sum = graph.add(inertial, bias[i]);
+            graph.add(sum, slope)
+        })
+        .collect()
+}

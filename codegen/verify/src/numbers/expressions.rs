@@ -1,0 +1,171 @@
+//! The expressions of a model that are evaluated, as tapes, and how their values are read back.
+
+use super::motion::entries;
+use super::space::{Mat3, Vec3};
+use hamel_algebra::fp::Fp;
+use hamel_algebra::tape::Tape;
+use hamel_dynamics::{energy, kinematics};
+use hamel_language::model::Model;
+use hamel_language::model::elements::Along;
+
+/// A model with what is evaluated of it.
+pub struct Expressions {
+    /// The model, its graph holding Y and V.
+    pub model: Model,
+    /// A by rows, ẋ, Y by rows.
+    pub kinematics: Tape,
+    /// V, V without gravity on bodies, the kinetic energy that was written; frames; points of
+    /// particles and lines.
+    pub poses: Tape,
+    /// The kinetic energy that was written, the dissipation, rates that dampers act along.
+    pub velocity: Tape,
+    /// ξ, ξ̇, gravity, inertias, loads.
+    pub constants: Tape,
+    /// The frames, in their order in `poses`.
+    pub frames: Vec<usize>,
+    x: Vec<usize>,
+    xi: Vec<usize>,
+    symbols: usize,
+}
+
+impl Expressions {
+    /// Collects what is evaluated; `None` where Y is not found, or a number has no image.
+    pub fn new(model: &Model) -> Option<Self> {
+        let mut model = model.clone();
+        let y = kinematics::left_inverse(&mut model)?;
+        let potential = energy::potential(&mut model);
+        let elements = &model.elements;
+        let mut frames: Vec<usize> = model.bodies.iter().map(|body| body.frame).collect();
+        frames.extend(elements.wrenches.iter().map(|wrench| wrench.frame));
+        frames.sort_unstable();
+        frames.dedup();
+
+        let mut poses = vec![potential, model.potential, model.kinetic];
+        for &index in &frames {
+            let frame = model.frames.get(index)?;
+            poses.extend(entries(&frame.rotation, &frame.position));
+        }
+        poses.extend(
+            model
+                .particles
+                .iter()
+                .flat_map(|particle| particle.position),
+        );
+        let mut constants = [&model.xi[..], &model.xi_dot, &model.gravity].concat();
+        for body in &model.bodies {
+            constants.push(body.mass);
+            constants.extend(body.com);
+            constants.extend(body.inertia_com.iter().flatten());
+            constants.extend(body.inertia_origin.iter().flatten());
+        }
+        constants.extend(model.particles.iter().map(|particle| particle.mass));
+        constants.extend(&elements.generalized);
+        for wrench in &elements.wrenches {
+            constants.extend([wrench.at, wrench.force, wrench.torque].iter().flatten());
+        }
+        for push in &elements.pushes {
+            if let Along::Line {
+                from,
+                to,
+                length: Some(length),
+            } = push.along
+            {
+                poses.extend(from.iter().chain(&to));
+                constants.extend([push.force, length]);
+            }
+        }
+        let mut velocity = vec![model.kinetic, elements.dissipation];
+        for damper in &elements.dampers {
+            constants.push(damper.coefficient);
+            match damper.along {
+                Along::Line { from, to, .. } => poses.extend(from.iter().chain(&to)),
+                Along::Scalar(rate) => velocity.push(rate),
+            }
+        }
+        let graph = &model.graph;
+        let kinematics = [model.a.concat(), model.rate.clone(), y.concat()].concat();
+        Some(Expressions {
+            kinematics: Tape::new(graph, &kinematics)?,
+            poses: Tape::new(graph, &poses)?,
+            velocity: Tape::new(graph, &velocity)?,
+            constants: Tape::new(graph, &constants)?,
+            frames,
+            x: graph.symbol_places(&model.x),
+            xi: graph.symbol_places(&model.xi),
+            symbols: graph.symbols().len(),
+            model,
+        })
+    }
+
+    /// Whether there is a kinetic energy beyond that of bodies and particles.
+    pub fn writes_kinetic(&self) -> bool {
+        self.model.kinetic != self.model.graph.zero()
+    }
+
+    fn seed(&self, sets: [(&[usize], &[Fp]); 2]) -> Vec<Fp> {
+        let mut seed = vec![Fp::ZERO; self.symbols];
+        for (places, values) in sets {
+            for (&place, &value) in places.iter().zip(values) {
+                if let Some(entry) = seed.get_mut(place) {
+                    *entry = value;
+                }
+            }
+        }
+        seed
+    }
+
+    /// A direction in x, for all symbols.
+    pub fn of_x(&self, x: &[Fp]) -> Vec<Fp> {
+        self.seed([(&self.x, x), (&[], &[])])
+    }
+
+    /// A direction in ξ, for all symbols.
+    pub fn of_xi(&self, xi: &[Fp]) -> Vec<Fp> {
+        self.seed([(&self.xi, xi), (&[], &[])])
+    }
+
+    /// The entries of ξ in a list with one entry for each symbol.
+    pub fn xi_of(&self, symbols: &[Fp]) -> Vec<Fp> {
+        let entry = |&place: &usize| symbols.get(place).copied().unwrap_or(Fp::ZERO);
+        self.xi.iter().map(entry).collect()
+    }
+
+    /// A direction in both.
+    pub fn of_x_and_xi(&self, x: &[Fp], xi: &[Fp]) -> Vec<Fp> {
+        self.seed([(&self.x, x), (&self.xi, xi)])
+    }
+}
+
+/// Reads values in the order in which their expressions were listed.
+pub struct Reader<'a> {
+    rest: std::slice::Iter<'a, Fp>,
+}
+
+impl<'a> Reader<'a> {
+    /// From the first one.
+    pub fn new(values: &'a [Fp]) -> Self {
+        Reader {
+            rest: values.iter(),
+        }
+    }
+
+    /// A number.
+    pub fn one(&mut self) -> Option<Fp> {
+        self.rest.next().copied()
+    }
+
+    /// A vector.
+    pub fn three(&mut self) -> Option<Vec3> {
+        Some([self.one()?, self.one()?, self.one()?])
+    }
+
+    /// A matrix.
+    pub fn nine(&mut self) -> Option<Mat3> {
+        Some([self.three()?, self.three()?, self.three()?])
+    }
+
+    /// As many as asked for.
+    pub fn list(&mut self, count: usize) -> Option<Vec<Fp>> {
+        (0..count).map(|_| self.one()).collect()
+    }
+}

@@ -1,0 +1,188 @@
+//! What bodies and particles contribute to the three forms (30) at one point, modulo p.
+
+use super::motion::{Moving, MovingFrame};
+use super::space::{Mat3, Vec3, add, apply, apply_transposed, cross, scale};
+use crate::kernel::dot;
+use hamel_algebra::fp::Fp;
+
+/// Inertia of a body in numbers.
+pub struct BodyNumbers {
+    /// Mass.
+    pub mass: Fp,
+    /// Centre of mass, frame axes.
+    pub com: Vec3,
+    /// Inertia about it.
+    pub inertia_com: Mat3,
+    /// Inertia about the frame's origin.
+    pub inertia_origin: Mat3,
+}
+
+/// Sums over bodies and particles, and over a kinetic energy that was written.
+pub struct Sums {
+    /// ∂S/∂ξ̇ⁱ by accelerations, (30b).
+    pub gibbs: Vec<Fp>,
+    /// Σ m ⟨g, ∂ᵢr⟩.
+    pub weight: Vec<Fp>,
+    /// ∂T/∂ξⁱ, from velocities.
+    pub momentum: Vec<Fp>,
+    /// d/dt ∂T/∂ξⁱ.
+    pub momentum_rate: Vec<Fp>,
+    /// ∂ᵢT.
+    pub slope: Vec<Fp>,
+    /// T.
+    pub kinetic: Fp,
+    /// M, KR18 (20).
+    pub mass: Vec<Vec<Fp>>,
+    /// Ṁ_ij ξʲ.
+    pub mass_rate: Vec<Fp>,
+    /// ½ ∂ᵢM_jk ξʲ ξᵏ.
+    pub centrifugal: Vec<Fp>,
+}
+
+fn half() -> Fp {
+    Fp::new(2).inv().unwrap_or(Fp::ONE)
+}
+
+fn increase(sum: &mut Fp, by: Fp) {
+    *sum = *sum + by;
+}
+
+impl Sums {
+    /// Nothing yet.
+    pub fn new(n: usize) -> Self {
+        let zero = || vec![Fp::ZERO; n];
+        Sums {
+            gibbs: zero(),
+            weight: zero(),
+            momentum: zero(),
+            momentum_rate: zero(),
+            slope: zero(),
+            kinetic: Fp::ZERO,
+            mass: vec![zero(); n],
+            mass_rate: zero(),
+            centrifugal: zero(),
+        }
+    }
+
+    /// A point mass: everything by (30a), (30b), and weight.
+    fn point(&mut self, mass: Fp, gravity: Vec3, point: &Moving<Vec3>) {
+        let (velocity, acceleration) = (scale(mass, point.rate), scale(mass, point.second));
+        let weight = scale(mass, gravity);
+        for i in 0..self.gibbs.len() {
+            increase(&mut self.gibbs[i], dot(&acceleration, &point.by[i]));
+            increase(&mut self.weight[i], dot(&weight, &point.by[i]));
+            increase(&mut self.momentum[i], dot(&velocity, &point.by[i]));
+            let turned = dot(&velocity, &point.rate_by[i]);
+            increase(
+                &mut self.momentum_rate[i],
+                dot(&acceleration, &point.by[i]) + turned,
+            );
+            increase(&mut self.slope[i], dot(&velocity, &point.by_rate[i]));
+        }
+        increase(&mut self.kinetic, half() * dot(&velocity, &point.rate));
+    }
+
+    /// M and its derivatives: t_i with its rates, t = tᵢ ξⁱ, ∂ᵢt, and the inertia that acts on them.
+    fn metric(&mut self, twists: &Twists, xi: &[Fp], inertia: impl Fn(&[Fp]) -> Vec<Fp>) {
+        let n = xi.len();
+        let momentum = inertia(&twists.total);
+        let mut drift = vec![Fp::ZERO; twists.total.len()];
+        for (rate, &speed) in twists.rate_by.iter().zip(xi) {
+            for (sum, &entry) in drift.iter_mut().zip(rate) {
+                increase(sum, entry * speed);
+            }
+        }
+        let drift = inertia(&drift);
+        for i in 0..n {
+            let rate = dot(&twists.rate_by[i], &momentum) + dot(&twists.by[i], &drift);
+            increase(&mut self.mass_rate[i], rate);
+            increase(
+                &mut self.centrifugal[i],
+                dot(&twists.by_total[i], &momentum),
+            );
+            if twists.by[i].iter().all(|entry| entry.is_zero()) {
+                continue;
+            }
+            let momentum = inertia(&twists.by[i]);
+            for j in 0..=i {
+                let entry = dot(&momentum, &twists.by[j]);
+                increase(&mut self.mass[i][j], entry);
+                if j < i {
+                    increase(&mut self.mass[j][i], entry);
+                }
+            }
+        }
+    }
+
+    /// A particle.
+    pub fn particle(&mut self, mass: Fp, gravity: Vec3, point: &Moving<Vec3>, xi: &[Fp]) {
+        self.point(mass, gravity, point);
+        let all = |list: &[Vec3]| list.iter().map(|entry| entry.to_vec()).collect();
+        let twists = Twists {
+            total: point.rate.to_vec(),
+            by: all(&point.by),
+            rate_by: all(&point.rate_by),
+            by_total: all(&point.by_rate),
+        };
+        self.metric(&twists, xi, |v| {
+            v.iter().map(|&entry| mass * entry).collect()
+        });
+    }
+
+    /// A body: forces from its centre of mass, M from the velocity of its frame's origin.
+    pub fn body(&mut self, body: &BodyNumbers, gravity: Vec3, frame: &MovingFrame, xi: &[Fp]) {
+        let n = xi.len();
+        self.point(body.mass, gravity, &frame.point(body.com));
+        let spin = frame.spin();
+        let spun = apply(&body.inertia_com, spin.omega);
+        let turned = apply(&body.inertia_com, spin.alpha);
+        let torque = add(turned, cross(spin.omega, spun));
+        for i in 0..n {
+            increase(&mut self.gibbs[i], dot(&torque, &spin.by[i]));
+            increase(&mut self.momentum[i], dot(&spun, &spin.by[i]));
+            let rate = dot(&turned, &spin.by[i]) + dot(&spun, &spin.rate_by[i]);
+            increase(&mut self.momentum_rate[i], rate);
+            increase(&mut self.slope[i], dot(&spun, &spin.by_omega[i]));
+        }
+        increase(&mut self.kinetic, half() * dot(&spin.omega, &spun));
+        // Rᵀ ∂ᵢr and its derivatives by the product rule.
+        let (r, p) = (&frame.rotation, &frame.position);
+        let twist = |v: Vec3, w: Vec3| [v, w].concat();
+        let into = apply_transposed;
+        let each = |f: &dyn Fn(usize) -> Vec<Fp>| (0..n).map(f).collect::<Vec<_>>();
+        let twists = Twists {
+            total: twist(into(&r.value, p.rate), spin.omega),
+            by: each(&|i| twist(into(&r.value, p.by[i]), spin.by[i])),
+            rate_by: each(&|i| {
+                let v = add(into(&r.rate, p.by[i]), into(&r.value, p.rate_by[i]));
+                twist(v, spin.rate_by[i])
+            }),
+            by_total: each(&|i| {
+                let v = add(into(&r.by[i], p.rate), into(&r.value, p.by_rate[i]));
+                twist(v, spin.by_omega[i])
+            }),
+        };
+        let first = scale(body.mass, body.com);
+        self.metric(&twists, xi, |t| match t {
+            &[a, b, c, d, e, f] => {
+                let (v, w) = ([a, b, c], [d, e, f]);
+                let linear = add(scale(body.mass, v), cross(w, first));
+                let angular = add(cross(first, v), apply(&body.inertia_origin, w));
+                twist(linear, angular)
+            }
+            _ => Vec::new(),
+        });
+    }
+}
+
+/// The velocity that M is the metric of, as a linear function of ξ.
+struct Twists {
+    /// t.
+    total: Vec<Fp>,
+    /// tᵢ = ∂t/∂ξⁱ.
+    by: Vec<Vec<Fp>>,
+    /// d/dt tᵢ.
+    rate_by: Vec<Vec<Fp>>,
+    /// ∂ᵢt.
+    by_total: Vec<Vec<Fp>>,
+}

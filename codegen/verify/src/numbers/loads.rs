@@ -1,0 +1,66 @@
+//! Generalised forces by virtual work, fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩, KR18 (28), at one point modulo p: every load
+//! as forces on points, as `virtual_power` does it with expressions.
+
+use super::motion::{Moving, MovingFrame};
+use super::space::{Vec3, add, apply, column, cross, scale, sub};
+use crate::kernel::dot;
+use hamel_algebra::fp::Fp;
+use hamel_language::syntax::ast::Axes;
+
+/// A sum of forces on points.
+pub struct Forces {
+    /// fᵢ.
+    pub sum: Vec<Fp>,
+}
+
+impl Forces {
+    /// Adds forces as they were given.
+    pub fn add(&mut self, forces: impl IntoIterator<Item = Fp>) {
+        for (sum, force) in self.sum.iter_mut().zip(forces) {
+            *sum = *sum + force;
+        }
+    }
+
+    /// Adds ⟨F, ∂ᵢr⟩, given all ∂ᵢr.
+    fn at(&mut self, force: Vec3, by: impl Iterator<Item = Vec3>) {
+        self.add(by.map(|column| dot(&force, &column)).collect::<Vec<_>>());
+    }
+
+    /// Adds a force along a line, positive apart.
+    pub fn along(&mut self, force: Vec3, from: &Moving<Vec3>, to: &Moving<Vec3>) {
+        self.at(
+            force,
+            to.by.iter().zip(&from.by).map(|(&to, &from)| sub(to, from)),
+        );
+    }
+
+    /// Adds a wrench at a point of a frame: the force there, and the torque as three couples, ½ τ × eₖ at
+    /// the tips of the frame's axes and −½ τ × eₖ at its origin.
+    pub fn wrench(&mut self, axes: Axes, [at, force, torque]: [Vec3; 3], frame: &MovingFrame) {
+        let world = |a: Vec3| match axes {
+            Axes::World => a,
+            Axes::Body => apply(&frame.rotation.value, a),
+        };
+        let point = frame.position.by.iter().zip(&frame.rotation.by);
+        self.at(world(force), point.map(|(&p, r)| add(p, apply(r, at))));
+        let half = Fp::new(2).inv().unwrap_or(Fp::ONE);
+        let torque = scale(half, world(torque));
+        for k in 0..3 {
+            let couple = cross(torque, column(&frame.rotation.value, k));
+            self.at(couple, frame.rotation.by.iter().map(|r| column(r, k)));
+        }
+    }
+
+    /// Adds a damper along a line, −c (d·ḋ)/(d·d) d on its second point.
+    pub fn damper(
+        &mut self,
+        coefficient: Fp,
+        from: &Moving<Vec3>,
+        to: &Moving<Vec3>,
+    ) -> Option<()> {
+        let (d, rate) = (sub(to.value, from.value), sub(to.rate, from.rate));
+        let speed = dot(&d, &rate) * dot(&d, &d).inv()?;
+        self.along(scale(-(coefficient * speed), d), from, to);
+        Some(())
+    }
+}

@@ -1,0 +1,404 @@
+//! The reference of every build: the three left sides (30a), (30b), (30c) at points of X, in numbers
+//! modulo p.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `space` | vectors of numbers |
+//! | `motion` | poses with first and second derivatives |
+//! | `inertia` | what bodies contribute |
+//! | `loads` | forces on points |
+//! | `expressions` | what of a model is evaluated |
+//!
+//! Nothing is derived as an expression here: the absolute poses of bodies, T and V as they were written
+//! are differentiated by hyper-dual numbers, so that the cost is that of the poses times n, and no rule of
+//! the generator takes part. The forms are
+//!
+//! - (30a) d/dt ∂T/∂ξⁱ − ∂ᵢT + γᵢⱼᵏ ξʲ ∂T/∂ξᵏ + ∂ᵢV, with γ by (12),
+//! - (30b) Σ m ⟨r̈, ∂ᵢr⟩ + ⟨Θα + ω × Θω, ωᵢ⟩ − Σ m ⟨g, ∂ᵢr⟩ + ∂ᵢV of what else has a potential,
+//! - (30c) M_ij ξ̇ʲ + Ṁ_ij ξʲ − ½ ∂ᵢM_jk ξʲ ξᵏ + γᵢⱼˢ ξʲ M_sk ξᵏ + ∂ᵢV, with γ by (13): Γ of (23) contracted.
+//!
+//! For a kinetic energy that was written, (30b) is taken from its M, as there are no particles to it.
+
+mod expressions;
+mod inertia;
+mod loads;
+mod motion;
+mod space;
+
+use crate::kernel::dot;
+use expressions::{Expressions, Reader};
+use hamel_algebra::fp::Fp;
+use hamel_algebra::jets::{Jet, Seeds};
+use hamel_algebra::lane::Lane;
+use hamel_language::model::Model;
+use hamel_language::model::elements::Along;
+use inertia::{BodyNumbers, Sums};
+use loads::Forces;
+use motion::{Moving, MovingFrame, point};
+use rustc_hash::FxHashMap;
+use space::{Vec3, scale, sub};
+
+/// The reference of a model.
+pub struct Numbers {
+    expressions: Expressions,
+}
+
+/// What holds at one point (x, ξ, ξ̇, u).
+pub struct Values {
+    /// Left sides of (30a), (30b), (30c).
+    pub left: [Vec<Fp>; 3],
+    /// M.
+    pub mass: Vec<Vec<Fp>>,
+    /// h = Γ ξ ξ.
+    pub bias: Vec<Fp>,
+    /// ∂V.
+    pub slope: Vec<Fp>,
+    /// f.
+    pub force: Vec<Fp>,
+    /// p = ∂T/∂ξ.
+    pub momentum: Vec<Fp>,
+    /// Ṁ ξ.
+    pub mass_rate: Vec<Fp>,
+    /// ẋ.
+    pub rate: Vec<Fp>,
+    /// T.
+    pub kinetic: Fp,
+    /// V.
+    pub potential: Fp,
+    /// D.
+    pub dissipation: Fp,
+}
+
+/// A, Y and ẋ with their derivatives at one point.
+struct Kinematics {
+    n: usize,
+    nu: usize,
+    a: Vec<Jet>,
+    rate: Vec<Jet>,
+    y: Vec<Jet>,
+}
+
+impl Kinematics {
+    fn column(&self, i: usize, of: impl Fn(&Jet) -> Fp) -> Vec<Fp> {
+        self.a
+            .iter()
+            .skip(i)
+            .step_by(self.n.max(1))
+            .map(of)
+            .collect()
+    }
+
+    /// ∂ᵢẋ at constant ξ.
+    fn drift(&self, i: usize) -> Vec<Fp> {
+        self.rate.iter().map(|jet| jet.across(i)).collect()
+    }
+
+    fn rows(&self) -> std::slice::Chunks<'_, Jet> {
+        self.y.chunks(self.nu.max(1))
+    }
+
+    /// Whether Y A = I.
+    fn inverse(&self) -> bool {
+        self.rows().enumerate().all(|(k, row)| {
+            let mut product = vec![Fp::ZERO; self.n];
+            for (y, of_a) in row.iter().zip(self.a.chunks(self.n.max(1))) {
+                if y.value.is_zero() {
+                    continue;
+                }
+                for (sum, a) in product.iter_mut().zip(of_a) {
+                    *sum = *sum + y.value * a.value;
+                }
+            }
+            let mut entries = product.into_iter().enumerate();
+            entries.all(|(i, entry)| entry == if i == k { Fp::ONE } else { Fp::ZERO })
+        })
+    }
+
+    /// γᵢⱼᵏ ξʲ p_k by (12), (∂ᵢẋ − Ȧᵢ) Y p.
+    fn turn(&self, p: &[Fp]) -> Vec<Fp> {
+        let weighted = self.weighted(p, |jet| jet.value);
+        let turn = |i: usize| {
+            let moved = self.column(i, |jet| jet.along);
+            dot(&weighted, &self.drift(i)) - dot(&weighted, &moved)
+        };
+        (0..self.n).map(turn).collect()
+    }
+
+    /// The same by (13), (Ẏ Aᵢ − ∂ᵢY ẋ) p.
+    fn turn_of_rows(&self, p: &[Fp]) -> Vec<Fp> {
+        let rate: Vec<Fp> = self.rate.iter().map(|jet| jet.value).collect();
+        let moved = self.weighted(p, |jet| jet.along);
+        // Entries Y_α^k that move, weighted by p_k ẋ^α: of large frames they are few.
+        let mut moving: Vec<(&Jet, Fp)> = Vec::new();
+        for (row, &p) in self.rows().zip(p) {
+            let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_still());
+            moving.extend(entries.map(|(jet, &rate)| (jet, p * rate)));
+        }
+        let turn = |i: usize| {
+            let own = self.column(i, |jet| jet.value);
+            let changes = moving
+                .iter()
+                .fold(Fp::ZERO, |sum, &(jet, weight)| sum + jet.across(i) * weight);
+            dot(&moved, &own) - changes
+        };
+        (0..self.n).map(turn).collect()
+    }
+
+    /// Y_α^k p_k.
+    fn weighted(&self, p: &[Fp], of: impl Fn(&Jet) -> Fp) -> Vec<Fp> {
+        let mut sum = vec![Fp::ZERO; self.nu];
+        for (row, &p) in self.rows().zip(p) {
+            for (sum, jet) in sum.iter_mut().zip(row) {
+                *sum = *sum + of(jet) * p;
+            }
+        }
+        sum
+    }
+}
+
+impl Numbers {
+    /// Prepares for a model; `None` where AᵀA is singular, or a number has no image.
+    pub fn new(model: &Model) -> Option<Self> {
+        Some(Numbers {
+            expressions: Expressions::new(model)?,
+        })
+    }
+
+    /// The values at a point; `None` where something has no value there, an error where Y A is not I.
+    pub fn at(&self, lane: &Lane) -> Option<Result<Values, String>> {
+        let all = &self.expressions;
+        let model = &all.model;
+        let (n, nu) = (model.n(), model.nu());
+        let constants = all.constants.values(lane)?;
+        let mut read = Reader::new(&constants);
+        let (xi, xi_dot) = (read.list(n)?, read.list(n)?);
+        let start = all.kinematics.values(lane)?;
+        let (a, rest) = start.split_at_checked(n * nu)?;
+        let rate = rest.get(..nu)?;
+        let columns: Vec<Vec<Fp>> = (0..n)
+            .map(|i| {
+                all.of_x(
+                    &a.iter()
+                        .skip(i)
+                        .step_by(n.max(1))
+                        .copied()
+                        .collect::<Vec<_>>(),
+                )
+            })
+            .collect();
+        let moving = all.of_x_and_xi(rate, &xi_dot);
+        let seeds = Seeds {
+            along: moving.clone(),
+            across: columns.clone(),
+            mixed: Vec::new(),
+        };
+        let mut jets = all.kinematics.jets(lane, &seeds)?;
+        let y = jets.split_off(n * nu + nu);
+        let rates = jets.split_off(n * nu);
+        let kinematics = Kinematics {
+            n,
+            nu,
+            a: jets,
+            rate: rates,
+            y,
+        };
+        if !kinematics.inverse() {
+            return Some(Err("(6), Y A = I".into()));
+        }
+        // Columns: Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
+        let second: Vec<Fp> = kinematics.rate.iter().map(|jet| jet.along).collect();
+        let following = (0..n).map(|i| all.of_x(&kinematics.column(i, |jet| jet.along)));
+        let drifting = (0..n).map(|i| all.of_x(&kinematics.drift(i)));
+        let seeds = Seeds {
+            along: moving.clone(),
+            across: columns
+                .iter()
+                .chain(&columns)
+                .chain([&moving])
+                .cloned()
+                .collect(),
+            mixed: following
+                .chain(drifting)
+                .chain([all.of_x(&second)])
+                .collect(),
+        };
+        let poses = all.poses.jets(lane, &seeds)?;
+        let (potentials, rest) = poses.split_at_checked(3)?;
+        let (frames, points) = rest.split_at_checked(12 * all.frames.len())?;
+        let frames: FxHashMap<usize, MovingFrame> = all
+            .frames
+            .iter()
+            .zip(frames.chunks_exact(12))
+            .map(|(&index, jets)| Some((index, MovingFrame::new(n, jets)?)))
+            .collect::<Option<_>>()?;
+        let mut points = points
+            .chunks_exact(3)
+            .map(|jets| point(n, &std::array::from_fn(|i| jets[i].clone())));
+        let mut sums = Sums::new(n);
+        let gravity = read.three()?;
+        for body in &model.bodies {
+            let inertia = BodyNumbers {
+                mass: read.one()?,
+                com: read.three()?,
+                inertia_com: read.nine()?,
+                inertia_origin: read.nine()?,
+            };
+            sums.body(&inertia, gravity, frames.get(&body.frame)?, &xi);
+        }
+        for _ in &model.particles {
+            sums.particle(read.one()?, gravity, &points.next()?, &xi);
+        }
+        let along = |jet: &Jet| (0..n).map(|i| jet.across(i)).collect::<Vec<Fp>>();
+        let [potential, beside, written] = potentials else {
+            return None;
+        };
+        let slope = along(potential);
+        let mut left_of_written = vec![Fp::ZERO; n];
+        if all.writes_kinetic() {
+            left_of_written =
+                self.written(lane, &kinematics, &mut sums, (rate, &xi, &xi_dot), written)?;
+        }
+        let turn = kinematics.turn(&sums.momentum);
+        let hamel = (0..n).map(|i| sums.momentum_rate[i] - sums.slope[i] + turn[i] + slope[i]);
+        let beside = along(beside);
+        let gibbs = (0..n).map(|i| sums.gibbs[i] - sums.weight[i] + beside[i] + left_of_written[i]);
+        let momentum: Vec<Fp> = sums.mass.iter().map(|row| dot(row, &xi)).collect();
+        let turn = kinematics.turn_of_rows(&momentum);
+        let bias: Vec<Fp> = (0..n)
+            .map(|i| sums.mass_rate[i] - sums.centrifugal[i] + turn[i])
+            .collect();
+        let levi_civita = (0..n).map(|i| dot(&sums.mass[i], &xi_dot) + bias[i] + slope[i]);
+        let left = [hamel.collect(), gibbs.collect(), levi_civita.collect()];
+        let (force, dissipation) = self.forces(lane, &mut read, &frames, &mut points, &xi)?;
+        Some(Ok(Values {
+            left,
+            bias,
+            slope,
+            force,
+            rate: rate.to_vec(),
+            mass: sums.mass,
+            momentum: sums.momentum,
+            mass_rate: sums.mass_rate,
+            kinetic: sums.kinetic,
+            potential: potential.value,
+            dissipation,
+        }))
+    }
+
+    /// Adds a kinetic energy that was written; what (30b) has of it.
+    fn written(
+        &self,
+        lane: &Lane,
+        kinematics: &Kinematics,
+        sums: &mut Sums,
+        (rate, xi, xi_dot): (&[Fp], &[Fp], &[Fp]),
+        written: &Jet,
+    ) -> Option<Vec<Fp>> {
+        let all = &self.expressions;
+        let n = xi.len();
+        let by_velocity: Vec<Vec<Fp>> = (0..n).map(|i| all.of_xi(&unit(n, i))).collect();
+        let by = |along: Vec<Fp>| -> Option<Jet> {
+            let seeds = Seeds {
+                along,
+                across: by_velocity.clone(),
+                mixed: Vec::new(),
+            };
+            all.velocity.jets(lane, &seeds)?.into_iter().next()
+        };
+        let driven = by(all.of_x_and_xi(rate, xi_dot))?;
+        let coasting = by(all.of_x(rate))?;
+        let momentum: Vec<Fp> = (0..n).map(|i| driven.across(i)).collect();
+        let turn = kinematics.turn_of_rows(&momentum);
+        let mut left = Vec::with_capacity(n);
+        sums.kinetic = sums.kinetic + written.value;
+        for i in 0..n {
+            let bend = all.velocity.bend(lane, &all.of_xi(&unit(n, i)))?;
+            let row = all.xi_of(&bend);
+            let slope = written.across(i);
+            left.push(dot(&row, xi_dot) + coasting.mixed(i) - slope + turn[i]);
+            for (sum, entry) in [
+                (&mut sums.momentum[i], momentum[i]),
+                (&mut sums.momentum_rate[i], driven.mixed(i)),
+                (&mut sums.slope[i], slope),
+                (&mut sums.mass_rate[i], coasting.mixed(i)),
+                (&mut sums.centrifugal[i], slope),
+            ] {
+                *sum = *sum + entry;
+            }
+            for (sum, entry) in sums.mass[i].iter_mut().zip(row) {
+                *sum = *sum + entry;
+            }
+        }
+        Some(left)
+    }
+
+    /// f, and D of what resists.
+    fn forces(
+        &self,
+        lane: &Lane,
+        read: &mut Reader,
+        frames: &FxHashMap<usize, MovingFrame>,
+        points: &mut dyn Iterator<Item = Moving<Vec3>>,
+        xi: &[Fp],
+    ) -> Option<(Vec<Fp>, Fp)> {
+        let all = &self.expressions;
+        let elements = &all.model.elements;
+        let n = xi.len();
+        let none = || Forces {
+            sum: vec![Fp::ZERO; n],
+        };
+        let mut applied = none();
+        applied.add(read.list(n)?);
+        for wrench in &elements.wrenches {
+            let entries = [read.three()?, read.three()?, read.three()?];
+            applied.wrench(wrench.axes, entries, frames.get(&wrench.frame)?);
+        }
+        for push in &elements.pushes {
+            if let Along::Line {
+                length: Some(_), ..
+            } = push.along
+            {
+                let (from, to) = (points.next()?, points.next()?);
+                let tension = read.one()? * read.one()?.inv()?;
+                applied.along(scale(tension, sub(to.value, from.value)), &from, &to);
+            }
+        }
+        let mut resisting = none();
+        let across = (0..n).map(|i| all.of_xi(&unit(n, i))).collect();
+        let seeds = Seeds {
+            along: all.of_xi(xi),
+            across,
+            mixed: Vec::new(),
+        };
+        let velocity = all.velocity.jets(lane, &seeds)?;
+        let (dissipation, mut rates) = match velocity.as_slice() {
+            [_, dissipation, rates @ ..] => (dissipation, rates.iter()),
+            _ => return None,
+        };
+        for damper in &elements.dampers {
+            let coefficient = read.one()?;
+            match damper.along {
+                Along::Line { .. } => {
+                    let (from, to) = (points.next()?, points.next()?);
+                    resisting.damper(coefficient, &from, &to)?;
+                }
+                Along::Scalar(_) => {
+                    let rate = rates.next()?;
+                    let pull = -(coefficient * rate.value);
+                    resisting.add((0..n).map(|i| pull * rate.across(i)));
+                }
+            }
+        }
+        resisting.add((0..n).map(|i| -dissipation.mixed(i)));
+        let power = dot(&resisting.sum, xi);
+        applied.add(resisting.sum);
+        Some((applied.sum, -(power * Fp::new(2).inv()?)))
+    }
+}
+
+/// The i-th of n directions.
+fn unit(n: usize, i: usize) -> Vec<Fp> {
+    (0..n)
+        .map(|j| if i == j { Fp::ONE } else { Fp::ZERO })
+        .collect()
+}

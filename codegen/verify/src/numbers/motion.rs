@@ -1,0 +1,140 @@
+//! How frames and points move at one point of X, modulo p: ṙ, r̈, and for every i ∂ᵢr, d/dt ∂ᵢr, ∂ᵢṙ.
+//!
+//! The poses are differentiated by hyper-dual numbers along ẋ = A ξ and along the columns of A. In
+//! d/dt ∂ᵢr the column Aᵢ moves with x, in ∂ᵢṙ it is ẋ that moves; the difference of the two is what the
+//! coefficients γ stand for.
+
+use super::space::{Mat3, Vec3, add, apply, spin};
+use hamel_algebra::fp::Fp;
+use hamel_algebra::graph::Edge;
+use hamel_algebra::jets::Jet;
+
+/// A quantity and its derivatives.
+#[derive(Clone, Debug)]
+pub struct Moving<T> {
+    /// q.
+    pub value: T,
+    /// q̇.
+    pub rate: T,
+    /// q̈.
+    pub second: T,
+    /// ∂ᵢq.
+    pub by: Vec<T>,
+    /// d/dt ∂ᵢq.
+    pub rate_by: Vec<T>,
+    /// ∂ᵢq̇ at constant ξ.
+    pub by_rate: Vec<T>,
+}
+
+impl<T: Copy> Moving<T> {
+    /// Derivatives in columns: Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
+    fn assemble(n: usize, entry: impl Fn(&dyn Fn(&Jet) -> Fp) -> T) -> Self {
+        let across = |i: usize| entry(&|jet| jet.across.get(i).copied().unwrap_or(Fp::ZERO));
+        let mixed = |i: usize| entry(&|jet| jet.mixed.get(i).copied().unwrap_or(Fp::ZERO));
+        Moving {
+            value: entry(&|jet| jet.value),
+            rate: entry(&|jet| jet.along),
+            second: mixed(2 * n),
+            by: (0..n).map(across).collect(),
+            rate_by: (0..n).map(mixed).collect(),
+            by_rate: (n..2 * n).map(mixed).collect(),
+        }
+    }
+
+    /// The same of a linear function of the quantity.
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Moving<U> {
+        let all = |list: &[T]| list.iter().map(|&entry| f(entry)).collect();
+        Moving {
+            value: f(self.value),
+            rate: f(self.rate),
+            second: f(self.second),
+            by: all(&self.by),
+            rate_by: all(&self.rate_by),
+            by_rate: all(&self.by_rate),
+        }
+    }
+}
+
+impl Moving<Vec3> {
+    /// The sum of two points.
+    pub fn plus(&self, other: &Self) -> Self {
+        let all = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(&a, &b)| add(a, b)).collect();
+        Moving {
+            value: add(self.value, other.value),
+            rate: add(self.rate, other.rate),
+            second: add(self.second, other.second),
+            by: all(&self.by, &other.by),
+            rate_by: all(&self.rate_by, &other.rate_by),
+            by_rate: all(&self.by_rate, &other.by_rate),
+        }
+    }
+}
+
+/// A frame.
+#[derive(Clone, Debug)]
+pub struct MovingFrame {
+    /// Its axes.
+    pub rotation: Moving<Mat3>,
+    /// Its origin.
+    pub position: Moving<Vec3>,
+}
+
+/// The angular velocity of a frame in its own axes.
+#[derive(Clone, Debug)]
+pub struct Spin {
+    /// ω.
+    pub omega: Vec3,
+    /// dω/dt.
+    pub alpha: Vec3,
+    /// ωᵢ = ∂ω/∂ξⁱ.
+    pub by: Vec<Vec3>,
+    /// d/dt ωᵢ.
+    pub rate_by: Vec<Vec3>,
+    /// ∂ᵢω.
+    pub by_omega: Vec<Vec3>,
+}
+
+impl MovingFrame {
+    /// From the jets of the nine entries of the axes and the three of the origin.
+    pub fn new(n: usize, jets: &[Jet]) -> Option<Self> {
+        let (axes, origin) = jets.split_at_checked(9)?;
+        let origin: &[Jet; 3] = origin.try_into().ok()?;
+        let axes: &[Jet; 9] = axes.try_into().ok()?;
+        Some(MovingFrame {
+            rotation: Moving::assemble(n, |of| {
+                std::array::from_fn(|i| std::array::from_fn(|j| of(&axes[3 * i + j])))
+            }),
+            position: point(n, origin),
+        })
+    }
+
+    /// The point of the frame with constant components.
+    pub fn point(&self, at: Vec3) -> Moving<Vec3> {
+        self.position
+            .plus(&self.rotation.map(|axes| apply(&axes, at)))
+    }
+
+    /// ω and its derivatives, by the product rule on Rᵀ Ṙ.
+    pub fn spin(&self) -> Spin {
+        let r = &self.rotation;
+        let n = r.by.len();
+        let each = |f: &dyn Fn(usize) -> Vec3| (0..n).map(f).collect::<Vec<_>>();
+        Spin {
+            omega: spin(&r.value, &r.rate),
+            alpha: add(spin(&r.rate, &r.rate), spin(&r.value, &r.second)),
+            by: each(&|i| spin(&r.value, &r.by[i])),
+            rate_by: each(&|i| add(spin(&r.rate, &r.by[i]), spin(&r.value, &r.rate_by[i]))),
+            by_omega: each(&|i| add(spin(&r.by[i], &r.rate), spin(&r.value, &r.by_rate[i]))),
+        }
+    }
+}
+
+/// A point from the jets of its entries.
+pub fn point(n: usize, jets: &[Jet; 3]) -> Moving<Vec3> {
+    Moving::assemble(n, |of| std::array::from_fn(|i| of(&jets[i])))
+}
+
+/// The entries of a pose as they are read by `MovingFrame::new`.
+pub fn entries(rotation: &[[Edge; 3]; 3], position: &[Edge; 3]) -> Vec<Edge> {
+    rotation.iter().flatten().chain(position).copied().collect()
+}

@@ -1,0 +1,55 @@
+//! Vectors of three numbers modulo p, and the velocities of a frame from those of its axes.
+
+use crate::kernel::dot;
+use hamel_algebra::fp::Fp;
+
+/// A vector.
+pub type Vec3 = [Fp; 3];
+/// A matrix, by rows.
+pub type Mat3 = [Vec3; 3];
+
+/// a + b.
+pub fn add(a: Vec3, b: Vec3) -> Vec3 {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// a − b.
+pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+/// c a.
+pub fn scale(c: Fp, a: Vec3) -> Vec3 {
+    a.map(|entry| c * entry)
+}
+
+/// a × b.
+pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        a[j] * b[k] - a[k] * b[j]
+    })
+}
+
+/// M a.
+pub fn apply(m: &Mat3, a: Vec3) -> Vec3 {
+    m.map(|row| dot(&row, &a))
+}
+
+/// A column.
+pub fn column(m: &Mat3, j: usize) -> Vec3 {
+    m.map(|row| row[j])
+}
+
+/// Mᵀ a.
+pub fn apply_transposed(m: &Mat3, a: Vec3) -> Vec3 {
+    std::array::from_fn(|j| dot(&column(m, j), &a))
+}
+
+/// vee(Rᵀ Ṙ) for a change Ṙ of R: the angular velocity in the axes of R.
+pub fn spin(rotation: &Mat3, change: &Mat3) -> Vec3 {
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        dot(&column(rotation, k), &column(change, j))
+    })
+}

@@ -1,0 +1,27 @@
+//! Fresh points: agreement takes all of them.
+
+use super::{MISSING, POINTS, Unequal, at_fresh_points};
+use hamel_algebra::lane::Lane;
+
+#[test]
+fn too_few_points_are_no_agreement() {
+    let lane = |_| Some(Lane::new());
+    let some = |most: u64| move |_: &Lane, number| (number <= most).then_some(Ok::<(), ()>(()));
+    assert_eq!(at_fresh_points(lane, some(POINTS)), Ok(()));
+    assert_eq!(
+        at_fresh_points(lane, some(POINTS - 1)),
+        Err(Unequal::Nowhere)
+    );
+    let looked = std::cell::Cell::new(0);
+    let nowhere = |number| {
+        looked.set(number);
+        None
+    };
+    assert_eq!(
+        at_fresh_points(nowhere, some(POINTS)),
+        Err(Unequal::Nowhere)
+    );
+    assert_eq!(looked.get(), MISSING);
+    let last = |_: &Lane, number| Some(if number < POINTS { Ok(()) } else { Err(number) });
+    assert_eq!(at_fresh_points(lane, last), Err(Unequal::Differs(POINTS)));
+}

@@ -1,0 +1,199 @@
+//! The proof of base parameters: at fresh points, which have other run-time parameters than those at which the relations
+//! were found, Y_b β is Y π for random π, and the force of (30b), from accelerations of mass points in numbers modulo p: for the
+//! bodies of the description together with a body of random inertia on every link, so that no column goes without a factor.
+
+use super::numbers::Numbers;
+use super::points::{Unequal, at_fresh_points};
+use super::verdict::{failure, nowhere};
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::graph::Edge;
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::tape::Tape;
+use hamel_dynamics::regressor::{ENTRIES, Kind, Regressor};
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::model::{Body, Model};
+use hamel_program::{FunctionId, Program};
+
+/// Proves the base parameters of a model.
+///
+/// # Errors
+/// A fault of the generator: what differs.
+pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
+    let failed = |what: &str| format!("internal check failed: {what}");
+    let (heavier, added) = with_random_bodies(model, regressor)
+        .ok_or_else(|| failed("its links are not those of the description"))?;
+    let numbers = Numbers::new(&heavier).ok_or_else(|| failed("its forces have no numbers"))?;
+    let factors = regressor.base.iter().flat_map(|base| &base.terms);
+    let mut edges: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
+    edges.extend(regressor.standard.iter().map(|one| one.value));
+    edges.extend(regressor.columns.iter().flatten());
+    edges.extend(regressor.base.iter().flat_map(|base| &base.column));
+    edges.extend(&regressor.other_potentials);
+    let tape = Tape::new(&regressor.model.graph, &edges)
+        .ok_or_else(|| failed("its columns have no numbers"))?;
+    let compared = at_fresh_points(
+        |seed| model.points.lane(seed),
+        |lane, seed| at(&numbers, (&tape, &added), regressor, lane, seed),
+    );
+    match compared {
+        Ok(()) => Ok(()),
+        Err(Unequal::Differs(what)) => Err(failed(&what)),
+        Err(Unequal::Nowhere) => Err(failed("there are too few points to compare its forces at")),
+    }
+}
+
+/// Proves the base parameters, and that what is emitted are they and their columns.
+///
+/// # Errors
+/// A fault of the generator, never emitted.
+pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Result<(), Diagnostic> {
+    prove(model, regressor).map_err(|what| failure(model, &what))?;
+    let columns: Vec<&Vec<Edge>> = regressor.base.iter().map(|base| &base.column).collect();
+    let n = regressor.model.n();
+    let rows = (0..n).flat_map(|row| columns.iter().map(move |column| column[row]));
+    let rows: Vec<Edge> = rows.collect();
+    let values: Vec<Edge> = regressor.standard.iter().map(|one| one.value).collect();
+    let terms = regressor.base.iter().flat_map(|base| &base.terms);
+    let factors: Vec<Edge> = terms.map(|&(_, factor)| factor).collect();
+    let compared = at_fresh_points(
+        |seed| model.points.lane(0x4e_9e55 + seed),
+        |lane, _| {
+            let of = |edges: &[Edge]| evaluate_at(&regressor.model.graph, edges, &mut lane.clone());
+            let emitted = |id: FunctionId| match program.function(id) {
+                None => Some(None),
+                Some(f) => evaluate_at(&program.graph, &f.outputs, &mut lane.clone()).map(Some),
+            };
+            let (values, factors) = (of(&values)?, of(&factors)?);
+            let mut factors = factors.iter();
+            let beta = regressor.base.iter().map(|base| {
+                let terms = base.terms.iter().zip(&mut factors);
+                terms.fold(Fp::ZERO, |beta, (&(k, _), &factor)| {
+                    beta + factor * values[k]
+                })
+            });
+            let beta: Vec<Fp> = beta.collect();
+            let same = emitted(FunctionId::Regressor)?.is_none_or(|found| Some(found) == of(&rows))
+                && emitted(FunctionId::BaseParameters)?.is_none_or(|found| found == beta);
+            Some(if same { Ok(()) } else { Err(()) })
+        },
+    );
+    compared.map_err(|unequal| match unequal {
+        Unequal::Differs(()) => failure(model, "the emitted regressor is Y, the base parameters β"),
+        Unequal::Nowhere => nowhere(model),
+    })
+}
+
+/// A model with one more body on each link that has parameters, and what it adds to each of the standard parameters. In the
+/// description most of them are zero, and their columns would be compared with nothing.
+fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Vec<Fp>)> {
+    let mut model = model.clone();
+    let mut random = Random::new(0xb0d1e5);
+    let mut number = || (random.bits() % 50) as i64 + 1;
+    let mut added = vec![Fp::ZERO; regressor.standard.len()];
+    for link in &regressor.links {
+        let frame = model.frames.iter().position(|frame| frame.name == *link)?;
+        let mass = number();
+        let com: [i64; 3] = std::array::from_fn(|_| number());
+        let mut about_com = [[0; 3]; 3];
+        for (i, j) in ENTRIES {
+            about_com[i][j] = number();
+            about_com[j][i] = about_com[i][j];
+        }
+        let square: i64 = com.iter().map(|entry| entry * entry).sum();
+        let about_origin: [[i64; 3]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let square = if i == j { square } else { 0 };
+                about_com[i][j] + mass * (square - com[i] * com[j])
+            })
+        });
+        for (value, one) in added.iter_mut().zip(&regressor.standard) {
+            if let Kind::Inertia(place) = one.kind
+                && one.of == *link
+            {
+                let number = match place {
+                    0..6 => about_origin[ENTRIES[place].0][ENTRIES[place].1],
+                    6..9 => mass * com[place - 6],
+                    _ => mass,
+                };
+                *value = Fp::from_i64(number);
+            }
+        }
+        let graph = &mut model.graph;
+        let body = Body {
+            frame,
+            mass: graph.ratio(mass, 1),
+            com: com.map(|entry| graph.ratio(entry, 1)),
+            inertia_com: about_com.map(|row| row.map(|entry| graph.ratio(entry, 1))),
+            inertia_origin: about_origin.map(|row| row.map(|entry| graph.ratio(entry, 1))),
+        };
+        model.bodies.push(body);
+    }
+    Some((model, added))
+}
+
+/// Compares at a point; `None` where something has no value.
+fn at(
+    numbers: &Numbers,
+    (tape, added): (&Tape, &[Fp]),
+    regressor: &Regressor,
+    lane: &Lane,
+    seed: u64,
+) -> Option<Result<(), String>> {
+    let left = match numbers.at(lane)? {
+        Ok(values) => values.left,
+        Err(what) => return Some(Err(what)),
+    };
+    let values = tape.values(lane)?;
+    let terms: usize = regressor.base.iter().map(|base| base.terms.len()).sum();
+    let (factors, values) = values.split_at_checked(terms)?;
+    let (given, values) = values.split_at_checked(regressor.standard.len())?;
+    let n = regressor.model.n();
+    let (columns, values) = values.split_at_checked(given.len() * n)?;
+    let (kept, rest) = values.split_at_checked(regressor.base.len() * n)?;
+    let column = |k: usize| &columns[k * n..(k + 1) * n];
+    let whole = |pi: &[Fp]| -> Vec<Fp> {
+        let mut sum = vec![Fp::ZERO; n];
+        (0..pi.len()).for_each(|k| increase(&mut sum, column(k), pi[k]));
+        sum
+    };
+    let based = |pi: &[Fp]| -> Vec<Fp> {
+        let mut sum = vec![Fp::ZERO; n];
+        let mut factors = factors.iter();
+        for (place, base) in regressor.base.iter().enumerate() {
+            let terms = base.terms.iter().zip(&mut factors);
+            let beta = terms.fold(Fp::ZERO, |beta, (&(k, _), &factor)| beta + factor * pi[k]);
+            increase(&mut sum, &kept[place * n..(place + 1) * n], beta);
+        }
+        sum
+    };
+    let random = &mut Random::new(seed ^ 0x5bd1);
+    let anything: Vec<Fp> = given.iter().map(|_| random.element()).collect();
+    if whole(&anything) != based(&anything) {
+        return Some(Err("base parameters do not stand for all parameters".into()));
+    }
+    // Dampers are no part of (30b), and what else has a potential no part of the regressor.
+    let all: Vec<Fp> = given
+        .iter()
+        .zip(added)
+        .map(|(&own, &more)| own + more)
+        .collect();
+    let mut force = based(&all);
+    for (k, one) in regressor.standard.iter().enumerate() {
+        if one.kind == Kind::Damping {
+            increase(&mut force, column(k), -given[k]);
+        }
+    }
+    increase(&mut force, rest, Fp::ONE);
+    Some(match force == left[1] {
+        true => Ok(()),
+        false => Err("the regressor is not that of inverse dynamics, (30b)".into()),
+    })
+}
+
+/// Adds k times a vector.
+fn increase(sum: &mut [Fp], by: &[Fp], k: Fp) {
+    for (sum, &by) in sum.iter_mut().zip(by) {
+        *sum = *sum + by * k;
+    }
+}

@@ -1,0 +1,367 @@
+//! Validation of the linearisation, [A B], and of invariants, at a point modulo p.
+//!
+//! Slopes are taken by dual numbers, and M ξ̇ = F is solved in numbers: no derivative of the generator's
+//! own takes part. Where M, inverse dynamics and f are emitted, they have been compared with the
+//! independent derivation by then, and equal functions on X have equal slopes along it; so the slopes are
+//! those of the emitted functions. Else M, h, ∂V and f are derived once more.
+
+use super::hamel_form;
+use super::kernel::dot;
+use super::reference::Reference;
+use super::{centroidal, derivatives, frames, outputs, states};
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::graph::Edge;
+use hamel_algebra::lane::Lane;
+use hamel_algebra::linear::matrix;
+use hamel_algebra::numeric::{evaluate_at, solve};
+use hamel_algebra::tangent::tangent_at;
+use hamel_dynamics::calculus::Calculus;
+use hamel_dynamics::{energy, quantity};
+use hamel_language::model::Model;
+use hamel_program::{FunctionId, Program};
+
+/// Whether ξ̇ as it comes out on the way to [A B] is that of `accel`.
+fn rates_at(program: &Program, lane: &Lane) -> Option<bool> {
+    let linearize = program.function(FunctionId::Linearize);
+    let Some(linearize) = linearize.filter(|function| !function.rates.is_empty()) else {
+        return Some(true);
+    };
+    let accel = program.function(FunctionId::Accel)?;
+    let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut lane.clone());
+    Some(value(&linearize.rates)? == value(&accel.outputs)?)
+}
+
+/// What is compared at every point.
+pub struct Slopes {
+    /// Names of the invariants with their entries in the graph of a model.
+    invariants: Vec<(String, Vec<Edge>)>,
+    model: Model,
+    /// What slopes are taken of, where the linearisation is wanted.
+    source: Option<Source>,
+}
+
+/// What slopes are taken of.
+enum Source {
+    /// The functions of the program.
+    Emitted,
+    /// A derivation of its own.
+    Derived(Box<Reference>),
+}
+
+/// The emitted functions that slopes of ξ̇ follow from.
+const EMITTED: [&str; 4] = [
+    "accel",
+    "mass_matrix",
+    "inverse_dynamics",
+    "generalized_force",
+];
+
+/// M, F = f − h − ∂V, A and Aξ of one point, or their slopes.
+struct Numbers {
+    mass: Vec<Vec<Fp>>,
+    force: Vec<Fp>,
+    a: Vec<Vec<Fp>>,
+    rate: Vec<Fp>,
+}
+
+impl Numbers {
+    fn roots(reference: &Reference) -> Vec<Edge> {
+        let mut roots = reference.mass.concat();
+        for part in [&reference.force, &reference.bias, &reference.slope] {
+            roots.extend(part);
+        }
+        roots.extend(reference.model.a.concat());
+        roots.extend(&reference.model.rate);
+        roots
+    }
+
+    fn new(reference: &Reference, values: &[Fp]) -> Self {
+        let (n, nu) = (reference.model.n(), reference.model.nu());
+        let (mass, rest) = values.split_at(n * n);
+        let (forces, rest) = rest.split_at(3 * n);
+        let (a, rate) = rest.split_at(nu * n);
+        let rows = |flat: &[Fp]| matrix(flat, n);
+        Numbers {
+            mass: rows(mass),
+            force: (0..n)
+                .map(|i| forces[i] - forces[n + i] - forces[2 * n + i])
+                .collect(),
+            a: rows(a),
+            rate: rate.to_vec(),
+        }
+    }
+}
+
+impl Slopes {
+    /// Prepares for a program; `None` where AᵀA is singular.
+    pub fn new(model: &Model, program: &Program) -> Option<Self> {
+        let claims: Vec<_> = model
+            .invariants
+            .iter()
+            .filter(|claim| program.function(&claim.name).is_some())
+            .collect();
+        let linear = program.function(FunctionId::Linearize).is_some();
+        let mut own = model.clone();
+        let mut invariants = Vec::new();
+        if !claims.is_empty() {
+            let mut calculus = Calculus::new(&own);
+            let kinetic = hamel_form::kinetic_energy(&mut own, &mut calculus);
+            let energies = (kinetic, energy::potential(&mut own));
+            for claim in claims {
+                let value = quantity::value(&mut own, &mut calculus, energies, &claim.quantity);
+                invariants.push((claim.name.clone(), value.entries()));
+            }
+        }
+        let emitted = EMITTED.iter().all(|name| program.function(name).is_some());
+        let source = match linear {
+            false => None,
+            true if emitted => Some(Source::Emitted),
+            true => Some(Source::Derived(Box::new(Reference::new(model)?))),
+        };
+        Some(Slopes {
+            invariants,
+            model: own,
+            source,
+        })
+    }
+
+    /// Compares at one point; `None` where it cannot be evaluated there.
+    pub fn at_point(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+        let value = |name: &str| {
+            let function = program.function(name)?;
+            evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+        };
+        for (name, entries) in &self.invariants {
+            if value(name)? != evaluate_at(&self.model.graph, entries, &mut lane.clone())? {
+                return Some(Err("an invariant".into()));
+            }
+        }
+        if !measured_at(&self.model, program, [lane, lane])? {
+            return Some(Err(MEASURE.into()));
+        }
+        if !derivatives::hold(&self.model, program, [lane, lane])? {
+            return Some(Err(derivatives::WHAT.into()));
+        }
+        if !frames::hold(&self.model, program, lane)? {
+            return Some(Err(frames::WHAT.into()));
+        }
+        if !centroidal::holds(&self.model, program, lane)? {
+            return Some(Err(centroidal::WHAT.into()));
+        }
+        if !rates_at(program, lane)? {
+            return Some(Err("ξ̇ beside its slopes".into()));
+        }
+        match &self.source {
+            None => Some(Ok(())),
+            Some(Source::Emitted) => self.emitted_at(program, lane),
+            Some(Source::Derived(reference)) => derived_at(reference, program, lane),
+        }
+    }
+
+    /// By the slopes of the emitted M, inverse dynamics and f.
+    fn emitted_at(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+        let (model, graph) = (&self.model, &program.graph);
+        let (n, nu) = (model.n(), model.nu());
+        let outputs = |name: &str| Some(program.function(name)?.outputs.as_slice());
+        let value = |name: &str| evaluate_at(graph, outputs(name)?, &mut lane.clone());
+        let mut xi_dot = value("accel")?;
+        xi_dot.truncate(n);
+        let mass = value("mass_matrix")?;
+        let mass: Vec<Vec<Fp>> = matrix(&mass, n);
+        let roots: Vec<Edge> = model
+            .a
+            .concat()
+            .into_iter()
+            .chain(model.rate.clone())
+            .collect();
+        let here = evaluate_at(&model.graph, &roots, &mut lane.clone())?;
+        let displaced = Displaced::new(model, &here[nu * n..]);
+        let moved = displaced.moved(model, &here[..nu * n]);
+        let kinematics = |moved: &[Fp]| -> Option<Vec<Fp>> {
+            let duals = tangent_at(&model.graph, &roots, &mut lane.clone(), moved)?;
+            Some(duals.into_iter().map(|dual| dual.1).collect())
+        };
+        let changed = kinematics(&moved)?;
+        let moving = kinematics(&displaced.moving)?;
+        let linear = value("linearize")?;
+        let found = displaced.found(&linear);
+        let matrix = |flat: &[Fp]| -> Vec<Vec<Fp>> { matrix(flat, n) };
+        let left = difference(
+            &changed[nu * n..],
+            &product(&matrix(&moving[..nu * n]), &displaced.columns[..n]),
+        );
+        if product(&matrix(&here[..nu * n]), &found[..n]) != left {
+            return Some(Err(KINEMATIC.into()));
+        }
+        // M δξ̇ = δ(f − F(x, ξ, ξ̇)), ξ̇ held.
+        let mut held = lane.clone();
+        for (place, &value) in model
+            .graph
+            .symbol_places(&model.xi_dot)
+            .into_iter()
+            .zip(&xi_dot)
+        {
+            held.set_symbol(place, value);
+        }
+        let slopes = |name: &str| -> Option<Vec<Fp>> {
+            let duals = tangent_at(graph, outputs(name)?, &mut held.clone(), &moved)?;
+            Some(duals.into_iter().map(|dual| dual.1).collect())
+        };
+        let right = difference(&slopes("generalized_force")?, &slopes("inverse_dynamics")?);
+        let (changed, state_rates) = found[n..].split_at(n);
+        if product(&mass, changed) != right {
+            return Some(Err(DYNAMIC.into()));
+        }
+        if states::slopes(model, (&xi_dot, changed), lane, &moved)? != state_rates {
+            return Some(Err(states::WHAT.into()));
+        }
+        let along = (&moved[..], &displaced.columns[..]);
+        if !outputs::slopes_hold(model, program, (&xi_dot, changed), lane, along)? {
+            return Some(Err(outputs::WHAT.into()));
+        }
+        Some(Ok(()))
+    }
+}
+
+/// Whether displacements are measured by A, all of it but what is there for the time, and read by a Y with Y A = I:
+/// A of the full model at its point, what is emitted at that of the program.
+pub(super) fn measured_at(
+    full: &Model,
+    program: &Program,
+    [point, inner]: [&Lane; 2],
+) -> Option<bool> {
+    let emitted = |id: FunctionId| match program.function(id) {
+        Some(function) => {
+            evaluate_at(&program.graph, &function.outputs, &mut inner.clone()).map(Some)
+        }
+        None => Some(None),
+    };
+    let frame = emitted(FunctionId::DisplacementFrame)?;
+    let coframe = emitted(FunctionId::DisplacementCoframe)?;
+    let (Some(frame), Some(coframe)) = (frame, coframe) else {
+        return Some(true);
+    };
+    let a = evaluate_at(&full.graph, &full.a.concat(), &mut point.clone())?;
+    let time = full.clock.map(|clock| clock.xi);
+    let moved = (0..a.len()).filter(|place| Some(place % full.n()) != time);
+    let moved: Vec<Fp> = moved.map(|place| a[place]).collect();
+    let (n, nu) = (moved.len() / full.nu(), full.nu());
+    // What passes with the time alone is no displacement.
+    let columns = (0..full.n()).filter(|&j| Some(j) != time).chain(time);
+    let identity = columns.enumerate().all(|(j, column)| {
+        (0..n).all(|i| {
+            let sum = (0..nu).fold(Fp::ZERO, |sum, k| {
+                sum + coframe[i * nu + k] * a[k * full.n() + column]
+            });
+            sum == if i == j { Fp::ONE } else { Fp::ZERO }
+        })
+    });
+    Some(frame == moved && identity)
+}
+
+/// What is broken where a part of the linearisation is wrong.
+const MEASURE: &str = "Y A = I for the emitted frame of displacements";
+const KINEMATIC: &str = "ḣ of the linearisation";
+const DYNAMIC: &str = "δξ̇ of the linearisation";
+
+/// All columns at once, (h, δξ, δu) of random numbers: one wrong entry goes unnoticed with probability
+/// 1/p.
+struct Displaced {
+    columns: Vec<Fp>,
+    /// ẋ as a direction in the symbols.
+    moving: Vec<Fp>,
+    x: Vec<usize>,
+    others: Vec<usize>,
+}
+
+impl Displaced {
+    fn new(model: &Model, rate: &[Fp]) -> Self {
+        let x = model.graph.symbol_places(&model.x);
+        let (u, z) = model.u.split_at(model.m());
+        let others = [&model.xi, z, u]
+            .map(|edges| model.graph.symbol_places(edges))
+            .concat();
+        let columns = model.n() + others.len();
+        let mut random = Random::new(rate.iter().fold(columns as u64, |seed, rate| {
+            seed.rotate_left(7) ^ rate.bits()
+        }));
+        let mut moving = vec![Fp::ZERO; model.graph.symbols().len()];
+        for (&place, &rate) in x.iter().zip(rate) {
+            moving[place] = rate;
+        }
+        Displaced {
+            columns: (0..columns).map(|_| random.element()).collect(),
+            moving,
+            x,
+            others,
+        }
+    }
+
+    /// (A h, δξ, δu) as a direction in the symbols.
+    fn moved(&self, model: &Model, a: &[Fp]) -> Vec<Fp> {
+        let n = model.n();
+        let (h, rest) = self.columns.split_at(n);
+        let a: Vec<Vec<Fp>> = matrix(a, n);
+        let mut moved = vec![Fp::ZERO; model.graph.symbols().len()];
+        for (&place, value) in self.x.iter().zip(product(&a, h)) {
+            moved[place] = value;
+        }
+        for (&place, &value) in self.others.iter().zip(rest) {
+            moved[place] = value;
+        }
+        moved
+    }
+
+    /// (ḣ, δξ̇) by the emitted matrices.
+    fn found(&self, linear: &[Fp]) -> Vec<Fp> {
+        product(&matrix(linear, self.columns.len()), &self.columns)
+    }
+}
+
+/// By the slopes of a derivation of its own.
+fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+    let (model, graph) = (&reference.model, &reference.model.graph);
+    let n = model.n();
+    let roots = Numbers::roots(reference);
+    let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
+    // The slopes of everything along a direction in the symbols.
+    let slope = |direction: &[Fp]| -> Option<Numbers> {
+        let duals = tangent_at(graph, &roots, &mut lane.clone(), direction)?;
+        let slopes: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
+        Some(Numbers::new(reference, &slopes))
+    };
+    let xi_dot = solve(here.mass.clone(), here.force.clone())?;
+    let displaced = Displaced::new(model, &here.rate);
+    let moving = slope(&displaced.moving)?;
+    let changed = slope(&displaced.moved(model, &here.a.concat()))?;
+    let linear = &program.function(FunctionId::Linearize)?.outputs;
+    let found = displaced.found(&evaluate_at(&program.graph, linear, &mut lane.clone())?);
+    // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
+    let left = difference(&changed.rate, &product(&moving.a, &displaced.columns[..n]));
+    if product(&here.a, &found[..n]) != left {
+        return Some(Err(KINEMATIC.into()));
+    }
+    // M δξ̇ = δF − δM ξ̇.
+    let right = difference(&changed.force, &product(&changed.mass, &xi_dot));
+    let (changed_rates, state_rates) = found[n..].split_at(n);
+    if product(&here.mass, changed_rates) != right {
+        return Some(Err(DYNAMIC.into()));
+    }
+    let moved = displaced.moved(model, &here.a.concat());
+    if states::slopes(model, (&xi_dot, changed_rates), lane, &moved)? != state_rates {
+        return Some(Err(states::WHAT.into()));
+    }
+    let along = (&moved[..], &displaced.columns[..]);
+    if !outputs::slopes_hold(model, program, (&xi_dot, changed_rates), lane, along)? {
+        return Some(Err(outputs::WHAT.into()));
+    }
+    Some(Ok(()))
+}
+
+fn difference(a: &[Fp], b: &[Fp]) -> Vec<Fp> {
+    a.iter().zip(b).map(|(&a, &b)| a - b).collect()
+}
+
+fn product(rows: &[Vec<Fp>], vector: &[Fp]) -> Vec<Fp> {
+    rows.iter().map(|row| dot(row, vector)).collect()
+}

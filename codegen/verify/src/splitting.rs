@@ -1,0 +1,174 @@
+//! Validation of the functions of a system that splits, at a point modulo p.
+//!
+//! With p free, ξ of p, and ξ̇ solved from M ξ̇ = f − h − ∂V of the independent derivation:
+//!
+//! | function | has to be |
+//! |---|---|
+//! | `split_velocities` | a right inverse of `split_momenta`: p of ξ of p is p |
+//! | `uncentre` | a left inverse of `centre` |
+//! | `centre` | y with ẏ = p for plain coordinates, x itself for all others |
+//! | `split_momenta` | θ̇ of circles, J ω of rotors |
+//! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
+
+use super::numbers::{Numbers, Values};
+use hamel_algebra::fp::Fp;
+use hamel_algebra::graph::Edge;
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::{evaluate_at, solve};
+use hamel_algebra::tangent::tangent_at;
+use hamel_dynamics::kinematics::chart_rates;
+use hamel_dynamics::structure::rates::{Part, parts};
+use hamel_language::model::Model;
+use hamel_program::structure::Structure;
+use hamel_program::{FunctionId, Program};
+
+/// What is compared with.
+pub struct Proof {
+    parts: Vec<Part>,
+    /// The model, its graph holding the rates of the coordinates.
+    model: Model,
+    /// These rates.
+    rates: Vec<Edge>,
+    /// Numbers of the symbols x, ξ, p.
+    x: Vec<usize>,
+    xi: Vec<usize>,
+    p: Vec<usize>,
+}
+
+impl Proof {
+    /// Prepares for a program; `None` where it has no such functions.
+    pub fn new(model: &Model, program: &Program) -> Option<Self> {
+        program.function(FunctionId::Kick)?;
+        let mut model = model.clone();
+        let rates = chart_rates(&mut model.graph, &model.blocks, &model.x, &model.rate);
+        Some(Proof {
+            parts: parts(&model),
+            rates,
+            x: model.graph.symbol_places(&model.x),
+            xi: model.graph.symbol_places(&model.xi),
+            p: model.graph.symbol_places(&model.momenta),
+            model,
+        })
+    }
+
+    /// Compares at one point; `None` where it cannot be evaluated there.
+    pub fn at_point(
+        &self,
+        numbers: &Numbers,
+        program: &Program,
+        lane: &Lane,
+    ) -> Option<Result<(), String>> {
+        let wrong = |what: &str| Some(Err(what.to_string()));
+        let at = |name: &str, lane: &Lane| {
+            let function = program.function(name)?;
+            evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+        };
+        let x: Vec<Fp> = self.x.iter().map(|&place| lane.symbol(place)).collect();
+        let p: Vec<Fp> = self.p.iter().map(|&place| lane.symbol(place)).collect();
+        let xi = at("split_velocities", lane)?;
+        let mut moving = lane.clone();
+        set(&mut moving, &self.xi, &xi);
+        if at("split_momenta", &moving)? != p {
+            return wrong("p of ξ of p is p, for the emitted momenta");
+        }
+        if program.function(FunctionId::Centre).is_some() {
+            let mut shifted = lane.clone();
+            set(&mut shifted, &self.x, &at("centre", lane)?);
+            if at("uncentre", &shifted)? != x {
+                return wrong("x of y of x is x, for the emitted centre");
+            }
+        }
+        let kick = at("kick", lane)?;
+        let spin = evaluate_at(&self.model.graph, &self.rates, &mut moving.clone())?;
+        let (p_dot, y_dot) = self.slopes(numbers, program, &moving)?;
+        let mut inertia = match program.function(FunctionId::RotorInertia) {
+            Some(_) => at("rotor_inertia", lane)?.into_iter(),
+            None => Vec::new().into_iter(),
+        };
+        let Structure {
+            split: Ok(splitting),
+            ..
+        } = &program.structure
+        else {
+            return wrong("a system that splits, for the emitted kick");
+        };
+        let mut rotors = splitting.rotors.iter();
+        for part in &self.parts {
+            let here = part.rates();
+            let entries = part.first..part.first + part.block.len();
+            if !part.turns() {
+                let plain = part.block.len() == part.block.dimension();
+                let rate = if plain {
+                    &y_dot[entries]
+                } else {
+                    &spin[here.clone()]
+                };
+                if rate != &p[here.clone()] || p_dot[here.clone()] != kick[here] {
+                    return wrong("ẏ = p, ṗ = kick, for the emitted splitting");
+                }
+                continue;
+            }
+            let rotor = rotors.next()?;
+            let (w, big_p) = (&spin[here.clone()], &p[here.clone()]);
+            let j: Vec<Fp> = inertia.by_ref().take(rotor.inertia.entries()).collect();
+            let jw: Vec<Fp> = match j.as_slice() {
+                [a, b, c] => vec![*a * w[0], *b * w[1], *c * w[2]],
+                j => j
+                    .chunks(3)
+                    .map(|row| row[0] * w[0] + row[1] * w[1] + row[2] * w[2])
+                    .collect(),
+            };
+            if jw != big_p {
+                return wrong("P = J ω, for the emitted rotors");
+            }
+            for i in 0..3 {
+                let (a, b) = ((i + 1) % 3, (i + 2) % 3);
+                let gyroscopic = big_p[a] * w[b] - big_p[b] * w[a];
+                if p_dot[here.start + i] != gyroscopic + kick[here.start + i] {
+                    return wrong("Ṗ = P × ω + kick, for the emitted splitting");
+                }
+            }
+        }
+        Some(Ok(()))
+    }
+
+    /// d/dt of the momenta and of y along the motion.
+    fn slopes(
+        &self,
+        numbers: &Numbers,
+        program: &Program,
+        moving: &Lane,
+    ) -> Option<(Vec<Fp>, Vec<Fp>)> {
+        let model = &self.model;
+        let Values {
+            mass,
+            force,
+            bias,
+            slope,
+            rate,
+            ..
+        } = numbers.at(moving)?.ok()?;
+        let right = (0..model.n()).map(|i| force[i] - bias[i] - slope[i]);
+        let xi_dot = solve(mass, right.collect())?;
+        let mut direction = vec![Fp::ZERO; model.graph.symbols().len()];
+        let moves = self.x.iter().zip(&rate).chain(self.xi.iter().zip(&xi_dot));
+        for (&place, &by) in moves {
+            *direction.get_mut(place)? = by;
+        }
+        let slopes = |edges: &[Edge]| -> Option<Vec<Fp>> {
+            let duals = tangent_at(&program.graph, edges, &mut moving.clone(), &direction)?;
+            Some(duals.into_iter().map(|dual| dual.1).collect())
+        };
+        let y = program
+            .function(FunctionId::Centre)
+            .map_or(&model.x, |f| &f.outputs);
+        let momenta = program.function(FunctionId::SplitMomenta)?;
+        Some((slopes(&momenta.outputs)?, slopes(y)?))
+    }
+}
+
+fn set(lane: &mut Lane, places: &[usize], values: &[Fp]) {
+    for (&place, &value) in places.iter().zip(values) {
+        lane.set_symbol(place, value);
+    }
+}

@@ -1,0 +1,259 @@
+//! The proof that stands before every emission: at fresh points of X modulo p the three forms (30a),
+//! (30b), (30c) have the same left side F(x, ξ, ξ̇), and every emitted function is the one that F,
+//! f, T and V imply.
+//!
+//! | function | has to be |
+//! |---|---|
+//! | `accel` | the ξ̇ with F(x, ξ, ξ̇) = f |
+//! | `inverse_dynamics` | F(x, ξ, ξ̇) |
+//! | `bias` | h = Γ ξ ξ, with F = M ξ̇ + h + ∂V |
+//! | `potential_force` | ∂V |
+//! | `generalized_force` | f by virtual work |
+//! | `momentum` | ∂T/∂ξ |
+//! | `dissipation` | D of the dampers' forces on points |
+//! | `kick` and its kind | the motion of the system, see `splitting` |
+//! | `mass_matrix` | M |
+//! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
+//! | `velocity_from_momentum` | the ξ with M ξ = p |
+
+use super::charts::Charts;
+use super::check::failures;
+use super::forms::Symbols;
+use super::kernel::dot;
+use super::numbers::{Numbers, Values};
+use super::points::{Unequal, at_fresh_points};
+use super::slopes::Slopes;
+use super::splitting::Proof;
+use super::states;
+use super::verdict::{failure, nowhere};
+use hamel_algebra::fp::Fp;
+use hamel_algebra::graph::Edge;
+use hamel_algebra::lane::Lane;
+use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::tape::Tape;
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::model::Model;
+use hamel_program::Program;
+use rustc_hash::FxHashMap;
+
+/// Models with more velocities are refused without the identities of their symbols.
+const MOST_EXPLAINED: usize = 8;
+
+/// Validates the functions of a program; an error here is a fault of the generator, never emitted. It
+/// names the identities of the symbols that are broken too, so that the fault is found.
+pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
+    compared(model, program).map_err(|unequal| {
+        let Unequal::Differs(what) = unequal else {
+            return nowhere(model);
+        };
+        let mut broken = vec![what];
+        if model.n() <= MOST_EXPLAINED
+            && let Some(symbols) = Symbols::new(model)
+        {
+            let identities = failures(model, program, symbols);
+            broken.extend(identities.iter().map(|identity| identity.label.to_string()));
+        }
+        failure(model, &broken.join(", "))
+    })
+}
+
+/// The first comparison that fails, at the first point at which one does.
+pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<String>> {
+    let without = |what: &str| Unequal::Differs(what.to_string());
+    let with_rates = states::with_rates(model, program);
+    let numbers = Numbers::new(model).ok_or_else(|| without("Y A = I"))?;
+    let emitted =
+        Emitted::new(model, program).ok_or_else(|| without("that numbers have values"))?;
+    let slopes = Slopes::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
+    let splitting = Proof::new(model, program);
+    let charts = Charts::new(program).ok_or_else(|| without("that charts have values"))?;
+    let at_point = |lane: &Lane| -> Option<Result<(), String>> {
+        let values = match numbers.at(lane)? {
+            Ok(values) => values,
+            Err(what) => return Some(Err(what)),
+        };
+        let all = [
+            compare(
+                [model, &with_rates],
+                program,
+                &values,
+                &emitted.at(lane)?,
+                lane,
+            )?,
+            slopes.at_point(program, lane)?,
+            match charts.hold(&values.rate, lane)? {
+                true => Ok(()),
+                false => Err("K(x) times the rate of the chart = ẋ".into()),
+            },
+            splitting.as_ref().map_or(Some(Ok(())), |splitting| {
+                splitting.at_point(&numbers, program, lane)
+            })?,
+        ];
+        Some(all.into_iter().collect())
+    };
+    at_fresh_points(
+        |number| model.points.lane(0x7a11 + number),
+        |lane, _| at_point(lane),
+    )
+}
+
+/// The functions that are compared with the forms, to be evaluated together.
+struct Emitted {
+    /// Names with the number of their values.
+    names: Vec<(String, usize)>,
+    tape: Tape,
+}
+
+/// What is compared here; outputs of the description beside it.
+pub const COMPARED: [&str; 14] = [
+    "accel",
+    "bias",
+    "dissipation",
+    "energy",
+    "generalized_force",
+    "inverse_dynamics",
+    "kinetic_energy",
+    "mass_matrix",
+    "momentum",
+    "momentum_rate",
+    "potential_energy",
+    "potential_force",
+    "rate",
+    "velocity_from_momentum",
+];
+
+impl Emitted {
+    fn new(model: &Model, program: &Program) -> Option<Self> {
+        let compared = |name: &str| {
+            COMPARED.contains(&name) || model.outputs.iter().any(|(output, _)| output == name)
+        };
+        let functions = || program.functions.iter().filter(|f| compared(&f.name));
+        let roots: Vec<Edge> = functions().flat_map(|f| f.outputs.clone()).collect();
+        Some(Emitted {
+            names: functions()
+                .map(|function| (function.name.clone(), function.outputs.len()))
+                .collect(),
+            tape: Tape::new(&program.graph, &roots)?,
+        })
+    }
+
+    /// The values of all at a point.
+    fn at(&self, lane: &Lane) -> Option<FxHashMap<&str, Vec<Fp>>> {
+        let values = self.tape.values(lane)?;
+        let mut rest = values.into_iter();
+        Some(
+            self.names
+                .iter()
+                .map(|(name, size)| (name.as_str(), rest.by_ref().take(*size).collect()))
+                .collect(),
+        )
+    }
+}
+
+/// Compares at one point; `None` where it cannot be evaluated there. Of the model with the emitted ξ̇ are the rates of states.
+fn compare(
+    [model, with_rates]: [&Model; 2],
+    program: &Program,
+    values: &Values,
+    emitted: &FxHashMap<&str, Vec<Fp>>,
+    lane: &Lane,
+) -> Option<Result<(), String>> {
+    let broken = disagreements(&values.left);
+    if !broken.is_empty() {
+        return Some(Err(broken.join(", ")));
+    }
+    let product = |vector: &[Fp]| -> Vec<Fp> {
+        let rows = values.mass.iter();
+        rows.map(|row| dot(row, vector)).collect()
+    };
+    let sum = |lists: &[&[Fp]]| -> Vec<Fp> {
+        (0..model.n())
+            .map(|i| lists.iter().fold(Fp::ZERO, |sum, list| sum + list[i]))
+            .collect()
+    };
+    let energy = values.kinetic + values.potential;
+    let resistance = sum(&[&values.bias, &values.slope]);
+    let table: [(&str, &[Fp], &str); 11] = [
+        (
+            "mass_matrix",
+            &values.mass.concat(),
+            "(20), M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩ for the emitted M",
+        ),
+        ("bias", &values.bias, "h = Γ ξ ξ for the emitted bias force"),
+        (
+            "potential_force",
+            &values.slope,
+            "∂ᵢV for the emitted slope",
+        ),
+        (
+            "generalized_force",
+            &values.force,
+            "(28), fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted loads",
+        ),
+        (
+            "inverse_dynamics",
+            &values.left[0],
+            "(30c) for the emitted inverse dynamics",
+        ),
+        ("momentum", &values.momentum, "p = ∂T/∂ξ"),
+        ("kinetic_energy", &[values.kinetic], "T = ½ Σ m_p ‖ṙ_p‖²"),
+        (
+            "potential_energy",
+            &[values.potential],
+            "V = −Σ m_p ⟨g, r_p⟩",
+        ),
+        ("energy", &[energy], "T + V"),
+        (
+            "dissipation",
+            &[values.dissipation],
+            "2 D = −fᵢ ξⁱ of dampers",
+        ),
+        ("rate", &values.rate, "(5), ẋ = A ξ"),
+    ];
+    for (name, expected, what) in table {
+        if emitted.get(name).is_some_and(|value| value != expected) {
+            return Some(Err(what.into()));
+        }
+    }
+    if let Some(rates) = emitted.get("accel") {
+        let (xi_dot, state_rates) = rates.split_at(model.n());
+        if sum(&[&product(xi_dot), &resistance]) != values.force {
+            return Some(Err("(30c) for the emitted ξ̇".into()));
+        }
+        if state_rates != states::rates(with_rates, xi_dot, lane)? {
+            return Some(Err(states::WHAT.into()));
+        }
+    }
+    // d/dt (M ξ) = Ṁ ξ + f − h − ∂V.
+    if let Some(rate) = emitted.get("momentum_rate")
+        && sum(&[rate, &resistance]) != sum(&[&values.mass_rate, &values.force])
+    {
+        return Some(Err("ṗ".into()));
+    }
+    if let Some(xi) = emitted.get("velocity_from_momentum") {
+        let momenta = evaluate_at(&model.graph, &model.momenta, &mut lane.clone())?;
+        if product(xi) != momenta {
+            return Some(Err("ξ of p".into()));
+        }
+    }
+    for (name, expected) in &model.outputs {
+        if program.function(name).is_some() {
+            let expected = evaluate_at(&model.graph, &expected.entries(), &mut lane.clone())?;
+            if emitted.get(name.as_str()) != Some(&expected) {
+                return Some(Err(format!("output `{name}`")));
+            }
+        }
+    }
+    Some(Ok(()))
+}
+
+/// The pairs of forms that differ.
+fn disagreements([hamel, gibbs, levi_civita]: &[Vec<Fp>; 3]) -> Vec<&'static str> {
+    let pairs = [
+        (hamel == gibbs, "(30a) = (30b)"),
+        (hamel == levi_civita, "(30a) = (30c)"),
+        (gibbs == levi_civita, "(30b) = (30c)"),
+    ];
+    let broken = pairs.iter().filter(|(agree, _)| !agree);
+    broken.map(|(_, name)| *name).collect()
+}

@@ -1,0 +1,67 @@
+//! What a proof says.
+
+use super::confidence::Confidence;
+use hamel_algebra::graph::Edge;
+use hamel_algebra::lane::Roots;
+use hamel_language::diagnostics::Diagnostic;
+use hamel_language::model::Model;
+
+/// How an identity fared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Both sides have the same normal form modulo φ over the rationals.
+    Proved,
+    /// Both sides agree at random points of X.
+    Checked(Confidence),
+    /// They differ.
+    Failed(String),
+}
+
+/// One identity with its verdict.
+#[derive(Clone, Debug)]
+pub struct Identity {
+    /// KR18's number, or a name.
+    pub label: &'static str,
+    /// The equation.
+    pub equation: String,
+    /// How it fared.
+    pub verdict: Verdict,
+}
+
+/// Left and right sides of an identity.
+pub(super) struct Sides {
+    pub(super) label: &'static str,
+    pub(super) equation: &'static str,
+    pub(super) left: Vec<Edge>,
+    pub(super) right: Vec<Edge>,
+}
+
+/// A fault of the generator, which is never emitted.
+pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
+    fault(
+        model,
+        &format!("{what} was not confirmed"),
+        &format!("{what} does not hold"),
+    )
+}
+
+/// There was nowhere to compare.
+pub(super) fn nowhere(model: &Model) -> Diagnostic {
+    let why = "no random point was found at which all functions have values";
+    fault(model, why, why)
+}
+
+/// Why nothing is emitted: where roots stand within roots, or else by a fault.
+fn fault(model: &Model, unproved: &str, wrong: &str) -> Diagnostic {
+    if model.points.roots == Roots::Anything {
+        let message = format!("`{}` could not be proved: {unproved}", model.name);
+        let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
+        return Diagnostic::new(model.span, message).help(help);
+    }
+    Diagnostic::new(
+        model.span,
+        format!("internal check failed for `{}`: {wrong}", model.name),
+    )
+    .help("this is a fault of the generator, nothing was emitted; please report the description")
+    .about_proof()
+}
