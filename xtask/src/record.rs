@@ -69,10 +69,10 @@ pub fn record(out: &Path) -> io::Result<()> {
     let workers = thread::available_parallelism()?.get();
     thread::scope(|scope| {
         let running: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        let ended = running.into_iter().map(|worker| worker.join());
-        ended
-            .map(|result| result.unwrap_or_else(|_| Err(io::Error::other("a worker panicked"))))
-            .collect()
+        running.into_iter().try_for_each(|worker| {
+            let panicked = || Err(io::Error::other("a worker panicked"));
+            worker.join().unwrap_or_else(|_| panicked())
+        })
     })
 }
 
