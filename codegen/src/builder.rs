@@ -1,4 +1,4 @@
-//! The build script's front end: `.eom` files in, formatted `.rs` files in `OUT_DIR`.
+//! The front end for build scripts: reads `.eom` files, and writes formatted `.rs` files to `OUT_DIR`.
 //!
 //! ```no_run
 //! // build.rs
@@ -27,17 +27,17 @@ pub struct Builder {
     c: Option<(PathBuf, Precision)>,
 }
 
-/// What a file holds.
+/// Kind of an input file.
 #[derive(Clone, Debug)]
 enum Kind {
     /// A description.
     Description,
-    /// A robot, and how it is read.
+    /// A robot in URDF, and the options of its import.
     #[cfg(feature = "urdf")]
     Urdf(crate::urdf::Options),
 }
 
-/// Why nothing, or not everything, was generated; shows every error with its place in the source.
+/// Errors of a build, in which nothing or not everything was generated. Shows every error with its place in the source.
 pub struct BuildError(String);
 
 impl fmt::Display for BuildError {
@@ -46,11 +46,11 @@ impl fmt::Display for BuildError {
     }
 }
 
-/// Bytes of stack: enough for what nests as deep as is allowed in a build that optimises nothing. Windows gives the main thread
-/// 1 MB.
+/// Stack size in bytes: enough for the deepest nesting that is allowed, even in a build without optimization. On
+/// Windows, the main thread has only 1 MB.
 const STACK: usize = 8 << 20;
 
-// A build script that returns the error prints its `Debug` form: that must be readable too.
+// A build script that returns the error prints its `Debug` form, which must be readable, too.
 impl fmt::Debug for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "\n{}", self.0)
@@ -60,12 +60,12 @@ impl fmt::Debug for BuildError {
 impl std::error::Error for BuildError {}
 
 impl Builder {
-    /// A builder without files.
+    /// Creates a builder without files.
     pub fn new() -> Self {
         Builder::default()
     }
 
-    /// Adds a description, by its path from the package's folder. With the feature `urdf`, files
+    /// Adds a description, by its path relative to the package's folder. With the feature `urdf`, files
     /// that end in `.urdf` are robots.
     pub fn file(mut self, path: impl Into<PathBuf>) -> Self {
         let path = path.into();
@@ -77,8 +77,8 @@ impl Builder {
         self
     }
 
-    /// Adds a robot in URDF with what its import decides; the name of the file stands in the
-    /// generated text.
+    /// Adds a robot in URDF, with the options of its import. `options.file` is set to the name of the file, which
+    /// appears in the generated text.
     #[cfg(feature = "urdf")]
     pub fn urdf(mut self, path: impl Into<PathBuf>, options: crate::urdf::Options) -> Self {
         let path = path.into();
@@ -88,22 +88,22 @@ impl Builder {
         self
     }
 
-    /// The folder to write to; `OUT_DIR` where it is not set.
+    /// Sets the folder to write to; `OUT_DIR` by default.
     pub fn out_dir(mut self, path: impl Into<PathBuf>) -> Self {
         self.out_dir = Some(path.into());
         self
     }
 
-    /// Writes C99 as well: `stem.h` and `stem.c` for every file, into this folder, which exists. The names of functions
-    /// begin with that of their system, so that no two systems of a program may have one name.
+    /// Also writes C99: `stem.h` and `stem.c` for every file, into this folder, which has to exist. The names of
+    /// functions begin with the name of their system, so that all systems of a program need different names.
     pub fn c_files(mut self, folder: impl Into<PathBuf>, precision: Precision) -> Self {
         self.c = Some((folder.into(), precision));
         self
     }
 
-    /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported, and
-    /// before anything is written; files whose bytes would not change are not touched, and none that was read is
-    /// written over. What a description declares and does not use becomes a warning of the package.
+    /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before any error is reported and
+    /// before anything is written. Files whose bytes would not change are not touched, and no file that was read is
+    /// overwritten. Declarations that a description does not use become warnings of the package.
     pub fn generate(self) -> Result<(), BuildError> {
         std::thread::scope(|scope| {
             let deep = std::thread::Builder::new().stack_size(STACK);
@@ -154,7 +154,7 @@ impl Builder {
         }
     }
 
-    /// What the files that are made from a path are called before their endings: no two are called the same.
+    /// Returns the common stem of the output files of a path, and refuses a stem that another path has already.
     fn stem(&self, path: &Path, stems: &mut BTreeMap<String, PathBuf>) -> Result<String, String> {
         let shown = path.display();
         let Some(stem) = path.file_stem() else {
@@ -186,19 +186,19 @@ impl Builder {
     }
 }
 
-/// What was read and derived.
+/// Files that were read, and texts that were generated.
 #[derive(Default)]
 struct Made {
     /// All files that were read.
     read: Vec<PathBuf>,
-    /// Names below the folder of the Rust, or whole paths, and texts.
+    /// Texts to write, by path: relative to the folder of the Rust files, or absolute.
     files: Vec<(PathBuf, String)>,
-    /// The functions in C, each with the file that it comes from.
+    /// Names of the functions in C, each with the file from which it comes.
     named: BTreeMap<String, String>,
 }
 
 impl Made {
-    /// Reads a file; Cargo runs the build script again when it changes.
+    /// Reads a file, and has Cargo run the build script again when it changes.
     fn open(&mut self, path: &Path) -> io::Result<String> {
         watch(path)?;
         let text = text_of(path)?;
@@ -206,7 +206,7 @@ impl Made {
         Ok(text)
     }
 
-    /// The same of a file that may be a robot, in any encoding that robots have.
+    /// Reads a file of some kind like `open`; a robot may have any encoding that is usual for robots.
     fn open_as(&mut self, path: &Path, kind: &Kind) -> io::Result<String> {
         match kind {
             Kind::Description => self.open(path),
@@ -231,7 +231,7 @@ impl Made {
     }
 }
 
-/// What a path stands for, whatever way leads there; nothing where there is no such file.
+/// Returns the canonical path of a file, whatever path leads there; `None` if there is no such file.
 fn place(path: &Path) -> Option<PathBuf> {
     path.canonicalize().ok()
 }
@@ -242,8 +242,8 @@ fn name(path: &Path) -> String {
         .unwrap_or_default()
 }
 
-/// Has Cargo run the build script again when a file changes. What the script itself writes below `OUT_DIR` is newer than
-/// the script's start, and would have it run in every build.
+/// Has Cargo run the build script again when a file changes. Files below `OUT_DIR` are excluded: the script itself
+/// writes them after its start, so that Cargo would run it in every build.
 fn watch(path: &Path) -> io::Result<()> {
     let folder = std::env::var_os("OUT_DIR").map(PathBuf::from);
     let written = folder.is_some_and(|folder| match (place(&folder), place(path)) {
@@ -253,7 +253,7 @@ fn watch(path: &Path) -> io::Result<()> {
     if written {
         return Ok(());
     }
-    // Cargo reads lines, and takes blanks from their ends.
+    // Cargo reads line by line, and trims white space at the end.
     let said = |path: &&str| !path.contains(['\n', '\r']) && path.trim_end() == *path;
     let Some(path) = path.to_str().filter(said) else {
         return Err(io::Error::other(
@@ -265,7 +265,7 @@ fn watch(path: &Path) -> io::Result<()> {
 }
 
 impl Builder {
-    /// Reads a file, and makes the texts that are to be written.
+    /// Reads a file, and generates the texts that are to be written.
     fn make(&self, path: &Path, kind: &Kind, stem: &str, made: &mut Made) -> Result<(), String> {
         let shown = path.display().to_string();
         let text = made.open_as(path, kind).map_err(|error| {
@@ -303,7 +303,7 @@ impl Builder {
                 let refused =
                     |errors: Vec<Diagnostic>| refused(&errors, &imported, &shown, &text, false);
                 let (generated, left_out) = available_in(&imported.text).map_err(refused)?;
-                // That there are no masses was said above.
+                // The import has warned already if there are no masses.
                 if let Some(left_out) = left_out.filter(|_| imported.has_masses) {
                     warn(&format!("{shown}: {}", left_out.said()));
                 }
@@ -314,7 +314,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The files of what was derived: names below the folder of the Rust, or whole paths, and texts.
+    /// Returns the output files of a derived system, by path: relative to the folder of the Rust files, or absolute.
     fn texts(
         &self,
         generated: &Generated,
@@ -325,7 +325,7 @@ impl Builder {
     ) -> Result<Vec<(PathBuf, String)>, Vec<Diagnostic>> {
         let mut files = vec![(format!("{stem}.rs").into(), written(generated, name)?)];
         if let Some((folder, precision)) = &self.c {
-            // The Rust stands elsewhere.
+            // An absolute path, since a relative one would be taken below the folder of the Rust files.
             let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
             let c = written_in_c(generated, name, Some(stem), *precision)?;
             apart(generated, shown, named).map_err(|error| vec![error])?;
@@ -336,7 +336,7 @@ impl Builder {
     }
 }
 
-/// Refuses functions in C that are called as those of another file: a linker may take one of them for the other.
+/// Refuses C functions with the same names as those of another file: a linker could confuse them.
 fn apart(
     generated: &Generated,
     shown: &str,
@@ -352,26 +352,26 @@ fn apart(
     Ok(())
 }
 
-/// What is said of XML in the place of a description.
+/// Hint for XML in place of a description.
 #[cfg(feature = "urdf")]
 const ROBOTS: &str = "a robot in URDF has a name that ends in `.urdf`, or is added by `urdf`";
 #[cfg(not(feature = "urdf"))]
 const ROBOTS: &str = "robots in URDF need the feature `urdf` of hamel-codegen";
 
-/// Cargo shows these lines as warnings of the package. With one colon, it does for packages of any `rust-version`.
+/// Prints lines that Cargo shows as warnings of the package. The form with one colon works for any `rust-version`.
 fn warn(text: &str) {
     for line in text.lines() {
-        // Where nobody listens, nobody misses a warning.
+        // If nobody reads the output, a warning that cannot be printed is no loss.
         let _ = writeln!(io::stdout(), "cargo:warning={line}");
     }
 }
 
-/// The generated file of a description; `name` stands in the command that its header shows.
+/// Generates the Rust file of a description; `name` appears in the command that its header shows.
 pub fn source(text: &str, name: &str) -> Result<String, Vec<Diagnostic>> {
     written(&from_text(text)?, name)
 }
 
-/// The same of what was derived already.
+/// Generates the Rust file of a system that is derived already.
 pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnostic>> {
     let options = emit::Options {
         source_hash: generated.hash,
@@ -381,8 +381,8 @@ pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnost
     emit::file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
 }
 
-/// The C99 of what was derived already; `name` stands in the command that it shows, `stem` is what its files are called
-/// before `.h` and `.c`, where they have a name. Functions that are given in Rust are refused.
+/// Generates C99 for a system that is derived already. `name` appears in the command that the header shows; `stem` is
+/// the name of the files before `.h` and `.c`, if they have one. External functions in Rust are refused.
 pub fn written_in_c(
     generated: &Generated,
     name: &str,
@@ -412,7 +412,7 @@ pub fn written_in_c(
     Ok(emit::c::files(&generated.program, &options))
 }
 
-/// A word of a command, as a shell reads it.
+/// Quotes a word of a command for a shell, if necessary.
 fn quoted(name: &str) -> String {
     let plain = |letter: char| letter.is_alphanumeric() || "-_./+,:@%".contains(letter);
     match name.is_empty() || name.contains(|letter| !plain(letter)) {

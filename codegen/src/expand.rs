@@ -1,4 +1,4 @@
-//! The macro's front end: tokens in, tokens out, errors as `compile_error!` at their places.
+//! The front end of the macro: tokens in, tokens out, and errors as `compile_error!` at their places.
 
 use crate::diagnostics::Diagnostic;
 use crate::emit;
@@ -7,11 +7,11 @@ use crate::render::{to_compile_errors, to_compile_warnings};
 use proc_macro2::TokenStream;
 use std::path::PathBuf;
 
-/// The macro refuses larger programs: rustc handles their text better as a file, in chunks.
+/// Largest number of statements for which the macro expands: rustc copes better with larger programs as split files.
 pub const MACRO_STATEMENTS: usize = 10_000;
 
-/// The expansion of `rigid_eom! { … }`. The paths of included files and of tables start at the folder of the package; what was read is
-/// included once more, so that the compiler knows of it.
+/// Returns the expansion of `rigid_eom! { … }`. Paths of included files and of tables are relative to the folder of the
+/// package. The expansion contains `include_bytes!` of all files that were read, so that the compiler tracks them.
 pub fn expand(input: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let folder = folder.unwrap_or_default();

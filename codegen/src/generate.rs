@@ -1,4 +1,4 @@
-//! From a description to its program: what all front ends call.
+//! Derives the program of a description; all front ends call this module.
 
 use crate::algebra::graph::{Function, Graph, Node};
 use crate::derive;
@@ -18,27 +18,28 @@ use crate::tables::{self, Derivation, Table, Tables};
 use proc_macro2::TokenStream;
 use std::path::Path;
 
-/// A description, read and derived.
+/// The derivation of a description.
 #[derive(Clone, Debug)]
 pub struct Generated {
-    /// The system that it describes, in the full frame.
+    /// The described system, in the full frame.
     pub model: Model,
-    /// The same in the velocities that constraints leave: what states and functions are about.
+    /// The system in the independent velocities that remain after constraints are solved, as used by states and
+    /// functions.
     pub active: Model,
-    /// The velocities that constraints give by others: places in ξ of the full frame, each with that of its
-    /// constraint.
+    /// Velocities that are expressed by others through constraints: pairs of an index in ξ of the full frame, and the
+    /// index of the constraint.
     pub solved: Vec<(usize, usize)>,
-    /// Its functions, validated.
+    /// Its functions, proved.
     pub program: Program,
-    /// Hash of the description's tokens: the same through every front end.
+    /// Hash of the description's tokens, the same for all front ends.
     pub hash: u64,
 }
 
-/// Points that are tried after the first.
+/// Number of further evaluation points that are tried if a proof fails at the first.
 const READINGS: u64 = 6;
 
-/// Derives the description in a stream of tokens; errors are at places of these. What it includes and tables in files
-/// are opened as `open` says.
+/// Derives the description in a token stream; errors have positions in the stream. Included files and tables in files
+/// are read with `open`.
 pub fn from_tokens(
     tokens: TokenStream,
     open: &mut Open<'_>,
@@ -52,13 +53,13 @@ pub fn from_tokens(
     (places, generated)
 }
 
-/// Gives the text of a file by the name that a description has for it.
+/// Returns the text of a file, given its name in a description.
 pub type Open<'a> = dyn FnMut(&str) -> std::io::Result<String> + 'a;
 
-/// The text of a file.
+/// Reads a text file.
 ///
 /// # Errors
-/// Where it cannot be read, or is no text; the message says from which byte on.
+/// If it cannot be read or is not UTF-8; the message then contains the position of the first wrong byte.
 pub fn text_of(path: &Path) -> std::io::Result<String> {
     String::from_utf8(std::fs::read(path)?).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
@@ -66,7 +67,7 @@ pub fn text_of(path: &Path) -> std::io::Result<String> {
     })
 }
 
-/// Derives the description in a text; what it includes and its tables in files are opened as `open` says.
+/// Derives the description in a text; included files and tables in files are read with `open`.
 #[cfg(feature = "files")]
 pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagnostic>> {
     let mut system = syntax::parse_text(text)?;
@@ -74,11 +75,12 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
     derive(&system, fingerprint(&(canonical(text) + &texts.concat())))
 }
 
-/// The same but for functions with M⁻¹ in them where M is not positive definite, and for all that need inertia where there
-/// is none; then the error that they would have is returned, too. Robots say what they are, and not what is wanted of them.
+/// Derives the description in a text as far as possible. If M is not positive definite, functions that need M⁻¹ are
+/// left out; if nothing has inertia, all functions that need inertia. Then the error of the functions that are left out
+/// is returned, too. This is for robots, whose files do not say which functions are wanted.
 ///
 /// # Errors
-/// What is wrong with the description beyond that.
+/// Everything else that is wrong with the description.
 #[cfg(feature = "files")]
 pub fn available_in(text: &str) -> Result<(Generated, Option<LeftOut>), Vec<Diagnostic>> {
     let mut system = syntax::parse_text(text)?;
@@ -87,17 +89,17 @@ pub fn available_in(text: &str) -> Result<(Generated, Option<LeftOut>), Vec<Diag
     at_some_point(&system, |model| Generated::available(model, hash))
 }
 
-/// What is left out where M is not positive definite, or nothing has inertia.
+/// What was left out because M is not positive definite, or because nothing has inertia.
 #[derive(Clone, Debug)]
 pub struct LeftOut {
-    /// The error that the functions which are left out would have.
+    /// Error that the functions left out would cause.
     pub error: Diagnostic,
-    /// Claims about the motion that are not proved.
+    /// Names of the claims about the motion that are left out, and so not proved.
     pub claims: Vec<String>,
 }
 
 impl LeftOut {
-    /// A warning.
+    /// Returns the warning about what is left out.
     pub fn said(&self) -> String {
         let mut said = match self.error.lacking {
             Some(Needs::Inertia) => {
@@ -139,11 +141,11 @@ fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>>
     at_some_point(system, |model| Generated::of(model, hash))
 }
 
-/// Reads a description, and derives something of its model.
+/// Builds the model of a description, and derives something from it.
 ///
-/// Where √(e²) happens to have the value of e in both fields, and e is positive at real points, the two are one
-/// node, which is right; but at other points the root is −e, and the proof fails. Such a description is read
-/// anew at another point.
+/// If √(e²) happens to have the value of e in both prime fields, and e is positive at the real sample points, the graph
+/// merges the two into one node. This is right for real numbers, but at other points of the fields the root is −e, and
+/// the proof fails. Such a description is built again at another point.
 pub fn at_some_point<T>(
     system: &ast::System,
     derive: impl Fn(Model) -> Result<T, Vec<Diagnostic>>,
@@ -161,7 +163,7 @@ pub fn at_some_point<T>(
     }
 }
 
-/// Whether there are square roots of what is no number.
+/// Whether a graph contains square roots of expressions that are not numbers.
 fn has_roots(graph: &Graph) -> bool {
     let is_root = |id: u32| match graph.node(id) {
         Node::Apply(Function::Sqrt, square) => graph.class(square.node()) != 0,
@@ -171,25 +173,25 @@ fn has_roots(graph: &Graph) -> bool {
 }
 
 impl Generated {
-    /// Derives a model, and refuses what it claims falsely.
+    /// Derives a model, and refuses false claims.
     pub fn of(model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
         let linearized = model.asked.names(FunctionId::Linearize);
         Generated::with(model, hash, linearized)
     }
 
-    /// Derives all functions of a model, the linearisation among them, whatever `generate` says.
+    /// Derives all functions of a model, including the linearisation, whatever `generate` says.
     pub fn all(mut model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
         model.asked = Asked::everything();
         model.asked.functions.push(FunctionId::Linearize);
         Generated::with(model, hash, true)
     }
 
-    /// Derives what a model is asked for or, where M is not positive definite, all of that but the
-    /// functions with M⁻¹ in them; where nothing has inertia, all but what needs it. Then claims about the motion are
-    /// left out as well, and what is left out is returned, too.
+    /// Derives the functions that a model asks for, as far as they are available. If M is not positive definite,
+    /// functions that need M⁻¹ are left out; if nothing has inertia, all functions that need inertia. Claims about the
+    /// motion are then left out as well, and everything left out is returned.
     ///
     /// # Errors
-    /// What is wrong beyond that, or where nothing remains.
+    /// Everything else that is wrong, or if no function remains.
     pub fn available(
         mut model: Model,
         hash: u64,
@@ -205,7 +207,7 @@ impl Generated {
             return Err(errors);
         };
         model.asked = model.asked.without(lacking);
-        // Nothing can be claimed of a motion that is not determined.
+        // Nothing can be claimed about a motion that is not determined.
         let claims = std::mem::take(&mut model.invariants).into_iter();
         let left_out = LeftOut {
             error: error.clone(),
@@ -214,10 +216,10 @@ impl Generated {
         Ok((Generated::of(model, hash)?, Some(left_out)))
     }
 
-    /// Tables of coefficients: all of [`Table::DEFAULT`] that the system has where none is named.
+    /// Derives tables of coefficients. If none is requested: all of [`Table::DEFAULT`] that the system has.
     ///
     /// # Errors
-    /// Which table cannot be had, and why.
+    /// If a table is not available; the message says which, and why.
     pub fn tables(&self, asked: &[Table]) -> Result<Tables, String> {
         let derivation = Derivation {
             model: &self.model,
@@ -227,7 +229,7 @@ impl Generated {
         tables::tables(derivation, asked)
     }
 
-    /// What is said where the generated text is no Rust.
+    /// Returns the error for generated text that is not valid Rust.
     pub fn fault(&self, error: &NotRust) -> Diagnostic {
         let name = &self.model.name;
         let message = format!("internal check failed for `{name}`: {error}");
@@ -280,8 +282,8 @@ impl Generated {
     }
 }
 
-/// ξ̇ alone, proved, for claims about a constrained motion of a program that has no ξ̇: what is asked for does not decide what
-/// can be claimed.
+/// Derives and proves a program with ξ̇ alone, for claims about a constrained motion if the system's own program has no
+/// ξ̇: which claims can be made does not depend on the requested functions.
 fn moving(
     model: &Model,
     reduction: Option<&Reduction>,
@@ -305,7 +307,7 @@ fn moving(
     Ok(Some(program))
 }
 
-/// The base parameters of a model, where they are asked for.
+/// Derives the regressor and base parameters of a model, if they are requested.
 fn regressor(model: &Model) -> Result<Option<Regressor>, Diagnostic> {
     let asked = [FunctionId::Regressor, FunctionId::BaseParameters];
     if !asked.iter().any(|&id| model.asked.names(id)) {
@@ -319,7 +321,7 @@ fn regressor(model: &Model) -> Result<Option<Regressor>, Diagnostic> {
         })
 }
 
-/// What is wrong where a function of the program needs slopes of slopes of a function in Rust, which has none.
+/// Returns an error if a function of the program needs second derivatives of an external function, which has none.
 fn curved(model: &Model, program: &Program) -> Option<Diagnostic> {
     let graph = &program.graph;
     for function in &program.functions {
@@ -340,7 +342,7 @@ fn curved(model: &Model, program: &Program) -> Option<Diagnostic> {
     None
 }
 
-/// FNV-1a, 64 bits.
+/// Returns the 64-bit FNV-1a hash of a text.
 fn fingerprint(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)

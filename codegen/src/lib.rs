@@ -5,17 +5,17 @@
 //! # The stages
 //!
 //! `text or tokens → ast → names → shapes → model → derivation → program → proof → Rust, C | tables | machine code | interpreter`.
-//! Most stages are crates, in folders of this one; dependencies point one way:
+//! Most stages are crates of their own, in folders of this one; their dependencies form no cycle:
 //!
-//! | module | crate | what it owns |
+//! | module | crate | contents |
 //! |---|---|---|
 //! | [`algebra`] | `hamel-algebra` | expression graph, polynomials and normal forms, without mechanics |
 //! | [`syntax`], [`reuse`], [`mod@lower`], [`model`] | `hamel-language` | from a description to a mechanical system as expressions of a graph |
 //! | [`program`] | `hamel-program` | binding times, operation counts, tapes, interpretation |
 //! | [`derive`](mod@derive) | `hamel-dynamics` | the symbols of the formalism, and ξ̇ by the cheapest route |
-//! | [`proof`] | `hamel-verify` | everything derived once more by other routes, and compared |
+//! | [`proof`] | `hamel-verify` | derives everything once more by other routes, and compares |
 //! | [`emit`] | `hamel-emit` | Rust and C99 as text, without any algebra |
-//! | [`tables`] | `hamel-tables` | the tables of coefficients that people read |
+//! | [`tables`] | `hamel-tables` | tables of coefficients for people to read |
 //! | `scene` | | descriptions as data, built in Rust or read from text |
 //! | [`generate`], [`expand()`], [`Builder`] | | the front ends |
 //!
@@ -24,7 +24,7 @@
 //! | feature | default | what it adds |
 //! |---|---|---|
 //! | `files` | yes | `.eom` files in and formatted `.rs` files out: source positions, underlined errors, the [`Builder`] for build scripts, and `scene` |
-//! | `urdf` | no | robots in URDF, wherever a description can stand |
+//! | `urdf` | no | robots in URDF in place of descriptions |
 //!
 //! The formalism is that of M. Konz and J. Rudolph, *Redundant configuration coordinates and nonholonomic velocity
 //! coordinates in analytical mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414, which the documentation quotes as KR18.

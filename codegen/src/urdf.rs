@@ -1,5 +1,5 @@
-//! The front end for robots in URDF: `hamel_import` makes a description of them, and errors about that
-//! description are shown at the place in the URDF that its lines are made from.
+//! The front end for robots in URDF. `hamel_import` converts them to descriptions; errors about such a
+//! description are shown at the place in the URDF from which its line was made.
 
 mod idle;
 
@@ -10,21 +10,21 @@ pub use hamel_import::{Imported, Mimic, Options, TOLERANCE, Undecoded, decode};
 use std::ops::Range;
 use std::path::Path;
 
-/// Whether a path is that of a URDF file.
+/// Whether a path has the extension of a URDF file.
 pub fn is_urdf(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
 }
 
-/// Makes a description, whose closing joints have the equations that say something; errors are underlined in the text, which is
-/// named `path`.
+/// Converts a robot to a description, without redundant equations of its closing joints. Errors are shown with the text
+/// underlined, under the name `path`.
 pub fn import(text: &str, options: &Options, path: &str, color: bool) -> Result<Imported, String> {
     hamel_import::import(text, options)
         .map(|imported| idle::without_idle(text, options, imported))
         .map_err(|problems| shown(&problems, Level::Error, path, text, color))
 }
 
-/// What is legal and still looks wrong, underlined; empty where there is nothing.
+/// Shows legal but suspicious parts of a robot, with the text underlined; empty if there are none.
 pub fn warnings(imported: &Imported, path: &str, text: &str, color: bool) -> String {
     match imported.warnings.as_slice() {
         [] => String::new(),
@@ -50,11 +50,11 @@ fn shown(
     notes(&list, level, path, text, color)
 }
 
-/// What to do about a robot without masses.
+/// Help for a robot without masses.
 const BARE: &str = "no link of the robot that moves has mass: give the links their `<inertial>`";
 
-/// Errors about the description, at their places in the URDF; those that have none there are shown
-/// in the description's own text.
+/// Shows errors about the description at their places in the URDF; those without a place there are shown
+/// in the text of the description.
 pub fn refused(
     errors: &[Diagnostic],
     imported: &Imported,
@@ -94,7 +94,7 @@ pub fn refused(
     rendered
 }
 
-/// The bytes of the URDF behind the line that an error is about, and that line.
+/// Returns the byte range in the URDF from which an error's line was made, and that line.
 fn origin(error: &Diagnostic, imported: &Imported) -> Option<(Range<usize>, String)> {
     let place = span_bytes(error.span, &imported.text)?;
     let before = imported.text.get(..place.start)?;

@@ -1,15 +1,15 @@
-//! Files that are written whole or not at all.
+//! Writes files atomically: a file is written as a whole or not at all.
 //!
 #![doc = include_str!("../README.md")]
 //!
 //! # What is guaranteed
 //!
-//! [`write()`] writes a temporary file next to the target, brings it to the disk, and gives it the target's name: at no
-//! moment does the name stand for half a text, and a full disk or a kill leaves the old file as it was. The file keeps
-//! its permissions and, where that is allowed, its owner. A symbolic link stays, and the file that it leads to is
+//! [`write()`] writes a temporary file next to the target, flushes it to the disk, and renames it to the target. So the
+//! target never contains half a text, and a full disk or a killed process leaves the old file as it was. The file keeps
+//! its permissions and, where that is allowed, its owner. A symbolic link stays, and the file to which it leads is
 //! replaced. Other hard links to the old file keep the old text.
 //!
-//! Only regular files are replaced. Devices, descriptors such as `/dev/stdout`, and pipes that somebody reads from are
+//! Only regular files are replaced. Devices, descriptors such as `/dev/stdout`, and pipes that have a reader are
 //! written to; folders and everything else are refused.
 
 mod replace;
@@ -22,7 +22,7 @@ use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use target::Target;
 
-/// Why a file was not written.
+/// The error that a file was not written, with its path and the reason.
 #[derive(Debug)]
 pub struct Unwritten {
     path: PathBuf,
@@ -37,15 +37,15 @@ impl fmt::Display for Unwritten {
 
 impl std::error::Error for Unwritten {}
 
-/// Writes a text.
+/// Writes a text to a file.
 ///
 /// # Errors
-/// Where it cannot be written; an old file is then as it was.
+/// If it cannot be written; an old file is then as it was.
 pub fn write(path: &Path, text: &str) -> Result<(), Unwritten> {
     write_bytes(path, text.as_bytes())
 }
 
-/// Writes what is no text.
+/// Writes bytes, which need not be text, to a file.
 ///
 /// # Errors
 /// As [`write()`].
@@ -61,10 +61,10 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Unwritten> {
     .map_err(unwritten)
 }
 
-/// Whether a file holds this text and nothing else. What is no file is not read, as it may never end.
+/// Whether a file contains exactly this text. Anything but a regular file is not read, since it may never end.
 ///
 /// # Errors
-/// Where there is no such file, or it cannot be read.
+/// If there is no such regular file, or it cannot be read.
 pub fn holds(path: &Path, text: &str) -> io::Result<bool> {
     let metadata = fs::metadata(path)?;
     if metadata.is_dir() {
@@ -77,13 +77,13 @@ pub fn holds(path: &Path, text: &str) -> io::Result<bool> {
         return Ok(false);
     }
     let mut known = Vec::with_capacity(text.len());
-    // No more than would be compared, should the file grow meanwhile.
+    // Reads no more than is compared, in case the file grows meanwhile.
     let most = metadata.len() + 1;
     fs::File::open(path)?.take(most).read_to_end(&mut known)?;
     Ok(known == text.as_bytes())
 }
 
-/// Writes a text unless the file holds it already: its time of change then stays.
+/// Writes a text unless the file contains it already, in which case its modification time stays.
 ///
 /// # Errors
 /// As [`write()`].

@@ -1,18 +1,18 @@
-//! A regular file, replaced in one step.
+//! Replaces a regular file in one step.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 use tempfile::Builder;
 
-/// Gives a path new bytes; `known` is the file that it stands for now.
+/// Writes bytes to a new file and gives it the path `place`; `known` describes the present file, if there is one.
 pub fn replace(place: &Path, known: Option<&Metadata>, bytes: &[u8]) -> Result<(), String> {
     let said = |error: io::Error| error.to_string();
     let Some(folder) = place.parent() else {
         return Err("it is a folder".into());
     };
     if known.is_some() {
-        // A file that must not be written must not be replaced either.
+        // A file that is write-protected must not be replaced either.
         OpenOptions::new().write(true).open(place).map_err(said)?;
     }
     let mut builder = Builder::new();
@@ -27,15 +27,15 @@ pub fn replace(place: &Path, known: Option<&Metadata>, bytes: &[u8]) -> Result<(
     }
     file.as_file().sync_all().map_err(said)?;
     file.persist(place).map_err(|error| said(error.error))?;
-    // The new name is in the folder, which is brought to the disk where the system can do that; the file
-    // is whole in any case.
+    // Flushes the folder as well, which contains the new name, on systems that can do this. The file is
+    // complete in any case.
     if cfg!(unix) {
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }
     Ok(())
 }
 
-/// New files get the permissions that the user's mask leaves, as any other.
+/// Gives new files the permissions that the user's umask leaves, as for any other file.
 #[cfg(unix)]
 fn for_everybody(builder: &mut Builder) {
     use std::fs::Permissions;
@@ -46,14 +46,14 @@ fn for_everybody(builder: &mut Builder) {
 #[cfg(not(unix))]
 fn for_everybody(_: &mut Builder) {}
 
-/// Gives a new file the owner and the permissions of the old one.
+/// Gives a new file the owner and the permissions of the old one, as far as possible.
 fn keep(file: &File, known: &Metadata) -> io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::{MetadataExt, fchown};
         let new = file.metadata()?;
         if (new.uid(), new.gid()) != (known.uid(), known.gid()) {
-            // Only some users may give files away; the others own what they write.
+            // Only privileged users may give files away; for others, the file belongs to its writer.
             let _ = fchown(file, Some(known.uid()), Some(known.gid()));
         }
     }

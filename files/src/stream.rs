@@ -1,16 +1,16 @@
-//! Targets that are written to as they are: devices, pipes, descriptors of this process.
+//! Targets that are written to and not replaced: devices, pipes, file descriptors.
 
 use std::fs::{self, File, FileType, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// A target without a text of its own.
+/// A target that is written to and not replaced.
 pub enum Stream {
     /// Standard output of this process.
     Output,
     /// Standard error of this process.
     Error,
-    /// Another descriptor of a process that leads to a file: what is there stays.
+    /// Another descriptor of a process that refers to a regular file; bytes are appended.
     Descriptor(PathBuf),
     /// A device such as `/dev/null`.
     Device(PathBuf),
@@ -20,7 +20,7 @@ pub enum Stream {
 }
 
 impl Stream {
-    /// What is behind a path that the kernel lists as a descriptor; nothing for other paths.
+    /// Returns the target of a path that the kernel lists as a file descriptor; `None` for other paths.
     pub fn descriptor(folder: &Path, place: &Path) -> Option<Result<Stream, String>> {
         let own = format!("/proc/{}/fd", std::process::id());
         let fixed = folder == Path::new(&own) || folder == Path::new("/dev/fd");
@@ -39,7 +39,7 @@ impl Stream {
         })
     }
 
-    /// What is no regular file, by its type.
+    /// Returns the target of a path that is not a regular file, by its type.
     #[cfg(unix)]
     pub fn of(place: PathBuf, of: FileType) -> Result<Stream, String> {
         use std::os::unix::fs::FileTypeExt;
@@ -56,7 +56,7 @@ impl Stream {
         }
     }
 
-    /// What is no regular file, by its type.
+    /// Returns the target of a path that is not a regular file, by its type.
     #[cfg(not(unix))]
     pub fn of(place: PathBuf, of: FileType) -> Result<Stream, String> {
         if of.is_dir() {
@@ -66,7 +66,7 @@ impl Stream {
         }
     }
 
-    /// Writes bytes behind what is there.
+    /// Writes bytes after the existing content.
     pub fn write(self, bytes: &[u8]) -> Result<(), String> {
         let whole = |mut to: Box<dyn Write>| {
             to.write_all(bytes)?;
@@ -92,7 +92,7 @@ impl Stream {
     }
 }
 
-/// Opens a pipe that has a reader; without one, opening it as usual would wait for ever.
+/// Opens a pipe that has a reader. It does not block if there is none, and returns an error instead.
 #[cfg(unix)]
 fn pipe(place: &Path) -> Result<File, String> {
     use rustix::fs::{OFlags, fcntl_setfl};
@@ -109,7 +109,7 @@ fn pipe(place: &Path) -> Result<File, String> {
             }
             _ => error.to_string(),
         })?;
-    // Writing may wait for the reader as long as there is one.
+    // From here on, writing may block as long as there is a reader.
     fcntl_setfl(&file, OFlags::empty()).map_err(|error| error.to_string())?;
     Ok(file)
 }

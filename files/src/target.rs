@@ -1,28 +1,28 @@
-//! What a path stands for: a file to be replaced, or a stream to be written to.
+//! The target of a path: a file that is replaced, or a stream that is written to.
 
 use crate::stream::Stream;
 use std::fs::{self, Metadata};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf, is_separator};
 
-/// The most symbolic links from a path to its file, as in the kernel.
+/// Largest number of symbolic links from a path to its file, as in the Linux kernel.
 const MOST_LINKS: usize = 40;
 
-/// What a path stands for.
+/// The target of a path.
 pub enum Target {
-    /// A regular file that is there, or one that is not there yet.
+    /// A regular file that exists, or a file that does not exist yet.
     File {
         /// Its path, without symbolic links.
         place: PathBuf,
-        /// What is known of the file that is there.
+        /// Metadata of the file, if it exists.
         known: Option<Metadata>,
     },
-    /// What has no text of its own that could be replaced.
+    /// A device, pipe or descriptor, which is written to.
     Stream(Stream),
 }
 
 impl Target {
-    /// Follows symbolic links to what a path stands for, or says why that cannot be written.
+    /// Follows symbolic links to the target of a path; the error says why it cannot be written.
     pub fn of(path: &Path) -> Result<Target, String> {
         let mut path = path.to_path_buf();
         for _ in 0..=MOST_LINKS {

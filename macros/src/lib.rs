@@ -1,13 +1,13 @@
-//! The procedural macro of hamel: a shell over [`hamel_codegen::expand`].
+//! The procedural macro of hamel, a thin wrapper around [`hamel_codegen::expand`].
 //!
 #![doc = include_str!("../README.md")]
 
 use proc_macro::TokenStream;
 
-/// Derives the equations of motion of a mechanical system and expands to a Rust type that has them.
+/// Derives the equations of motion of a mechanical system, and expands to a Rust type that evaluates them.
 ///
-/// A description names coordinates x, velocities ξ, how the two are connected (ẋ = A(x) ξ), and what has inertia or
-/// acts. The macro derives ξ̇ = M⁻¹(f − Γ ξ ξ − ∂V), proves the result at exact points of the configuration manifold,
+/// A description declares coordinates x, velocities ξ, their relation ẋ = A(x) ξ, and the bodies and loads of the
+/// system. The macro derives ξ̇ = M⁻¹(f − Γ ξ ξ − ∂V), proves the result at exact points of the configuration manifold,
 /// and writes it as straight-line code:
 ///
 /// ```
@@ -44,30 +44,30 @@ use proc_macro::TokenStream;
 /// # }
 /// ```
 ///
-/// The crate that calls the macro has to depend on `hamel`, since the expansion names `::hamel`. Numbers carry no
-/// units: any consistent system does, and SI is what the examples use.
+/// The crate that calls the macro has to depend on `hamel`, since the expansion refers to `::hamel`. Numbers have no
+/// units: any consistent system of units works, and the examples use SI.
 ///
 /// # The language in short
 ///
 /// | statement | meaning |
 /// |---|---|
 /// | `param m = 1, s: vec3 = [0, 0, 1], J: sym3 = …;` | a parameter that can be changed at run time, with its default |
-/// | `const k = 3/2;` `let e = m * s;` | an exact constant of the build; a named expression |
+/// | `const k = 3/2;` `let e = m * s;` | an exact constant, fixed at build time; a named expression |
 /// | `coord q, r: R3, a: S1, Q: S3, R: SO3, X: SE3;` | coordinates: numbers, vectors, an angle as (cos, sin), a unit quaternion, a rotation matrix, a pose |
 /// | `velocity v, w: vec3;` `rate R = R * hat(w);` | quasi-velocities ξ, and the rates of the coordinates in terms of them |
 /// | `joint hinge: revolute [0, 1, 0] moves arm;` | coordinate, velocity and frame of a joint in one statement |
 /// | `frame f on g = pose(R, p);` | a frame f with the attitude R and the origin p, as seen from g |
-/// | `body on f { mass m; com s; inertia J about com; }` | a rigid body; `particle mass m at p;` is a point |
+/// | `body on f { mass m; com s; inertia J about com; }` | a rigid body; `particle mass m at p;` is a point mass |
 /// | `gravity [0, 0, -g];` `spring …;` `damper …;` | weight, springs and dampers |
-/// | `input F;` `force F at p on f;` `generalized force v = F;` | what acts from outside |
+/// | `input F;` `force F at p on f;` `generalized force v = F;` | inputs, and loads from outside |
 /// | `constraint x^2 + y^2 = 1;` `loop p = q;` `nonholonomic v - r * w = 0;` | geometric constraints, closed loops, constraints of velocities |
 /// | `output y = …;` `invariant energy;` | further functions; claims of constancy, which are proved or refused |
-/// | `start th = 0.1;` `generate all, linearize;` | the initial state; which functions are wanted |
+/// | `start th = 0.1;` `generate all, linearize;` | the initial state; the functions to generate |
 ///
-/// Decimal numbers are exact, so that `0.1` is 1/10 in every proof. The chapter on the language in the book of the
+/// Decimal numbers are exact: `0.1` is 1/10 in every proof. The chapter on the language in the book of the
 /// repository explains each statement.
 ///
-/// A slider that is held on a circle by a constraint, for instance, keeps two redundant coordinates:
+/// A bead that a constraint holds on a circle, for instance, keeps two redundant coordinates:
 ///
 /// ```
 /// hamel::rigid_eom! {
@@ -108,8 +108,8 @@ use proc_macro::TokenStream;
 /// | `potential_force(x)`, `generalized_force(x, xi, u)` | ∂V and f, n numbers each |
 /// | `momentum`, `kinetic_energy`, `potential_energy`, `energy` | ∂T/∂ξ, T, V, T + V |
 /// | `constraint(x)`, `correction(x)` | φ(x), and the step back onto φ = 0 |
-/// | one function for each `output` | it takes what the output depends on and nothing else |
-/// | `linearize` and others | on demand, see `generate` |
+/// | one function for each `output` | it takes only the arguments on which the output depends |
+/// | `linearize` and others | on request, see `generate` |
 ///
 /// The documentation of each function states its arguments in order, its operation count and its errors. The type also
 /// implements [`System`] and, where the equations allow it, [`Split`] and [`Tangent`], so that the integrators of
@@ -122,8 +122,8 @@ use proc_macro::TokenStream;
 ///
 /// # Errors
 ///
-/// Mistakes are compile errors, each underlined where it stands in the description; all independent ones are reported
-/// at once. This one says that nothing is called `mas`, and asks whether `mass` was meant:
+/// Mistakes are compile errors, each underlined at its place in the description; all independent ones are reported
+/// at once. This error says that nothing is called `mas`, and asks whether `mass` was meant:
 ///
 /// ```compile_fail
 /// hamel::rigid_eom! {
@@ -138,11 +138,11 @@ use proc_macro::TokenStream;
 /// ```
 ///
 /// A description is also refused if its mass matrix is not positive definite at the start, if a claimed `invariant` is
-/// not constant, or if a proof fails. Warnings, such as that of a parameter that nothing uses, reach the compiler as
-/// uses of something deprecated, the only kind of warning that macros have on stable Rust.
+/// not constant, or if a proof fails. Warnings, such as that for an unused parameter, appear as uses of a deprecated
+/// item, the only kind of warning that macros can emit on stable Rust.
 ///
-/// Files of `table` and `include` statements are looked for in the folder of the package. Programs of more than 10,000
-/// statements belong in a build script, which writes a file that rustc compiles more comfortably:
+/// Paths of `table` and `include` statements are relative to the folder of the package. Programs of more than 10,000
+/// statements belong in a build script, which writes a file that rustc compiles better:
 /// `hamel_codegen::Builder`.
 #[proc_macro]
 pub fn rigid_eom(input: TokenStream) -> TokenStream {

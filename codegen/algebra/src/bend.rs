@@ -1,5 +1,6 @@
-//! Rows of second derivatives modulo p by dual numbers that run backwards: the slopes of f′ along one
-//! direction in all symbols at once, at the cost of a few evaluations however many symbols there are.
+//! Second derivatives modulo p by reverse-mode differentiation over dual numbers: the slopes of f′ in all
+//! symbols at once, where f′ is the derivative of f along one direction. This costs a few evaluations,
+//! however many symbols there are.
 
 use super::dual::{Duals, Record};
 use super::fp::Fp;
@@ -8,8 +9,8 @@ use super::tangent::duals;
 use super::tape::Tape;
 
 impl Tape {
-    /// ∂(∂f/∂s)/∂xₖ for every symbol xₖ, f the first of the expressions and s along `direction`; `None`
-    /// where something has no value at the point.
+    /// Computes ∂(∂f/∂s)/∂xₖ for the symbols xₖ, where f is the first of the expressions and s is
+    /// `direction`; one entry for each entry of `direction`. `None` if something has no value at the point.
     pub fn bend(&self, lane: &Lane, direction: &[Fp]) -> Option<Vec<Fp>> {
         let mut all = Duals {
             numbers: duals(lane, direction),

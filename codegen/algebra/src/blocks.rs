@@ -1,49 +1,55 @@
-//! Small linear systems M X = B over the graph, M of full column rank on X, solved block by block.
+//! Block-wise solution of small linear systems M X = B over the graph, where M has full column rank on the
+//! constraint variety.
 //!
-//! A block is a set of at most four unknowns with as many equations in them alone; it is solved by
-//! its adjugate, so that what divides is its determinant and nothing else. Blocks whose determinant
-//! is constant on X come first, then blocks whose equations in excess have a constant Gram matrix,
-//! then whole systems with one. A determinant that varies is divided by only where it does not
-//! vanish at the start. What no block solves is solved by MᵀM, which is singular only where M is.
+//! A block is a set of at most four unknowns with as many equations that contain no other unsolved
+//! unknowns. It is solved by its adjugate, so that its determinant is the only divisor. Blocks whose
+//! determinant is constant at run time come first, then blocks with excess equations and a constant Gram
+//! matrix, then the whole remaining system if its Gram matrix is constant. Blocks with a varying
+//! determinant are used only if it does not vanish at the start. The rest is solved with the Gram matrix
+//! MᵀM, which is singular only where M is.
 
 use super::graph::{Edge, Graph};
 use super::linear::{multiply, solve_symmetric, transpose};
 use super::numeric::rank;
 
-/// Largest block that is solved by its adjugate.
+/// Largest number of unknowns of a block that is solved by its adjugate.
 const LARGEST: usize = 4;
-/// Sets of unknowns that are looked at for a block, at most.
+/// Largest number of sets of unknowns considered as blocks.
 const MOST_SETS: usize = 6000;
-/// Choices of equations for a set of unknowns, at most.
+/// Largest number of choices of equations tried for a set of unknowns.
 const MOST_CHOICES: usize = 40;
-/// A determinant below this, relative to the lengths of its rows, counts as zero at the start.
+/// Threshold below which a determinant, relative to the product of its row norms, counts as zero at the
+/// start.
 const SMALL: f64 = 1e-7;
 
-/// The numbers of expressions at the start.
+/// Function that evaluates expressions at the start configuration.
 pub type AtStart<'a> = dyn Fn(&Graph, &[Edge]) -> Vec<f64> + 'a;
 
-/// X, and what was divided by.
+/// Solution X of a linear system, with the divisors that were used.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    /// X, a row an unknown.
+    /// X, one row per unknown.
     pub x: Vec<Vec<Edge>>,
-    /// The divisors that vary with the coordinates, positive at the start.
+    /// Divisors that vary with the coordinates, with signs chosen such that they are positive at the start,
+    /// if that is given.
     pub pivots: Vec<Edge>,
-    /// The divisors that are made of parameters.
+    /// Divisors that depend on parameters only.
     pub constants: Vec<Edge>,
 }
 
-/// Why there is no solution.
+/// Reason why a system has no solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// These unknowns are not determined at generic points.
+    /// Unknowns that are not determined at generic points, by their indices.
     Undetermined(Vec<usize>),
     /// The system is singular at the start, though not in general.
     SingularStart,
 }
 
-/// Solves M X = B. Where `start` is absent, divisors may vanish somewhere: for what is only
-/// evaluated at generic points.
+/// Solves M X = B.
+///
+/// If `start` is `None`, divisors may vanish somewhere; this suits results that are only evaluated at
+/// generic points.
 pub fn solve(
     graph: &mut Graph,
     m: &[Vec<Edge>],
@@ -75,7 +81,8 @@ pub fn solve(
     })
 }
 
-/// The unknowns that have no value of their own: those without whose column M has the same rank.
+/// Returns the unknowns that the system does not determine: those whose column can be removed without
+/// changing the rank of M.
 fn undetermined(graph: &Graph, m: &[Vec<Edge>], unknowns: usize) -> Vec<usize> {
     let without = |left_out: Option<usize>| {
         let row = |row: &Vec<Edge>| {
@@ -93,7 +100,7 @@ fn undetermined(graph: &Graph, m: &[Vec<Edge>], unknowns: usize) -> Vec<usize> {
         .collect()
 }
 
-/// The state of elimination.
+/// State of the elimination.
 struct System<'a> {
     graph: &'a mut Graph,
     m: &'a [Vec<Edge>],
@@ -142,13 +149,14 @@ impl System<'_> {
         (0..self.solved.len()).filter(|&j| self.solved[j].is_none())
     }
 
-    /// The unsolved unknowns of an equation.
+    /// Returns the unsolved unknowns of an equation.
     fn support(&self, row: usize) -> Vec<usize> {
         let zero = self.graph.zero();
         self.open().filter(|&j| self.m[row][j] != zero).collect()
     }
 
-    /// Sets of unknowns that may be blocks, small ones first: unions of supports.
+    /// Returns candidate sets of unknowns for blocks, small ones first: unions of the supports of
+    /// equations.
     fn sets(&self) -> Vec<Vec<usize>> {
         let mut supports: Vec<Vec<usize>> = (0..self.m.len())
             .filter(|&row| !self.used[row])
@@ -175,7 +183,7 @@ impl System<'_> {
         sets
     }
 
-    /// The unused equations in these unknowns alone.
+    /// Returns the unused equations whose unsolved unknowns are all in `columns`.
     fn rows_within(&self, columns: &[usize]) -> Vec<usize> {
         (0..self.m.len())
             .filter(|&row| !self.used[row])
@@ -186,7 +194,8 @@ impl System<'_> {
             .collect()
     }
 
-    /// The square blocks of a set of unknowns, without those that vanish on X.
+    /// Returns the square blocks of a set of unknowns, without those whose determinant vanishes on the
+    /// constraint variety.
     fn blocks(&mut self, columns: &[usize]) -> Vec<Block> {
         let rows = self.rows_within(columns);
         let mut found = Vec::new();
@@ -204,8 +213,8 @@ impl System<'_> {
         found
     }
 
-    /// The block with the simplest constant determinant: a number before parameters, few unknowns
-    /// before many.
+    /// Picks the block with the simplest constant determinant: a number is preferred to an expression in
+    /// parameters, and few unknowns to many.
     fn constant_block(&mut self, sets: &[Vec<usize>]) -> Option<Block> {
         let mut of_parameters = None;
         for columns in sets {
@@ -221,8 +230,8 @@ impl System<'_> {
         of_parameters
     }
 
-    /// The smallest block that is regular at the start; of several the one that is farthest from
-    /// being singular there.
+    /// Picks the smallest block that is regular at the start; of several, the one farthest from being
+    /// singular there.
     fn varying_block(&mut self, sets: &[Vec<usize>]) -> Option<Block> {
         let start = self.start?;
         let mut best: Option<(f64, Block)> = None;
@@ -247,7 +256,7 @@ impl System<'_> {
         best.map(|(_, block)| block)
     }
 
-    /// The right-hand side of an equation, the solved unknowns taken to it.
+    /// Returns the right-hand side of an equation, with the terms of solved unknowns moved to it.
     fn right(&mut self, row: usize) -> Vec<Edge> {
         let mut right = self.b[row].clone();
         for (j, known) in self.solved.iter().enumerate() {
@@ -290,7 +299,7 @@ impl System<'_> {
         Some(())
     }
 
-    /// 1/d, with d kept as what was divided by.
+    /// Returns 1/d, and records d as a divisor.
     fn divisor(&mut self, d: Edge) -> Option<Edge> {
         if self.graph.as_rational(d).is_none() {
             if self.graph.is_free(d.node()) {
@@ -305,8 +314,8 @@ impl System<'_> {
         self.graph.div(self.graph.one(), d)
     }
 
-    /// Solves by the Gram matrix: MᵀM X = MᵀB, or X = Mᵀ(M Mᵀ)⁻¹ B where M is square. Where it has
-    /// to be constant and is not, nothing happens.
+    /// Solves with a Gram matrix: MᵀM X = MᵀB, or X = Mᵀ(M Mᵀ)⁻¹ B if M is square. If `constant` is set but
+    /// the Gram matrix varies at run time, changes nothing and returns `None`.
     fn gram(&mut self, rows: &[usize], columns: &[usize], constant: bool) -> Option<()> {
         let part: Vec<Vec<Edge>> = rows.iter().map(|&i| pick(&self.m[i], columns)).collect();
         let turned = transpose(&part);
@@ -339,7 +348,8 @@ impl System<'_> {
     }
 }
 
-/// The pivots of Gauss without exchange of rows; `None` where one vanishes on X.
+/// Returns the pivots of Gaussian elimination without row exchanges; `None` if one vanishes on the
+/// constraint variety.
 fn symmetric_pivots(graph: &mut Graph, a: &[Vec<Edge>]) -> Option<Vec<Edge>> {
     let mut a = a.to_vec();
     let mut pivots = Vec::new();
@@ -360,7 +370,7 @@ fn pick(row: &[Edge], columns: &[usize]) -> Vec<Edge> {
     columns.iter().map(|&j| row[j]).collect()
 }
 
-/// Subsets of a size, in order, up to a number of them.
+/// Returns the subsets of `rows` of this size, in order; at most `MOST_CHOICES` of them.
 fn choices(rows: &[usize], size: usize) -> Vec<Vec<usize>> {
     let mut all: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..size {

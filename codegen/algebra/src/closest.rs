@@ -1,51 +1,54 @@
-//! The point nearest to a guess among those that satisfy equations: Newton's method to one of them, then descent along
-//! all of them, and the same from a few neighbours of the guess, of which the nearest end counts.
+//! Search for the solution of equations that is nearest to a guess. Newton's method leads to a solution,
+//! and a descent along the set of solutions then reduces the distance. The same is done from a few random
+//! neighbours of the guess, and the nearest result counts.
 
 use super::dense::{backward, cholesky, dot, forward, gram, largest, least_norm};
 use super::fp::Random;
 
-/// Steps of Newton's method.
+/// Largest number of steps of Newton's method.
 const STEPS: usize = 100;
-/// Steps of the descent.
+/// Largest number of steps of the descent.
 const DESCENT: usize = 200;
 /// Largest residual of a solution.
 const SOLVED: f64 = 1e-12;
-/// A descent whose next step is shorter than this, relative to the distance, is at its end.
+/// Step length, relative to 1 + the distance, at which the descent ends.
 const STILL: f64 = 1e-11;
-/// Steps behind it, which find the digits that distances do not tell.
+/// Largest number of refinement steps after the descent, which find the digits that comparing distances
+/// cannot resolve.
 const SETTLING: usize = 20;
-/// How often a step is halved.
+/// Largest number of times that a step is halved.
 const HALVED: usize = 24;
-/// The longest step of Newton's method (rad, m), beside the size of the coordinates.
+/// Largest entry of a Newton step (rad, m), relative to 1 + the largest coordinate.
 const REACH: f64 = 0.1;
-/// The longest step of the descent, as a multiple of the one that a flat surface would ask for.
+/// Longest step of the descent, as a multiple of the step that would be right on a flat surface.
 const LONGER: f64 = 16.0;
-/// The shortest of those behind it.
+/// Shortest refinement step after the descent, as a multiple of the same step.
 const SHORTER: f64 = 1e-4;
-/// How many neighbours of the guess are tried at most, times the number of directions.
+/// Largest number of neighbours of the guess that are tried, times the number of directions.
 const NEIGHBOURS: usize = 240;
-/// The most of them.
+/// Largest number of neighbours that are tried.
 const MOST: usize = 40;
-/// How far away the farthest of these neighbours are (rad, m).
+/// Largest displacement of a neighbour along each direction (rad, m).
 const AWAY: f64 = 3.0;
-/// What is added to the metric, relative to its largest entry, so that it is positive definite.
+/// Regularization of the metric, relative to its largest entry, that makes it positive definite.
 const REGULAR: f64 = 1e-9;
 
-/// Equations for a point, and its distance from a guess. Directions are the rates along which it may move.
+/// Equations for a point, and its distance from a guess. Directions are the rates (generalized velocities)
+/// along which the point may move.
 pub trait Equations {
-    /// How many directions there are.
+    /// Number of directions.
     fn directions(&self) -> usize;
-    /// What has to be 0.
+    /// Residuals φ(x), which are 0 at a solution.
     fn residuals(&self, x: &[f64]) -> Vec<f64>;
-    /// The slopes of the residuals along the directions, row by row.
+    /// Jacobian of the residuals along the directions, row by row.
     fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>>;
-    /// e(x), whose length is the distance from the guess, and its slopes along the directions.
+    /// Error e(x), whose norm is the distance from the guess, and its Jacobian along the directions.
     fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>);
-    /// The point a step away.
+    /// Retraction: the point that a step along the directions leads to.
     fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64>;
 }
 
-/// The solution nearest to the guess; `None` where none was found.
+/// Returns the solution nearest to the guess; `None` if none was found.
 pub fn closest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
     if largest(&problem.residuals(guess)) <= SOLVED {
         return Some(guess.to_vec());
@@ -65,7 +68,7 @@ pub fn closest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
             continue;
         };
         let distance = distance(problem, &x);
-        // A later one has to be nearer by more than rounding.
+        // A later solution has to be nearer by more than rounding errors.
         if best
             .as_ref()
             .is_none_or(|(least, _)| distance < least * (1.0 - 1e-9))
@@ -76,13 +79,13 @@ pub fn closest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
     best.map(|(_, x)| x)
 }
 
-/// Newton's method with the shortest steps in the metric, to the last digit.
+/// Newton's method with the shortest steps in the metric, iterated to full precision.
 fn close(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut residuals = problem.residuals(&x);
     for _ in 0..STEPS {
         let step = step(problem, &x, &residuals, false);
         if largest(&residuals) <= SOLVED {
-            // While whole steps bring it nearer.
+            // Continue as long as full steps reduce the residuals.
             let next = step.map(|step| problem.moved(&x, &step));
             let after = next.as_ref().map(|next| problem.residuals(next));
             match (next, after) {
@@ -94,7 +97,7 @@ fn close(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
             }
         }
         let mut step = step?;
-        // Long steps end on far branches.
+        // Long steps would end on distant branches.
         let most = REACH * (1.0 + largest(&x));
         let size = largest(&step);
         if size > most {
@@ -110,7 +113,7 @@ fn close(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     (largest(&residuals) <= SOLVED).then_some(x)
 }
 
-/// Along the solutions to where the distance is least.
+/// Descends along the set of solutions to where the distance from the guess is least.
 fn descend(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut before = distance(problem, &x);
     for _ in 0..DESCENT {
@@ -124,7 +127,7 @@ fn descend(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
             let after = distance(problem, &next);
             (after < before).then_some((next, after))
         };
-        // Along the step the square of the distance is nearly a parabola, whose slope at its start is known.
+        // Along the step, the squared distance is nearly a parabola whose slope at the start is known.
         let (apart, slopes) = problem.apart(&x);
         let slope: f64 = slopes
             .iter()
@@ -158,8 +161,9 @@ fn descend(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     settle(problem, x)
 }
 
-/// The rest of the descent. Near its end distances differ by less than their rounding, while half of the digits are still
-/// missing; the steps tell more, which are taken as long as they become shorter.
+/// Refines the end of the descent. Near the minimum, distances differ by less than their rounding errors
+/// while half of the digits are still missing. The steps are more precise: they are taken as long as they
+/// become shorter.
 fn settle(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let ahead = |x: &[f64]| step(problem, x, &problem.residuals(x), true);
     let mut step = ahead(&x)?;
@@ -176,7 +180,7 @@ fn settle(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
         if shorter {
             (x, step) = (next, after);
         }
-        // What a step leaves of itself tells how long it should have been.
+        // The part of a step that is left after taking it tells how long the step should have been.
         let better = (factor / (1.0 - left)).clamp(SHORTER, LONGER);
         if !shorter && (better / factor - 1.0).abs() < 0.1 || better.is_nan() {
             break;
@@ -186,7 +190,7 @@ fn settle(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     Some(x)
 }
 
-/// The first of a step, its half, its quarter … that serves.
+/// Tries a step, its half, its quarter …, and returns the first result that `serves` accepts.
 fn shortened<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> Option<T> {
     let mut step = step.to_vec();
     for _ in 0..HALVED {
@@ -198,7 +202,8 @@ fn shortened<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> Op
     None
 }
 
-/// The step h with φ + B h = 0 that is shortest in the metric EᵀE or, towards the guess, has the shortest e + E h.
+/// Computes a step h with φ + B h = 0: the shortest one in the metric EᵀE or, if `towards` is set, the one
+/// with the shortest e + E h. B and E are the Jacobians of φ and e.
 fn step(problem: &dyn Equations, x: &[f64], residuals: &[f64], towards: bool) -> Option<Vec<f64>> {
     let (apart, slopes) = problem.apart(x);
     let count = problem.directions();
@@ -215,7 +220,7 @@ fn step(problem: &dyn Equations, x: &[f64], residuals: &[f64], towards: bool) ->
             .collect(),
         false => vec![0.0; count],
     };
-    // In u = Lᵀ h the metric is 1.
+    // In the variables u = Lᵀ h, the metric is the identity.
     let away = forward(&factor, &gradient);
     let rows: Vec<Vec<f64>> = problem
         .slopes(x)
@@ -239,7 +244,7 @@ fn distance(problem: &dyn Equations, x: &[f64]) -> f64 {
     square(&problem.apart(x).0).sqrt()
 }
 
-/// |a|², infinite where an entry is no number.
+/// |a|²; infinite if an entry is NaN.
 fn square(a: &[f64]) -> f64 {
     let sum = dot(a, a);
     if sum.is_nan() { f64::INFINITY } else { sum }

@@ -1,24 +1,25 @@
-//! Degrees of expressions as rational functions of the random numbers that a point is made of: what the
-//! chance of an error of a comparison follows from.
+//! Bounds on the degrees of expressions as rational functions of the random numbers that define a point.
+//! They bound the probability that a comparison of values modulo p is wrong.
 //!
-//! Schwartz and Zippel: a polynomial of degree D that is not 0 vanishes at a random point of F_p^k with
-//! probability ≤ D/p. Every node is N / Π d^m over the numerators d of what is divided by, where m may be
-//! negative; sums are brought to common powers. Then N has at most the degree
+//! By the lemma of Schwartz and Zippel, a polynomial of degree D that is not 0 vanishes at a random point
+//! of F_p^k with probability ≤ D/p. Every node is written as N / Π d^m, where the divisors d are the
+//! numerators of expressions that are divided by, and m may be negative. Sums are brought to common powers.
+//! Then the degree of N and the powers m are at most
 //!
 //! | node | degree of N, powers m |
 //! |---|---|
 //! | a + b | max over both of N + Σ (m − mᵃ) deg d; m = max(mᵃ, mᵇ) |
 //! | a b | Nᵃ + Nᵇ; mᵃ + mᵇ |
 //! | a / b | Nᵃ; mᵃ − mᵇ + 1 for the numerator of b |
-//! | coordinates of a circle, a sphere, a rotation | 2; 1 for 1 + t² and its kind |
-//! | sin, cos of Σ c a/12 | 2 Σ \|c\|; \|c\| for the circle of a |
+//! | coordinates of a circle, a sphere, a rotation | 2; 1 for the norm, such as 1 + t² |
+//! | sin, cos of Σ c a/12 | 2 Σ \|c\|; \|c\| for the norm of the circle of a |
 //! | sinh, cosh, tanh of Σ c a/12 | the same for the powers of a |
 //! | a where c > 0, else b | 1 more than that of a + b |
-//! | what depends on the side of 0, of a | Nᵃ + 1 |
-//! | √a | ⌈(Nᵃ + Σ m deg d)/2⌉; the bound of the whole is taken four times |
+//! | functions of the sign of a | Nᵃ + 1 |
+//! | √a | ⌈(Nᵃ + Σ m deg d)/2⌉; each root multiplies the final bound by 4 |
 //!
-//! A root is a number r with r² = a: a polynomial in r vanishes only where its product with that of −r
-//! does, and points at which a is a square are half of all.
+//! A root is a number r with r² = a. A polynomial in r vanishes only where its product with the same
+//! polynomial in −r does, and a is a square at half of all points.
 
 use super::function::Law;
 use super::graph::{Edge, Function, Graph, Node, NodeId};
@@ -27,23 +28,23 @@ use num_traits::{One, Signed, ToPrimitive};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
-/// What is divided by.
+/// Divisor d of a fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Divisor {
-    /// The numerator of a node.
+    /// Numerator of a node that is divided by.
     Node(NodeId),
-    /// The norm that a group of coordinates is divided by, 1 + t² of a circle.
+    /// Norm that a group of coordinates is divided by, such as 1 + t² of a circle.
     Group(usize),
-    /// The same of the circle of an atom of angles.
+    /// Norm 1 + t² of the circle of an atom of angles.
     Angle(NodeId),
-    /// The powers e and 1 + e² of an atom of exponents.
+    /// Powers e and 1 + e² of an atom of exponents.
     Power(NodeId),
 }
 
-/// Powers m other than 0 of divisors, by their numbers in order.
+/// Nonzero powers m of divisors, sorted by the numbers of the divisors.
 type Powers = Vec<(u32, f64)>;
 
-/// A node as N / Π d^m; many nodes have the same denominator.
+/// A node as N / Π d^m. Powers are shared, because many nodes have the same denominator.
 #[derive(Clone, Debug, Default)]
 struct Fraction {
     degree: f64,
@@ -51,7 +52,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// A polynomial.
+    /// Creates the fraction of a polynomial.
     fn of_degree(degree: f64) -> Self {
         Fraction {
             degree,
@@ -60,19 +61,20 @@ impl Fraction {
     }
 }
 
-/// Bounds of degrees of nodes of a graph.
+/// Calculator of bounds on the degrees of the nodes of a graph.
 pub struct Degrees<'a> {
     graph: &'a Graph,
-    /// The groups that symbols belong to, by their indices: those of a coordinate kind with a norm.
+    /// Group of each symbol, by symbol index; only coordinates of a kind with a norm have one.
     groups: Vec<Option<usize>>,
     fractions: FxHashMap<NodeId, Fraction>,
-    /// The divisors by their numbers, and their degrees.
+    /// Numbers of the divisors, which are indices into `degrees`.
     numbers: FxHashMap<Divisor, u32>,
     degrees: Vec<f64>,
 }
 
 impl<'a> Degrees<'a> {
-    /// Coordinates of a kind with a norm have a group; symbols beyond the end of the list have none.
+    /// Creates a calculator. `groups` holds the group of every coordinate of a kind with a norm; symbols
+    /// beyond the end of the list have none.
     pub fn new(graph: &'a Graph, groups: Vec<Option<usize>>) -> Self {
         Degrees {
             graph,
@@ -83,8 +85,8 @@ impl<'a> Degrees<'a> {
         }
     }
 
-    /// The degree of a difference of sums of products of expressions: N over a denominator that is common
-    /// to all of them.
+    /// Bounds the degree of a difference of sums of products of expressions: N over a denominator that is
+    /// common to all of them.
     pub fn bound(&mut self, expressions: &[Edge]) -> f64 {
         let mut roots = 0;
         for id in self.graph.reachable(expressions) {
@@ -139,7 +141,7 @@ impl<'a> Degrees<'a> {
 
     fn apply(&mut self, function: Function, argument: Edge) -> Fraction {
         let form = || self.graph.form(function, argument);
-        // Whole multiples of twelfths, and what is none as one of its own.
+        // Coefficients in twelfths; one that is not a whole multiple counts as a single part of its own.
         let count = |c: &BigRational| {
             let parts = c * BigRational::from_integer(12.into());
             let parts = if parts.is_integer() {
@@ -165,7 +167,7 @@ impl<'a> Degrees<'a> {
                 let below = self.read(argument);
                 Fraction::of_degree((self.whole(&below) / 2.0).ceil())
             }
-            // A random number that belongs to the value of a, and may be a factor of a.
+            // The value is a random number that belongs to the value of a, possibly times a.
             Law::Side => {
                 let mut fraction = self.read(argument);
                 fraction.degree += 1.0;
@@ -176,7 +178,7 @@ impl<'a> Degrees<'a> {
         }
     }
 
-    /// The number of a divisor, of this degree.
+    /// Returns the number of a divisor; a new divisor is entered with this degree.
     fn number(&mut self, divisor: Divisor, degree: f64) -> u32 {
         let next = self.degrees.len() as u32;
         let number = *self.numbers.entry(divisor).or_insert(next);
@@ -186,7 +188,7 @@ impl<'a> Degrees<'a> {
         number
     }
 
-    /// Products of coordinates of norms.
+    /// Returns the fraction of a product of coordinates with norms, given by the norms and their powers.
     fn over(&mut self, norms: impl IntoIterator<Item = (Divisor, f64)>) -> Fraction {
         let (mut degree, mut powers) = (0.0, Powers::new());
         for (divisor, power) in norms {
@@ -208,7 +210,7 @@ impl<'a> Degrees<'a> {
         degrees.sum()
     }
 
-    /// N and denominator together.
+    /// Degree of N plus that of the powers, N + Σ |m| deg d.
     fn whole(&self, fraction: &Fraction) -> f64 {
         fraction.degree + self.below(&fraction.powers)
     }
@@ -220,9 +222,9 @@ impl<'a> Degrees<'a> {
                 powers: a.powers.clone(),
             };
         }
-        // A divisor that one side lacks has the power 0 there.
+        // A divisor that is missing on one side has the power 0 there.
         let powers = merged(&a.powers, &b.powers, f64::max);
-        // One with a negative power lacks it in the sum.
+        // So one with a negative power on the other side has the power 0 in the sum.
         let raised = |f: &Fraction| {
             let mut degree = f.degree;
             merge(&powers, &f.powers, |number, all, own| {
@@ -240,7 +242,8 @@ impl<'a> Degrees<'a> {
         }
     }
 
-    /// The largest numerator of the roots over their common denominator, with that.
+    /// Largest degree of the numerators of the roots over their common denominator, plus the degree of that
+    /// denominator.
     fn common(&self, roots: &[Edge]) -> f64 {
         let mut powers = Powers::new();
         let mut most: f64 = 0.0;
@@ -253,7 +256,7 @@ impl<'a> Degrees<'a> {
     }
 }
 
-/// Each divisor of either with its powers in both; 0 where a side has none.
+/// Calls `each` with every divisor of either list and its powers in both, 0 where it is missing.
 fn merge(a: &Powers, b: &Powers, mut each: impl FnMut(u32, f64, f64)) {
     let take = |side: &Powers, place: &mut usize, number: u32| match side.get(*place) {
         Some(&(known, power)) if known == number => {
@@ -276,7 +279,7 @@ fn merge(a: &Powers, b: &Powers, mut each: impl FnMut(u32, f64, f64)) {
     }
 }
 
-/// The powers that a function makes of those of both.
+/// Merges two lists of powers with the function `by`, and drops powers of 0.
 fn merged(a: &Powers, b: &Powers, by: impl Fn(f64, f64) -> f64) -> Powers {
     let mut all = Powers::with_capacity(a.len().max(b.len()));
     merge(a, b, |number, m, n| {

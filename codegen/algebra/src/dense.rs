@@ -1,11 +1,12 @@
-//! Small dense matrices of real numbers, as rows: products, Cholesky's factor, and solutions of linear equations.
+//! Small dense real matrices, stored as rows: products, Cholesky factorization, and solution of linear
+//! systems.
 
 /// aᵀ b.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// max |a|, infinite where an entry is no number.
+/// max |aᵢ|; infinite if an entry is NaN.
 pub fn largest(a: &[f64]) -> f64 {
     let worst = |most: f64, a: &f64| match a.is_nan() {
         true => f64::INFINITY,
@@ -28,7 +29,7 @@ pub fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// AᵀA of a matrix with so many columns.
+/// AᵀA of a matrix A with this number of columns.
 pub fn gram(a: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
     let entry = |i: usize, j: usize| a.iter().map(|row| row[i] * row[j]).sum();
     (0..columns)
@@ -36,12 +37,13 @@ pub fn gram(a: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// L with L Lᵀ = M; `None` where M is not positive definite.
+/// Computes the Cholesky factor L with L Lᵀ = M; `None` if M is not positive definite.
 pub fn cholesky(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     cholesky_with(m, &|_, pivot| pivot)
 }
 
-/// The same with other pivots, by their places and values.
+/// Computes a Cholesky factor with modified pivots: `pivot` maps the index and the value of a pivot to the
+/// value to use.
 pub fn cholesky_with(m: &[Vec<f64>], pivot: &dyn Fn(usize, f64) -> f64) -> Option<Vec<Vec<f64>>> {
     let n = m.len();
     let mut l = vec![vec![0.0; n]; n];
@@ -61,7 +63,7 @@ pub fn cholesky_with(m: &[Vec<f64>], pivot: &dyn Fn(usize, f64) -> f64) -> Optio
     Some(l)
 }
 
-/// L⁻¹ b.
+/// L⁻¹ b, by forward substitution.
 pub fn forward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     let mut y = b.to_vec();
     for i in 0..y.len() {
@@ -70,7 +72,7 @@ pub fn forward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     y
 }
 
-/// L⁻ᵀ b.
+/// L⁻ᵀ b, by backward substitution.
 pub fn backward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     let mut y = b.to_vec();
     for i in (0..y.len()).rev() {
@@ -80,7 +82,7 @@ pub fn backward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     y
 }
 
-/// A⁻¹ b by Gauss with exchange of rows; `None` where A is singular.
+/// A⁻¹ b by Gaussian elimination with row exchanges; `None` if A is singular.
 pub fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = b.len();
     for k in 0..n {
@@ -105,8 +107,8 @@ pub fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     Some(b)
 }
 
-/// The h of least norm with J h = r, up to rounding, also where rows of J are redundant: by
-/// h = Jᵀ (J Jᵀ + ε I)⁻¹ r and one refinement. `None` where a number is not finite.
+/// Computes the least-norm solution h of J h = r up to rounding, also if rows of J are redundant, by h = Jᵀ
+/// (J Jᵀ + ε I)⁻¹ r and one step of refinement. `None` if a number is not finite.
 pub fn least_norm(jacobian: &[Vec<f64>], r: &[f64]) -> Option<Vec<f64>> {
     let (m, n) = (r.len(), jacobian.first().map_or(0, Vec::len));
     let mut gram: Vec<Vec<f64>> = jacobian.iter().map(|row| apply(jacobian, row)).collect();

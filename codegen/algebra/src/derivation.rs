@@ -1,7 +1,8 @@
 //! Derivations of the graph: f ↦ Σ (seed of s) ∂f/∂s over its symbols.
 //!
-//! After nodes were merged modulo φ only derivations tangent to X are meaningful: ∂ᵢ of KR18 (9),
-//! d/dt along ẋ = A ξ, and derivatives by symbols that φ does not contain (ξ, inputs, parameters).
+//! Nodes are merged modulo the constraints φ, so only derivations that are tangent to the constraint
+//! variety X are meaningful: ∂ᵢ of KR18 (9), d/dt along ẋ = A ξ, and derivatives by symbols that φ does not
+//! contain (ξ, inputs, parameters).
 
 use super::function::Slope;
 use super::graph::{Edge, Graph, Node, NodeId, Power};
@@ -9,27 +10,27 @@ use num_rational::BigRational;
 use num_traits::One;
 use rustc_hash::FxHashMap;
 
-/// A derivation, given by what it does to symbols; it remembers what it has differentiated.
+/// A derivation, given by its action on symbols; it remembers the derivatives it has computed.
 #[derive(Clone, Debug, Default)]
 pub struct Derivation {
     memo: FxHashMap<NodeId, Edge>,
 }
 
 impl Derivation {
-    /// The derivation that maps each symbol's node to its seed, and all other symbols to 0.
+    /// Creates the derivation that maps the node of each symbol to its seed, and all other symbols to 0.
     pub fn new(seeds: impl IntoIterator<Item = (NodeId, Edge)>) -> Self {
         Derivation {
             memo: seeds.into_iter().collect(),
         }
     }
 
-    /// The derivative of one expression.
+    /// Differentiates one expression.
     pub fn of(&mut self, graph: &mut Graph, edge: Edge) -> Edge {
         self.run(graph, edge.node());
         self.seen(graph, edge)
     }
 
-    /// The derivatives of several expressions.
+    /// Differentiates several expressions.
     pub fn all(&mut self, graph: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
         edges.iter().map(|&edge| self.of(graph, edge)).collect()
     }
@@ -80,7 +81,7 @@ impl Derivation {
                 graph.add(left, right)
             }
             Node::Div(a, b) => {
-                // (a/b)' = (a' − (a/b) b')/b; b is no zero of the graph, or the node would not exist.
+                // (a/b)' = (a' − (a/b) b')/b; b is not the zero node, or the quotient would not exist.
                 let (da, db) = (self.seen(graph, a), self.seen(graph, b));
                 let product = graph.mul(Edge::of(id), db);
                 let numerator = graph.sub(da, product);
@@ -160,8 +161,9 @@ impl Derivation {
         }
     }
 
-    /// (w a sᶠ)′ = w′ a sᶠ + (1 + f) w a′ sᶠ where a is s, or |a|, times a constant: nothing is divided by what may
-    /// be 0. `None` of other products.
+    /// (w a sᶠ)′ = w′ a sᶠ + (1 + f) w a′ sᶠ, where a is a constant multiple of s, possibly after replacing
+    /// factors v of a by |v|. This avoids dividing by an expression that may be 0. `None` for other
+    /// products.
     fn of_power(&self, graph: &mut Graph, id: NodeId) -> Option<Edge> {
         let power = graph.fractional_power(id)?;
         let Power {
@@ -194,7 +196,7 @@ impl Derivation {
         Some(graph.add(left, right))
     }
 
-    /// A product and its derivative.
+    /// Returns a product and its derivative.
     fn of_product(&self, graph: &mut Graph, factors: &[Edge]) -> (Edge, Edge) {
         let start = (graph.one(), graph.zero());
         factors.iter().fold(start, |(product, slope), &factor| {

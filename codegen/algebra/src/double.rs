@@ -1,15 +1,15 @@
-//! Numbers of twice the length of `f64`, for measuring what rounding does.
+//! Double-double numbers, with twice the precision of `f64`, for measuring rounding errors.
 //!
-//! A number is the unevaluated sum h + l of two `f64`, |l| ≤ ½ ulp(h): some 32 decimal digits. Sums and
-//! products are those of Dekker (1971) and Knuth with exact errors: s = fl(a + b), e = a + b − s, and
-//! p = fl(a b), e = fma(a, b, −p). Functions are Taylor's sums after reduction of the argument, or one
-//! step of Newton's method from the value in `f64`:
+//! A number is the unevaluated sum h + l of two `f64` with |l| ≤ ½ ulp(h), which gives about 32 decimal
+//! digits. Sums and products with exact errors follow Dekker (1971) and Knuth: s = fl(a + b), e = a + b −
+//! s, and p = fl(a b), e = fma(a, b, −p). Functions are computed by Taylor series after argument reduction,
+//! or by one step of Newton's method from the value in `f64`:
 //!
-//! | function | by |
+//! | function | computed by |
 //! |---|---|
 //! | √a | r + (a − r²) / 2 r |
-//! | sin, cos | a − k π/2, Taylor's sums on ±π/4 |
-//! | exp | 2ᵏ exp(r / 64)⁶⁴, |r| ≤ ½ log 2 |
+//! | sin, cos | a − k π/2, Taylor series on ±π/4 |
+//! | exp | 2ᵏ exp(r / 64)⁶⁴, \|r\| ≤ ½ log 2 |
 //! | log a | y + a exp(−y) − 1 |
 //! | atan2(y, x) | θ + (y cos θ − x sin θ) / √(x² + y²) |
 
@@ -18,29 +18,29 @@ use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number with some 32 digits.
+/// A double-double number, with about 32 decimal digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {
     high: f64,
     low: f64,
 }
 
-/// π/2 in three parts.
+/// π/2 as a sum of three `f64`.
 const HALF_PI: [f64; 3] = [
     std::f64::consts::FRAC_PI_2,
     6.123_233_995_736_766e-17,
     -1.497_384_904_859_169_7e-33,
 ];
-/// log 2 in two parts.
+/// log 2 as a sum of two `f64`.
 const LOG_2: Double = Double {
     high: std::f64::consts::LN_2,
     low: 2.319_046_813_846_3e-17,
 };
-/// Terms of Taylor's sums for sine and cosine: (π/4)³² / 32! < 2^-110.
+/// Order at which the Taylor series of sine and cosine end: (π/4)³² / 32! < 2^-110.
 const TERMS: u32 = 32;
-/// Beyond this, hyperbolic functions are those of `f64`.
+/// Argument beyond which hyperbolic functions are computed in `f64`.
 const LARGEST: f64 = 300.0;
-/// The argument of exp is halved so often.
+/// Number of times that the argument of exp is halved.
 const HALVINGS: u32 = 6;
 
 impl Double {
@@ -54,7 +54,7 @@ impl Double {
         low: 2.0 * HALF_PI[1],
     };
 
-    /// The number that an `f64` is.
+    /// Converts an `f64` exactly.
     pub const fn new(value: f64) -> Self {
         Double {
             high: value,
@@ -62,12 +62,12 @@ impl Double {
         }
     }
 
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`.
     pub fn to_f64(self) -> f64 {
         self.high
     }
 
-    /// The nearest to a rational: what its nearest `f64` leaves is rounded once more.
+    /// Rounds a rational: the remainder after its nearest `f64` is rounded once more.
     pub fn of_rational(value: &BigRational) -> Self {
         let high = value.to_f64().unwrap_or(f64::NAN);
         let rest = BigRational::from_float(high).map_or_else(BigRational::zero, |h| {
@@ -83,7 +83,7 @@ impl Double {
         self.signed(self.high < 0.0)
     }
 
-    /// 1 with the sign of a, 0 of 0.
+    /// Sign of a: ±1, or 0 for 0.
     pub fn sign(self) -> Self {
         match self.high == 0.0 {
             true => self,
@@ -91,18 +91,18 @@ impl Double {
         }
     }
 
-    /// 1/a, where a is not nearly 0.
+    /// 1/a, or 1/`SHORTEST` if |a| is below `SHORTEST`.
     pub fn inverse_of_length(self) -> Self {
         let short = self.high.abs() < SHORTEST;
         Double::ONE / if short { Double::new(SHORTEST) } else { self }
     }
 
-    /// −a where asked.
+    /// Returns −a if `negative`, else a.
     pub fn signed(self, negative: bool) -> Self {
         if negative { -self } else { self }
     }
 
-    /// Times a power of 2.
+    /// Multiplies by a power of 2.
     fn scaled(self, factor: f64) -> Self {
         Double {
             high: self.high * factor,
@@ -126,7 +126,7 @@ impl Double {
         let parts = HALF_PI.map(|part| product(quarters, part));
         let rest = parts.into_iter().fold(self, |rest, part| rest - part);
         let square = rest * rest;
-        // 1 − x²/(k (k+1)) (1 − …): sin x / x from k = 2, cos x from k = 1.
+        // Nested series 1 − x²/(k (k+1)) (1 − …): from k = 2 for sin x / x, from k = 1 for cos x.
         let series = |first: u32| {
             let terms = (first..TERMS).step_by(2).rev();
             terms.fold(Double::ONE, |inner, k| {
@@ -151,7 +151,7 @@ impl Double {
         }
         let rest = self - Double::new(powers) * LOG_2;
         let small = rest.scaled(0.5_f64.powi(HALVINGS as i32));
-        // exp x − 1, which squaring keeps relative digits of: (1 + e)² − 1 = e (2 + e).
+        // Squaring exp x − 1 keeps its relative precision: (1 + e)² − 1 = e (2 + e).
         let tail = (2..18).rev().fold(Double::ONE, |inner, k| {
             Double::ONE + small / Double::new(f64::from(k)) * inner
         });
@@ -172,7 +172,7 @@ impl Double {
         first + (self * (-first).exp() - Double::ONE)
     }
 
-    /// The angle of (x, y).
+    /// Angle of the point (x, y), where `self` is y.
     pub fn atan2(self, x: Double) -> Self {
         let y = self;
         let first = y.high.atan2(x.high);
@@ -190,7 +190,7 @@ impl Double {
         self.sin_cos().0
     }
 
-    /// sinh a; near 0 by Taylor's sum, which loses no digits.
+    /// sinh a; near 0 by its Taylor series, which avoids cancellation.
     pub fn sinh(self) -> Self {
         if self.high.abs() > LARGEST {
             return Double::new(self.high.sinh());

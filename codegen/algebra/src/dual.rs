@@ -1,32 +1,32 @@
-//! Numbers with slopes. The rules of derivation stand here once; how slopes are carried is a matter of
-//! its own:
+//! Automatic differentiation: numbers with slopes (derivatives). The rules of differentiation are written
+//! once, here; how slopes are carried is a separate choice:
 //!
 //! | slopes | carried as | cost |
 //! |---|---|---|
 //! | ∂f along one direction | [`Along`]: a number | that of a value |
-//! | ∂f along many directions | [`Across`]: a number for each; none where nothing moves | that of a value, times the directions |
-//! | ∂f/∂xₖ for all symbols | [`Record`]: a place in a record that is read backwards | that of a value |
+//! | ∂f along many directions | [`Across`]: a number for each; empty if all are 0 | that of a value, times the directions |
+//! | ∂f/∂xₖ for all symbols | [`Record`]: an index into a record that is read backwards (reverse mode) | that of a value |
 //! | Σ \|∂f/∂a\| eₐ, bounds of errors | `rounding` | that of a value |
 //!
-//! Numbers with slopes are numbers: slopes of slopes are those over [`Duals`].
+//! Numbers with slopes are numbers themselves, so second derivatives are slopes over [`Duals`].
 
 use super::fp::Fp;
 use super::numbers::{Form, Modular, Numbers, Step};
 use num_traits::Signed;
 
-/// ∂f/∂a of an operation.
+/// Partial derivative ∂f/∂a of an operation.
 #[derive(Clone, Debug)]
 pub enum Partial<N> {
     /// 1.
     One,
     /// −1.
     MinusOne,
-    /// Any other.
+    /// Any other value.
     By(N),
 }
 
 impl<N: Clone> Partial<N> {
-    /// It times a slope.
+    /// Multiplies a slope by this derivative.
     fn times<C: Numbers<Number = N>>(&self, numbers: &mut C, slope: &N) -> Option<N> {
         match self {
             Partial::One => Some(slope.clone()),
@@ -36,29 +36,29 @@ impl<N: Clone> Partial<N> {
     }
 }
 
-/// A way to carry slopes.
+/// A way to carry slopes through operations.
 pub trait Slopes<C: Numbers> {
-    /// What goes with a value.
+    /// The slope that is carried along with a value.
     type Slope: Clone;
-    /// Of a symbol.
+    /// Returns the slope of a symbol.
     fn symbol(&mut self, numbers: &mut C, index: usize) -> Self::Slope;
-    /// Σ ∂f/∂a times the slope of a, for f with this value.
+    /// Applies the chain rule: Σ ∂f/∂a times the slope of a over the operands a, where `value` is f.
     fn combine(
         &mut self,
         numbers: &mut C,
         value: &C::Number,
         parts: &[(Partial<C::Number>, &Self::Slope)],
     ) -> Option<Self::Slope>;
-    /// Whether it may differ from 0.
+    /// Whether a slope may differ from 0.
     fn moves(&self, numbers: &C, slope: &Self::Slope) -> bool;
 }
 
 /// Numbers with slopes.
 #[derive(Debug)]
 pub struct Duals<C, S> {
-    /// The numbers.
+    /// The underlying numbers.
     pub numbers: C,
-    /// How slopes are carried.
+    /// The way in which slopes are carried.
     pub slopes: S,
 }
 
@@ -131,7 +131,8 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                 let factor = numbers.slope(function, (&a.0, &value), &form)?;
                 self.with(value, &[(Partial::By(factor), &a.1)])
             }
-            // Each branch moves by itself: where it is not known which one is taken, by its share.
+            // Each branch has its own slope. If it is not known which branch is taken, each contributes by
+            // its weight.
             Step::Select(c, a, b) => match numbers.is_positive(&c.0) {
                 Some(true) => Some(a.clone()),
                 Some(false) => Some(b.clone()),
@@ -147,7 +148,8 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                     )
                 }
             },
-            // What reads a list has the slopes of all that is in it.
+            // A list has no slope of its own: the functions that read it differentiate by each of its
+            // entries.
             Step::Listed(rest, a) => {
                 let value = numbers.make(Step::Listed(&rest.0, &a.0))?;
                 self.with(value, &[])
@@ -204,7 +206,7 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
         self.numbers.is_positive(&a.0)
     }
 
-    /// With one inverse.
+    /// Needs only one division.
     fn quotient(&mut self, a: &Self::Number, b: &Self::Number) -> Option<[Self::Number; 3]> {
         let one = self.make(Step::Whole(1))?;
         let inverse = self.make(Step::Div(&one, b))?;
@@ -221,7 +223,7 @@ impl<C: Modular, S: Slopes<C>> Modular for Duals<C, S> {
     }
 }
 
-/// Slopes along a direction in the symbols.
+/// Slopes along one direction; the function gives the slope of each symbol.
 #[derive(Clone, Debug)]
 pub struct Along<F>(pub F);
 
@@ -256,7 +258,8 @@ impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for Along<F> {
     }
 }
 
-/// Slopes along many directions: none where nothing moves.
+/// Slopes along many directions; the function gives the slopes of each symbol. The list is empty if all are
+/// 0.
 #[derive(Clone, Debug)]
 pub struct Across<F>(pub F);
 
@@ -269,7 +272,7 @@ impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
         if still { Vec::new() } else { slopes }
     }
 
-    /// What does not move takes no part, also where its factor is infinite.
+    /// Operands with slope 0 do not contribute, even if their factor is infinite.
     fn combine(
         &mut self,
         numbers: &mut C,
@@ -294,14 +297,14 @@ impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
     }
 }
 
-/// A place in a record, and the derivatives by earlier places.
+/// Derivatives of a value by at most two earlier entries, with the places of these in the record.
 type Entry<N> = [Option<(Partial<N>, usize)>; 2];
 
-/// What values that move were made of.
+/// Record of the operations on values that depend on symbols, for reverse-mode differentiation.
 #[derive(Clone, Debug)]
 pub struct Record<N> {
     entries: Vec<Entry<N>>,
-    /// Places of symbols.
+    /// Indices of symbols, with their places in the record.
     symbols: Vec<(usize, usize)>,
 }
 
@@ -315,7 +318,7 @@ impl<N> Default for Record<N> {
 }
 
 impl<N: Clone> Record<N> {
-    /// ∂f/∂xₖ of the first symbols, for f at a place.
+    /// Computes ∂f/∂xₖ for the first `symbols` symbols by a reverse sweep, for f at a place of the record.
     pub fn backwards<C: Numbers<Number = N>>(
         &self,
         numbers: &mut C,

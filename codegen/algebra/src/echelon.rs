@@ -1,4 +1,4 @@
-//! Linear algebra over a field: reduced row echelon form, and what it answers.
+//! Linear algebra over a field: reduced row echelon form and its applications.
 
 use super::poly::field::Field;
 
@@ -12,7 +12,7 @@ pub struct Echelon<F> {
 }
 
 impl<F: Field> Echelon<F> {
-    /// Reduces the rows of a matrix; all of one length.
+    /// Reduces the rows of a matrix, which must all have the same length.
     pub fn new(mut rows: Vec<Vec<F>>) -> Self {
         let columns = rows.first().map_or(0, Vec::len);
         let mut pivots = Vec::new();
@@ -42,12 +42,12 @@ impl<F: Field> Echelon<F> {
         Echelon { rows, pivots }
     }
 
-    /// Rank.
+    /// Rank of the matrix.
     pub fn rank(&self) -> usize {
         self.pivots.len()
     }
 
-    /// A basis of {v : rows · v = 0} in a space of `columns` dimensions.
+    /// Returns a basis of the null space {v : rows · v = 0} in a space of `columns` dimensions.
     pub fn null_space(&self, columns: usize) -> Vec<Vec<F>> {
         let open = (0..columns).filter(|column| !self.pivots.contains(column));
         open.map(|column| {
@@ -62,8 +62,8 @@ impl<F: Field> Echelon<F> {
     }
 }
 
-/// Some solution of A v = b that uses the leftmost independent columns of A; `None` where there is none.
-/// Every row is one of A with its entry of b behind it.
+/// Returns a solution of A v = b that uses the leftmost independent columns of A; `None` if there is none.
+/// Each row of `augmented` is a row of A followed by its entry of b.
 pub fn solution<F: Field>(augmented: Vec<Vec<F>>) -> Option<Vec<F>> {
     let columns = augmented.first()?.len().checked_sub(1)?;
     let echelon = Echelon::new(augmented);
@@ -77,8 +77,8 @@ pub fn solution<F: Field>(augmented: Vec<Vec<F>>) -> Option<Vec<F>> {
     Some(solution)
 }
 
-/// Numbers of positive and negative squares of a symmetric matrix over Q, by Lagrange's reduction
-/// (Sylvester's law of inertia: they do not depend on the basis).
+/// Returns the signature of a symmetric matrix over Q: the numbers of positive and negative squares, by
+/// Lagrange's reduction (by Sylvester's law of inertia, they do not depend on the basis).
 pub fn signature(matrix: &[Vec<num_rational::BigRational>]) -> (usize, usize) {
     use num_traits::Signed;
     let mut m = matrix.to_vec();
@@ -89,7 +89,8 @@ pub fn signature(matrix: &[Vec<num_rational::BigRational>]) -> (usize, usize) {
         let open: Vec<usize> = (0..n).filter(|&i| !done[i]).collect();
         let diagonal = open.iter().copied().find(|&i| !m[i][i].is_zero());
         let Some(k) = diagonal else {
-            // No square left: a mixed product x y gets one by x → x + y.
+            // No diagonal entry is left: the substitution x → x + y turns a mixed product x y into a
+            // square.
             let pair = open.iter().find_map(|&i| {
                 let mixed = open.iter().find(|&&j| !m[i][j].is_zero());
                 mixed.map(|&j| (i, j))

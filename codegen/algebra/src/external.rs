@@ -1,38 +1,40 @@
-//! Functions that are given elsewhere: of them is known what they take and what they give, and nothing else.
+//! External functions: functions that are defined elsewhere, of which only the arguments and components are
+//! known.
 //!
-//! A function with several components, f: a ↦ (f₁ … f_m), is called with a list of numbers. Its components are nodes of
-//! their own over the list, and so are their derivatives ∂fᵢ/∂aⱼ, ∂²fᵢ/∂aⱼ∂aₖ. Modulo p each has a random value that belongs
-//! to it and to the numbers in the list: what is proved with it holds for every function.
+//! A function f: a ↦ (f₁ … f_m) is called with a list of numbers. Its components are separate nodes over
+//! the list, and so are their derivatives ∂fᵢ/∂aⱼ and ∂²fᵢ/∂aⱼ∂aₖ. Modulo p, each of these has a random
+//! value determined by the component and the numbers in the list, so whatever is proved with it holds for
+//! every function.
 
-/// What is known of a function.
+/// Signature of an external function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct External {
-    /// Its name.
+    /// Name of the function.
     pub name: String,
-    /// The names of what it takes.
+    /// Names of its arguments.
     pub arguments: Vec<String>,
-    /// The number of its components.
+    /// Number of its components.
     pub components: usize,
 }
 
-/// A component of a function, or a derivative of it.
+/// A component of an external function, or one of its derivatives.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub struct Component {
-    /// The function, by its place among those of the graph.
+    /// Index of the function among those of the graph.
     pub function: u8,
-    /// The component.
+    /// Index of the component.
     pub component: u8,
-    /// How many numbers the function takes.
+    /// Number of arguments of the function.
     arity: u8,
-    /// By which numbers of the list it is differentiated, counted from 1, ascending; 0 stands for none.
+    /// Arguments by which the component is differentiated, counted from 1, ascending; 0 stands for none.
     by: [u8; 2],
 }
 
 impl Component {
-    /// The most functions, components and arguments that there can be.
+    /// Largest number of functions, of components, and of arguments.
     pub const MOST: usize = 64;
 
-    /// A component, not differentiated.
+    /// Creates a component that is not differentiated.
     pub fn new(function: usize, component: usize, arity: usize) -> Self {
         let [function, component, arity] = [function, component, arity].map(|n| n as u8);
         Component {
@@ -43,8 +45,8 @@ impl Component {
         }
     }
 
-    /// Its derivative by a number of the list. Third derivatives are not told apart from one another: nothing asks for
-    /// the second ones in the end.
+    /// Returns the derivative by an argument. Third derivatives are not distinguished from one another,
+    /// since not even second derivatives occur in final results.
     pub fn by(self, place: usize) -> Self {
         let place = place as u8 + 1;
         let mut by = match self.by {
@@ -56,7 +58,7 @@ impl Component {
         Component { by, ..self }
     }
 
-    /// How often it is differentiated: 3 stands for more than twice.
+    /// Order of differentiation; 3 stands for any order above 2.
     pub fn order(self) -> usize {
         match self.by {
             [0, 0] => 0,
@@ -66,19 +68,20 @@ impl Component {
         }
     }
 
-    /// The place in the list by which it is differentiated once.
+    /// Argument by which the component is differentiated, if it is differentiated exactly once.
     pub fn first(self) -> Option<usize> {
         (self.order() == 1).then(|| usize::from(self.by[1]) - 1)
     }
 
-    /// A number of its own.
+    /// Number that identifies the component and its derivative.
     pub(super) fn number(self) -> i64 {
         let all = [self.function, self.component, self.by[0], self.by[1]];
         all.into_iter().fold(1, |n, byte| n << 8 | i64::from(byte))
     }
 
-    /// One function that it may be, c + d Σ wⁿ⁻ʲ aⱼ with the weight w: of what stands for a list (`WEIGHT`) it is the linear
-    /// function with these coefficients.
+    /// Coefficients `[c, d]` of a function that stands in for the unknown one in numerical evaluations: c +
+    /// d Σ wⁿ⁻ʲ aⱼ with the weight w = `WEIGHT`. The sum is the number that stands for the list, so the
+    /// stand-in is linear in it.
     pub(super) fn likeness(self) -> [f64; 2] {
         let own = f64::from(self.function) + 0.37 * f64::from(self.component);
         let (constant, factor) = (0.3 + 0.7 * own.sin(), 1.0 + 0.4 * own.cos());
@@ -93,5 +96,5 @@ impl Component {
     }
 }
 
-/// What the number of the rest of a list counts, beside the last number in it.
+/// Weight of the number that stands for the rest of a list, relative to the last number in the list.
 pub(super) const WEIGHT: f64 = 0.618_033_988_749_894_9;

@@ -1,5 +1,5 @@
-//! What the constructor of nodes folds beyond equal values: constants of run time are kept together,
-//! and arguments of sin, cos and exp are read as linear forms.
+//! Simplifications by the constructor of nodes, in addition to merging equal values: run-time constants are
+//! grouped, and arguments of sin, cos and exp are read as linear forms.
 
 use super::fp::Fp;
 use super::function::Law;
@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 
 impl Graph {
-    /// √ of a rational square.
+    /// Square root of a rational that is a square.
     pub(super) fn exact_root(&mut self, argument: Edge) -> Option<Edge> {
         let value = self
             .as_rational(argument)
@@ -22,7 +22,8 @@ impl Graph {
         (&root * &root == value).then(|| self.rational(&root))
     }
 
-    /// A node e with e² = `square` on X that is no square root itself; of either sign.
+    /// Finds a node e with e² = `square` on the constraint variety, of either sign, that is not itself a
+    /// square root.
     pub fn known_root(&self, square: Edge) -> Option<Edge> {
         let root = self.value(square).sqrt()?;
         let is_root = |edge: &Edge| self.node(edge.node()).is_root();
@@ -32,8 +33,8 @@ impl Graph {
             .find(|edge| !is_root(edge))
     }
 
-    /// The values of √(e²) = |e|: roots of both signs are roots modulo p, and are chosen such that
-    /// |e| is neither e nor −e, unless e is itself a root or a number.
+    /// Chooses the value of √(e²) = |e|. Modulo p, roots of both signs are roots; the value is chosen such
+    /// that |e| is neither e nor −e, unless e is itself a root or a number.
     pub(super) fn apart_from_root(&self, square: Edge, root: Fp) -> Fp {
         match self.lookup(root).map(|known| self.node(known.node())) {
             None | Some(Node::Constant(_)) => root,
@@ -43,7 +44,8 @@ impl Graph {
         }
     }
 
-    /// p·y + q·y = (p + q)·y for run-time constants p, q: the sum of constants costs nothing.
+    /// Factors p·y + q·y = (p + q)·y for run-time constants p, q: the sum of constants costs nothing at run
+    /// time.
     pub(super) fn factor(&mut self, a: Edge, b: Edge) -> Option<Edge> {
         let (p, y) = self.free_factor(a)?;
         let (q, z) = self.free_factor(b)?;
@@ -54,7 +56,7 @@ impl Graph {
         Some(self.mul(coefficient, y))
     }
 
-    /// edge = p · y with p constant and y varying at run time.
+    /// Splits an edge into p · y, with p constant and y varying at run time.
     fn free_factor(&self, edge: Edge) -> Option<(Edge, Edge)> {
         if self.is_free(edge.node()) {
             return None;
@@ -70,7 +72,7 @@ impl Graph {
         Some((self.one().signed(edge.is_negative()), edge.abs()))
     }
 
-    /// p ∘ (q ∘ y) = (p ∘ q) ∘ y for run-time constants p, q and ∘ one of +, ·.
+    /// Regroups p ∘ (q ∘ y) = (p ∘ q) ∘ y for run-time constants p, q, where ∘ is + or ·.
     pub(super) fn regroup(
         &mut self,
         a: Edge,
@@ -104,7 +106,7 @@ impl Graph {
         }
     }
 
-    /// sin or cos of an angle with whole quarter turns in it, which are taken out of it.
+    /// Simplifies sin or cos of an angle that contains a whole multiple of π/2, by taking the multiple out.
     pub(super) fn without_right_angles(
         &mut self,
         function: Function,
@@ -142,9 +144,10 @@ impl Graph {
         })
     }
 
-    /// What a lane needs to know of a function's argument besides its value: the linear form of an
-    /// argument with a group law; of a square root the rational factor of its argument, nothing if
-    /// the argument is a number that is not rational and positive.
+    /// Returns what a lane needs to know about a function's argument in addition to its value. For
+    /// functions with a group law, this is the linear form of the argument. For a square root, it is the
+    /// rational factor of the argument, or nothing if the argument is a number that is not rational and
+    /// positive.
     pub fn form(&self, function: Function, argument: Edge) -> Vec<(NodeId, BigRational)> {
         match function.row().law {
             law if law.is_additive() => self.linear_form(argument),
@@ -160,7 +163,8 @@ impl Graph {
         }
     }
 
-    /// A positive rational factor of an expression, the same however it is grouped.
+    /// Computes a positive rational factor of an expression, which does not depend on how the expression is
+    /// grouped.
     pub(super) fn content(&self, edge: Edge) -> BigRational {
         let mut contents: FxHashMap<NodeId, BigRational> = FxHashMap::default();
         let one = BigRational::one();
@@ -181,8 +185,8 @@ impl Graph {
         contents.remove(&edge.node()).unwrap_or(one)
     }
 
-    /// The argument of a function with a group law, as Σ coefficient · atom, in the order in which the atoms
-    /// stand in it.
+    /// Writes the argument of a function with a group law as Σ coefficient · atom, with the atoms in the
+    /// order in which they occur in it.
     pub fn linear_form(&self, edge: Edge) -> Vec<(NodeId, BigRational)> {
         let mut scales: FxHashMap<NodeId, BigRational> = FxHashMap::default();
         let (mut sums, mut atoms) = (Vec::new(), Vec::new());
@@ -204,7 +208,7 @@ impl Graph {
             BigRational::one()
         };
         scales.insert(edge.node(), sign);
-        // What a sum is multiplied by is known when all nodes above it have been visited: these were made later.
+        // The factor of a sum is known once all nodes above it have been visited. These were created later.
         sums.sort_unstable_by_key(|(id, _)| Reverse(*id));
         for (id, parts) in sums {
             let scale = scales.remove(&id).unwrap_or_default();
@@ -224,7 +228,7 @@ impl Graph {
         form.filter(|(_, scale)| !scale.is_zero()).collect()
     }
 
-    /// What a node is a linear combination of, with the factors; nothing where it is an atom.
+    /// Writes a node as a linear combination of others, with the factors; empty if it is an atom.
     fn linear_parts(&self, id: NodeId) -> Vec<(Edge, BigRational)> {
         match self.node(id) {
             Node::Add(a, b) => vec![(a, BigRational::one()), (b, BigRational::one())],

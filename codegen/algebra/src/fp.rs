@@ -1,16 +1,16 @@
 //! Numbers modulo two primes at once: the ring F_p(i) × F_q(i).
 //!
-//! Values of expressions at points of the constraint variety live here, one point in each field. Two
-//! different rational functions of degree D agree at such a pair of points with probability ≤ D²/(p q),
-//! some D² 10⁻³⁷. A number counts as a rational only where both fields say the same one. Operations act
-//! on both parts; what has no value in one of them has none.
+//! Values of expressions at points of the constraint variety are elements of this ring, with one point in
+//! each field. Two different rational functions of degree D agree at such a pair of points with probability
+//! ≤ D²/(p q), about D² 10⁻³⁷. A value counts as rational only if both fields yield the same rational.
+//! Operations act on both parts; a result that does not exist in one of the fields does not exist.
 
 use super::prime::Residue;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A pair of elements, of F_p(i) and of F_q(i).
+/// A pair of elements of F_p(i) and F_q(i).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord, Default)]
 pub struct Fp(pub Residue<0>, pub Residue<1>);
 
@@ -19,28 +19,28 @@ impl Fp {
     pub const ZERO: Fp = Fp(Residue::ZERO, Residue::ZERO);
     /// 1.
     pub const ONE: Fp = Fp(Residue::ONE, Residue::ONE);
-    /// What stands for π, the same at every point: the sines and cosines of its twelfths are known.
+    /// Value that stands for π, the same at every point. The sines and cosines of its twelfths are known.
     pub const PI: Fp = Fp(
         Residue::new(0x0a3f_51c7_9e26_d80b),
         Residue::new(0x1c5d_09b2_64fa_8e37),
     );
 
-    /// The class of a non-negative integer.
+    /// Returns the residue class of a non-negative integer.
     pub fn new(value: u64) -> Self {
         Fp(Residue::new(value), Residue::new(value))
     }
 
-    /// The class of an integer.
+    /// Returns the residue class of an integer.
     pub fn from_i64(value: i64) -> Self {
         Fp(Residue::from_i64(value), Residue::from_i64(value))
     }
 
-    /// The class of an integer of any size.
+    /// Returns the residue class of an integer of any size.
     pub fn from_integer(value: &BigInt) -> Self {
         Fp(Residue::from_integer(value), Residue::from_integer(value))
     }
 
-    /// The class of a rational; `None` where a prime divides the denominator.
+    /// Returns the residue class of a rational; `None` if a prime divides the denominator.
     pub fn from_rational(value: &BigRational) -> Option<Self> {
         Some(Fp(
             Residue::from_rational(value)?,
@@ -48,12 +48,12 @@ impl Fp {
         ))
     }
 
-    /// 64 bits that depend on all parts, for random streams.
+    /// Returns 64 bits that depend on all parts, for seeding random streams.
     pub fn bits(self) -> u64 {
         self.0.bits() ^ self.1.bits().rotate_left(32)
     }
 
-    /// Which of ±self stands for both: whether it is the other one.
+    /// Whether the canonical representative of ±self is −self.
     pub fn is_negative(self) -> bool {
         if self.0.is_zero() {
             self.1.is_negative()
@@ -72,11 +72,12 @@ impl Fp {
         Some(Fp(self.0.inv()?, self.1.inv()?))
     }
 
-    /// The inverses of many, at the price of one and of three products each, after Montgomery.
+    /// Inverts many values at the cost of one inversion, and of three products for each value (Montgomery's
+    /// trick).
     pub fn inverses(values: impl Iterator<Item = Fp>) -> Vec<Option<Self>> {
         let has_inverse = |value: Fp| !value.0.is_zero() && !value.1.is_zero();
         let mut product = Fp::ONE;
-        // Each with the product of those before it.
+        // Each value with the product of the invertible ones before it.
         let before: Vec<(Fp, Fp)> = values
             .map(|value| {
                 let before = product;
@@ -99,18 +100,18 @@ impl Fp {
         inverses
     }
 
-    /// A square root, of either sign in each field; `None` where a part has none.
+    /// Square root, of either sign in each field; `None` if a part has none.
     pub fn sqrt(self) -> Option<Self> {
         Some(Fp(self.0.sqrt()?, self.1.sqrt()?))
     }
 
-    /// (a, −b) for (a, b): of the four square roots, one that is not ± this one.
+    /// Returns (a, −b) for (a, b): of the four square roots of a square, one that is not ± this one.
     pub fn flipped(self) -> Self {
         Fp(self.0, -self.1)
     }
 
-    /// The rational n/d with |n|, d < 2^bits (bits ≤ 29) that this is the class of, if there is one.
-    /// A value without a reason to be rational is one with probability below 4^bits/(p q).
+    /// Returns the rational n/d with |n|, d < 2^bits (bits ≤ 29) whose residue class this is, if there is
+    /// one. A value that has no reason to be rational passes with probability below 4^bits/(p q).
     pub fn to_small_rational(self, bits: u32) -> Option<(i64, i64)> {
         let found = self.0.to_small_rational(bits)?;
         (self.1.to_small_rational(bits)? == found).then_some(found)
@@ -145,17 +146,17 @@ impl Mul for Fp {
     }
 }
 
-/// A deterministic stream of field elements (splitmix64): same seed, same build.
+/// Deterministic stream of random field elements (splitmix64): the same seed gives the same build.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {
-    /// The stream of a seed.
+    /// Creates the stream of a seed.
     pub fn new(seed: u64) -> Self {
         Random(seed)
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -164,7 +165,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// The next element of a prime field, never 0.
+    /// Returns the next element of a prime field, never 0.
     pub fn residue<const K: usize>(&mut self) -> Residue<K> {
         loop {
             let bits = self.bits() >> 2;
@@ -174,7 +175,7 @@ impl Random {
         }
     }
 
-    /// The next pair of elements of the prime fields, neither of them 0.
+    /// Returns the next pair of elements of the prime fields, neither of them 0.
     pub fn element(&mut self) -> Fp {
         Fp(self.residue(), self.residue())
     }

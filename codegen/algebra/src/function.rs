@@ -1,7 +1,8 @@
-//! The elementary functions: all that is known of each in one table.
+//! The elementary functions, with everything that is known of each in one table.
 //!
-//! A new function is a row here, with its values in numbers of every kind, and its values modulo p
-//! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
+//! To add a function, add a row to the table, with its values in numbers of every kind, and add its values
+//! modulo p to `Lane::function`. The latter must obey the laws by which expressions with the function are
+//! found equal.
 
 use Cost::{Choice, Other, Product, Quotient, Root, Turn};
 use Law::{Angle, Free, Hyperbola, Linear, Power, Radical, Side};
@@ -17,7 +18,7 @@ use super::node::NodeId;
 use super::reals::Real;
 use num_rational::BigRational;
 
-/// f(−a).
+/// Symmetry of a function: the value of f(−a).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
     /// f(a).
@@ -28,33 +29,34 @@ pub enum Parity {
     Plain,
 }
 
-/// What f(a + b) or f(a b) is made of.
+/// Law by which f(a + b) or f(a b) follows from values at simpler arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// Circles of angles, added.
+    /// Addition theorem of angles: points on the unit circle are composed.
     Angle,
-    /// Powers, multiplied.
+    /// exp(a + b) = exp a exp b: powers are multiplied.
     Power,
-    /// Powers and their inverses, multiplied.
+    /// Powers and their inverses are multiplied, as for the hyperbolic functions.
     Hyperbola,
-    /// √(a b) = √a √b of what is positive.
+    /// √(a b) = √a √b for positive a, b.
     Radical,
-    /// Of the side of 0 on which an argument is (`Lane::positive`), by which f(a) is a multiple of f(1).
+    /// f(a) is a multiple of f(1) that depends on the side of 0 on which a is (`Lane::positive`), as for
+    /// sign and abs.
     Side,
-    /// Of nothing: any value will do.
+    /// No law: any value will do.
     Free,
-    /// Multiples of f(1).
+    /// f is linear: values are multiples of f(1).
     Linear,
 }
 
 impl Law {
-    /// Whether values follow from those of the parts of a sum.
+    /// Whether the value at a sum follows from the values at its terms.
     pub fn is_additive(self) -> bool {
         matches!(self, Angle | Power | Hyperbola)
     }
 }
 
-/// f′(a).
+/// Derivative f′(a) of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slope {
     /// g(a).
@@ -73,15 +75,15 @@ pub enum Slope {
     MinusSquare,
     /// 1 − f(a)².
     OneMinusSquare,
-    /// f(1): it is linear.
+    /// f(1), because f is linear.
     OfOne,
     /// 0.
     Nothing,
-    /// It has two arguments, and rules of its own.
+    /// No entry: the node has several arguments, and rules of its own.
     Two,
 }
 
-/// What it is counted as.
+/// Kind of operation that a function counts as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
     /// A square root.
@@ -92,55 +94,55 @@ pub enum Cost {
     Quotient,
     /// A product.
     Product,
-    /// A comparison, as dear as a sum.
+    /// A comparison, as expensive as a sum.
     Choice,
     /// Any other function.
     Other,
 }
 
-/// One row of the table.
+/// Row of the table: everything that is known of one function.
 #[derive(Debug)]
 pub struct Row {
-    /// Its name in descriptions and in texts.
+    /// Name in descriptions and in texts.
     pub name: &'static str,
-    /// Its call as a method in Rust.
+    /// Call as a method in Rust.
     pub rust: &'static str,
-    /// Its name in LaTeX.
+    /// Name in LaTeX.
     pub latex: &'static str,
-    /// What it is counted as.
+    /// Kind of operation that it counts as.
     pub cost: Cost,
-    /// f(−a).
+    /// Symmetry: the value of f(−a).
     pub parity: Parity,
-    /// An a and f(a), both of them 0 or 1.
+    /// An exact value: the nodes of some a and of f(a), each of them the number 0 or 1.
     pub at: Option<[NodeId; 2]>,
-    /// Its law.
+    /// Law for the values at sums or products.
     pub law: Law,
-    /// f′(a).
+    /// Derivative f′(a).
     pub slope: Slope,
     /// f(a) in `f64`.
     pub value: fn(f64) -> f64,
-    /// In twice the length.
+    /// f(a) in double-double precision.
     pub double: fn(Double) -> Double,
-    /// With a bound of its error.
+    /// f(a) with a bound of its error.
     pub real: fn(Real) -> Real,
-    /// Between certain bounds; `None` where there is no value, or none is known.
+    /// Certified bounds of f(a); `None` if there is no value, or none is known.
     pub interval: fn(&Interval) -> Option<Interval>,
 }
 
 macro_rules! table {
     ($($id:ident $doc:literal $name:literal $rust:literal $latex:literal $cost:ident $parity:ident $law:ident
         [$at:expr] [$slope:expr] $value:expr, $double:expr, $real:expr, $interval:expr;)*) => {
-        /// Functions beyond the four operations.
+        /// Elementary functions beyond the four arithmetic operations.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
         pub enum Function {
             $(#[doc = $doc] $id,)*
         }
 
         impl Function {
-            /// All of them, in the order of the table.
+            /// All functions, in the order of the table.
             pub const ALL: &'static [Function] = &[$(Function::$id),*];
 
-            /// What is known of it.
+            /// Returns the row of the table for this function.
             pub fn row(self) -> &'static Row {
                 match self {
                     $(Function::$id => {
@@ -163,14 +165,14 @@ macro_rules! table {
                 }
             }
 
-            /// The function of one argument with this name in descriptions.
+            /// Finds the function of one argument that has this name in descriptions.
             pub fn named(name: &str) -> Option<Function> {
                 let named = |function: &&Function| function.name() == name && function.row().slope != Two;
                 let word = name.starts_with(|first: char| first.is_ascii_alphabetic());
                 Function::ALL.iter().find(named).copied().filter(|_| word)
             }
 
-            /// Its name in descriptions.
+            /// Name of the function in descriptions.
             pub fn name(self) -> &'static str {
                 self.row().name
             }
@@ -178,9 +180,9 @@ macro_rules! table {
     };
 }
 
-// The place in the table chooses values modulo p: new functions come last.
-// Identifier, documentation, names, cost, parity, law, exact value, derivative; values in `f64`, in twice
-// the length, with bounds of errors, between bounds.
+// The position in the table determines values modulo p, so new functions must come last. Columns:
+// identifier, documentation, names (in descriptions, Rust, LaTeX), cost, parity, law, exact value,
+// derivative; then values in `f64`, in double-double precision, with bounds of errors, and as intervals.
 table! {
     Sin "sine" "sin" "sin_cos().0" r"\sin" Turn Odd Angle [Some([0, 0])] [Is(Function::Cos)]
         f64::sin, Double::sin, Real::sin, Interval::sin;
@@ -228,21 +230,21 @@ table! {
         |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISED)?)));
 }
 
-/// What `Raised` multiplies by in `f64`.
+/// Factor by which `Raised` multiplies in `f64`.
 const RAISED: f64 = 1.0 + 1.0 / (1u32 << 26) as f64;
 
-/// Lengths below this are divided by as if they were this long.
+/// Smallest length that is divided by: shorter ones are treated as if they were this long.
 pub(super) const SHORTEST: f64 = 1e-100;
 
 impl Interval {
-    /// A function of one argument; `None` where it has no value, or none is known.
+    /// Applies a function of one argument; `None` if it has no value, or none is known.
     pub fn apply(&self, function: Function) -> Option<Self> {
         (function.row().interval)(self)
     }
 }
 
 impl Real {
-    /// A function of one argument.
+    /// Applies a function of one argument.
     pub fn apply(self, function: Function) -> Self {
         if !self.is_known() {
             return self.without(self);

@@ -1,11 +1,10 @@
-//! The hash-consed graph of signed edges.
+//! Hash-consed expression graph with signed edges.
 //!
-//! Every node carries its value at a point of the constraint variety X in each of two fields. Equal values are one
-//! node, so "equal on X" is node identity; zero and small rationals are recognised as constants.
-//! Where square roots take part, real samples have to agree, too; numbers are compared with certainty
-//! (`shadow`).
-//! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
-//! Children stand before parents.
+//! Every node carries its value at a point of the constraint variety X in each of two finite fields. Nodes
+//! with equal values are merged, so "equal on X" is node identity; zero and small rationals are recognised
+//! as constants. Where square roots are involved, real samples have to agree as well; numbers are compared
+//! with certainty (`shadow`). An edge is a node with a sign, so negation costs nothing, and a − b and b − a
+//! are one node. Children precede their parents.
 
 mod calls;
 mod leaves;
@@ -31,7 +30,7 @@ use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// The graph.
+/// The expression graph.
 #[derive(Clone, Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
@@ -42,22 +41,22 @@ pub struct Graph {
     symbols: Vec<Symbol>,
     lane: Lane,
     shadow: Shadow,
-    /// Rational factors of what stands under square roots, by its node.
+    /// Rational factors of the arguments of square roots, by the nodes of the arguments.
     contents: FxHashMap<NodeId, BigRational>,
-    /// What the next node has as its value if it is made as in another graph at the same points, where
-    /// it is no number.
+    /// Value of the node of another graph, at the same points, that the next node is a copy of. That node
+    /// is not a number, so a new node with this value is not a number either.
     copied: Fp,
-    /// Whether a number has no faithful image, because a prime divides it.
+    /// Whether some number has no faithful image, because a prime divides it.
     unfaithful: bool,
-    /// The functions that are given elsewhere.
+    /// External functions, which are defined elsewhere.
     externals: Arc<Vec<External>>,
-    /// Class of the symbols that are constant at run time; products and sums of these are kept
-    /// together so that they can be computed once.
+    /// Class of the symbols that are constant at run time. Products and sums of these are kept together so
+    /// that they can be computed once.
     free_class: u8,
 }
 
 impl Graph {
-    /// An empty graph, in which symbols of `free_class` are constant at run time.
+    /// Creates an empty graph, in which symbols of `free_class` are constant at run time.
     pub fn new(free_class: u8) -> Self {
         let mut graph = Graph {
             nodes: Vec::new(),
@@ -81,7 +80,7 @@ impl Graph {
         graph
     }
 
-    /// An empty graph at the same points, for some of the symbols.
+    /// Creates an empty graph at the same points, to be filled with some of the symbols.
     pub fn fresh(&self) -> Self {
         let mut graph = Graph::new(self.free_class);
         graph.lane = self.lane.fresh();
@@ -89,52 +88,54 @@ impl Graph {
         graph
     }
 
-    /// Which roots have values; for when no point has all of them.
+    /// Sets which square roots have values, for use when no point has all of them.
     pub fn set_roots(&mut self, roots: Roots) {
         self.lane.roots = roots;
     }
 
-    /// Gives the symbols real values, in order of creation; without them roots of expressions are
-    /// told apart modulo p alone.
+    /// Gives the symbols real values, in order of creation. Without real values, square roots are
+    /// distinguished only modulo p.
     pub fn set_reals(&mut self, reals: Vec<Reals>) {
         self.shadow.set(reals);
     }
 
-    /// Whether what is equal at the point has to be equal at the first half of the real values, too: there
-    /// the point may be on another branch of the constraints.
+    /// Sets whether expressions that are equal at the point must also be equal at the first half of the
+    /// real samples. These may lie on another branch of the constraints than the point.
     pub fn watch(&mut self, watched: bool) {
         self.shadow.watched = watched;
     }
 
-    /// Whether expressions that are equal at the point differ at real values: they are on different
-    /// branches of the constraints.
+    /// Whether expressions that are equal at the point were found to differ at real samples, which then lie
+    /// on another branch of the constraints.
     pub fn is_contradicted(&self) -> bool {
         self.shadow.contradicted
     }
 
-    /// Nothing with a square root below it is taken for what is equal at the point: only for the same expression.
+    /// From now on, an expression that contains a square root is merged only with the same expression, not
+    /// with others of equal value.
     pub fn keep_roots_apart(&mut self) {
         self.shadow.apart = true;
     }
 
-    /// Whether an expression with a square root below it was taken for another one that it is not at some real values of the
-    /// symbols, or that has a value at too few of them.
+    /// Whether some expression that contains a square root was merged with one that differs from it at one
+    /// of these samples (real values of the symbols), or that has a value at too few of them.
     pub fn is_doubtful(&self, samples: impl Iterator<Item = Vec<Reals>>) -> bool {
         self.shadow
             .is_doubtful(&self.nodes, &self.constants, samples)
     }
 
-    /// Whether there is a square root in an expression: what has its value may be another number.
+    /// Whether an expression contains a square root, so that a different number may have the same value
+    /// modulo p.
     pub fn has_root_below(&self, edge: Edge) -> bool {
         self.shadow.is_rooted(edge.node())
     }
 
-    /// The real values of a symbol.
+    /// Real samples of a symbol.
     pub fn reals(&self, symbol: usize) -> Reals {
         self.shadow.symbol(symbol)
     }
 
-    /// Finds the rational factor of what is put under a square root, once for all points.
+    /// Records the rational factor of the argument of a square root, once for all points.
     fn note_content(&mut self, function: Function, argument: Edge) {
         let id = argument.node();
         if function.row().law == Law::Radical && !self.contents.contains_key(&id) {
@@ -143,7 +144,7 @@ impl Graph {
         }
     }
 
-    /// The rational factor of what stands under a square root.
+    /// Returns the recorded rational factor of the argument of a square root, 1 if there is none.
     pub(super) fn noted_content(&self, argument: Edge) -> BigRational {
         let known = self.contents.get(&argument.node()).cloned();
         known.unwrap_or_else(BigRational::one)
@@ -159,48 +160,48 @@ impl Graph {
         Edge::of(1)
     }
 
-    /// Number of nodes.
+    /// Number of nodes in the graph.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Never: the numbers 0 and 1 are always there.
+    /// Always false: the numbers 0 and 1 are in every graph.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// What a node computes.
+    /// Operation of a node.
     pub fn node(&self, id: NodeId) -> Node {
         self.nodes[id as usize]
     }
 
-    /// The classes of symbols that a node is written in.
+    /// Classes of the symbols that a node is written in, one bit each.
     pub fn class(&self, id: NodeId) -> u8 {
         self.classes[id as usize]
     }
 
-    /// Whether a node is constant at run time: a number, or written in free symbols alone.
+    /// Whether a node is constant at run time: a number, or written in free symbols only.
     pub fn is_free(&self, id: NodeId) -> bool {
         self.classes[id as usize] & !self.free_class == 0
     }
 
-    /// The value of an edge at the point.
+    /// Value of an edge at the point.
     pub fn value(&self, edge: Edge) -> Fp {
         let value = self.values[edge.node() as usize];
         if edge.is_negative() { -value } else { value }
     }
 
-    /// The symbols, in order of creation.
+    /// Symbols, in order of creation.
     pub fn symbols(&self) -> &[Symbol] {
         &self.symbols
     }
 
-    /// Whether a square root met a non-square: choose other points and start again.
+    /// Whether a square root of a non-square was requested; then other points have to be chosen.
     pub fn is_stuck(&self) -> bool {
         self.lane.is_stuck()
     }
 
-    /// Whether a number was met that one of the primes divides: comparisons say nothing of it.
+    /// Whether a number occurred that one of the primes divides, so that comparisons with it prove nothing.
     pub fn is_unfaithful(&self) -> bool {
         self.unfaithful
     }
@@ -210,12 +211,12 @@ impl Graph {
         numbers.then(|| Some((self.as_rational(a)?, self.as_rational(b)?)))?
     }
 
-    /// The constant at a place of the table of constants.
+    /// Constant at an index of the table of constants.
     pub fn constant(&self, index: u32) -> &BigRational {
         &self.constants[index as usize]
     }
 
-    /// A new symbol with its value at the point.
+    /// Creates a symbol with its value at the point.
     pub fn symbol(&mut self, name: &str, class: u8, value: Fp) -> Edge {
         self.lane.push_symbol(value);
         let index = self.symbols.len() as u32;
@@ -228,7 +229,7 @@ impl Graph {
         edge
     }
 
-    /// An exact number.
+    /// Returns the edge of an exact number.
     pub fn rational(&mut self, value: &BigRational) -> Edge {
         match Fp::from_rational(value) {
             Some(image) => self.number(value, image),
@@ -236,7 +237,7 @@ impl Graph {
         }
     }
 
-    /// The number with this image.
+    /// Returns the edge of a number with this image in the two fields.
     pub(super) fn number(&mut self, value: &BigRational, image: Fp) -> Edge {
         if let Some(edge) = self.lookup(image)
             && self.is_number(edge)
@@ -288,7 +289,7 @@ impl Graph {
         if let Some(regrouped) = self.regroup(a, b, Node::Add as fn(Edge, Edge) -> Node) {
             return regrouped;
         }
-        // The positive operand first; both negative: negate the sum.
+        // The positive operand comes first; if both are negative, the sum is negated.
         match (a.is_negative(), b.is_negative()) {
             (true, true) => {
                 let (a, b) = ordered(-a, -b);
@@ -359,7 +360,7 @@ impl Graph {
         if let Some(known) = self.known(Node::Div(a, b), value, class) {
             return Some(known.signed(negative));
         }
-        // Divide by run-time constants once: x / p = x · (1/p).
+        // Division by a run-time constant is done once: x / p = x · (1/p).
         if a != self.one() && self.is_free(b.node()) {
             let inverse = self.div(self.one(), b)?;
             return Some(self.mul(a, inverse).signed(negative));
@@ -367,7 +368,7 @@ impl Graph {
         Some(self.push(Node::Div(a, b), value, class).signed(negative))
     }
 
-    /// A function of one argument.
+    /// Applies a function of one argument.
     pub fn apply(&mut self, function: Function, argument: Edge) -> Edge {
         let row = function.row();
         let (argument, negative) = match row.parity {
@@ -436,7 +437,7 @@ impl Graph {
         }
     }
 
-    /// a^n for a whole exponent; `None` for a negative power of zero.
+    /// a^n for an integer n; `None` for a negative power of zero.
     pub fn powi(&mut self, base: Edge, exponent: i64) -> Option<Edge> {
         let mut result = self.one();
         let mut square = base;

@@ -1,8 +1,8 @@
-//! Real numbers between bounds: certified arithmetic for the numbers of a description.
+//! Interval arithmetic: real numbers between certified bounds, for the numbers of a description.
 //!
-//! A number that depends on no symbol has no random point that would protect its comparison with
-//! another one: modulo a prime √2 is one of two roots. So such numbers are compared as real numbers,
-//! lo 2^exponent ≤ value ≤ hi 2^exponent, with some 320 bits; every operation rounds outwards.
+//! A number that depends on no symbol is not protected by a random point when it is compared with another
+//! one: modulo a prime, √2 is one of two roots. Such numbers are therefore compared as real numbers, lo
+//! 2^exponent ≤ value ≤ hi 2^exponent, with about 320 bits. Every operation rounds outwards.
 
 mod inverse;
 
@@ -12,14 +12,14 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use std::cmp::Ordering;
 
-/// Bits that are kept.
+/// Number of bits that are kept.
 const BITS: u64 = 320;
-/// Fractional bits within elementary functions.
+/// Number of fractional bits within elementary functions.
 const FRACTION: u64 = BITS + 64;
-/// Arguments of elementary functions beyond 2 to this are left alone.
+/// Binary exponent beyond which arguments of elementary functions are rejected.
 const LARGEST: i64 = 64;
 
-/// lo 2^exponent ≤ value ≤ hi 2^exponent.
+/// Bounds of a real number: lo 2^exponent ≤ value ≤ hi 2^exponent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interval {
     lo: BigInt,
@@ -38,7 +38,8 @@ fn shift_up(a: &BigInt, bits: u64) -> BigInt {
 }
 
 impl Interval {
-    /// The numbers from lo 2^exponent to hi 2^exponent, where lo ≤ hi, rounded outwards to the bits that are kept.
+    /// Creates the interval from lo 2^exponent to hi 2^exponent, where lo ≤ hi, rounded outwards to the
+    /// bits that are kept.
     pub fn new(lo: BigInt, hi: BigInt, exponent: i64) -> Self {
         let bits = lo.bits().max(hi.bits());
         if bits <= BITS {
@@ -52,7 +53,7 @@ impl Interval {
         }
     }
 
-    /// The bounds of a rational.
+    /// Returns bounds of a rational.
     pub fn rational(value: &BigRational) -> Self {
         let (n, d) = (value.numer(), value.denom());
         if d.is_one() {
@@ -65,7 +66,7 @@ impl Interval {
         Interval::new(lo, hi, -(shift as i64))
     }
 
-    /// π, by Machin: 16 arctan 1/5 − 4 arctan 1/239.
+    /// Returns bounds of π by Machin's formula, 16 arctan 1/5 − 4 arctan 1/239.
     pub fn pi() -> Self {
         let unit = power_of_two(FRACTION);
         let arctan = |n: u32| {
@@ -80,12 +81,12 @@ impl Interval {
             sum
         };
         let value: BigInt = BigInt::from(16) * arctan(5) - BigInt::from(4) * arctan(239);
-        // Each of some 300 terms is cut twice.
+        // Each of about 300 terms is truncated twice.
         let error = BigInt::from(1 << 16);
         Interval::new(&value - &error, value + error, -(FRACTION as i64))
     }
 
-    /// −a where asked.
+    /// Returns −a if `negative`, else a.
     pub fn signed(&self, negative: bool) -> Self {
         if !negative {
             return self.clone();
@@ -105,7 +106,7 @@ impl Interval {
             (b, self)
         };
         let shift = (high.exponent - low.exponent) as u64;
-        // What is far below the last bit of the other is rounded to that bit.
+        // An operand far below the last bit of the other is rounded first, which limits the shift.
         let most = 4 * BITS;
         if shift > most {
             let excess = shift - most;
@@ -160,7 +161,7 @@ impl Interval {
         if self.hi.is_negative() {
             return None;
         }
-        // An even exponent and enough bits.
+        // Scale to an even exponent and enough bits.
         let mut shift = (2 * BITS).saturating_sub(self.hi.bits());
         if (self.exponent - shift as i64).is_odd() {
             shift += 1;
@@ -170,7 +171,8 @@ impl Interval {
         Some(Interval::new(lo, hi, (self.exponent - shift as i64) / 2))
     }
 
-    /// The middle as a multiple of 2^−FRACTION, and how far the bounds are from it; `None` where too big.
+    /// Returns the midpoint in multiples of 2^−FRACTION, and a bound on the distance of the bounds from it;
+    /// `None` if the number is too large.
     fn middle(&self) -> Option<(BigInt, BigInt)> {
         let size = self.exponent + self.lo.bits().max(self.hi.bits()) as i64;
         if size > LARGEST {
@@ -187,7 +189,7 @@ impl Interval {
         Some((middle, radius))
     }
 
-    /// Σ of a series whose terms follow by `next(term, k)`, in multiples of 2^−FRACTION.
+    /// Sums a series whose terms follow by `next(term, k)`, in multiples of 2^−FRACTION.
     fn series(first: BigInt, next: impl Fn(&BigInt, u32) -> BigInt) -> BigInt {
         let (mut term, mut sum) = (first, BigInt::zero());
         let mut k = 0;
@@ -199,7 +201,7 @@ impl Interval {
         sum
     }
 
-    /// Cosine and sine; both change by no more than their argument.
+    /// Cosine and sine. Neither changes by more than the argument does.
     fn angle(&self) -> Option<(Self, Self)> {
         let (mut x, mut radius) = self.middle()?;
         let turn = Interval::pi();
@@ -219,7 +221,7 @@ impl Interval {
         };
         let cos = Self::series(power_of_two(FRACTION), next(0));
         let sin = Self::series(x, next(1));
-        // Each of some 100 terms is cut twice, from sizes of up to 2⁶.
+        // Each of about 100 terms is truncated twice, from sizes of up to 2⁶.
         radius += power_of_two(24);
         let around =
             |middle: BigInt| Interval::new(&middle - &radius, middle + &radius, -(FRACTION as i64));
@@ -237,7 +239,7 @@ impl Interval {
         let value = Self::series(power_of_two(FRACTION), |term, k| {
             ((term * &small) >> FRACTION) / (k + 1)
         });
-        // |x / 2^k| < 1/4 between the bounds, and the slope there is below e^(1/4) < 3/2.
+        // |x / 2^k| < 1/4 between the bounds, where the slope of exp is below e^(1/4) < 3/2.
         let radius = ((&radius + (&radius >> 1u32)) >> HALVINGS) + power_of_two(16);
         let mut result = Interval::new(&value - &radius, value + radius, -(FRACTION as i64));
         for _ in 0..HALVINGS {
@@ -259,7 +261,7 @@ impl Interval {
         Some(sinh.times(&cosh.inverse()?))
     }
 
-    /// (eˣ ∓ e⁻ˣ)/2.
+    /// sinh x and cosh x, (eˣ ∓ e⁻ˣ)/2.
     fn powers(&self) -> Option<(Self, Self)> {
         let power = self.exp()?;
         let inverse = power.inverse()?;
@@ -268,7 +270,7 @@ impl Interval {
         Some((difference.times(&half), sum.times(&half)))
     }
 
-    /// On which side of 0 it is; `None` where that is not certain.
+    /// Compares the number with 0; `None` if the result is not certain.
     pub fn side(&self) -> Option<Ordering> {
         match (self.lo.sign(), self.hi.sign()) {
             (Sign::Plus, _) => Some(Ordering::Greater),
@@ -296,12 +298,12 @@ impl Interval {
         !self.plus(&b.signed(true)).contains_zero()
     }
 
-    /// The bounds lo 2^exponent and hi 2^exponent.
+    /// Returns the bounds lo 2^exponent and hi 2^exponent.
     pub fn bounds(&self) -> [BigRational; 2] {
         [&self.lo, &self.hi].map(|bound| self.scaled_up(bound.clone()))
     }
 
-    /// A number between the bounds.
+    /// Returns a number between the bounds.
     pub fn to_f64(&self) -> f64 {
         let middle = self.scaled_up((&self.lo + &self.hi) >> 1u32);
         middle.to_f64().unwrap_or(f64::NAN)

@@ -1,9 +1,9 @@
-//! Values with first and mixed second derivatives modulo p, by hyper-dual numbers: f, its slope f₁ along
-//! one direction, its slopes f₂ along many others, and all f₁₂, without a derivative ever being written
-//! as an expression.
+//! Values with first and mixed second derivatives modulo p by hyper-dual numbers: f, its slope f₁ along one
+//! direction, its slopes f₂ along many other directions, and all mixed slopes f₁₂. No derivative is ever
+//! written as an expression.
 //!
-//! With symbols x(s, t) that have ∂x/∂s = x₁, ∂x/∂t = x₂ and ∂²x/∂s∂t = x₁₂,
-//! f₁₂ = D²f [x₁, x₂] + Df(x₁₂).
+//! For symbols x(s, t) with ∂x/∂s = x₁, ∂x/∂t = x₂ and ∂²x/∂s∂t = x₁₂,
+//! `f₁₂ = D²f [x₁, x₂] + Df(x₁₂)`.
 
 use super::dual::{Across, Duals};
 use super::fp::Fp;
@@ -11,7 +11,7 @@ use super::lane::Lane;
 use super::tangent::{Dual, duals};
 use super::tape::Tape;
 
-/// How symbols move: one entry for each symbol, 0 beyond the end.
+/// Motion of the symbols, with one entry for each symbol, 0 beyond the end.
 #[derive(Clone, Debug, Default)]
 pub struct Seeds {
     /// x₁.
@@ -22,16 +22,16 @@ pub struct Seeds {
     pub mixed: Vec<Vec<Fp>>,
 }
 
-/// f, f₁, and f₂, f₁₂ for every column.
+/// Value and slopes of an expression: f, f₁, and f₂ and f₁₂ for every column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Jet {
     /// f.
     pub value: Fp,
     /// f₁.
     pub along: Fp,
-    /// f₂ of every column; empty where nothing of it moves.
+    /// f₂ of every column; empty if f and f₁ are constant along all of them.
     pub across: Vec<Fp>,
-    /// f₁₂ of every column; empty where nothing of it moves.
+    /// f₁₂ of every column; empty if f and f₁ are constant along all columns.
     pub mixed: Vec<Fp>,
 }
 
@@ -46,16 +46,16 @@ impl Jet {
         self.mixed.get(column).copied().unwrap_or(Fp::ZERO)
     }
 
-    /// Whether nothing of it moves.
+    /// Whether the expression is constant along all directions.
     pub fn is_still(&self) -> bool {
         self.across.is_empty() && self.along.is_zero()
     }
 }
 
 impl Tape {
-    /// Jets of the expressions at a point; `None` where something has no value there.
+    /// Computes the jets of the expressions at a point; `None` if something has no value there.
     pub fn jets(&self, lane: &Lane, seeds: &Seeds) -> Option<Vec<Jet>> {
-        // f + f₁ along s; the slopes of both along all t.
+        // Numbers are f and f₁ along s, with the slopes of both along all t.
         let of_symbol = |index: usize| -> Vec<Dual> {
             let at = |row: Option<&Vec<Fp>>| row?.get(index).copied();
             let slope = |k: usize| {

@@ -1,10 +1,11 @@
-//! Whether expressions jump where they change from one branch to another.
+//! Test for jumps: whether expressions are continuous where they change from one branch to another.
 //!
-//! An expression is compared with itself on both sides of c = 0 for every c that it chooses by: with the branches of
-//! c > 0, and with those of c < 0. At c = 0 both have to be equal. There, every factor f of c being looked at apart,
-//! f itself is 0, a term of f is the negative sum of the others, and so is a symbol s in which f is linear:
-//! s = s − f / (∂f/∂s). One such equation is put into both sides. Where it makes them equal they are equal at f = 0,
-//! whatever else is true there; where none does, nothing is known.
+//! For every c that decides a branch of an expression, the expression is compared with itself on both sides
+//! of c = 0: once with the branches for c > 0, and once with those for c < 0. Both have to be equal at c =
+//! 0. Each factor f of c is examined separately. At f = 0, f itself can be replaced by 0, a term of f by
+//! the negative sum of the others, and a symbol s in which f is linear by the right-hand side of s = s − f
+//! / (∂f/∂s). One such replacement is made on both sides. If it makes them equal, they are equal at f = 0,
+//! whatever else holds there; if none does, nothing is known.
 
 use super::derivation::Derivation;
 use super::graph::{Edge, Function, Graph, Node, NodeId};
@@ -12,25 +13,27 @@ use super::transplant::merged;
 use num_traits::Signed;
 use std::collections::BTreeSet;
 
-/// So many terms of a sum are tried.
+/// Largest number of terms of a sum that are tried.
 const MOST_TERMS: usize = 12;
 
-/// So many symbols are tried.
+/// Largest number of symbols that are tried.
 const MOST_SYMBOLS: usize = 8;
 
-/// What of an expression may change.
+/// Rule for what can change: nothing that is written in `still` classes only; symbols that are not `free`
+/// cannot be moved alone.
 #[derive(Clone, Copy)]
 struct Moving<'a> {
     still: u8,
     free: &'a dyn Fn(NodeId) -> bool,
 }
 
-/// A node, and what it is equal to.
+/// A node, and an expression that it equals.
 type Equation = (NodeId, Edge);
 
 impl Graph {
-    /// What the expressions may jump by: the first c at which they were not found to be equal on both sides. What is
-    /// written in `still` classes alone never changes, and symbols that are not `free` cannot be moved alone.
+    /// Finds an expression at whose zeros the expressions may jump: the first c for which they were not
+    /// found to be equal on both sides. Whatever is written in `still` classes only never changes, and
+    /// symbols that are not `free` cannot be moved alone.
     pub fn jump(&self, edges: &[Edge], still: u8, free: &dyn Fn(NodeId) -> bool) -> Option<Edge> {
         let chosen = |&id: &NodeId| match self.node(id) {
             // |c| is continuous.
@@ -70,7 +73,7 @@ impl Graph {
         })
     }
 
-    /// What changes its sign, or is 0, where c does or is.
+    /// Returns the factors that change sign, or are 0, where c changes sign, or is 0.
     fn factors(&self, by: Edge, moving: Moving<'_>) -> BTreeSet<Edge> {
         let mut factors = BTreeSet::new();
         let mut rest = vec![by.abs()];
@@ -92,7 +95,7 @@ impl Graph {
         factors
     }
 
-    /// Whether a divisor is of one sign by its form.
+    /// Whether a divisor is positive, as far as its form tells.
     fn is_positive(&self, edge: Edge) -> bool {
         if let Some(number) = self.as_rational(edge) {
             return number.is_positive();
@@ -106,7 +109,8 @@ impl Graph {
         }
     }
 
-    /// The terms of a sum that is 0, by the others; those that have a factor which moves have no equation.
+    /// Solves sum = 0 for each of its terms, and for the moving factor of a term whose other factor does
+    /// not move.
     fn terms(&mut self, sum: Edge, moving: Moving<'_>) -> Vec<Equation> {
         let mut found = Vec::new();
         let mut rest = vec![sum];
@@ -135,10 +139,10 @@ impl Graph {
         found.into_iter().filter_map(equation).collect()
     }
 
-    /// The symbols in which an expression is linear, where it is 0.
+    /// Solves an expression that is 0 for the symbols in which it is linear.
     fn lines(&mut self, zero: Edge, moving: Moving<'_>) -> Vec<Equation> {
         let below = self.reachable(&[zero]);
-        // What is chosen inside has other slopes elsewhere.
+        // Choices inside the expression have other slopes elsewhere.
         if below.iter().any(|&id| self.chosen_by(id).is_some()) {
             return Vec::new();
         }
@@ -157,7 +161,8 @@ impl Graph {
             return None;
         }
         let slope = self.linear(symbol, zero)?;
-        // Where the slope is 0, too, nothing is said of the symbol: that must not be all of a place with f = 0.
+        // Where the slope is 0 as well, the equation says nothing about the symbol. That must not be the
+        // case on a whole component of f = 0.
         if !self
             .factors(slope, moving)
             .into_iter()
@@ -169,14 +174,15 @@ impl Graph {
         Some((symbol, self.sub(Edge::of(symbol), back)))
     }
 
-    /// The slope along a symbol in which an expression is linear.
+    /// Returns the slope along a symbol, if the expression is linear in it.
     fn linear(&mut self, symbol: NodeId, edge: Edge) -> Option<Edge> {
         let mut along = Derivation::new([(symbol, self.one())]);
         let slope = along.of(self, edge);
         (slope != self.zero() && along.of(self, slope) == self.zero()).then_some(slope)
     }
 
-    /// Whether an expression is not 0 where a factor is: the factor is made 0 by one of its symbols.
+    /// Whether an expression is not identically 0 where a factor is. The factor is made 0 by solving it for
+    /// one of its symbols.
     fn apart(&mut self, factor: Edge, edge: Edge, moving: Moving<'_>) -> bool {
         let symbol = |id: &NodeId| matches!(self.node(*id), Node::Symbol(_));
         let symbols = self.reachable(&[factor]).into_iter().filter(symbol);
@@ -198,8 +204,9 @@ impl Graph {
         })
     }
 
-    /// The expressions with the branches of one side of c = 0, and an expression in the place of a node. None where
-    /// they have no value there, or one that depends on the side of something else that is 0, too.
+    /// Returns the expressions with the branches for one side of c = 0, and with a node replaced by the
+    /// expression that it equals. `None` if they have no value there, or one that depends on the sign of
+    /// another expression that is 0, too.
     fn beside(
         &mut self,
         edges: &[Edge],
@@ -259,7 +266,7 @@ impl Graph {
     }
 }
 
-/// An edge by the images of nodes, as far as they have one.
+/// Maps an edge by the images of nodes; `None` if its node has no image.
 fn of(image: &[Option<Edge>], edge: Edge) -> Option<Edge> {
     let known = image[edge.node() as usize]?;
     Some(known.signed(edge.is_negative()))

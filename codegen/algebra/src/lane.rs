@@ -1,13 +1,16 @@
-//! One point of the variety in each of the two fields: the values of all symbols, and of sin, cos, exp, √.
+//! A lane: one point of the variety in each of the two fields, with the values of all symbols, and of sin,
+//! cos, exp, √.
 //!
-//! The value of a function follows from that of its argument, in the same way at every point: two points differ in the values
-//! of symbols alone. So a number, such as √(sin² 1 + sin² 2), has one image modulo p. If images differed, a root of such a sum
-//! would be one of the two roots here and the other one there, and what holds between numbers at one point would fail at others.
+//! The value of a function depends only on the value of its argument, in the same way at every point: two
+//! points differ only in the values of symbols. A number such as √(sin² 1 + sin² 2) therefore has one image
+//! modulo p. If its images differed, the root of the sum would be one of the two roots at one point and the
+//! other at another point, and relations between numbers that hold at one point would fail at others.
 //!
-//! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
-//! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
-//! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
-//! exp is treated likewise, and sinh, cosh and tanh follow from it. Square roots keep the laws of positive numbers (`roots`).
+//! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a random
+//! point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that sin(a + b) and
+//! sin a cos b + cos a sin b have the same value. The sines and cosines of twelfths of π are exact. exp is
+//! treated likewise, and sinh, cosh and tanh follow from it. Square roots keep the laws of positive numbers
+//! (`roots`).
 
 use super::external::Component;
 use super::fp::{Fp, Random};
@@ -20,53 +23,55 @@ use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use rustc_hash::FxHashMap;
 
-/// Σ coefficient · atom, the argument of a function with a group law; atoms by their values. Of a
-/// square root: the rational factor of its argument (`Graph::form`).
+/// Argument of a function with a group law as Σ coefficient · atom, with the values of the atoms. For a
+/// square root, the rational factor of its argument (`Graph::form`).
 pub type LinearForm = Form<Fp>;
 
-/// The part of an angle that gets a random circle point: halves, thirds, quarters and sixths of an
-/// atom are then whole multiples of it.
+/// Number of parts into which the atom of an angle is divided. A part gets a random circle point, so that
+/// halves, thirds, quarters and sixths of the atom are whole multiples of it.
 const PARTS: i64 = 12;
 
-/// The tag of the random numbers that stand for sides of 0.
+/// Tag of the random numbers that stand for conditions a > 0.
 const POSITIVE: u64 = 128;
 
-/// Numerators and denominators with so many bits are recognised as rational.
+/// Largest number of bits of the numerator and denominator of a value that is recognised as rational.
 const PLAIN_BITS: u32 = 29;
 
-/// Which square roots have values at a point.
+/// Selection of the square roots that have values at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Roots {
-    /// Those of squares of F_p: √a √b = √(ab).
+    /// Roots of squares of F_p, for which √a √b = √(ab).
     #[default]
     OfSquares,
-    /// Those of squares of F_p(i), where √a √b may be −√(ab).
+    /// Roots of squares of F_p(i), for which √a √b may be −√(ab).
     Extended,
-    /// All; where F_p(i) has no root, any value stands for it, whose square is another one: what is proved
-    /// with it holds, but not all that holds is proved.
+    /// All roots. If F_p(i) has no root, an arbitrary value stands for it, whose square is not the
+    /// argument. What is proved with such values holds, but not everything that holds is proved.
     Anything,
 }
 
-/// A point: values of symbols. Values of functions depend on values of arguments alone, so that two graphs agree at the same
-/// point; those in one field do not depend on those in the other.
+/// A point, given by the values of symbols. Values of functions depend only on the values of their
+/// arguments, so that two graphs agree at the same point. Values in one field do not depend on those in the
+/// other.
 #[derive(Clone, Debug, Default)]
 pub struct Lane {
     symbols: Vec<Fp>,
-    /// In which field a square root was asked of a non-square: the point should be chosen anew there.
+    /// Whether a square root of a non-square was requested, for each field; the point should be chosen anew
+    /// there.
     stuck: [bool; 2],
-    /// Which roots have values.
+    /// Which square roots have values.
     pub roots: Roots,
-    /// Symbols that stand for linear forms, by their values.
+    /// Linear forms that symbols stand for, by the values of the symbols.
     written: FxHashMap<Fp, LinearForm>,
 }
 
 impl Lane {
-    /// A point without symbols yet.
+    /// Creates a point that has no symbols yet.
     pub fn new() -> Self {
         Lane::default()
     }
 
-    /// The same functions, without symbols.
+    /// Creates a point with the same functions, but without symbols.
     pub fn fresh(&self) -> Self {
         Lane {
             roots: self.roots,
@@ -79,20 +84,21 @@ impl Lane {
         self.symbols.push(value);
     }
 
-    /// Gives a symbol another value; functions follow where their arguments change.
+    /// Gives a symbol another value; functions of it change accordingly.
     pub fn set_symbol(&mut self, index: usize, value: Fp) {
         if let Some(known) = self.symbols.get_mut(index) {
             *known = value;
         }
     }
 
-    /// From now on, functions take a symbol of this value for the linear form that another graph has in its
-    /// place: sin(a + b) and sin(c) are equal where c = a + b.
+    /// From now on, functions read a symbol of this value as the linear form that another graph has in its
+    /// place, so that sin(a + b) and sin(c) are equal where c = a + b.
     pub fn write_out(&mut self, value: Fp, form: LinearForm) {
         self.written.insert(value, form);
     }
 
-    /// The form with each atom once, as the graph has it in which it is written out.
+    /// Replaces symbols by the linear forms that they stand for, as in the graph in which these are written
+    /// out, and collects equal atoms.
     fn written_out(&self, form: &LinearForm) -> LinearForm {
         let mut all = LinearForm::new();
         for (atom, coefficient) in form {
@@ -113,17 +119,17 @@ impl Lane {
         self.symbols[index]
     }
 
-    /// Whether a square root was asked of a non-square, in either field.
+    /// Whether a square root of a non-square was requested in either field.
     pub fn is_stuck(&self) -> bool {
         self.stuck != [false; 2]
     }
 
-    /// In which of the fields a square root was asked of a non-square.
+    /// Whether a square root of a non-square was requested, for each field.
     pub fn stuck(&self) -> [bool; 2] {
         self.stuck
     }
 
-    /// Value of a function of one argument; `form` is `Graph::form` of the argument.
+    /// Returns the value of a function of one argument; `form` is `Graph::form` of the argument.
     pub fn function(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
         if !self.written.is_empty() && function.row().law.is_additive() {
             let form = self.written_out(form);
@@ -153,12 +159,12 @@ impl Lane {
             }
             Function::Abs => self.sign(argument) * argument,
             Function::Sign => self.sign(argument),
-            // It is odd.
+            // The function is odd.
             Function::Inverse => {
                 let of = |a| self.opaque(function, a, Fp::ZERO);
                 of(argument) - of(-argument)
             }
-            // It is linear.
+            // The function is linear.
             Function::Raised => argument * self.opaque(function, Fp::ONE, Fp::ZERO),
             Function::Log
             | Function::Atan2
@@ -168,7 +174,7 @@ impl Lane {
         }
     }
 
-    /// √(c e) = √c √e with the factor c of the form; a number without a form has any root.
+    /// √(c e) = √c √e, with the factor c of the form. A number without a form may have either root.
     fn root<const K: usize>(
         &self,
         argument: Residue<K>,
@@ -189,7 +195,7 @@ impl Lane {
         root.unwrap_or_else(anything)
     }
 
-    /// A value without any law but equality of arguments.
+    /// Returns a pseudo-random value that obeys no law, except that equal arguments give equal values.
     pub fn opaque(&self, function: Function, a: Fp, b: Fp) -> Fp {
         let tag = function as u64;
         Fp(
@@ -198,22 +204,23 @@ impl Lane {
         )
     }
 
-    /// What stands for a list: lists of the same numbers have it in common.
+    /// Returns the value that stands for a list; lists of the same numbers have the same value.
     pub fn listed(&self, rest: Fp, last: Fp) -> Fp {
         self.opaque(Function::Listed, rest, last)
     }
 
-    /// A component of a function of which nothing is known but that it is a function.
+    /// Returns the value of a component of an external function, of which nothing is known except that it
+    /// is a function.
     pub fn external(&self, component: Component, list: Fp) -> Fp {
         self.opaque(Function::External, list, Fp::from_i64(component.number()))
     }
 
-    /// 1 where a > 0 and 0 elsewhere, for numbers a; for anything else a random number s that belongs to the
-    /// value of a.
+    /// Returns the value that stands for the condition a > 0. For a rational number a, it is 1 or 0; for
+    /// any other value, it is a random number s that belongs to the value of a.
     ///
-    /// Whatever holds for a random s holds for 1 and for 0, and so on both sides. What holds on each of the sides
-    /// only because s is 1 or 0 there, such as s² = s, is not found. That s(−a) = 1 − s(a) is not true where
-    /// a = 0; so the two are chosen apart.
+    /// Whatever holds for a random s holds for 1 and for 0, and so on both sides. Relations that hold on
+    /// each of the sides only because s is 1 or 0 there, such as s² = s, are not found. The relation s(−a)
+    /// = 1 − s(a) is false at a = 0, so the two are chosen independently.
     pub fn positive(&self, a: Fp) -> Fp {
         if let Some((n, _)) = a.to_small_rational(PLAIN_BITS) {
             return if n > 0 { Fp::ONE } else { Fp::ZERO };
@@ -224,12 +231,12 @@ impl Lane {
         )
     }
 
-    /// The sign of a as the difference of a > 0 and −a > 0: 0 where a is 0.
+    /// Sign of a, as the difference of the conditions a > 0 and −a > 0: 0 if a is 0.
     fn sign(&self, a: Fp) -> Fp {
         self.positive(a) - self.positive(-a)
     }
 
-    /// The random stream that belongs to a tag and two values.
+    /// Returns the random stream that belongs to a tag and two values.
     fn draw<const K: usize>(tag: u64, a: Residue<K>, b: Residue<K>) -> Random {
         let mut seed = (K as u64) << 63;
         for part in [tag, a.bits(), b.bits()] {
@@ -243,7 +250,7 @@ impl Lane {
             (Residue::ONE, Residue::ZERO),
             |total, (atom, coefficient)| {
                 let (base, count, parts) = split(part(*atom), coefficient);
-                // A velocity that is 0 at this point.
+                // The atom is a symbol, such as a velocity, that is 0 at this point.
                 if base.is_zero() {
                     return total;
                 }
@@ -284,7 +291,7 @@ impl Lane {
 impl Numbers for Lane {
     type Number = Fp;
 
-    /// Roots that it does not have are noted (`is_stuck`).
+    /// Missing square roots are noted (`is_stuck`).
     #[inline]
     fn make(&mut self, step: Step<Fp>) -> Option<Fp> {
         Some(match step {
@@ -310,7 +317,7 @@ impl Numbers for Lane {
         a.is_zero()
     }
 
-    /// With one inverse.
+    /// Needs only one inversion.
     fn quotient(&mut self, a: &Fp, b: &Fp) -> Option<[Fp; 3]> {
         let inverse = b.inv()?;
         let quotient = *a * inverse;
@@ -339,10 +346,10 @@ fn collect(form: &mut LinearForm, atom: Fp, coefficient: BigRational) {
     form.push((atom, coefficient));
 }
 
-/// Cosine and sine.
+/// Cosine and sine of an angle.
 type Turn<const K: usize> = (Residue<K>, Residue<K>);
 
-/// One of the two fields.
+/// Projection to one of the two fields.
 type Part<'a, const K: usize> = &'a dyn Fn(Fp) -> Residue<K>;
 
 fn first(value: Fp) -> Residue<0> {
@@ -353,7 +360,7 @@ fn second(value: Fp) -> Residue<1> {
     value.1
 }
 
-/// (e ∓ 1/e)/2, or the one over the other: e² is not −1, as p ≡ 3 mod 4.
+/// (e ∓ 1/e)/2, or the quotient of the two; e + 1/e is not 0, because e² is not −1 for p ≡ 3 mod 4.
 fn hyperbolic<const K: usize>(function: Function, e: Residue<K>) -> Residue<K> {
     let inverse = |a: Residue<K>| a.inv().unwrap_or(Residue::ONE);
     let (less, more) = (e - inverse(e), e + inverse(e));
@@ -364,15 +371,16 @@ fn hyperbolic<const K: usize>(function: Function, e: Residue<K>) -> Residue<K> {
     }
 }
 
-/// Writes c·atom as a whole number of parts of a base, signs made canonical; where c is no
-/// multiple of a part, c·atom is a base of its own.
+/// Writes c·atom as a whole number of parts of a base, with the sign of the base made canonical. If c is
+/// not a multiple of a part, c·atom is a base of its own. Returns the base, the number, and 1 or 0 for
+/// these two cases.
 fn split<const K: usize>(atom: Residue<K>, coefficient: &BigRational) -> (Residue<K>, i64, u64) {
     let parts = coefficient * BigRational::from_integer(BigInt::from(PARTS));
     let whole = parts
         .is_integer()
         .then(|| parts.to_integer().to_i64())
         .flatten()
-        // Its negative is a number of the same kind, too.
+        // The negative count must be representable, too.
         .filter(|count| *count != i64::MIN);
     let (base, count, parts) = match whole {
         Some(count) => (atom, count, 1),
@@ -389,14 +397,14 @@ fn split<const K: usize>(atom: Residue<K>, coefficient: &BigRational) -> (Residu
     }
 }
 
-/// A random point (c, s) of the unit circle: ((1 − t²), 2t)/(1 + t²); 1 + t² ≠ 0 as p ≡ 3 mod 4.
+/// Draws a random point (c, s) of the unit circle: ((1 − t²), 2t)/(1 + t²); 1 + t² ≠ 0 as p ≡ 3 mod 4.
 fn circle_residue<const K: usize>(random: &mut Random) -> Turn<K> {
     let t = random.residue();
     let scale = (Residue::ONE + t * t).inv().unwrap_or(Residue::ONE);
     ((Residue::ONE - t * t) * scale, (t + t) * scale)
 }
 
-/// The same in both fields.
+/// Draws a random point of the unit circle in both fields.
 pub fn circle_point(random: &mut Random) -> (Fp, Fp) {
     let (a, b) = (circle_residue(random), circle_residue(random));
     (Fp(a.0, b.0), Fp(a.1, b.1))

@@ -1,10 +1,10 @@
-//! Vectors and matrices of edges, with the products of mechanics in three dimensions.
+//! Vectors and matrices of edges, with the products that mechanics in three dimensions needs.
 
 use super::graph::{Edge, Graph};
 
-/// A vector of three.
+/// A vector in R³.
 pub type Vec3 = [Edge; 3];
-/// A matrix of three rows.
+/// A 3×3 matrix, stored by rows.
 pub type Mat3 = [[Edge; 3]; 3];
 
 /// 0 ∈ R³.
@@ -71,13 +71,13 @@ pub fn dot_mat3(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Edge {
     graph.sum(&rows)
 }
 
-/// A B for matrices as rows.
+/// A B for matrices stored as rows.
 pub fn multiply(graph: &mut Graph, a: &[Vec<Edge>], b: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
     let columns = b.first().map_or(0, Vec::len);
     let zero = graph.zero();
     a.iter()
         .map(|row| {
-            // Large frames have few entries.
+            // Large frames are sparse.
             let entries = row.iter().zip(b).filter(|(entry, _)| **entry != zero);
             let entries: Vec<(Edge, &Vec<Edge>)> = entries.map(|(&a, b)| (a, b)).collect();
             (0..columns)
@@ -92,12 +92,12 @@ pub fn multiply(graph: &mut Graph, a: &[Vec<Edge>], b: &[Vec<Edge>]) -> Vec<Vec<
         .collect()
 }
 
-/// A matrix from its entries by rows; none where rows have no entries.
+/// Builds a matrix from its entries by rows; it is empty if rows have no entries.
 pub fn matrix<T: Clone>(entries: &[T], columns: usize) -> Vec<Vec<T>> {
     entries.chunks(columns.max(1)).map(<[T]>::to_vec).collect()
 }
 
-/// Mᵀ for a matrix as rows.
+/// Mᵀ for a matrix stored as rows.
 pub fn transpose(m: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
     let columns = m.first().map_or(0, Vec::len);
     (0..columns)
@@ -105,8 +105,9 @@ pub fn transpose(m: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
         .collect()
 }
 
-/// (A)⁻¹ B for symmetric A whose leading minors do not vanish on X (positive definite on the
-/// reals), by Gauss without exchange of rows; `None` where a pivot is identically zero.
+/// Computes A⁻¹ B for symmetric A whose leading minors do not vanish on the constraint variety (positive
+/// definite on the reals), by Gaussian elimination without row exchanges; `None` if a pivot is identically
+/// zero.
 pub fn solve_symmetric(
     graph: &mut Graph,
     a: &[Vec<Edge>],

@@ -1,4 +1,4 @@
-//! Newton's method for φ(x) = 0 with the least change of x, damped as Levenberg and Marquardt do.
+//! Newton's method for φ(x) = 0 with the least change of x, with Levenberg–Marquardt damping.
 
 use super::dense::{dot, largest, solve};
 use super::derivation::Derivation;
@@ -6,12 +6,12 @@ use super::graph::{Edge, Graph};
 use super::linear::matrix;
 use super::numeric::evaluate;
 
-/// Largest |φ| of a solution, beside 1 or what its slopes make of x.
+/// Largest |φᵢ| of a solution, relative to 1 or to max(1, Σⱼ |∂φᵢ/∂xⱼ xⱼ|).
 const CLOSE: f64 = 1e-12;
-/// Steps where another point will do as well.
+/// Largest number of steps of a search that can be repeated from another point.
 const FEW_STEPS: usize = 40;
 
-/// φ and ∂φ/∂x, to be solved for x.
+/// Constraints φ and their Jacobian ∂φ/∂x, to be solved for x.
 #[derive(Debug)]
 pub struct Newton {
     graph: Graph,
@@ -21,19 +21,19 @@ pub struct Newton {
     dimension: usize,
 }
 
-/// Where Newton's method ends.
+/// Result of Newton's method.
 #[derive(Clone, Debug)]
 pub struct End {
-    /// x there.
+    /// Final value of x.
     pub x: Vec<f64>,
-    /// max |φ| there.
+    /// max |φ| at the final x.
     pub residual: f64,
-    /// Whether each of φ is small beside 1 or what its slopes make of x.
+    /// Whether every residual φᵢ is small, relative to 1 or to max(1, Σⱼ |∂φᵢ/∂xⱼ xⱼ|).
     pub is_close: bool,
 }
 
 impl Newton {
-    /// φ and its slopes along so many symbols from the first of x on.
+    /// Creates the problem from φ, whose unknowns x are the `dimension` symbols from index `first` on.
     pub fn new(graph: &Graph, phi: &[Edge], first: usize, dimension: usize) -> Self {
         let mut graph = graph.clone();
         let mut columns: Vec<Derivation> = (0..dimension)
@@ -54,21 +54,22 @@ impl Newton {
         }
     }
 
-    /// x with φ(x) = 0 near that of some values of all symbols, if Newton's method finds it soon. Walks on X are of the size of
-    /// 1: where φ is so large that rounding hides 1e-12, nothing is found.
+    /// Returns x with φ(x) = 0 near the x in `numbers` (the values of all symbols), if Newton's method
+    /// finds it soon. The method serves walks on the constraint variety with quantities of order 1: if φ is
+    /// so large that its rounding errors exceed 1e-12, nothing is found.
     pub fn near(&self, numbers: &[f64]) -> Option<Vec<f64>> {
         let x = numbers.get(self.first..self.first + self.dimension)?;
         let end = self.descend(x.to_vec(), numbers, FEW_STEPS, false);
         end.is_close.then_some(end.x)
     }
 
-    /// √det(∂φ/∂x ∂φ/∂xᵀ) where all symbols have these values: 0 where rows depend on one another, as they do where
-    /// components of X meet.
+    /// √det(∂φ/∂x ∂φ/∂xᵀ) at these values of all symbols. It is 0 if rows are linearly dependent, as they
+    /// are where components of the constraint variety meet.
     pub fn volume(&self, numbers: &[f64]) -> f64 {
         let slopes = evaluate(&self.graph, &self.slopes, numbers);
         let mut rows: Vec<Vec<f64>> = matrix(&slopes, self.dimension);
         let mut volume = 1.0;
-        // Gram and Schmidt.
+        // Gram–Schmidt orthogonalization.
         for i in 0..rows.len() {
             let (before, rest) = rows.split_at_mut(i);
             let row = &mut rest[0];
@@ -89,7 +90,8 @@ impl Newton {
         evaluate(&self.graph, edges, &numbers)
     }
 
-    /// Newton's method from a guess; φ is small beside its size where that is `relative`, and beside 1 else.
+    /// Runs Newton's method from a guess. Residuals are compared with their sizes if `relative` is set, and
+    /// with 1 otherwise.
     pub fn descend(&self, mut x: Vec<f64>, numbers: &[f64], steps: usize, relative: bool) -> End {
         let mut phi = self.at(&self.phi, numbers, &x);
         let mut damping = 1e-6;

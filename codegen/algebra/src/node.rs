@@ -33,12 +33,12 @@ impl Edge {
         Edge(node << 1)
     }
 
-    /// The same edge where nodes have other places.
+    /// Returns the same edge after nodes have been renumbered by `places`.
     pub fn moved(self, places: &[NodeId]) -> Edge {
         Edge::of(places[self.node() as usize]).signed(self.is_negative())
     }
 
-    /// This edge, negated where `negative`.
+    /// Returns this edge, negated if `negative`.
     pub fn signed(self, negative: bool) -> Edge {
         if negative { -self } else { self }
     }
@@ -52,18 +52,18 @@ impl std::ops::Neg for Edge {
     }
 }
 
-/// What a node computes.
+/// Operation of a node.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Node {
     /// An exact rational, by its place in the table of constants.
     Constant(u32),
     /// A symbol, by its place in the table of symbols.
     Symbol(u32),
-    /// a + b, signed.
+    /// a + b, where operands may be negative.
     Add(Edge, Edge),
-    /// a · b, both unsigned.
+    /// a · b, neither operand negative.
     Mul(Edge, Edge),
-    /// a / b, both unsigned.
+    /// a / b, neither operand negative.
     Div(Edge, Edge),
     /// A function of one argument.
     Apply(Function, Edge),
@@ -71,14 +71,14 @@ pub enum Node {
     Atan2(Edge, Edge),
     /// (c, a, b): a where c > 0, else b.
     Select(Edge, Edge, Edge),
-    /// The numbers that a function takes: those before, and the last. The first stands behind 0.
+    /// A list of arguments: the list of the earlier numbers, and the last number. The empty list is 0.
     Listed(Edge, Edge),
-    /// A component of a function that is given elsewhere, or a derivative of one, at listed numbers.
+    /// A component of an external function, or a derivative of one, applied to a list.
     External(Component, Edge),
 }
 
 impl Node {
-    /// The children, in order.
+    /// Returns the children, in order.
     pub fn children(self) -> Children {
         let none = Edge(0);
         let (list, count) = match self {
@@ -102,7 +102,7 @@ impl Node {
         matches!(self, Node::Apply(function, _) if function.row().law == Law::Radical)
     }
 
-    /// The same of other children.
+    /// Returns the same operation on other children, to which `child` maps the present ones.
     pub fn over(self, mut child: impl FnMut(Edge) -> Edge) -> Node {
         match self {
             Node::Constant(_) | Node::Symbol(_) => self,
@@ -148,10 +148,10 @@ impl ExactSizeIterator for Children {}
 /// A symbol: its name and the class of inputs that it belongs to, one bit each.
 #[derive(Clone, Debug)]
 pub struct Symbol {
-    /// Name as the user wrote it.
+    /// Name as written by the user.
     pub name: String,
-    /// Class bit; what the bits mean is the caller's affair.
+    /// Class bit; the meaning of the bits is up to the caller.
     pub class: u8,
-    /// Its node.
+    /// Node of the symbol.
     pub node: NodeId,
 }

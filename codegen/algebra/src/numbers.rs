@@ -1,14 +1,14 @@
-//! Numbers of any kind, in which the walk over nodes of `walk::evaluate` has its values.
+//! Arithmetic in numbers of any kind, in which `walk::evaluate` computes the values of nodes.
 //!
-//! A kind of numbers is an implementation of [`Numbers`], which knows the values of symbols at a point:
+//! A kind of numbers is an implementation of [`Numbers`], which knows the values of the symbols at a point:
 //!
 //! | numbers | implementation |
 //! |---|---|
 //! | `f64` | `numeric::Floats` |
 //! | F_p(i) × F_q(i) | `lane::Lane` |
-//! | with slopes along one direction or many, with a record for slopes in all symbols | `dual::Duals` over others |
-//! | twice the length, with bounds of rounding, beside `f64` | `rounding` |
-//! | real samples, certain bounds | `shadow` |
+//! | with slopes along one direction or many, or with a record for reverse mode | `dual::Duals` over others |
+//! | double-double with or without `f64`, with bounds of rounding errors | `rounding` |
+//! | real samples, certified bounds | `shadow` |
 
 use super::external::Component;
 use super::fp::Fp;
@@ -17,10 +17,10 @@ use super::node::{Edge, Node};
 use num_rational::BigRational;
 use std::borrow::Cow;
 
-/// Σ coefficient · atom, as `Graph::form` has it, with the values of its atoms.
+/// Linear form Σ coefficient · atom of `Graph::form`, with the values of its atoms.
 pub type Form<N> = Vec<(N, BigRational)>;
 
-/// Finds a form for who needs it.
+/// Function that computes a form on demand.
 pub type Former<'a, N> = &'a dyn Fn() -> Form<N>;
 
 /// An operation on numbers.
@@ -47,32 +47,32 @@ pub enum Step<'a, N> {
     Atan2(&'a N, &'a N),
     /// (c, a, b): a where c > 0, else b.
     Select(&'a N, &'a N, &'a N),
-    /// What stands for a list: of the numbers before, and the last.
+    /// Number that stands for a list, from that of the earlier entries, and the last entry.
     Listed(&'a N, &'a N),
-    /// A component of a function that is given elsewhere, of a list; the numbers in it, each with its sign, in place
-    /// of a form.
+    /// A component of an external function, applied to a list. In place of a form, it has the numbers in
+    /// the list, each with its sign.
     External(Component, &'a N, Former<'a, N>),
 }
 
 /// Arithmetic at a point.
 pub trait Numbers {
-    /// One number.
+    /// Type of the numbers.
     type Number: Clone;
 
-    /// What a step makes; `None` where there is no such number.
+    /// Executes a step; `None` if there is no such number.
     fn make(&mut self, step: Step<Self::Number>) -> Option<Self::Number>;
 
-    /// Whether it is 0 for certain.
+    /// Whether a number is certainly 0.
     fn is_zero(&self, _: &Self::Number) -> bool {
         false
     }
 
-    /// Whether it is positive; `None` where that is not known.
+    /// Whether a number is positive; `None` if that is not known.
     fn is_positive(&self, _: &Self::Number) -> Option<bool> {
         None
     }
 
-    /// a/b and its derivatives by a and b: 1/b and −(a/b)/b.
+    /// Returns a/b and its derivatives by a and b: 1/b and −(a/b)/b.
     fn quotient(&mut self, a: &Self::Number, b: &Self::Number) -> Option<[Self::Number; 3]> {
         let one = self.make(Step::Whole(1))?;
         let (quotient, by_a) = (self.make(Step::Div(a, b))?, self.make(Step::Div(&one, b))?);
@@ -81,7 +81,7 @@ pub trait Numbers {
         Some([quotient, by_a, by_b])
     }
 
-    /// f′(a) of a function with its value there.
+    /// Returns the derivative f′(a) of a function, given a and f(a).
     fn slope(
         &mut self,
         function: Function,
@@ -131,7 +131,7 @@ pub trait Numbers {
         }
     }
 
-    /// A number with the sign of an edge.
+    /// Applies the sign of an edge to a number.
     fn signed<'a>(&mut self, value: &'a Self::Number, edge: Edge) -> Option<Cow<'a, Self::Number>> {
         Some(match edge.is_negative() {
             true => Cow::Owned(self.make(Step::Neg(value))?),
@@ -139,14 +139,14 @@ pub trait Numbers {
         })
     }
 
-    /// The values of edges from those of all nodes.
+    /// Returns the values of edges, given those of all nodes.
     fn read(&mut self, values: &[Self::Number], edges: &[Edge]) -> Option<Vec<Self::Number>> {
         let value = |&edge: &Edge| self.signed(values.get(edge.node() as usize)?, edge);
         let all = edges.iter().map(value);
         all.map(|value| Some(value?.into_owned())).collect()
     }
 
-    /// The value of a node that is no number from those of the nodes that it is made of.
+    /// Computes the value of a node that is not a number from those of its children.
     #[inline]
     fn node<'a>(
         &mut self,
@@ -202,8 +202,8 @@ pub trait Numbers {
     }
 }
 
-/// Numbers over the two fields.
+/// Numbers that include the elements of the two fields.
 pub trait Modular: Numbers {
-    /// A number of the fields.
+    /// Converts an element of the fields.
     fn residue(&mut self, value: Fp) -> Option<Self::Number>;
 }

@@ -1,4 +1,4 @@
-//! Numbers of expressions: in floating point, and exactly at fresh points modulo p.
+//! Evaluation of expressions: in floating point, and exactly at new points modulo p.
 
 use super::fp::Fp;
 use super::graph::{Edge, Graph};
@@ -7,7 +7,7 @@ use super::numbers::{Numbers, Step};
 use super::walk;
 use num_traits::ToPrimitive;
 
-/// Numbers in floating point, with the values of all symbols.
+/// Floating-point arithmetic, with the values of all symbols.
 #[derive(Clone, Copy, Debug)]
 pub struct Floats<'a>(pub &'a [f64]);
 
@@ -27,13 +27,13 @@ impl Numbers for Floats<'_> {
             Step::Div(a, b) => a / b,
             Step::Apply(function, a, _) => (function.row().value)(*a),
             Step::Atan2(y, x) => y.atan2(*x),
-            // Where c is no number, neither is the choice.
+            // If c is NaN, so is the result.
             Step::Select(c, a, b) => match self.is_positive(c) {
                 Some(true) => *a,
                 Some(false) => *b,
                 None => f64::NAN,
             },
-            // Nothing is known of them in numbers.
+            // External functions have no numerical values.
             Step::Listed(..) | Step::External(..) => f64::NAN,
         })
     }
@@ -47,20 +47,20 @@ impl Numbers for Floats<'_> {
     }
 }
 
-/// The expressions in floating point, given the value of every symbol.
+/// Evaluates the expressions in floating point, given the value of every symbol.
 pub fn evaluate(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<f64> {
     let values = walk::evaluate(graph, roots, &mut Floats(symbols));
     values.unwrap_or_else(|| vec![f64::NAN; roots.len()])
 }
 
-/// The expressions modulo p at another point, whose symbols have been pushed into `lane`;
-/// `None` where a denominator vanishes or a square root has no value there.
+/// Evaluates the expressions modulo p at another point, whose symbols have been pushed into `lane`; `None`
+/// if a denominator vanishes or a square root has no value there.
 pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec<Fp>> {
     let values = walk::evaluate(graph, roots, lane)?;
     (!lane.is_stuck()).then_some(values)
 }
 
-/// The solution of a square system over F_p; `None` where it is singular.
+/// Solves a square linear system over F_p; `None` if it is singular.
 pub fn solve(mut rows: Vec<Vec<Fp>>, mut right: Vec<Fp>) -> Option<Vec<Fp>> {
     let n = right.len();
     for k in 0..n {
@@ -82,7 +82,7 @@ pub fn solve(mut rows: Vec<Vec<Fp>>, mut right: Vec<Fp>) -> Option<Vec<Fp>> {
     (0..n).map(|k| Some(right[k] * rows[k][k].inv()?)).collect()
 }
 
-/// Rank of a matrix over F_p.
+/// Returns the rank of a matrix over F_p.
 pub fn rank(mut rows: Vec<Vec<Fp>>) -> usize {
     let columns = rows.first().map_or(0, Vec::len);
     let mut rank = 0;

@@ -1,11 +1,12 @@
-//! A prime field F_p extended by i, i² = −1: F_p(i), for the two primes of the project.
+//! The field F_p(i), a prime field extended by i with i² = −1, for the two primes of the project.
 //!
 //! The primes are the largest p ≡ 3 mod 4 below π 2⁶⁰ and e 2⁶⁰ modulo which all primes below 40 are
-//! squares: of 62 bits and otherwise without structure, so that no power of 2, no root of a small integer
-//! and no root of unity is near a small rational there (the tests look). As −1 is no square, every element
-//! of F_p has its roots in F_p(i): so an element is a + b i, where b is 0 unless a root made it otherwise;
-//! roots of small numbers are in F_p, so that roots of what they are added to exist, too. Elements are held as a R, R = 2⁶⁴, after
-//! P. Montgomery, *Modular multiplication without trial division* (1985).
+//! squares. They have 62 bits and otherwise no structure, so that no power of 2, no root of a small integer
+//! and no root of unity is near a small rational there (the tests check this). As −1 is not a square, every
+//! element of F_p has its square roots in F_p(i). An element is therefore a + b i, where b is 0 unless a
+//! root made it otherwise. Roots of small numbers are in F_p, so that sums with them are elements of F_p
+//! and have roots, too. Elements are stored in Montgomery form, as a R with R = 2⁶⁴ (P. Montgomery,
+//! *Modular multiplication without trial division*, 1985).
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -47,18 +48,18 @@ impl<const K: usize> Residue<K> {
     /// i.
     pub const I: Self = Residue(0, Self::R);
 
-    /// The class of a non-negative integer.
+    /// Returns the residue class of a non-negative integer.
     pub const fn new(value: u64) -> Self {
         Residue(Self::times(value % Self::P, Self::R2), 0)
     }
 
-    /// The class of an integer.
+    /// Returns the residue class of an integer.
     pub fn from_i64(value: i64) -> Self {
         let magnitude = Self::new(value.unsigned_abs());
         if value < 0 { -magnitude } else { magnitude }
     }
 
-    /// The class of an integer of any size.
+    /// Returns the residue class of an integer of any size.
     pub fn from_integer(value: &BigInt) -> Self {
         if let Some(small) = value.to_i64() {
             return Self::from_i64(small);
@@ -72,7 +73,7 @@ impl<const K: usize> Residue<K> {
         )
     }
 
-    /// The class of a rational; `None` where p divides the denominator.
+    /// Returns the residue class of a rational; `None` if p divides the denominator.
     pub fn from_rational(value: &BigRational) -> Option<Self> {
         let numerator = Self::from_integer(value.numer());
         if value.is_integer() {
@@ -81,17 +82,17 @@ impl<const K: usize> Residue<K> {
         Some(numerator * Self::from_integer(value.denom()).inv()?)
     }
 
-    /// a R and b R modulo p: a + b i as it is stored.
+    /// Parts of a + b i as they are stored: a R and b R modulo p.
     pub fn parts(self) -> [u64; 2] {
         [self.0, self.1]
     }
 
-    /// The element of such parts.
+    /// Creates the element with these stored parts.
     pub(crate) fn of_parts([a, b]: [u64; 2]) -> Self {
         Self(a, b)
     }
 
-    /// 64 bits that depend on a and b, for random streams.
+    /// Returns 64 bits that depend on a and b, for seeding random streams.
     pub fn bits(self) -> u64 {
         self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
@@ -101,7 +102,7 @@ impl<const K: usize> Residue<K> {
         self.1 == 0
     }
 
-    /// Which of ±self stands for both: whether it is the other one.
+    /// Whether the canonical representative of ±self is −self.
     pub fn is_negative(self) -> bool {
         let leading = if self.0 == 0 { self.1 } else { self.0 };
         leading > Self::P / 2
@@ -143,13 +144,13 @@ impl<const K: usize> Residue<K> {
             (r0, r1) = (r1, r0 - q * r1);
             (t0, t1) = (t1, t0 - q * t1);
         }
-        // 1/(a R) times R³ is R²/a, which a product of Montgomery's kind divides by R.
+        // The inverse of a R times R³ is R²/a, which Montgomery multiplication divides by R.
         let inverse = t0.rem_euclid(Self::P as i64) as u64;
         Some(Residue(Self::times(inverse, Self::R3), 0))
     }
 
-    /// A square root: of a in F_p it is ±a^((p+1)/4) or i times that of −a; of the rest of F_p(i)
-    /// half the elements have one (Adj and Rodríguez-Henríquez, algorithm 9), `None` for the others.
+    /// Square root. For a in F_p it is ±a^((p+1)/4), or i times that of −a. Of the other elements of
+    /// F_p(i), half have a root (Adj and Rodríguez-Henríquez, algorithm 9); `None` for the others.
     pub fn sqrt(self) -> Option<Self> {
         if self.1 == 0 {
             let root = self.pow(Self::P.div_ceil(4));
@@ -170,20 +171,21 @@ impl<const K: usize> Residue<K> {
         (root * root == self).then_some(root)
     }
 
-    /// √a as the square of F_p that it is, where a is a square; `None` elsewhere. p ≡ 3 mod 4, so
-    /// a^((p+1)/4) is it.
+    /// The square root of a in F_p that is itself a square of F_p; `None` if a is not a square of F_p. It
+    /// is a^((p+1)/4), because p ≡ 3 mod 4.
     pub fn principal_root(self) -> Option<Self> {
         let root = self.is_prime().then(|| self.pow(Self::P.div_ceil(4)))?;
         (root * root == self).then_some(root)
     }
 
-    /// The rational n/d with |n|, d < 2^bits (bits ≤ 29) that this is the class of, if there is one.
+    /// Returns the rational n/d with |n|, d < 2^bits (bits ≤ 29) whose residue class this is, if there is
+    /// one.
     pub fn to_small_rational(self, bits: u32) -> Option<(i64, i64)> {
         if self.1 != 0 {
             return None;
         }
         let bound = 1i64 << bits.min(29);
-        // Out of Montgomery's form.
+        // Convert from Montgomery form.
         let (mut r0, mut r1) = (Self::P as i64, Self::times(self.0, 1) as i64);
         let (mut t0, mut t1) = (0i64, 1i64);
         while r1 >= bound && t1.abs() < bound {
@@ -207,7 +209,7 @@ impl<const K: usize> Residue<K> {
         if a == 0 { 0 } else { Self::P - a }
     }
 
-    /// a b / R mod p.
+    /// Montgomery product a b / R mod p.
     const fn times(a: u64, b: u64) -> u64 {
         let product = a as u128 * b as u128;
         let factor = (product as u64).wrapping_mul(Self::NEGATIVE_INVERSE);
@@ -258,8 +260,8 @@ impl<const K: usize> Mul for Residue<K> {
     }
 }
 
-/// Whether p divides the numerator or the denominator of a number other than 0, for one of the primes:
-/// such a number has no faithful image.
+/// Whether one of the primes divides the numerator or the denominator of a nonzero number, so that the
+/// number has no faithful image.
 pub fn is_unfaithful(value: &BigRational) -> bool {
     let divides =
         |n: &BigInt, p: u64| n.abs() >= BigInt::from(p) && n.is_multiple_of(&BigInt::from(p));

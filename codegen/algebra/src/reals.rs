@@ -1,23 +1,23 @@
-//! Real values of expressions beside those modulo p: they tell e from −e and from |e|.
+//! Real values of expressions, in addition to those modulo p: they distinguish e from −e and from |e|.
 //!
-//! A square root modulo p is one of two, so expressions that differ modulo p by nothing may differ
-//! as real numbers by the sign of a root. Where a root takes part, equal values modulo p therefore
-//! count only if no real sample contradicts: both are the same number, and the one that is kept has a
-//! value wherever the other has one. Values carry a bound of their rounding errors; where the value of a
-//! symbol is not known, a sample says nothing.
+//! A square root modulo p is one of two, so expressions with the same value modulo p may differ as real
+//! numbers by the sign of a root. Where a root is involved, equal values modulo p therefore count only if
+//! no real sample contradicts them: both expressions must be the same number, and the one that is kept must
+//! have a value wherever the other has one. Values carry a bound of their rounding errors. Where the value
+//! of a symbol is not known, a sample says nothing.
 
 use std::cmp::Ordering;
 
-/// Number of real samples: |e| and e differ at one of them but for bad luck.
+/// Number of real samples. Except by bad luck, |e| and e differ at one of them.
 pub const SAMPLES: usize = 8;
 
-/// A real number and a bound of its error. Where the number is NaN, an error of 0 says that there is
-/// none, such as a root of −1; any other error that it is not known.
+/// A real number and a bound of its error. If the number is NaN, an error of 0 says that the number does
+/// not exist, such as a root of −1; any other error says that it is not known.
 #[derive(Clone, Copy, Debug)]
 pub struct Real {
-    /// The number.
+    /// Value of the number.
     pub value: f64,
-    /// It is off by at most this.
+    /// Bound of the absolute error.
     pub error: f64,
 }
 
@@ -25,24 +25,24 @@ pub struct Real {
 pub type Reals = [Real; SAMPLES];
 
 impl Real {
-    /// No value.
+    /// A number that is not known.
     pub const UNKNOWN: Real = Real {
         value: f64::NAN,
         error: f64::NAN,
     };
 
-    /// No number.
+    /// A number that does not exist.
     pub const UNDEFINED: Real = Real {
         value: f64::NAN,
         error: 0.0,
     };
 
-    /// A number that is off by at most `error`.
+    /// Creates a number that is off by at most `error`.
     pub fn new(value: f64, error: f64) -> Self {
         Real { value, error }
     }
 
-    /// Whether there is a number, and it is known.
+    /// Whether the number exists and is known.
     pub(super) fn is_known(self) -> bool {
         !self.value.is_nan()
     }
@@ -51,7 +51,7 @@ impl Real {
         self.value.is_nan() && self.error == 0.0
     }
 
-    /// What operations make of operands of which one is no known number.
+    /// Result of an operation of which an operand is not a known number.
     pub(super) fn without(self, b: Real) -> Self {
         if self.is_undefined() || b.is_undefined() {
             Real::UNDEFINED
@@ -60,7 +60,7 @@ impl Real {
         }
     }
 
-    /// Rounded once more.
+    /// Creates a number that was rounded once more.
     fn rounded(value: f64, error: f64) -> Self {
         if !value.is_finite() || !error.is_finite() {
             return Real::UNKNOWN;
@@ -71,7 +71,7 @@ impl Real {
         }
     }
 
-    /// −a where asked.
+    /// Returns −a if `negative`, else a.
     pub fn signed(self, negative: bool) -> Self {
         Real {
             value: if negative { -self.value } else { self.value },
@@ -165,7 +165,7 @@ impl Real {
         }
     }
 
-    /// Unknown where it may be on either side.
+    /// Sign; unknown if the number may be on either side of 0.
     pub(super) fn sign(self) -> Self {
         match self.side() {
             Some(side) => Real::new(f64::from(side as i8), 0.0),
@@ -173,7 +173,7 @@ impl Real {
         }
     }
 
-    /// a where this is positive, else b; unknown where it may be either.
+    /// Returns a if this is positive, else b; unknown if it may be either.
     pub(super) fn select(self, a: Real, b: Real) -> Self {
         match self.side() {
             Some(Ordering::Greater) => a,
@@ -183,7 +183,7 @@ impl Real {
         }
     }
 
-    /// On which side of 0 it is; `None` where that is not certain.
+    /// Compares the number with 0; `None` if the result is not certain.
     pub(super) fn side(self) -> Option<Ordering> {
         let certain = self.value.abs() > self.error || self.error == 0.0;
         let side = self.value.partial_cmp(&0.0);
@@ -196,7 +196,7 @@ impl Real {
             return self.without(b);
         }
         let radius = self.value.hypot(b.value) - self.error - b.error;
-        // At the cut the value jumps by 2π.
+        // At the branch cut, the value jumps by 2π.
         if radius > 0.0 && (b.value > b.error || self.value.abs() > self.error) {
             Real::rounded(self.value.atan2(b.value), (self.error + b.error) / radius)
         } else {
@@ -204,8 +204,8 @@ impl Real {
         }
     }
 
-    /// Whether b cannot stand for this: it is a different number, whatever the errors, or none where this
-    /// is one.
+    /// Whether b cannot stand for this: it is a different number, whatever the errors, or it does not exist
+    /// although this does.
     fn differs(self, b: Real) -> bool {
         if self.is_known() && b.is_undefined() {
             return true;
@@ -215,7 +215,7 @@ impl Real {
     }
 }
 
-/// Whether b cannot stand for a at a sample.
+/// Whether b cannot stand for a at some sample.
 pub fn contradict(a: &[Real], b: &[Real]) -> bool {
     a.iter().zip(b).any(|(a, b)| a.differs(*b))
 }

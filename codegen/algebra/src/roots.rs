@@ -1,8 +1,8 @@
-//! Square roots modulo p that keep the laws of real roots: √(ab) = √a √b for a, b > 0.
+//! Square roots modulo p that obey the laws of real roots: √(ab) = √a √b for a, b > 0.
 //!
-//! A root modulo p is one of two, and nothing there tells which is positive. Roots of the primes
-//! are chosen freely, those of positive rationals are their products; of expressions only those
-//! points are used at which they are squares of F_p, whose roots that are squares themselves are
+//! A root modulo p is one of two, and nothing there tells which one is positive. The roots of primes are
+//! chosen freely, and the roots of positive rationals are products of these. For expressions, only points
+//! are used at which the arguments of roots are squares of F_p; their roots that are squares themselves are
 //! closed under multiplication.
 
 use super::prime::Residue;
@@ -13,7 +13,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
 
-/// Primes below this are split off; what is left is a square or one more free choice.
+/// Bound below which primes are split off; the rest is a square or gets a freely chosen root.
 const LARGEST_PRIME: u32 = 1 << 12;
 
 /// √c of a positive rational c; `None` where c ≤ 0 or p divides its denominator.
@@ -25,10 +25,11 @@ pub fn of_rational<const K: usize>(c: &BigRational) -> Option<Residue<K>> {
 }
 
 thread_local! {
-    /// Roots of long numbers in both fields: points are tried by the thousand, with the same numbers under roots.
+    /// Roots of long numbers in both fields. Points are tried by the thousand, with the same numbers under
+    /// roots.
     static LONG: RefCell<FxHashMap<(BigInt, usize), [u64; 2]>> = RefCell::default();
 }
-/// Roots that are remembered at most.
+/// Largest number of roots that are remembered.
 const REMEMBERED: usize = 10_000;
 
 /// √n for n > 0, the product of the roots of its primes.
@@ -54,7 +55,7 @@ fn by_primes<const K: usize>(n: &BigInt) -> Residue<K> {
     let (mut rest, mut root) = (n.clone(), Residue::ONE);
     let mut prime = 2;
     while prime < LARGEST_PRIME && !rest.is_one() {
-        // What stays below 2^64 is divided faster there.
+        // Numbers below 2^64 are divided faster as machine words.
         if let Some(small) = rest.to_u64() {
             let (small, factor) = split(small, prime);
             return root * factor * of_rough(&BigInt::from(small));
@@ -73,7 +74,7 @@ fn by_primes<const K: usize>(n: &BigInt) -> Residue<K> {
     root * of_rough(&rest)
 }
 
-/// What is left of n without its primes from `first` on, and the product of their roots.
+/// Returns the rest of n without its prime factors from `first` on, and the product of the roots of these.
 fn split<const K: usize>(mut n: u64, first: u32) -> (u64, Residue<K>) {
     let mut root = Residue::ONE;
     let mut prime = u64::from(first);
@@ -87,7 +88,7 @@ fn split<const K: usize>(mut n: u64, first: u32) -> (u64, Residue<K>) {
     (n, root)
 }
 
-/// √n of a number without small primes.
+/// √n of a number without small prime factors.
 fn of_rough<const K: usize>(n: &BigInt) -> Residue<K> {
     let whole = n.sqrt();
     if &whole * &whole == *n {
@@ -97,7 +98,7 @@ fn of_rough<const K: usize>(n: &BigInt) -> Residue<K> {
     residue.sqrt().unwrap_or(Residue::ONE)
 }
 
-/// The root of a prime, in F_p or F_p(i).
+/// Root that is chosen for a prime, in F_p or F_p(i).
 fn chosen<const K: usize>(prime: u64) -> Residue<K> {
     Residue::new(prime).sqrt().unwrap_or(Residue::ONE)
 }

@@ -1,7 +1,8 @@
-//! What rounding does to expressions: values in `f64` beside those in twice the length, and bounds.
+//! Rounding errors of expressions: values in `f64` with values in double-double precision, and error
+//! bounds.
 //!
-//! With unit roundoff u = 2^-53 a node computed in `f64` from children that are off by e_a, e_b is off
-//! by at most
+//! With unit roundoff u = 2^-53, a node that is computed in `f64` from children with errors e_a, e_b has,
+//! up to terms of second order, an error of at most
 //!
 //! | node | bound |
 //! |---|---|
@@ -10,8 +11,6 @@
 //! | a / b | (e_a + \|a/b\| e_b) / \|b\| + u \|a/b\| |
 //! | f(a) | \|f'(a)\| e_a + u \|f(a)\| |
 //! | a where c > 0, else b | e_a or e_b |
-//!
-//! but for terms of second order.
 
 use super::double::Double;
 use super::dual::{Duals, Partial, Slopes};
@@ -24,23 +23,24 @@ use super::walk::evaluate;
 /// Unit roundoff of `f64`.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// An expression computed in `f64` from start to end, and its value.
+/// Value of an expression computed in `f64` from start to end, with its accurate value.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounded {
-    /// As a program in `f64` has it.
+    /// Value that a program in `f64` computes.
     pub rounded: f64,
-    /// As it is.
+    /// Value in double-double precision.
     pub exact: Double,
 }
 
 impl Rounded {
-    /// How far the one is from the other.
+    /// Returns the distance between the two values.
     pub fn apart(&self) -> f64 {
         (Double::new(self.rounded) - self.exact).abs().to_f64()
     }
 }
 
-/// Numbers of twice the length, with the values of all symbols but π; those that have none count as 0.
+/// Double-double arithmetic, with the values of all symbols except π, which is symbol 0. Symbols without a
+/// value count as 0.
 struct Doubles<'a>(&'a [f64]);
 
 impl Numbers for Doubles<'_> {
@@ -64,7 +64,8 @@ impl Numbers for Doubles<'_> {
                 Some(false) => *b,
                 None => *c,
             },
-            // The nearest that there is to numbers of a function that is not known: its own rounding is not asked for.
+            // A stand-in for the external function, which is not known; its own rounding errors are not of
+            // interest.
             Step::Listed(rest, a) => *rest * Double::new(external::WEIGHT) + *a,
             Step::External(component, list, _) => {
                 let [constant, factor] = component.likeness().map(Double::new);
@@ -79,8 +80,8 @@ impl Numbers for Doubles<'_> {
     }
 }
 
-/// Both kinds at once. Functions in `f64` are the nearest numbers to their values: the same on every
-/// machine.
+/// Arithmetic in `f64` and in double-double precision at once. Functions in `f64` are rounded to the
+/// nearest number, so that they are the same on every machine.
 struct Both<'a>(Doubles<'a>);
 
 impl Numbers for Both<'_> {
@@ -123,27 +124,28 @@ impl Numbers for Both<'_> {
     }
 }
 
-/// The expressions in `f64` and in twice the length, given the value of every symbol but π.
+/// Evaluates the expressions in `f64` and in double-double precision, given the values of all symbols
+/// except π.
 pub fn rounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Rounded> {
     evaluate(graph, roots, &mut Both(Doubles(symbols))).unwrap_or_default()
 }
 
-/// A value with a bound of what rounding in `f64` makes of it.
+/// A value with a bound of its rounding error in `f64`.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
     /// The value.
     pub value: f64,
-    /// How far a program in `f64` may be off.
+    /// Bound of the error of a program in `f64`.
     pub error: f64,
 }
 
-/// Bounds of errors in the place of slopes: Σ |∂f/∂a| eₐ, and u |f| where f itself is rounded.
+/// Error bounds in place of slopes: Σ |∂f/∂a| eₐ, plus u |f| if f itself is rounded.
 struct Errors;
 
 impl Slopes<Doubles<'_>> for Errors {
     type Slope = f64;
 
-    /// Values of symbols are numbers of `f64`, but for π.
+    /// Values of symbols are exact in `f64`, except that of π.
     fn symbol(&mut self, _: &mut Doubles, index: usize) -> f64 {
         if index == 0 {
             UNIT * Double::PI.to_f64()
@@ -178,8 +180,8 @@ impl Slopes<Doubles<'_>> for Errors {
     }
 }
 
-/// The expressions with bounds of their rounding, given the value of every symbol; symbols that have
-/// none count as 0.
+/// Evaluates the expressions with bounds of their rounding errors, given the value of every symbol. Symbols
+/// without a value count as 0.
 pub fn bounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Bounded> {
     let mut numbers = Duals {
         numbers: Doubles(symbols),

@@ -1,5 +1,5 @@
-//! The real values of a graph's nodes, found where they are needed to tell expressions apart: those of
-//! numbers with certainty, those of what has a square root below it at samples.
+//! Real values of a graph's nodes, computed where they are needed to distinguish expressions: certified
+//! bounds for numbers, and samples for expressions that contain a square root.
 
 use super::external;
 use super::interval::Interval;
@@ -11,49 +11,49 @@ use num_traits::ToPrimitive;
 use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
 
-/// Real values of nodes, found when they are first asked for.
+/// Real values of nodes, computed when they are first needed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shadow {
-    /// Those of the symbols.
+    /// Samples of the symbols.
     symbols: Vec<Reals>,
-    /// Those of the first nodes.
+    /// Samples of the first nodes, as far as they have been computed.
     values: Vec<Reals>,
-    /// Whether a square root is below a node.
+    /// Whether each node contains a square root.
     rooted: Vec<bool>,
-    /// Whether the first half of the samples speaks of all nodes.
+    /// Whether the first half of the samples is compared for all nodes, with or without square roots.
     pub(super) watched: bool,
-    /// Whether it did.
+    /// Whether such a comparison contradicted the values modulo p.
     pub(super) contradicted: bool,
-    /// Numbers between certain bounds; `None` where none are known.
+    /// Certified bounds of numbers; `None` if none are known.
     numbers: FxHashMap<NodeId, Option<Interval>>,
-    /// What was taken for what although there are square roots below it.
+    /// Merges of expressions that contain square roots: a node, and the edge that replaced it.
     taken: Vec<(Node, Edge)>,
-    /// Whether nothing with a square root below it is taken for anything else.
+    /// Whether expressions that contain a square root are never merged with others.
     pub(super) apart: bool,
 }
 
-/// At how many samples two numbers have to be known, to be one.
+/// Smallest number of samples at which two merged expressions must both be known.
 const FEWEST: usize = 16;
 
 impl Shadow {
-    /// Other values of the symbols.
+    /// Sets the samples of the symbols.
     pub(super) fn set(&mut self, symbols: Vec<Reals>) {
         self.symbols = symbols;
         self.values.clear();
     }
 
-    /// The values of a symbol.
+    /// Returns the samples of a symbol.
     pub(super) fn symbol(&self, index: usize) -> Reals {
         let known = self.symbols.get(index).copied();
         known.unwrap_or([Real::UNKNOWN; SAMPLES])
     }
 
-    /// A node was added to the graph.
+    /// Takes note of a node that was added to the graph.
     pub(super) fn follow(&mut self, node: Node) {
         self.rooted.push(self.has_root(node));
     }
 
-    /// Whether a square root is below a node.
+    /// Whether a node contains a square root.
     pub(super) fn is_rooted(&self, id: NodeId) -> bool {
         self.rooted[id as usize]
     }
@@ -63,7 +63,8 @@ impl Shadow {
         node.is_root() || node.children().any(below)
     }
 
-    /// Whether a node with square roots below it, or what it is said to equal, is another number.
+    /// Whether samples or settings forbid taking a node for `known`. Samples are compared if one of the two
+    /// contains a square root, and otherwise only if `watched` is set.
     pub(super) fn disputes(
         &mut self,
         nodes: &[Node],
@@ -93,7 +94,8 @@ impl Shadow {
         contradicts
     }
 
-    /// Whether what was taken for something else is another number at one of many samples, or is known at too few of them.
+    /// Whether some merged expression differs from its replacement at one of many samples, or both are
+    /// known at too few of them.
     pub(super) fn is_doubtful(
         &self,
         nodes: &[Node],
@@ -127,7 +129,7 @@ impl Shadow {
         }
     }
 
-    /// Itself with the values of all nodes, where a square root is below one of the given nodes.
+    /// Returns a copy with the samples of all nodes, if one of the given nodes contains a square root.
     pub(super) fn filled(
         &self,
         nodes: &[Node],
@@ -142,14 +144,15 @@ impl Shadow {
         Some(shadow)
     }
 
-    /// Whether a node of values that were filled in is another number than what is to stand for it.
+    /// Whether `other` cannot replace a node whose samples have been computed: it is a different number, or
+    /// it is neither a sum nor a product.
     pub(super) fn refuses(&self, node: NodeId, other: Node) -> bool {
         let is_known = matches!(other, Node::Add(..) | Node::Mul(..));
         !is_known || contradict(&self.values[node as usize], &self.value(&[], other))
     }
 
-    /// Whether a node that depends on no symbol, or what it is said to equal, is another number, or a
-    /// number that is not known.
+    /// Whether a node that depends on no symbol differs from `known`, or the bounds of one of them are not
+    /// known.
     pub(super) fn disputes_number(
         &mut self,
         nodes: &[Node],
@@ -164,7 +167,7 @@ impl Shadow {
         }
     }
 
-    /// The bounds of a node that depends on no symbol but π.
+    /// Returns certified bounds of a node that depends on no symbol but π.
     pub(super) fn number(
         &mut self,
         nodes: &[Node],
@@ -212,7 +215,7 @@ impl Shadow {
     }
 }
 
-/// Numbers at real samples, with the values of symbols.
+/// Arithmetic on real samples, with the samples of the symbols.
 struct Samples<'a>(&'a [Reals]);
 
 impl Numbers for Samples<'_> {
@@ -239,7 +242,7 @@ impl Numbers for Samples<'_> {
             Step::Select(c, a, b) => {
                 std::array::from_fn(|sample| c[sample].select(a[sample], b[sample]))
             }
-            // One function that these may be: what holds for all functions holds for this one.
+            // A stand-in for the external function: whatever holds for all functions holds for this one.
             Step::Listed(rest, a) => pair(rest, a, |rest, a| {
                 rest.times(Real::new(external::WEIGHT, 0.0)).plus(a)
             }),
@@ -251,7 +254,7 @@ impl Numbers for Samples<'_> {
     }
 }
 
-/// Numbers between certain bounds, of which π is the only symbol.
+/// Interval arithmetic, in which π is the only symbol.
 struct Bounds;
 
 impl Numbers for Bounds {

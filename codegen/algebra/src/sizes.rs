@@ -1,4 +1,4 @@
-//! The sizes of equations, beside which what is left of them is large or small, whatever units they are in.
+//! Sizes of equations, relative to which residuals are large or small, whatever the units.
 
 use super::graph::{Edge, Graph};
 use super::numbers::{Numbers, Step};
@@ -7,7 +7,7 @@ use super::slopes::slopes;
 use super::walk;
 use std::ops::Range;
 
-/// Values, and the sizes of the terms that they are sums of.
+/// Values, with the sizes of the terms that they are sums of.
 struct Sized<'a>(Floats<'a>);
 
 impl Numbers for Sized<'_> {
@@ -51,8 +51,9 @@ impl Numbers for Sized<'_> {
     }
 }
 
-/// The sizes of equations, given the value of every symbol: what a change of 1 makes of them along any of the symbols at these
-/// places, and the terms that cancel, of which rounding takes a part. 0 where there is neither.
+/// Returns the sizes of equations, given the value of every symbol: the effect of a change of 1 along the
+/// symbols at these places, plus the size of the terms that cancel, to which rounding errors are
+/// proportional. A size that would not be finite is 0.
 pub fn sizes(graph: &Graph, equations: &[Edge], symbols: &[f64], places: Range<usize>) -> Vec<f64> {
     let directions = places.map(|place| {
         let mut direction = vec![0.0; place + 1];
@@ -71,7 +72,7 @@ pub fn sizes(graph: &Graph, equations: &[Edge], symbols: &[f64], places: Range<u
     (0..equations.len()).map(size).collect()
 }
 
-/// What is left of equations, [beside] their [`sizes`].
+/// Returns the residuals of equations relative to their [`sizes`], by [`beside`].
 pub fn relative(
     graph: &Graph,
     equations: &[Edge],
@@ -83,7 +84,7 @@ pub fn relative(
     left.map(|(left, size)| beside(left, size)).collect()
 }
 
-/// What is left of an equation as a part of its size, or as it is where it has none.
+/// Returns the residual of an equation relative to its size, or the residual itself if the size is 0.
 pub fn beside(left: f64, size: f64) -> f64 {
     left / if size > 0.0 { size } else { 1.0 }
 }

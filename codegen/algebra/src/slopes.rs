@@ -1,17 +1,17 @@
-//! Numbers of expressions with their slopes along many directions, in floating point: no derivative is
-//! ever written as an expression, so that the cost is that of the values times the directions.
+//! Values of expressions with their slopes along many directions, in floating point. No derivative is ever
+//! written as an expression, so the cost is that of the values times the number of directions.
 
 use super::dual::{Across, Duals};
 use super::graph::{Edge, Graph};
 use super::numeric::Floats;
 use super::walk::evaluate;
 
-/// A value with its slope along every direction; nothing of it moves where there are no slopes.
+/// A value with its slope along every direction; the list of slopes is empty if all are 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sloped {
     /// The value.
     pub value: f64,
-    /// The slopes.
+    /// Slopes along the directions.
     pub along: Vec<f64>,
 }
 
@@ -22,8 +22,8 @@ impl Sloped {
     }
 }
 
-/// The expressions, given the value of every symbol, with their slopes along directions: one entry for
-/// each symbol, 0 beyond the end.
+/// Evaluates the expressions with their slopes along directions, given the value of every symbol. A
+/// direction has one entry for each symbol, 0 beyond its end.
 pub fn slopes(
     graph: &Graph,
     roots: &[Edge],

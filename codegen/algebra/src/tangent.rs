@@ -1,5 +1,5 @@
-//! Directional derivatives modulo p by dual numbers: value and slope of every node, without a
-//! derivative ever being written as an expression.
+//! Directional derivatives modulo p by dual numbers: value and slope of every node, without ever writing a
+//! derivative as an expression.
 
 use super::dual::{Along, Duals};
 use super::fp::Fp;
@@ -10,7 +10,7 @@ use super::walk::evaluate;
 /// A value and its slope.
 pub type Dual = (Fp, Fp);
 
-/// Values modulo p with slopes along a direction: one entry for each symbol, 0 beyond its end.
+/// Returns dual numbers modulo p along a direction, which has one entry for each symbol, 0 beyond its end.
 pub(super) fn duals(lane: &Lane, direction: &[Fp]) -> Duals<Lane, Along<impl Fn(usize) -> Fp>> {
     Duals {
         numbers: lane.clone(),
@@ -18,8 +18,8 @@ pub(super) fn duals(lane: &Lane, direction: &[Fp]) -> Duals<Lane, Along<impl Fn(
     }
 }
 
-/// The expressions and their slopes along `direction` at a point; `None` where something has no value
-/// there.
+/// Evaluates the expressions and their slopes along `direction` at a point; `None` if something has no
+/// value there.
 pub fn tangent_at(
     graph: &Graph,
     roots: &[Edge],

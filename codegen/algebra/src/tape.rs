@@ -1,7 +1,7 @@
-//! Expressions as a list of steps, to be evaluated modulo p at many points.
+//! Expressions as a list of steps, for evaluation modulo p at many points.
 //!
-//! The steps of an expression are found once; a point then costs one pass over them, whether values are
-//! wanted or derivatives (`jets`, `bend`).
+//! The steps of an expression are found once. A point then costs one pass over them, whether values or
+//! derivatives (`jets`, `bend`) are wanted.
 
 use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
@@ -9,24 +9,24 @@ use super::lane::Lane;
 use super::numbers::{Form, Modular};
 use num_rational::BigRational;
 
-/// A node of earlier steps, and the linear form of its argument.
+/// A node whose children are earlier steps, and the linear form of its argument.
 #[derive(Clone, Debug)]
 struct Step {
     node: Node,
     form: Vec<(NodeId, BigRational)>,
 }
 
-/// Expressions to be evaluated.
+/// Expressions prepared for evaluation at many points.
 #[derive(Clone, Debug)]
 pub struct Tape {
-    /// Those of the numbers 0 and 1 come first, as in a graph.
+    /// Steps; those of the numbers 0 and 1 come first, as in a graph.
     steps: Vec<Step>,
     constants: Vec<Fp>,
     roots: Vec<Edge>,
 }
 
 impl Tape {
-    /// The steps of expressions; `None` where p divides the denominator of a number.
+    /// Builds the steps of expressions; `None` if p divides the denominator of a number.
     pub fn new(graph: &Graph, roots: &[Edge]) -> Option<Self> {
         let mut tape = Tape {
             steps: Vec::new(),
@@ -64,7 +64,7 @@ impl Tape {
         Some(tape)
     }
 
-    /// The values of the expressions; `None` where something has none.
+    /// Evaluates the expressions in numbers of any kind; `None` if something has no value.
     pub(super) fn run<C: Modular>(&self, numbers: &mut C) -> Option<Vec<C::Number>> {
         let mut values: Vec<C::Number> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
@@ -83,7 +83,7 @@ impl Tape {
         numbers.read(&values, &self.roots)
     }
 
-    /// The values of the expressions at a point; `None` where something has no value there.
+    /// Evaluates the expressions at a point; `None` if something has no value there.
     pub fn values(&self, lane: &Lane) -> Option<Vec<Fp>> {
         let mut lane = lane.clone();
         let values = self.run(&mut lane)?;

@@ -10,7 +10,7 @@ enum Binding {
     Whole,
 }
 
-/// The expression as it is written in a description; `None` where it is longer than `most`.
+/// Writes an expression as in a description; `None` if it has more than `most` characters.
 pub fn short(graph: &Graph, edge: Edge, most: usize) -> Option<String> {
     let text = write(graph, edge, most, most)?.0;
     (text.chars().count() <= most).then_some(text)
@@ -83,7 +83,7 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
     (text.chars().count() <= most).then_some((text, binding))
 }
 
-/// An operand, in parentheses where its operation binds less tightly than asked for.
+/// Writes an operand, in parentheses if its operation binds less tightly than `least`.
 fn within(graph: &Graph, edge: Edge, least: Binding, most: usize, depth: usize) -> Option<String> {
     let (text, binding) = write(graph, edge, most, depth)?;
     Some(if binding < least {

@@ -1,8 +1,9 @@
-//! From graph nodes to polynomials, where they are polynomials of bearable size.
+//! Conversion of graph nodes to polynomials, where these are of bearable size.
 //!
-//! A symbol is the variable of its index; any other node that is no sum or product (a function, a
-//! quotient) is a variable of its own, numbered from `OPAQUE` by its node. So is, where it is asked for, a linear form whose
-//! third or a higher power is taken, x − c in (x − c)³: near its zero expanded terms would cancel, and with them all digits.
+//! A symbol is the variable of its index. Any other node that is neither a sum nor a product (a function, a
+//! quotient) is a variable of its own, numbered from `OPAQUE` on by its node. On request, this also applies
+//! to linear forms of which a third or a higher power is taken, such as x − c in (x − c)³: near its zero
+//! the expanded terms would cancel, and all digits would be lost.
 
 use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
@@ -13,23 +14,23 @@ use num_rational::BigRational;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::borrow::Cow;
 
-/// Variables from here on are nodes that are no polynomials themselves.
+/// First of the variables that stand for nodes which are not polynomials themselves.
 pub const OPAQUE: Var = 1 << 24;
 
 /// Largest number of terms of an intermediate polynomial.
 pub const MOST_TERMS: usize = 4000;
 
-/// How many times as many terms a polynomial may have before it is reduced.
+/// Factor by which a polynomial may exceed the largest number of terms before it is reduced.
 const UNREDUCED: usize = 4;
 
-/// Polynomials of so many terms are not reduced on the way: they are short enough.
+/// Largest number of terms of a polynomial that is short enough not to be reduced on the way.
 const REDUCED_TERMS: usize = 16;
 
-/// Highest degree of an intermediate polynomial: towers of powers reach degrees that no exponent
-/// could hold.
+/// Highest degree of an intermediate polynomial; otherwise towers of powers would reach degrees that no
+/// exponent can hold.
 pub const HIGHEST_DEGREE: u32 = 100;
 
-/// Products and sums of terms of a linear form whose powers are kept.
+/// Budget for expanding a linear form whose powers are kept, in products and sums of terms.
 const LONGEST_BASE: usize = 100;
 
 /// a b, unless it has more than `most` terms or too high a degree.
@@ -40,14 +41,14 @@ fn product<F: Field>(a: &Poly<F>, b: &Poly<F>, most: usize) -> Option<Poly<F>> {
     a.mul_limited(b, most)
 }
 
-/// Polynomials over Q of nodes; remembers what it has expanded.
+/// Converter of nodes to polynomials over Q, which remembers its results.
 pub struct Expander {
     memo: FxHashMap<NodeId, Option<Poly<BigRational>>>,
-    /// Products and sums of terms that may still be made.
+    /// Number of products and sums of terms that may still be made.
     work: usize,
     /// Largest number of terms of a polynomial, intermediate ones included.
     most_terms: usize,
-    /// Linear forms that are variables, where powers are kept.
+    /// Linear forms that are variables, if powers are kept.
     bases: Option<FxHashSet<NodeId>>,
 }
 
@@ -58,8 +59,8 @@ impl Default for Expander {
 }
 
 impl Expander {
-    /// One that gives up after so many products and sums of terms: what is not expanded by then has no
-    /// polynomial.
+    /// Creates an expander that gives up after `work` products and sums of terms. Whatever is not expanded
+    /// by then has no polynomial.
     pub fn within(work: usize) -> Self {
         Expander {
             memo: FxHashMap::default(),
@@ -69,24 +70,25 @@ impl Expander {
         }
     }
 
-    /// Gives up on expressions with an intermediate polynomial of more terms than this.
+    /// Returns the expander with a limit on the number of terms of intermediate polynomials; longer ones
+    /// are given up.
     pub fn of_terms(mut self, most: usize) -> Self {
         self.most_terms = most;
         self
     }
 
-    /// The same from now on; what has been expanded stays.
+    /// Changes the limit on the number of terms from now on; what has been expanded stays.
     pub fn limit_terms(&mut self, most: usize) {
         self.most_terms = most;
     }
 
-    /// The same, with linear forms as variables whose third or a higher power is taken.
+    /// Returns the expander with linear forms as variables if a third or a higher power of them is taken.
     pub fn keeping_powers(mut self) -> Self {
         self.bases = Some(FxHashSet::default());
         self
     }
 
-    /// The polynomial of an expression; `None` where it has too many terms.
+    /// Expands an expression to a polynomial; `None` if it has too many terms.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         if self.bases.is_some() {
             self.keep_powers(graph, &graph.reachable(&[edge]));
@@ -98,10 +100,12 @@ impl Expander {
         self.signed(edge).map(Cow::into_owned)
     }
 
-    /// The polynomial of an expression modulo an ideal: `reduce` gives a representative of each polynomial on the way
-    /// that has more than [`REDUCED_TERMS`]. `None` where a representative has too many terms, or a product before it
-    /// has far too many, or where it takes more than `work` products and sums of terms; parts that were not reached
-    /// then are expanded when they are asked for again. One expander serves one ideal.
+    /// Expands an expression to a polynomial modulo an ideal. `reduce` returns a representative of each
+    /// intermediate polynomial that has more than `REDUCED_TERMS` terms.
+    ///
+    /// Returns `None` if a representative has too many terms, if a product before reduction has far too
+    /// many, or if more than `work` products and sums of terms are needed. Parts that were not reached then
+    /// are expanded when they are requested again. One expander serves one ideal.
     pub fn expand_modulo(
         &mut self,
         graph: &Graph,
@@ -118,7 +122,7 @@ impl Expander {
             let terms = |polynomial: &Poly<BigRational>| polynomial.terms().len();
             let length = polynomial.as_ref().map_or(0, terms);
             if length > REDUCED_TERMS {
-                // Each of its terms may be replaced by others, for which there is made room among the rest.
+                // Each term may be replaced by others, which have to be inserted among the rest.
                 self.spend(length * length / 8)?;
                 polynomial = polynomial.map(|polynomial| reduce(graph, polynomial));
             }
@@ -128,7 +132,7 @@ impl Expander {
         self.signed(edge).map(Cow::into_owned)
     }
 
-    /// The parts of an expression that have not been expanded, children first.
+    /// Returns the parts of an expression that have not been expanded, children first.
     fn unknown(&self, graph: &Graph, edge: Edge) -> Vec<NodeId> {
         let mut found = FxHashSet::default();
         let mut open = vec![edge.node()];
@@ -142,7 +146,8 @@ impl Expander {
         found
     }
 
-    /// Finds the linear forms whose powers are kept. What was expanded before them is expanded anew.
+    /// Finds the linear forms whose powers are kept. If there are new ones, everything expanded before is
+    /// expanded again.
     fn keep_powers(&mut self, graph: &Graph, ids: &[NodeId]) {
         let Some(mut bases) = self.bases.take() else {
             return;
@@ -175,7 +180,7 @@ impl Expander {
         })
     }
 
-    /// Takes from the work that is left; `None` where it does not suffice.
+    /// Takes work from the budget; `None` if the budget does not suffice.
     fn spend(&mut self, work: usize) -> Option<()> {
         let left = self.work.checked_sub(work);
         self.work = left.unwrap_or(0);
@@ -209,7 +214,7 @@ impl Expander {
     }
 }
 
-/// Whether an expression is polynomial in the symbols of some classes.
+/// Whether an expression is polynomial in the symbols of these classes.
 pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
     graph
         .reachable(&[edge])
@@ -221,8 +226,8 @@ pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
         })
 }
 
-/// The polynomial of an expression over F_p in the symbols that are `unknown`, all others having
-/// the given values; `None` where it is no polynomial in them.
+/// Expands an expression over F_p to a polynomial in the symbols that are `unknown`, with the given values
+/// of all others; `None` if it is not a polynomial in them.
 pub fn polynomial_at(
     graph: &Graph,
     edge: Edge,
@@ -249,7 +254,7 @@ pub fn polynomial_at(
                 let divisor = read(&memo, b)?.as_constant()?.inv()?;
                 read(&memo, a)?.scale(&divisor)
             }
-            // Functions of parameters: any fixed value serves, the same in both graphs by its law.
+            // Functions and choices are not expanded, not even those of known symbols.
             _ => return None,
         };
         memo.insert(id, polynomial);

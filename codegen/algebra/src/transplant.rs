@@ -1,14 +1,14 @@
-//! Carrying expressions from one graph to another with the same symbols.
+//! Transfer of expressions from one graph to another with the same symbols.
 
 use super::graph::{Edge, Graph, Node};
 
-/// Builds the expressions again in another graph, where they merge with what is equal there.
+/// Rebuilds the expressions in another graph, where they merge with nodes of equal value.
 pub fn rebuild(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     carry(from, into, edges, same_symbol, merged)
 }
 
-/// Builds the expressions again with every symbol replaced by an expression of the other graph, by
-/// the symbols' order.
+/// Rebuilds the expressions with every symbol replaced by an expression of the other graph; `images` is in
+/// the order of the symbols.
 pub fn map_symbols(from: &Graph, into: &mut Graph, edges: &[Edge], images: &[Edge]) -> Vec<Edge> {
     carry(from, into, edges, |_, index| images[index as usize], merged)
 }
@@ -17,12 +17,12 @@ fn same_symbol(into: &Graph, index: u32) -> Edge {
     Edge::of(into.symbols()[index as usize].node)
 }
 
-/// An edge by the images of nodes.
+/// Maps an edge by the images of nodes.
 pub(crate) fn read(image: &[Edge], edge: Edge) -> Edge {
     image[edge.node() as usize].signed(edge.is_negative())
 }
 
-/// A node of other children, where it merges with what is equal.
+/// Adds a node to a graph, where it merges with a node of equal value.
 pub(crate) fn merged(into: &mut Graph, node: Node) -> Edge {
     match node {
         Node::Add(a, b) => into.add(a, b),
@@ -37,8 +37,7 @@ pub(crate) fn merged(into: &mut Graph, node: Node) -> Edge {
     }
 }
 
-/// The expressions with expressions in the place of symbols, by the symbols' numbers; all of one
-/// graph.
+/// Substitutes expressions for symbols, which are given by their indices; everything is in one graph.
 pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> Vec<Edge> {
     if set.is_empty() {
         return edges.to_vec();
@@ -58,7 +57,7 @@ pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> V
     edges.iter().map(|&edge| read(&image, edge)).collect()
 }
 
-/// The same in what stands under square roots alone.
+/// Substitutes expressions for symbols only in the arguments of square roots.
 pub fn substitute_under_roots(
     graph: &mut Graph,
     edges: &[Edge],
@@ -79,7 +78,7 @@ pub fn substitute_under_roots(
     edges.iter().map(|&edge| read(&image, edge)).collect()
 }
 
-/// Copies the expressions node by node without merging: for functions that are wanted off the
+/// Copies the expressions node by node without merging. This serves functions that are needed off the
 /// variety, such as φ itself, whose value on X would make it the number 0.
 pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     carry(from, into, edges, same_symbol, |into, node| {
@@ -88,9 +87,9 @@ pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     })
 }
 
-/// Builds the expressions again as they are computed there, whatever in the other graph has the same
-/// values: what another function computes at length is not taken over. What is constant at run time
-/// merges, as it is computed once for all functions.
+/// Rebuilds the expressions with the operations by which they are computed in `from`, whatever nodes of the
+/// other graph have the same values: a value that another function computes at length is not reused.
+/// Run-time constants merge, because they are computed once for all functions.
 pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     carry(from, into, edges, same_symbol, |into, node| {
         if node.children().all(|child| into.is_free(child.node())) {
@@ -110,7 +109,7 @@ pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     })
 }
 
-/// Products and quotients of what has no sign, and their sign.
+/// Moves the signs of the operands of a product or quotient to the result.
 fn unsigned(node: Node) -> (Node, bool) {
     match node {
         Node::Mul(a, b) => (

@@ -1,11 +1,11 @@
-//! Values of expressions in numbers of any kind, by one walk over their nodes.
+//! Evaluation of expressions in numbers of any kind, by one walk over their nodes.
 
 use super::graph::Graph;
 use super::node::{Edge, Node, NodeId};
 use super::numbers::{Form, Numbers, Step};
 use num_rational::BigRational;
 
-/// The values of expressions; `None` where something has none.
+/// Evaluates the expressions; `None` if something has no value.
 pub fn evaluate<C: Numbers>(
     graph: &Graph,
     roots: &[Edge],
@@ -14,7 +14,7 @@ pub fn evaluate<C: Numbers>(
     let order = graph.reachable(roots);
     let count = order.last().map_or(0, |&last| last as usize + 1);
     let mut values = vec![numbers.make(Step::Whole(0))?; count.max(2)];
-    // The number 1 is the atom of constant angles.
+    // Node 1 is the number 1, the atom of constant angles.
     values[1] = numbers.make(Step::Whole(1))?;
     for id in order {
         let form = || {

@@ -1,4 +1,5 @@
-//! The program of a model: every function that is emitted, validated before it leaves.
+//! Assembly of the program of a model, with every function that is emitted; it is validated before
+//! it is returned.
 
 use super::accel::cheapest::Computation;
 use super::accel::{Acceleration, accel, forces};
@@ -21,12 +22,18 @@ use hamel_program::structure::Structure;
 use hamel_program::{Argument, Cause, Function, FunctionId, Program};
 use rustc_hash::FxHashSet;
 
-/// In larger graphs T is not traced a second time.
+/// Size of the model's graph from which on T is not also computed from the velocities of bodies.
 const MOST_TRACED: usize = 3000;
 
-/// Derives the functions of a model that are wanted; `reduction` solves its constraints, `regressor` are its base
-/// parameters where they are wanted. The program is
-/// the cheapest one, or, where rounding takes too much of that, the one that keeps more digits.
+/// Derives the requested functions of a model.
+///
+/// `reduction` solves its constraints; `regressor` contains its base parameters, if they are
+/// requested. The program is the cheapest one or, if that loses too many digits to rounding, one
+/// that keeps more of them.
+///
+/// # Errors
+/// Returns a diagnostic if the mass matrix is singular or not positive definite although its
+/// inverse is needed, or if a requested function does not exist for the model.
 pub fn assemble(
     full: &Model,
     reduction: Option<&Reduction>,
@@ -36,7 +43,8 @@ pub fn assemble(
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let (mut program, mass) =
         put_together(full, reduction, regressor, linearized, &Care::default())?;
-    // Rows that depend on one another amplify how far a start is off the loop, whatever is emitted.
+    // Dependent rows amplify the deviation of the start from loop closure, whatever program is
+    // emitted.
     if !model.overconstrained {
         let mut losses = care::losses(model, &program);
         let excess = care::excess(model, &program, &mass, &losses);
@@ -53,7 +61,7 @@ pub fn assemble(
     Ok(program)
 }
 
-/// The program before it is validated, and M in its graph.
+/// Returns the program before validation, and M in its graph.
 fn put_together(
     full: &Model,
     reduction: Option<&Reduction>,
@@ -74,7 +82,7 @@ fn put_together(
         .flatten()
         .map(|computed| (Acceleration::none(model.graph.clone()), computed));
     let Some((chosen, computed)) = alone.or_else(|| accel(model, care)) else {
-        // Elimination at the start tells which velocity is the first without inertia.
+        // Elimination at the start configuration shows which velocity is the first without inertia.
         let (graph, mass) = match forces(model, care) {
             Some(Computation { graph, parts }) => (graph, parts.mass),
             None => {
@@ -121,7 +129,7 @@ fn put_together(
     let found = structure::analyse(full, model, graph, parts);
     let mut others = Vec::new();
     if found.functions.is_some() && model.n() <= MOST_LITERAL {
-        // Apart from what ξ̇ is computed from.
+        // In a graph without the computation of ξ̇.
         let mut apart = model.graph.clone();
         let parts = builder.parts.shared(&builder.graph, &mut apart);
         others.extend(structure::analyse(full, model, &apart, &parts).functions);
@@ -187,7 +195,10 @@ impl Builder<'_> {
         }
     }
 
-    /// The parts of T in the energy, and with V the energy, V in a graph of its own: by ½ ξ · p, or by the velocities of points and bodies, whichever takes less.
+    /// Returns the part of T in the energy, and the energy, i.e. that part plus V.
+    ///
+    /// T is computed as ½ ξ · p or from the velocities of points and bodies, whichever is cheaper.
+    /// `potential` is V in the graph `reference`.
     fn energies(&mut self, momentum: &[Edge], reference: &Graph, potential: Edge) -> [Edge; 2] {
         let [mut kinetic, mut energy] = [(); 2].map(|()| Candidates::with(&self.care));
         let mut offer = |graph: Graph, t: Edge| {
@@ -206,7 +217,7 @@ impl Builder<'_> {
             let mut calculus = Calculus::new(&model);
             let traced = energy::traced(&mut model, &mut calculus);
             let traced = energy::part_of_energy(&mut model, traced);
-            // Armatures, and M that was written, are in p alone.
+            // Only p includes armatures and an M given in the description.
             if model.graph.value(traced) == value {
                 offer(model.graph, traced);
             }
@@ -215,14 +226,14 @@ impl Builder<'_> {
         [kinetic, energy]
     }
 
-    /// ż, with ξ̇ as it is computed there.
+    /// Returns ż with the given ξ̇.
     pub(super) fn state_rates(&mut self, xi_dot: &[Edge]) -> Vec<Edge> {
         let model = self.model;
         let rates = rebuild(&model.graph, &mut self.graph, &model.state_rates);
         with_accelerations(&mut self.graph, &rates, xi_dot)
     }
 
-    /// D, where there is one.
+    /// Adds the dissipation function D, if there is one.
     fn dissipation(&mut self) {
         let model = self.model;
         let asked = model.asked.names(FunctionId::Dissipation);
@@ -233,7 +244,8 @@ impl Builder<'_> {
         self.push(FunctionId::Dissipation, value);
     }
 
-    /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
+    /// Adds φ and −Ψ φ, which are needed off X as well: they are copied node by node from the graph
+    /// with free points.
     fn variety(&mut self, model: &Model) -> Result<(), Diagnostic> {
         let mut free = model.points.free.clone();
         let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
@@ -260,7 +272,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What expressions depend on, as arguments of a function.
+    /// Returns the quantities on which expressions depend, as arguments of a function.
     fn arguments(&self, entries: &[Edge]) -> Vec<Argument> {
         let states: Vec<NodeId> = self.model.z().iter().map(|z| z.node()).collect();
         let of = |id: NodeId| match self.graph.class(id) {
@@ -280,7 +292,10 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// What the methods for systems that split call; an error where it is asked for in vain.
+    /// Adds the functions that splitting methods call.
+    ///
+    /// # Errors
+    /// Returns a diagnostic if they are requested although the system does not split.
     fn splitting(&mut self, found: Found, others: &[Functions]) -> Result<Structure, Diagnostic> {
         let model = self.model;
         if let (Err(reasons), true) = (
@@ -323,7 +338,7 @@ impl Builder<'_> {
         let all = self.kinematic_guards.iter().copied().enumerate();
         let new = all.map(|(number, pivot)| (pivot, Cause::Kinematics(number)));
         self.causes.splice(first..first, new.skip(first));
-        // Numbers were found positive when M was.
+        // Numbers were checked to be positive together with M.
         let of_parameters = |edge: &Edge| {
             self.graph.is_free(edge.node()) && self.graph.as_rational(*edge).is_none()
         };
@@ -340,12 +355,13 @@ impl Builder<'_> {
             Vec::new()
         };
         constant_guards.extend(&self.constant_guards);
-        // What fails first is told: later pivots are computed from earlier ones.
+        // Sorted such that the first failure is reported: later pivots are computed from earlier
+        // ones.
         constant_guards.sort_by_key(|guard| guard.node());
         constant_guards.dedup();
         let loops = self.loops().len();
         let kinds: usize = model.blocks.iter().map(|block| block.constraints()).sum();
-        // What is a number, or guards nothing, asks nobody.
+        // Pivots that are numbers or guard nothing are never checked, so they need no cause.
         let guards = self.functions.iter().flat_map(|function| &function.guards);
         let guards: FxHashSet<Edge> = guards.chain(&constant_guards).copied().collect();
         let mut causes = self.causes;
@@ -381,7 +397,8 @@ impl Builder<'_> {
     }
 }
 
-/// Names of temporaries from the user's `let`s: `p`, and `p_1` … for the entries of a vector.
+/// Returns names of temporaries from the user's `let`s: `p`, and `p_1` … for the entries of a
+/// vector.
 fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
     let mut names = Vec::new();
     for (name, value) in &model.lets {

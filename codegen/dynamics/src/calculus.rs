@@ -6,7 +6,7 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, apply_transposed};
 use hamel_language::model::Model;
 
-/// The derivations of a model, with their memories.
+/// The derivations of a model, which remember the derivatives that they have computed.
 #[derive(Clone, Debug)]
 pub struct Calculus {
     directions: Vec<Derivation>,
@@ -14,7 +14,7 @@ pub struct Calculus {
 }
 
 impl Calculus {
-    /// The derivations ∂₁ … ∂ₙ and d/dt.
+    /// Creates the derivations ∂₁ … ∂ₙ and d/dt.
     pub fn new(model: &Model) -> Self {
         let direction = |i: usize| {
             Derivation::new(
@@ -37,7 +37,10 @@ impl Calculus {
         }
     }
 
-    /// The same where ξ changes at rates of its own while inner velocities are held constant.
+    /// As [`Calculus::new`], but with d/dt along ξ̇ = `drift` instead of ξ̇ = 0.
+    ///
+    /// This is for velocities ξ that change at rates of their own while inner velocities are held
+    /// constant.
     pub fn with_drift(model: &Model, drift: &[Edge]) -> Self {
         let x = model.x.iter().zip(&model.rate);
         let seeds = x.chain(model.xi.iter().zip(drift));
@@ -47,54 +50,54 @@ impl Calculus {
         }
     }
 
-    /// n.
+    /// Returns the number of velocities n.
     pub fn n(&self) -> usize {
         self.directions.len()
     }
 
-    /// ∂ᵢ f.
+    /// Returns ∂ᵢ f.
     pub fn along(&mut self, graph: &mut Graph, i: usize, f: Edge) -> Edge {
         self.directions[i].of(graph, f)
     }
 
-    /// df/dt at ξ̇ = 0.
+    /// Returns df/dt at ξ̇ = 0.
     pub fn rate(&mut self, graph: &mut Graph, f: Edge) -> Edge {
         self.time.of(graph, f)
     }
 
-    /// dv/dt at ξ̇ = 0.
+    /// Returns dv/dt at ξ̇ = 0.
     pub fn rate3(&mut self, graph: &mut Graph, v: Vec3) -> Vec3 {
         v.map(|entry| self.time.of(graph, entry))
     }
 
-    /// ∂ᵢ p for all i, world axes.
+    /// Returns ∂ᵢ p of a point for all i, in world axes.
     pub fn point_jacobian(&mut self, graph: &mut Graph, point: Vec3) -> Vec<Vec3> {
         (0..self.n())
             .map(|i| point.map(|entry| self.along(graph, i, entry)))
             .collect()
     }
 
-    /// The columns of the body angular velocity, vee(Rᵀ ∂ᵢR), for all i.
+    /// Returns the columns vee(Rᵀ ∂ᵢR) of the body angular velocity for all i.
     pub fn spin_jacobian(&mut self, graph: &mut Graph, rotation: &Mat3) -> Vec<Vec3> {
         (0..self.n())
             .map(|i| self.spin_along(graph, i, rotation))
             .collect()
     }
 
-    /// vee(Rᵀ ∂ᵢR).
+    /// Returns vee(Rᵀ ∂ᵢR).
     pub fn spin_along(&mut self, graph: &mut Graph, i: usize, rotation: &Mat3) -> Vec3 {
         let change = rotation.map(|row| row.map(|entry| self.along(graph, i, entry)));
         spin(graph, rotation, &change)
     }
 
-    /// The body angular velocity vee(Rᵀ Ṙ).
+    /// Returns the body angular velocity vee(Rᵀ Ṙ).
     pub fn spin(&mut self, graph: &mut Graph, rotation: &Mat3) -> Vec3 {
         let change = rotation.map(|row| row.map(|entry| self.time.of(graph, entry)));
         spin(graph, rotation, &change)
     }
 }
 
-/// ω with ω̂ = Rᵀ Ṙ: ω₁ = R₃ · Ṙ₂ and cyclic, columns of R.
+/// Returns ω with ω̂ = Rᵀ Ṙ: ω₁ = R₃ · Ṙ₂ and cyclic, with the columns of R.
 fn spin(graph: &mut Graph, rotation: &Mat3, change: &Mat3) -> Vec3 {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -104,7 +107,7 @@ fn spin(graph: &mut Graph, rotation: &Mat3, change: &Mat3) -> Vec3 {
     })
 }
 
-/// A vector of the world in the axes of a frame, Rᵀ a.
+/// Transforms a vector from world axes to the axes of a frame, Rᵀ a.
 pub fn into_frame(graph: &mut Graph, rotation: &Mat3, a: Vec3) -> Vec3 {
     apply_transposed(graph, rotation, a)
 }

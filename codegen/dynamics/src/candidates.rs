@@ -1,4 +1,4 @@
-//! Of several computations of the same values the cheapest.
+//! Selection of the cheapest of several equivalent computations.
 
 use super::care::Care;
 use hamel_algebra::graph::{Edge, Graph};
@@ -7,11 +7,13 @@ use hamel_algebra::transplant::{graft, rebuild};
 use hamel_program::count::count;
 use std::borrow::Cow;
 
-/// Where more is computed it is not tried what a computation becomes.
+/// Size of the surrounding graph from which on candidates are not also rebuilt in it.
 const LARGE: usize = 3000;
 
-/// The cheapest computation so far, in the graph that it was built in: what other functions compute
-/// at length does not lengthen it.
+/// The cheapest computation so far.
+///
+/// It stays in the graph in which it was built, so that its expressions are not replaced by longer
+/// ones of other functions.
 #[derive(Default)]
 pub struct Candidates<'a> {
     care: Care,
@@ -19,14 +21,14 @@ pub struct Candidates<'a> {
 }
 
 struct Computed<'a> {
-    /// Loss of digits, as far as it counts, and operations.
+    /// Loss of digits, as far as it counts, and weight of the operations.
     cost: (usize, usize),
     graph: Cow<'a, Graph>,
     roots: Vec<Edge>,
 }
 
 impl<'a> Candidates<'a> {
-    /// No computation yet.
+    /// Starts without any candidate.
     pub fn with(care: &Care) -> Self {
         Candidates {
             care: care.clone(),
@@ -39,20 +41,21 @@ impl<'a> Candidates<'a> {
         (loss, count(graph, roots).weight())
     }
 
-    /// One more computation, in a graph that others share.
+    /// Adds a candidate in a graph that others share.
     pub fn offer(&mut self, graph: &'a Graph, roots: Vec<Edge>) {
         let cost = self.cost(graph, &roots);
         self.keep(cost, Cow::Borrowed(graph), roots);
     }
 
-    /// One more computation, in a graph of its own.
+    /// Adds a candidate in a graph of its own.
     pub fn offer_own(&mut self, graph: Graph, roots: Vec<Edge>) {
         let cost = self.cost(&graph, &roots);
         self.keep(cost, Cow::Owned(graph), roots);
     }
 
-    /// One more computation, as it stands and after resubstitution, where that finds something; `base` holds what
-    /// is there anyway.
+    /// Adds a candidate, and its form after resubstitution if that finds anything.
+    ///
+    /// `base` contains what is computed in any case.
     pub fn offer_polished(&mut self, graph: Graph, roots: Vec<Edge>, base: &Graph) {
         if let Some((graph, roots)) = resubstitute(&graph, &roots, base) {
             self.offer_own(graph, roots);
@@ -60,7 +63,8 @@ impl<'a> Candidates<'a> {
         self.offer_own(graph, roots);
     }
 
-    /// One more computation, as it stands and as what it becomes where other things are computed already.
+    /// Adds a candidate as it is, and as it becomes when it is rebuilt in the graph `around`, where
+    /// it shares the values that are computed there already.
     pub fn offer_both(&mut self, graph: Graph, roots: Vec<Edge>, around: &Graph) {
         if around.len() < LARGE {
             let mut merged = around.clone();
@@ -76,7 +80,7 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// The cheapest, in another graph as it stands; nothing where nothing was offered.
+    /// Copies the cheapest candidate into another graph; empty if there is none.
     pub fn cheapest(&self, into: &mut Graph) -> Vec<Edge> {
         let best = self.best.as_ref();
         best.map_or_else(Vec::new, |best| graft(&best.graph, into, &best.roots))

@@ -1,8 +1,9 @@
-//! How candidates are compared: by cost, or first by the digits that rounding takes of them.
+//! Comparison of candidates: by cost, or first by the digits that they lose to rounding.
 //!
-//! A program is first put together by cost alone, then measured. Where it loses more than it should, it
-//! is put together again with care: the description's own frames are candidates too, long expansions
-//! are not, and of two candidates the one that keeps more digits is taken before the cheaper one.
+//! A program is first assembled by cost alone and then measured. If it loses more digits than it
+//! should, it is assembled again with care: the description's own frames become candidates, too,
+//! long expansions do not, and of two candidates the one that keeps more digits is preferred to the
+//! cheaper one.
 
 use super::norms::{greatest, inverse, norm};
 use super::tree::Placement;
@@ -15,39 +16,39 @@ use hamel_language::model::states::states;
 use hamel_program::Program;
 use hamel_program::rounding::{Measured, digits_lost};
 
-/// Functions that lose so many digits say so.
+/// Number of lost digits from which on the documentation of a function mentions them.
 pub const MANY: f64 = 6.0;
-/// What keeps digits that all candidates lose.
+/// Advice to users if all candidates lose digits.
 pub const HELP: &str = "Frames near their bodies, and no differences of large terms, keep more.";
-/// Digits that a function may lose before candidates are compared by them.
+/// Number of digits that a function may lose before candidates are compared by them.
 const ENOUGH: f64 = 2.5;
-/// The same for candidates: what is lost below counts nothing.
+/// Number of digits that a candidate may lose without being penalised.
 const LITTLE: f64 = 1.5;
-/// More than there are: what a candidate loses that has no value.
+/// Loss of a candidate that has no value: more digits than there are.
 const ALL: f64 = 99.0;
-/// Losses are compared in steps of so many digits.
+/// Step in digits by which losses are compared.
 const STEP: f64 = 0.5;
 
-/// The states at which candidates are measured; none where cost alone decides.
+/// States at which candidates are measured; empty if cost alone decides.
 #[derive(Clone, Debug, Default)]
 pub struct Care {
     states: Vec<Vec<f64>>,
 }
 
 impl Care {
-    /// Digits first, at states of a model.
+    /// Compares by digits first, at states of a model.
     pub fn of(model: &Model) -> Self {
         Care {
             states: states(model),
         }
     }
 
-    /// Whether digits come first.
+    /// Returns whether digits come first.
     pub fn is_taken(&self) -> bool {
         !self.states.is_empty()
     }
 
-    /// Where links of candidates have their frames.
+    /// Returns the placements of link frames to try.
     pub fn placements(&self) -> &'static [Placement] {
         match self.is_taken() {
             true => &[Placement::Chosen, Placement::Parallel, Placement::Described],
@@ -55,8 +56,10 @@ impl Care {
         }
     }
 
-    /// The digits that rounding takes of a candidate, in steps; 0 where cost alone decides, and all of them where it has no
-    /// value at any state.
+    /// Returns the number of digits that a candidate loses to rounding, in steps.
+    ///
+    /// This is 0 if cost alone decides, and counts all digits if the candidate has no value at any
+    /// state.
     pub fn loss(&self, graph: &Graph, outputs: &[Edge], guards: &[Edge]) -> usize {
         if !self.is_taken() {
             return 0;
@@ -70,10 +73,11 @@ impl Care {
     }
 }
 
-/// Functions that are 0 on X: their digits mean nothing there.
+/// Functions that are 0 on X, where their digits mean nothing.
 const ZERO: [&str; 3] = ["constraint", "correction", "project_position"];
 
-/// The digits that rounding takes of every function of a program, by their order; `None` for what is 0.
+/// Returns the number of digits that each function of a program loses to rounding, in order; `None`
+/// for functions that are 0.
 pub fn losses(model: &Model, program: &Program) -> Vec<Option<f64>> {
     let functions: Vec<Measured> = program
         .functions
@@ -89,8 +93,10 @@ pub fn losses(model: &Model, program: &Program) -> Vec<Option<f64>> {
     digits_lost(&program.graph, &functions, &states(model))
 }
 
-/// By how many digits the worst function of a program loses more than it should: what is solved with M
-/// may lose as many more as the condition of M has. 0 where all is well.
+/// Returns by how many digits the worst function of a program exceeds its permitted loss, or 0.
+///
+/// Functions that solve with M may lose additional digits, as many as the condition number of M
+/// has.
 pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Option<f64>]) -> f64 {
     let mut condition = None;
     let mut worst = 0.0_f64;
@@ -108,7 +114,7 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Op
     worst
 }
 
-/// Says in the documentation of functions that lose many digits that they do, and what helps.
+/// Adds a remark to the documentation of functions that lose many digits, with advice.
 pub fn note(program: &mut Program, losses: &[Option<f64>]) {
     for (function, digits) in program.functions.iter_mut().zip(losses) {
         if let Some(digits) = digits.filter(|&digits| digits >= MANY) {
@@ -121,7 +127,7 @@ pub fn note(program: &mut Program, losses: &[Option<f64>]) {
     }
 }
 
-/// log₁₀ ‖M‖ ‖M⁻¹‖ (greatest sums of rows), the greatest at the states; infinite where it is not known.
+/// Returns log₁₀ ‖M‖ ‖M⁻¹‖ (norm: largest row sum), the largest at the states; infinite if unknown.
 fn condition_digits(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64 {
     let mut most = 1.0_f64;
     for state in states(model) {

@@ -1,11 +1,13 @@
-//! The centre of mass c and the momentum about it: with the mass m_k, the centre c_k and the inertia Θ_k about it of
-//! each body, world axes,
+//! Centre of mass c and centroidal momentum.
+//!
+//! With the mass m_k of each body, its centre of mass c_k and its inertia Θ_k about that, in world
+//! axes,
 //!
 //! m c = Σ m_k c_k, P = Σ m_k ċ_k, L = Σ (c_k − c) × m_k ċ_k + R_k Θ_k ω_k, h = (P, L) = A_G ξ
 //!
-//! (Orin and Goswami 2008). What does not move, on frames of the world, does not take part. Routes: by these sums, and
-//! for trees by recursion, L = L₀ − c × P with the momentum about the origin; the columns of A_G are slopes of h by ξ,
-//! or the momenta of composite bodies.
+//! (Orin and Goswami 2008). Bodies that do not move, on frames of the world, do not count. The
+//! routes are these sums and, for trees, the recursion L = L₀ − c × P with the momentum about the
+//! origin; the columns of A_G are derivatives of h by ξ, or the momenta of composite bodies.
 
 use super::accel::recursive::Recursion;
 use super::accel::setting::Setting;
@@ -26,10 +28,11 @@ use hamel_program::{FunctionId, Shape};
 use num_traits::Signed;
 
 impl Builder<'_> {
-    /// The functions that are asked for.
+    /// Adds the requested centroidal functions.
     ///
     /// # Errors
-    /// Where nothing with mass moves, or inertia is given that is not that of bodies.
+    /// Returns a diagnostic if nothing with mass moves, or if there is inertia that is not that of
+    /// bodies or particles.
     pub(super) fn centroidal(&mut self, full: &Model) -> Result<(), Diagnostic> {
         let model = self.model;
         let mut asked = FunctionId::CENTROIDAL.into_iter();
@@ -56,7 +59,7 @@ impl Builder<'_> {
                 "describe all masses by `body` or `particle`",
             );
         }
-        // By which the centre of mass is divided: run-time parameters may leave none.
+        // The total mass is a divisor, and run-time parameters may make it zero.
         if number.is_none() {
             let mass = rebuild(&bodies.graph, &mut self.graph, &[mass]);
             self.constant_guards.extend(mass);
@@ -93,7 +96,7 @@ impl Builder<'_> {
     }
 }
 
-/// The masses whose frames depend on the configuration.
+/// Returns the masses that depend on the configuration.
 fn moving(model: &mut Model, calculus: &mut Calculus) -> Vec<MovingMass> {
     let all = motions(model, calculus, None);
     let moves = moves(model);
@@ -101,7 +104,8 @@ fn moving(model: &mut Model, calculus: &mut Calculus) -> Vec<MovingMass> {
     kept.map(|(motion, _)| motion).collect()
 }
 
-/// Whether each body and, behind them, each particle is where the configuration says, and not fixed in the world.
+/// Returns for each body and then for each particle whether it depends on the configuration, rather
+/// than being fixed in the world.
 pub fn moves(model: &Model) -> Vec<bool> {
     let depends = |edges: &[Edge]| {
         let class = |class, edge: &Edge| class | model.graph.class(edge.node());
@@ -115,13 +119,13 @@ pub fn moves(model: &Model) -> Vec<bool> {
     bodies.chain(particles).collect()
 }
 
-/// The mass of what moves.
+/// Returns the total mass that moves.
 fn mass(graph: &mut Graph, moving: &[MovingMass]) -> Edge {
     let masses: Vec<Edge> = moving.iter().map(|motion| motion.mass).collect();
     graph.sum(&masses)
 }
 
-/// c, where there is mass.
+/// Returns the centre of mass c; zero if there is no mass.
 fn centre(graph: &mut Graph, moving: &[MovingMass]) -> Vec3 {
     let mut first = zero3(graph);
     for motion in moving {
@@ -133,7 +137,9 @@ fn centre(graph: &mut Graph, moving: &[MovingMass]) -> Vec3 {
     scale3(graph, inverse, first)
 }
 
-/// A function's entries, by rows; with the momentum of everything about the origin, where it is known.
+/// Returns the entries of a function, by rows.
+///
+/// `total` is the total momentum about the origin, if it is known.
 fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Graph, Vec<Edge>) {
     let mut own = model.clone();
     let mut calculus = Calculus::new(model);
@@ -177,7 +183,7 @@ fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Gra
     (graph, roots)
 }
 
-/// The columns of A_G from those of the momentum about the origin.
+/// Returns A_G from the columns of the momentum map about the origin.
 fn about_centre(model: &Model, graph: Graph, columns: Vec<Twist>) -> (Graph, Vec<Edge>) {
     let mut own = Model {
         graph,
@@ -195,8 +201,11 @@ fn about_centre(model: &Model, graph: Graph, columns: Vec<Twist>) -> (Graph, Vec
     (graph, by_rows(columns.into_iter()))
 }
 
-/// The same with L without the coordinates and velocities that it does not depend on: it is the same wherever the mechanism
-/// is, and however fast it moves as a whole, but far from the origin sums would lose the digits of both.
+/// Returns the momenta with L rewritten without the coordinates and velocities on which it does not
+/// depend.
+///
+/// L is the same wherever the mechanism is and however fast it moves as a whole, but far from the
+/// origin the digits of both would be lost in sums.
 fn anywhere(model: &Model, graph: Graph, momenta: Vec<Twist>) -> (Graph, Vec<Twist>) {
     let (linear, angular): (Vec<Vec3>, Vec<Vec3>) = momenta.into_iter().unzip();
     let angular = angular.concat();

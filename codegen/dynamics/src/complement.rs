@@ -1,5 +1,7 @@
-//! Φ and Ψ: what completes Y and A to square matrices inverse to each other,
-//! [A Ψ] = [Y; Φ]⁻¹, KR18 (5) and (6). Φ has ν − n rows of ν, Ψ ν rows of ν − n.
+//! Complements Φ and Ψ, which complete Y and A to square matrices inverse to each other:
+//! [A Ψ] = [Y; Φ]⁻¹, KR18 (5) and (6).
+//!
+//! Φ is (ν − n) × ν, Ψ is ν × (ν − n).
 
 use hamel_algebra::blocks::solve;
 use hamel_algebra::graph::{Edge, Graph};
@@ -9,27 +11,28 @@ use hamel_language::model::Model;
 use hamel_language::model::charts::{all_tangents, jacobian};
 use hamel_language::model::layout::Block;
 
-/// Φ and Ψ, columns of the kinds of coordinates before those of the description's constraints.
+/// Matrices Φ and Ψ, in which the constraints of coordinate kinds precede those of the description.
 #[derive(Clone, Debug, Default)]
 pub struct Complement {
-    /// The rows of φ that Φ is made of.
+    /// Indices of the rows of φ that Φ consists of.
     pub rows: Vec<usize>,
-    /// Φ, rows of ∂φ/∂x.
+    /// Φ, which consists of rows of ∂φ/∂x.
     pub phi: Vec<Vec<Edge>>,
     /// Ψ.
     pub psi: Vec<Vec<Edge>>,
-    /// What Ψ has beyond the closed forms of the coordinate kinds, in their columns.
+    /// Difference between Ψ and the closed forms of the coordinate kinds, in their columns.
     pub beyond: Vec<Vec<Edge>>,
-    /// How many columns belong to coordinate kinds.
+    /// Number of columns that belong to coordinate kinds.
     pub kinds: usize,
 }
 
-/// Derives Φ and Ψ for a left inverse Y; `None` where [Y; Φ] is singular everywhere.
+/// Derives Φ and Ψ for a left inverse Y; `None` if [Y; Φ] is singular everywhere.
 ///
-/// For coordinate kinds alone Ψ has closed forms Ψ₀: x/2 for circle and quaternion, the symmetric
-/// products ½ R E for rotations. For constraints of the description, Ψ = K X with
-/// [Y K; Φ K] X = [0; I] in the tangents K of the kinds. The former are then freed from what Y and
-/// these constraints see of them: Ψ₀ − A Y Ψ₀ − Ψ Φ Ψ₀.
+/// For coordinate kinds alone, Ψ has the closed forms Ψ₀: x/2 for circle and quaternion, the
+/// symmetric products ½ R E for rotations. For constraints of the description, Ψ = K X in the
+/// tangents K of the kinds, where
+/// [Y K; Φ K] X = [0; I].
+/// The components of Ψ₀ that Y and these constraints see are then removed: Ψ₀ − A Y Ψ₀ − Ψ Φ Ψ₀.
 pub fn complement(model: &mut Model, y: &[Vec<Edge>]) -> Option<Complement> {
     let (n, nu) = (model.n(), model.nu());
     let rows = model.completion.independent.clone();
@@ -97,7 +100,7 @@ pub fn complement(model: &mut Model, y: &[Vec<Edge>]) -> Option<Complement> {
     })
 }
 
-/// Ψ₀ of the coordinate kinds, by columns in the order of their rows of φ. C Ψ₀ = 0.
+/// Returns Ψ₀ of the coordinate kinds by columns, in the order of their rows of φ; C Ψ₀ = 0.
 fn closed_forms(graph: &mut Graph, blocks: &[Block], x: &[Edge]) -> Vec<Vec<Edge>> {
     let half = graph.ratio(1, 2);
     let mut columns = Vec::new();

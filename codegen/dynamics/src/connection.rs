@@ -4,7 +4,7 @@ use super::calculus::Calculus;
 use hamel_algebra::graph::Edge;
 use hamel_language::model::Model;
 
-/// `Γ[i][j][k]` = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si).
+/// Returns `Γ[i][j][k]` = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si).
 pub fn connection(
     model: &mut Model,
     calculus: &mut Calculus,
@@ -62,8 +62,10 @@ pub fn connection(
         .collect()
 }
 
-/// hᵢ = Γᵢⱼₖ ξʲ ξᵏ without forming Γ: Ṁ_ij ξʲ − ½ ∂ᵢM_jk ξʲ ξᵏ + γᵢⱼˢ ξʲ p_s with p = M ξ (the
-/// antisymmetric term of (23) drops out); this is Hamel's form of KR18 (30a).
+/// Returns hᵢ = Γᵢⱼₖ ξʲ ξᵏ without forming Γ.
+///
+/// hᵢ = Ṁ_ij ξʲ − ½ ∂ᵢM_jk ξʲ ξᵏ + γᵢⱼˢ ξʲ p_s with p = M ξ (the antisymmetric term of (23) drops
+/// out); this is Hamel's form of KR18 (30a).
 pub fn quadratic(
     model: &mut Model,
     calculus: &mut Calculus,

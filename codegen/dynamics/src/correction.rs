@@ -1,8 +1,8 @@
-//! −Ψ φ(x), the stabilising direction of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t).
+//! The stabilising direction −Ψ φ(x) of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t).
 //!
-//! Ψ is that of the description, with Y Ψ = 0. It is wanted off X, where φ is not 0: Ψ may be any
-//! expression with the right values on X, φ has to be itself. Φ A = 0 on X alone, too: off it a motion
-//! adds terms of ξ φ to φ̇ = −λ φ, which λ has to exceed.
+//! Ψ is that of the description, with Y Ψ = 0. The direction is needed off X, where φ is not 0: Ψ
+//! may be any expression with the right values on X, but φ has to be exact. Φ A = 0 also holds on X
+//! only: off X, a motion adds terms in ξ φ to φ̇ = −λ φ, which λ has to exceed.
 
 use super::complement::{Complement, complement};
 use super::kinematics::left_inverse;
@@ -12,8 +12,10 @@ use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
 
-/// −Ψ φ in the graph with unconstrained points: −½ (|x|² − 1) x for circle and quaternion,
-/// −½ R (RᵀR − I), and for what is beyond these −Ψ φ with Ψ as it is on X.
+/// Returns −Ψ φ in the graph with unconstrained points.
+///
+/// It is −½ (|x|² − 1) x for circle and quaternion, −½ R (RᵀR − I) for rotations, and −Ψ φ with the
+/// Ψ valid on X for everything else.
 pub fn correction(model: &Model, free: &mut Graph) -> Option<Vec<Edge>> {
     let mut on_x = model.clone();
     let y = left_inverse(&mut on_x)?;
@@ -45,7 +47,7 @@ pub fn correction(model: &Model, free: &mut Graph) -> Option<Vec<Edge>> {
     Some(correction)
 }
 
-/// The corrections of the coordinate kinds alone.
+/// Returns the corrections of the coordinate kinds alone.
 fn closed_forms(free: &mut Graph, blocks: &[Block], x: &[Edge]) -> Vec<Edge> {
     let half = free.ratio(1, 2);
     let mut correction = vec![free.zero(); x.len()];

@@ -1,5 +1,5 @@
-//! Slopes of the dynamics in what `linearize` holds: of the force of inverse dynamics by displacements and velocities,
-//! and of ξ̇ by parameters.
+//! Derivatives of the dynamics that `linearize` does not provide: of the inverse-dynamics force by
+//! displacements and velocities, and of ξ̇ by parameters.
 
 use super::accel::branches::Branches;
 use super::accel::recursions;
@@ -15,7 +15,7 @@ use hamel_language::model::{Model, class};
 use hamel_program::FunctionId;
 
 impl Builder<'_> {
-    /// [∂f/∂h ∂f/∂ξ] of the force f that ξ̇ needs, with ξ̇ held: n rows.
+    /// Adds the n rows of `[∂f/∂h ∂f/∂ξ]` for the force f that ξ̇ requires, with ξ̇ held fixed.
     pub(super) fn inverse_slopes(&mut self, full: &Model, reduction: Option<&Reduction>) {
         let id = FunctionId::InverseDynamicsSlopes;
         let model = self.model;
@@ -63,10 +63,12 @@ impl Builder<'_> {
         self.shaped(columns);
     }
 
-    /// ∂ξ̇/∂p, with that of ż below it, by all run-time parameters: a column for each of their numbers.
+    /// Adds ∂ξ̇/∂p, followed by ∂ż/∂p, for all run-time parameters p, with a column for each
+    /// number.
     ///
     /// # Errors
-    /// Where the manifold itself depends on parameters: a state then leaves it when they change.
+    /// Returns a diagnostic if the manifold itself depends on parameters: a state then leaves it
+    /// when they change. Also if no parameter can change at run time.
     pub(super) fn parameter_slopes(&mut self, full: &Model) -> Result<(), Diagnostic> {
         let id = FunctionId::ParameterSlopes;
         let model = self.model;
@@ -97,7 +99,7 @@ impl Builder<'_> {
                 "write the numbers of its `prescribe` as numbers, or prescribe its velocity",
             );
         }
-        // π stands before them.
+        // The symbol π precedes them.
         let count = model.params.iter().map(|group| group.len).sum();
         let symbols = model.graph.symbols().iter().skip(1).take(count);
         let symbols: Vec<Edge> = symbols.map(|symbol| Edge::of(symbol.node)).collect();
@@ -137,8 +139,9 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// M ∂ξ̇ = ∂(f − Γ ξ ξ − ∂V) − (∂M) ξ̇, all columns with one factorisation; with multipliers or drives the
-    /// right-hand side is another one.
+    /// Solves M ∂ξ̇ = ∂(f − Γ ξ ξ − ∂V) − (∂M) ξ̇ for all columns with one factorisation.
+    ///
+    /// Returns `None` with multipliers or drives, for which the right-hand side is different.
     fn by_one_factorisation(&self, symbols: &[Edge]) -> Option<(Graph, Vec<Edge>)> {
         let model = self.model;
         if !(model.constraints.is_empty() && model.accelerated.is_empty()) {
@@ -166,13 +169,13 @@ impl Builder<'_> {
     }
 }
 
-/// Derivations by symbols.
+/// Creates the derivations by symbols.
 fn derivations(graph: &Graph, symbols: &[Edge]) -> Vec<Derivation> {
     let by = |symbol: &Edge| Derivation::new([(symbol.node(), graph.one())]);
     symbols.iter().map(by).collect()
 }
 
-/// The derivatives of expressions by symbols, a row for each expression.
+/// Returns the derivatives of expressions by symbols, with a row for each expression.
 fn by_columns(graph: &mut Graph, expressions: &[Edge], symbols: &[Edge]) -> Vec<Edge> {
     let mut along = derivations(graph, symbols);
     let rows = expressions.iter().flat_map(|&expression| {

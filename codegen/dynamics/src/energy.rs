@@ -1,4 +1,4 @@
-//! Kinetic energy T = ½ M_ij ξⁱ ξʲ, potential energy V, and power.
+//! Kinetic energy T = ½ M_ij ξⁱ ξʲ, potential energy V, and momentum p = ∂T/∂ξ.
 
 use super::calculus::Calculus;
 use hamel_algebra::derivation::Derivation;
@@ -6,7 +6,7 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::linear::{add3, apply3};
 use hamel_language::model::Model;
 
-/// V(x): potentials that the user wrote, and −m ⟨g, p⟩ of bodies and particles, KR18 (48).
+/// Returns V(x): potentials given by the user, and −m ⟨g, p⟩ of bodies and particles, KR18 (48).
 pub fn potential(model: &mut Model) -> Edge {
     let graph = &mut model.graph;
     let mut potential = model.potential;
@@ -30,7 +30,7 @@ pub fn potential(model: &mut Model) -> Edge {
     potential
 }
 
-/// T = ½ ξᵀ M ξ.
+/// Returns T = ½ ξᵀ M ξ.
 pub fn kinetic(model: &mut Model, mass: &[Vec<Edge>]) -> Edge {
     let graph = &mut model.graph;
     let momentum: Vec<Edge> = mass.iter().map(|row| graph.dot(row, &model.xi)).collect();
@@ -39,8 +39,10 @@ pub fn kinetic(model: &mut Model, mass: &[Vec<Edge>]) -> Edge {
     graph.mul(half, twice)
 }
 
-/// T as points and bodies move, ½ Σ m |ċ|² + ½ Σ ω · Θ ω, with what was written as `kinetic`: T₂ + T₁ + T₀ where ẋ has
-/// terms without ξ.
+/// Returns T from the velocities of points and bodies, ½ Σ m |ċ|² + ½ Σ ω · Θ ω, plus the energy
+/// given as `kinetic`.
+///
+/// This is T₂ + T₁ + T₀ if ẋ has terms without ξ.
 pub fn traced(model: &mut Model, calculus: &mut Calculus) -> Edge {
     let graph = &mut model.graph;
     let mut twice = Vec::new();
@@ -66,14 +68,19 @@ pub fn traced(model: &mut Model, calculus: &mut Calculus) -> Edge {
     graph.add(moved, model.kinetic)
 }
 
-/// The part of T in the energy ẋ · ∂L/∂ẋ − L: of what was written as `kinetic` T₂ − T₀, as its terms that are linear in the
-/// velocities do no work and those without any act as a potential; of moving points and bodies their kinetic energy in space.
+/// Returns the part of T in the energy ẋ · ∂L/∂ẋ − L.
+///
+/// Of the energy given as `kinetic` this is T₂ − T₀, as its terms that are linear in the velocities
+/// do no work, and those without velocities act as a potential. Of moving points and bodies it is
+/// their kinetic energy in space.
 pub fn part_of_energy(model: &mut Model, kinetic: Edge) -> Edge {
     model.graph.sub(kinetic, model.gyroscopic)
 }
 
-/// T₁ + 2 T₀ of a kinetic energy that was written, by degrees in ẋ: its derivative by the rate ṫ of time where all other rates of
-/// coordinates stay as they are, Σ Yⁱₜ ∂T/∂ξⁱ with Y by rows.
+/// Returns T₁ + 2 T₀, by degrees in ẋ, of the energy given as `kinetic`.
+///
+/// This is ṫ times the derivative of T by the rate ṫ of time at fixed rates of all other
+/// coordinates, Σ Yⁱₜ ∂T/∂ξⁱ, where Y is given by rows.
 pub fn gyroscopic(model: &mut Model, y: &[Vec<Edge>]) -> Edge {
     let Some(clock) = model.clock else {
         return model.graph.zero();
@@ -85,7 +92,7 @@ pub fn gyroscopic(model: &mut Model, y: &[Vec<Edge>]) -> Edge {
     graph.mul(model.xi[clock.xi], sum)
 }
 
-/// p = ∂T/∂ξ.
+/// Returns p = ∂T/∂ξ.
 pub fn momentum(model: &mut Model, kinetic: Edge) -> Vec<Edge> {
     let graph = &mut model.graph;
     let one = graph.one();

@@ -1,4 +1,4 @@
-//! Functions beside the equations of motion: momenta, the linearisation, invariants.
+//! Functions in addition to the equations of motion: momenta, the linearisation, invariants.
 
 use super::accel::cheapest::Computation;
 use super::accel::recursive::Recursion;
@@ -22,7 +22,7 @@ use hamel_language::model::{Model, class};
 use hamel_program::{Argument, Cause, Function, FunctionId, Shape};
 
 impl Builder<'_> {
-    /// ṗ of (x, ξ, u), and ξ of (x, p).
+    /// Adds ṗ as a function of (x, ξ, u), and ξ as a function of (x, p).
     pub(super) fn momentum(&mut self) {
         if !self.model.spans {
             return;
@@ -46,7 +46,7 @@ impl Builder<'_> {
             candidates.offer_own(graph, rate);
             recursive = true;
         }
-        // For longer trees the recursion is certainly cheapest.
+        // For longer trees the recursion is certainly the cheapest.
         if !recursive || n <= momentum::MOST_WRITTEN_OUT {
             let contexts = [
                 (&self.shared.graph, &self.shared.parts),
@@ -97,8 +97,10 @@ impl Builder<'_> {
         self.push_guarded(id, xi, guards);
     }
 
-    /// [A B] of the linearisation: of ξ̇ as it is computed, or as it would be by the cheapest candidate that
-    /// was not polished, whichever has the shorter slopes.
+    /// Adds the linearisation `[A B]`.
+    ///
+    /// It is derived from ξ̇ as it is computed, or as the cheapest candidate before polishing would
+    /// compute it, whichever gives the cheaper derivatives.
     pub(super) fn linearize(&mut self, full: &Model, reduction: Option<&Reduction>) {
         let shared = &self.shared;
         let apart = |motion: &Acceleration| {
@@ -127,7 +129,7 @@ impl Builder<'_> {
                 xi_dot: &motion.xi_dot,
                 guards: &guards,
                 displacements,
-                // With multipliers or drives M F is not the right-hand side.
+                // With multipliers or drives, M F is not the right-hand side.
                 implicit: (self.model.constraints.is_empty() && self.model.accelerated.is_empty())
                     .then_some((&parts.mass, &right)),
             };
@@ -169,7 +171,8 @@ impl Builder<'_> {
         self.output_slopes(full, reduction, &rows);
     }
 
-    /// [C D] of the outputs that are asked for: their slopes by (h, δξ, δz, δu), where ξ̇ follows the motion.
+    /// Adds `[C D]` for the requested outputs: their derivatives by (h, δξ, δz, δu), where ξ̇
+    /// follows the motion.
     fn output_slopes(&mut self, full: &Model, reduction: Option<&Reduction>, linear: &[Vec<Edge>]) {
         let model = self.model;
         for (name, value) in &model.outputs {
@@ -178,7 +181,8 @@ impl Builder<'_> {
             }
             let entries = value.entries();
             let follows = depends_on_acceleration(model, &entries);
-            // What depends on ξ̇ stands where its slopes are; anything else by itself.
+            // Outputs that depend on ξ̇ are built in the graph of its derivatives, all others on
+            // their own.
             let mut graph = match follows {
                 true => self.graph.clone(),
                 false => model.graph.clone(),
@@ -227,7 +231,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What displacements are measured along and read by.
+    /// Adds the matrices A and Y between displacements and changes of x.
     fn displacements(&mut self, full: &Model, reduction: Option<&Reduction>) {
         let Some(Displacements { a, y, .. }) = Displacements::new(full, reduction, &mut self.graph)
         else {
@@ -245,7 +249,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Y of the base parameters, and β by the values of the description.
+    /// Adds the regressor Y of the base parameters, and the values of β in the description.
     pub(super) fn regressor(&mut self, regressor: &Regressor) {
         let (from, n) = (&regressor.model.graph, regressor.model.n());
         let columns: Vec<&Vec<Edge>> = regressor.base.iter().map(|base| &base.column).collect();
@@ -254,7 +258,7 @@ impl Builder<'_> {
         self.push(FunctionId::Regressor, outputs);
         let names = regressor.base.iter();
         let names: Vec<String> = names.map(|base| format!("`{}`", base.name)).collect();
-        // Four to a line.
+        // Four names per line.
         let listed: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
         let mut lines = vec![format!("{}.", listed.join(",\n"))];
         if !regressor.besides.is_empty() {
@@ -290,7 +294,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What is claimed to be constant, as functions that watch it.
+    /// Adds the quantities that are claimed to be constant, as functions to monitor them.
     pub(super) fn invariants(&mut self) {
         let mut model = self.model.clone();
         let mut calculus = Calculus::new(&model);
@@ -300,7 +304,7 @@ impl Builder<'_> {
             .flatten()
             .map(|recursion| recursion.total_momentum());
         for claim in &self.model.invariants {
-            // The energy has its function already.
+            // The energy already has a function of its own.
             if matches!(claim.quantity, Quantity::Energy) && claim.name == "energy" {
                 continue;
             }
@@ -316,7 +320,8 @@ impl Builder<'_> {
                     if let Some((graph, linear, angular)) = &total {
                         let mut graph = graph.clone();
                         let found = quantity::of_total(&mut graph, (*linear, *angular), quantity);
-                        // The definition decides, by values at the graph's point in two fields.
+                        // The result has to agree with the definition at the graph's point, in two
+                        // finite fields.
                         let values = |graph: &Graph, entries: &[Edge]| -> Vec<Fp> {
                             entries.iter().map(|&entry| graph.value(entry)).collect()
                         };
@@ -348,7 +353,7 @@ impl Builder<'_> {
     }
 }
 
-/// Whether expressions of a model depend on ξ̇.
+/// Returns whether expressions of a model depend on ξ̇.
 fn depends_on_acceleration(model: &Model, entries: &[Edge]) -> bool {
     let class = |edge: &Edge| model.graph.class(edge.node());
     entries.iter().any(|edge| class(edge) & class::ACCEL != 0)

@@ -1,11 +1,11 @@
-//! What has no inertia where M is singular: the motion of a joint that nothing resists, such as the spin of a slender rod between
-//! two ball joints about its own axis.
+//! Advice on models with a singular M: finds the motion of a joint that nothing resists, such as
+//! the spin of a slender rod between two ball joints about its own axis.
 
 use hamel_language::model::Model;
 use hamel_language::model::joints::Joint;
 use hamel_language::syntax::ast::JointKind;
 
-/// Entries of a direction that are smaller than this, relative to the largest, count as 0; so does what M makes of it.
+/// Relative size below which an entry of a direction v, or of M v, counts as 0.
 const SMALL: f64 = 1e-6;
 
 /// Suggests how to change a description whose mass matrix M is singular because a single joint can move without resistance.
@@ -39,7 +39,8 @@ pub fn advice(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
     })
 }
 
-/// The places of the velocities of a joint; none where constraints have taken some of them away.
+/// Returns the indices of the velocities of a joint; empty if constraints have removed some of
+/// them.
 fn places(model: &Model, joint: &Joint) -> Vec<usize> {
     let mut places = Vec::new();
     for name in &joint.velocities {
@@ -51,7 +52,10 @@ fn places(model: &Model, joint: &Joint) -> Vec<usize> {
     places
 }
 
-/// v with M v = 0 and a last entry of 1 at a pivot that vanishes, its largest entry then 1: those before it are regular.
+/// Returns v with M v = 0, where the entries after `pivot` are zero, scaled to a largest entry of
+/// 1.
+///
+/// The pivot at index `pivot` vanishes, and the leading block of M before it is regular.
 fn kernel(mass: &[f64], n: usize, pivot: usize) -> Option<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> = (0..pivot)
         .map(|i| {
@@ -94,7 +98,8 @@ fn kernel(mass: &[f64], n: usize, pivot: usize) -> Option<Vec<f64>> {
     rests.then_some(v)
 }
 
-/// The axis of a direction with its largest entry positive, and two axes across it.
+/// Returns the axis of a direction, with its largest entry positive, and two axes perpendicular to
+/// it.
 fn axes(direction: [f64; 3]) -> ([f64; 3], [[f64; 3]; 2]) {
     let length = direction
         .iter()
@@ -122,7 +127,7 @@ fn axes(direction: [f64; 3]) -> ([f64; 3], [[f64; 3]; 2]) {
     (spin, [first, second])
 }
 
-/// An axis with four digits.
+/// Formats an axis with four digits.
 fn shown(axis: [f64; 3]) -> String {
     let entries = axis.map(|entry| {
         let rounded = (entry * 1e4).round() / 1e4;

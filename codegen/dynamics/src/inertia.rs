@@ -13,17 +13,18 @@ use hamel_language::model::closure::normalise;
 use hamel_language::model::twists::Moving;
 use hamel_language::model::{Body, Model, Particle};
 
-/// Pivots that are no larger than this part of the diagonal are rounding of zero.
+/// Relative size, with respect to the diagonal, up to which a pivot is a rounded zero.
 const ROUNDING: f64 = 1e-13;
-/// Models with more velocities are looked at in numbers alone.
+/// Largest number of velocities for which the rank of M is also determined exactly.
 const MOST_EXACT: usize = 8;
-/// Pivots up to this part of the diagonal may be rounding of zero, if they were computed in another way.
+/// Relative size up to which a pivot may be a rounded zero if it was computed in another way.
 const DOUBTFUL: f64 = 1e-11;
-/// The same where nothing is exact: what is larger is none, whatever was rounded.
+/// Relative size above which a pivot is not zero even if nothing is exact.
 const CERTAIN: f64 = 1e-9;
 
-/// M, in the axes and about the origins of the bodies' frames: for the free body this is
-/// [[m I, m ŝᵀ], [m ŝ, Θ]], KR18 (42).
+/// Returns M, computed in the axes and about the origins of the bodies' frames.
+///
+/// For the free body this is [[m I, m ŝᵀ], [m ŝ, Θ]], KR18 (42).
 pub fn mass_matrix(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     let n = model.n();
     let mut mass = vec![vec![model.graph.zero(); n]; n];
@@ -40,7 +41,7 @@ pub fn mass_matrix(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>>
     mass
 }
 
-/// Adds a symmetric matrix.
+/// Adds the matrix `part` to `sum`.
 pub fn accumulate(graph: &mut Graph, sum: &mut [Vec<Edge>], part: &[Vec<Edge>]) {
     for (row, other) in sum.iter_mut().zip(part) {
         for (entry, &term) in row.iter_mut().zip(other) {
@@ -49,7 +50,8 @@ pub fn accumulate(graph: &mut Graph, sum: &mut [Vec<Edge>], part: &[Vec<Edge>]) 
     }
 }
 
-/// m vᵢ·vⱼ + m (vᵢ·(ωⱼ × s) + vⱼ·(ωᵢ × s)) + ωᵢ·Θ ωⱼ, body axes, about the frame's origin.
+/// Returns m vᵢ·vⱼ + m (vᵢ·(ωⱼ × s) + vⱼ·(ωᵢ × s)) + ωᵢ·Θ ωⱼ, in body axes and about the frame's
+/// origin.
 fn body_mass(model: &mut Model, calculus: &mut Calculus, body: &Body) -> Vec<Vec<Edge>> {
     let n = model.n();
     let frame = model.frames[body.frame].clone();
@@ -93,7 +95,7 @@ fn particle_mass(
     })
 }
 
-/// ∂²T/∂ξⁱ∂ξʲ of the kinetic energy that the user wrote.
+/// Returns ∂²T/∂ξⁱ∂ξʲ of the kinetic energy given by the user.
 pub fn kinetic_mass(model: &mut Model) -> Vec<Vec<Edge>> {
     let graph = &mut model.graph;
     let mut by: Vec<Derivation> = model
@@ -106,7 +108,7 @@ pub fn kinetic_mass(model: &mut Model) -> Vec<Vec<Edge>> {
     symmetric(momentum.len(), |i, j| by[j].of(graph, momentum[i]))
 }
 
-/// A matrix from its lower triangle.
+/// Builds a symmetric matrix from its lower triangle.
 pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<Vec<Edge>> {
     let mut rows: Vec<Vec<Edge>> = Vec::with_capacity(n);
     for i in 0..n {
@@ -122,8 +124,10 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
         .collect()
 }
 
-/// Whether constraints have to carry velocities without inertia: M is singular on all of X, or so close to singular at the start,
-/// with the default parameters, that rounding may decide.
+/// Returns whether there are velocities without inertia that constraints have to determine.
+///
+/// That is the case if M is singular on all of X, or so close to singular at the start, with the
+/// default parameters, that rounding may decide.
 pub fn is_singular(model: &Model) -> bool {
     if model.n() <= MOST_EXACT && has_idle_directions(model) {
         return true;
@@ -150,7 +154,7 @@ pub fn is_singular(model: &Model) -> bool {
     failing_pivot(&mass, model.n(), DOUBTFUL).is_some()
 }
 
-/// Whether M has a lower rank than it has rows at a random point of X and of the parameters.
+/// Returns whether M is rank-deficient at a random point of X and of the parameters.
 fn has_idle_directions(model: &Model) -> bool {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
@@ -167,7 +171,7 @@ fn has_idle_directions(model: &Model) -> bool {
     rank(rows.collect()) < model.n()
 }
 
-/// The numbers of the start, but for x.
+/// Returns the numbers of the start, with the given x.
 fn numbers(model: &Model, x: &[f64]) -> Vec<f64> {
     let (m, n) = (model.u.len(), model.n());
     model.numbers(
@@ -179,8 +183,8 @@ fn numbers(model: &Model, x: &[f64]) -> Vec<f64> {
     )
 }
 
-/// A configuration near the start at which no angle is special; none where constraints between coordinates are not kept
-/// by charts alone.
+/// Returns a configuration near the start at which no angle is special; `None` if there are
+/// constraints between coordinates that charts alone do not satisfy.
 fn beside_the_start(model: &Model) -> Option<Vec<f64>> {
     let displaced = model.start_x.iter().zip(1..);
     let displaced =
@@ -195,8 +199,10 @@ fn beside_the_start(model: &Model) -> Option<Vec<f64>> {
         .then_some(x)
 }
 
-/// M + w BᵀB and w Bᵀ b, which may be added to M ξ̇ = f + Bᵀ λ where B ξ̇ = b: neither ξ̇ nor λ changes, and what has
-/// inertia through constraints alone gets pivots.
+/// Returns M + w BᵀB and the force w Bᵀ b for M ξ̇ = f + Bᵀ λ with B ξ̇ = b.
+///
+/// Using this matrix, and adding this force to f, changes neither ξ̇ nor λ, and provides pivots for
+/// velocities that only constraints determine.
 pub fn augmented(
     graph: &mut Graph,
     mass: &[Vec<Edge>],
@@ -220,7 +226,9 @@ pub fn augmented(
     Some((sum, force.collect()))
 }
 
-/// w = tr M / tr BᵀB, which makes the sizes of both alike; 1 / tr BᵀB where M is 0, so that constraints alone give the motion.
+/// Returns w = tr M / tr BᵀB, which makes M and w BᵀB comparable in size.
+///
+/// If M is 0, so that constraints alone determine the motion, it is 1 / tr BᵀB.
 pub fn weight(graph: &mut Graph, mass: &[Vec<Edge>], rows: &[Vec<Edge>]) -> Option<Edge> {
     let diagonal: Vec<Edge> = (0..mass.len()).map(|i| mass[i][i]).collect();
     let (entries, mut trace) = (rows.concat(), graph.sum(&diagonal));
@@ -231,8 +239,14 @@ pub fn weight(graph: &mut Graph, mass: &[Vec<Edge>], rows: &[Vec<Edge>]) -> Opti
     graph.div(trace, squares)
 }
 
-/// M, in a graph with the model's symbols, has to be positive definite at the start, or near one that nobody has chosen, with
-/// the default parameters, for what is solved for; or, where constraints carry what has no inertia, M + w BᵀB.
+/// Checks that M is positive definite with the default parameters, as far as it has to be inverted.
+///
+/// M is in `graph`, which has the model's symbols. It has to be positive definite at the start or,
+/// if nobody has chosen the start, at least near it. If constraints determine velocities without
+/// inertia, M + w BᵀB has to be positive definite instead.
+///
+/// # Errors
+/// Returns a diagnostic that names the first velocity whose pivot is not positive.
 pub fn positive_definite(
     model: &Model,
     graph: &Graph,
@@ -249,7 +263,7 @@ pub fn positive_definite(
     }
     let mass_at = |x: &[f64]| {
         let mut values = evaluate(&graph, &mass.concat(), &numbers(model, x));
-        // Where no constraint acts on it, a velocity whose rate is given takes no part in what is solved.
+        // A velocity whose rate is prescribed, and on which no constraint acts, is not solved for.
         for &(place, _) in model
             .accelerated
             .iter()
@@ -288,11 +302,11 @@ pub fn positive_definite(
     .lacking(Needs::Inverse))
 }
 
-/// The first velocity whose pivot in Cholesky's factorisation is not larger than `least`, relative to the diagonal; `None`
-/// where none fails in an elimination that takes the largest pivot first.
+/// Returns the first velocity whose pivot in Cholesky's factorisation is at most `least`, relative
+/// to the diagonal; `None` if no pivot fails in an elimination that takes the largest one first.
 ///
-/// The order of elimination decides how far rounding hides that a pivot is 0: with the largest first, what is left for the last
-/// one is a few units of the diagonal.
+/// The order of elimination determines how far rounding hides that a pivot is 0: with the largest
+/// first, the remainder for the last one is a few units of the diagonal.
 fn failing_pivot(m: &[f64], n: usize, least: f64) -> Option<usize> {
     let idle = without_pivots(m, n, least);
     if idle.is_empty() {
@@ -301,8 +315,8 @@ fn failing_pivot(m: &[f64], n: usize, least: f64) -> Option<usize> {
     first_failing(m, n, least).or(idle.first().copied())
 }
 
-/// The velocities that are left, in ascending order, when no pivot is larger than `least`, relative to the diagonal; the largest
-/// of these ratios is taken first.
+/// Eliminates velocities, the one with the largest pivot relative to the diagonal first, and
+/// returns those that remain, in ascending order, when no relative pivot is larger than `least`.
 fn without_pivots(m: &[f64], n: usize, least: f64) -> Vec<usize> {
     let mut rest = m.to_vec();
     let mut left: Vec<usize> = (0..n).collect();
@@ -322,7 +336,8 @@ fn without_pivots(m: &[f64], n: usize, least: f64) -> Vec<usize> {
     left
 }
 
-/// The first pivot in the order of the velocities that is not larger than `least`, relative to the diagonal.
+/// Returns the first pivot, in the order of the velocities, that is at most `least`, relative to
+/// the diagonal.
 fn first_failing(m: &[f64], n: usize, least: f64) -> Option<usize> {
     let mut l = vec![0.0; n * n];
     for i in 0..n {

@@ -1,4 +1,4 @@
-//! Y with Y A = I, and the canonical quasi-velocities of the coordinate kinds.
+//! Left inverse Y with Y A = I, and the canonical quasi-velocities of the coordinate kinds.
 
 use hamel_algebra::blocks::solve;
 use hamel_algebra::graph::{Edge, Graph};
@@ -6,7 +6,7 @@ use hamel_algebra::linear::{multiply, solve_symmetric, transpose};
 use hamel_language::model::Model;
 use hamel_language::model::layout::{Block, chart_rate};
 
-/// η = C(x) ẋ: canonical quasi-velocities of all blocks for a given ẋ.
+/// Returns the canonical quasi-velocities η = C(x) ẋ of all blocks for a given ẋ.
 pub fn chart_rates(graph: &mut Graph, blocks: &[Block], x: &[Edge], rate: &[Edge]) -> Vec<Edge> {
     let mut place = 0;
     let mut rates = Vec::new();
@@ -18,7 +18,7 @@ pub fn chart_rates(graph: &mut Graph, blocks: &[Block], x: &[Edge], rate: &[Edge
     rates
 }
 
-/// Y, n rows of ν: those of the description, the others from A.
+/// Returns Y, n × ν: the rows given in the description, the others derived from A.
 pub fn left_inverse(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
     let given = model.completion.y.clone();
     if given.len() == model.n()
@@ -34,10 +34,12 @@ pub fn left_inverse(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
     )
 }
 
-/// Y from A. With B = C A, where C are the closed forms of the coordinate kinds, KR18 (36): B⁻¹ C
-/// where B is square, B⁻¹ being Bᵀ where B is orthogonal, and found by substitution where B is
-/// triangular up to order. Otherwise B Y = C is solved for blocks of velocities whose determinants
-/// are constant on X, and what remains by (BᵀB)⁻¹ Bᵀ C.
+/// Derives Y from A.
+///
+/// Let B = C A, where C are the closed forms of the coordinate kinds, KR18 (36). If B is square,
+/// Y = B⁻¹ C, where B⁻¹ is Bᵀ for an orthogonal B, and is found by substitution if B is triangular
+/// up to the order of rows and columns. Otherwise B Y = C is solved for blocks of velocities whose
+/// determinants are constant on X, and the rest by (BᵀB)⁻¹ Bᵀ C.
 fn from_kinematic_map(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
     let (n, nu) = (model.n(), model.nu());
     let graph = &mut model.graph;
@@ -71,7 +73,8 @@ fn from_kinematic_map(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
     solve_symmetric(graph, &gram, &right)
 }
 
-/// B⁻¹ C where some order of rows and columns makes B triangular: rows with one unknown left give it.
+/// Returns B⁻¹ C if some order of rows and columns makes B triangular, by solving rows with one
+/// remaining unknown.
 fn substitute(graph: &mut Graph, b: &[Vec<Edge>], c: &[Vec<Edge>]) -> Option<Vec<Vec<Edge>>> {
     let n = b.len();
     let mut solution: Vec<Option<Vec<Edge>>> = vec![None; n];

@@ -1,9 +1,10 @@
-//! The linearisation, without redundant directions: with δx = A(x) h and ξ̇ = F(x, ξ, u)
+//! Linearisation without redundant directions: with δx = A(x) h and ξ̇ = F(x, ξ, u),
 //!
 //! ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = (∂ⱼF) hʲ + (∂F/∂ξ) δξ + (∂F/∂u) δu.
 //!
-//! Where constraints leave ξ = C(x) ξₐ, the n displacements h stay, of ξ only ξₐ varies, and the
-//! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ. States of first order add rows and columns.
+//! If constraints leave ξ = C(x) ξₐ, there are still n displacements h, but only ξₐ varies of ξ,
+//! and the matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ. States of first order
+//! add rows and columns.
 
 use super::accel::best::NEAR;
 use super::accel::recursions;
@@ -24,43 +25,46 @@ use hamel_language::model::Model;
 use hamel_program::Cause;
 use hamel_program::count::count;
 
-/// Systems with more velocities are not expanded.
+/// Largest number of velocities for which entries are expanded.
 const MOST_EXPANDED: usize = 8;
-/// Entries with more terms are not expanded.
+/// Largest number of terms of an expanded entry.
 const MOST_TERMS: usize = 40;
-/// Intermediate polynomials with more terms are not expanded: what cancels modulo φ leaves a tenth of them, or more.
+/// Largest number of terms of an intermediate polynomial in an expansion.
+///
+/// Cancellation modulo φ leaves at least a tenth of them.
 const MOST_INTERMEDIATE_TERMS: usize = 400;
-/// Products and sums of terms after which the expansion is given up: the traced entries stand.
+/// Number of products and sums of terms after which the expansion is given up, in favour of the
+/// traced entries.
 const MOST_WORK: usize = 200_000;
 
-/// ξ̇ = F as edges of a graph that grew from the model's.
+/// Forward dynamics ξ̇ = F, as edges of a graph that extends the model's.
 pub struct ForwardDynamics<'a> {
-    /// The graph.
+    /// Graph of F.
     pub graph: &'a Graph,
-    /// F, one entry for each active velocity.
+    /// F, with one entry for each active velocity.
     pub xi_dot: &'a [Edge],
-    /// Pivots that have to be positive where there is F, those that vary, and what they are of.
+    /// Varying pivots that have to be positive for F to exist, and their meaning.
     pub guards: &'a [(Edge, Cause)],
-    /// The displacements.
+    /// Frame of the displacements.
     pub displacements: Displacements,
-    /// M and f − Γ ξ ξ − ∂V of the active velocities, where M F = right-hand side holds.
+    /// M and f − Γ ξ ξ − ∂V of the active velocities, if M F equals this right-hand side.
     pub implicit: Option<(&'a [Vec<Edge>], &'a [Edge])>,
 }
 
-/// [A B]: n + nₐ rows of n + nₐ + m, for (h, δξ, δu).
+/// Linearisation `[A B]`: n + nₐ rows, and n + nₐ + m columns for (h, δξ, δu).
 pub struct Linear {
-    /// The graph that it lives in.
+    /// Graph of its entries.
     pub graph: Graph,
-    /// The rows.
+    /// Rows of `[A B]`.
     pub rows: Vec<Vec<Edge>>,
-    /// The pivots of F in this graph, and what they are of.
+    /// Pivots of F in this graph, and their meaning.
     pub guards: Vec<(Edge, Cause)>,
-    /// F, where it comes out on the way.
+    /// F, if it is obtained along with the derivatives; empty otherwise.
     pub rates: Vec<Edge>,
 }
 
 impl Linear {
-    /// Rows made from F as it is.
+    /// Creates a linearisation whose rows are derived from F as it is.
     fn of(motion: &ForwardDynamics, graph: Graph, rows: Vec<Vec<Edge>>) -> Self {
         Linear {
             graph,
@@ -70,24 +74,24 @@ impl Linear {
         }
     }
 
-    /// The rows and the guards.
+    /// Returns the entries of the rows, then the guards.
     fn results(&self) -> Vec<Edge> {
         let guards = self.guards.iter().map(|(guard, _)| *guard);
         self.rows.iter().flatten().copied().chain(guards).collect()
     }
 
-    /// Its operations: weight and number.
+    /// Returns the weight and the number of its operations.
     pub fn cost(&self) -> (usize, usize) {
         let count = count(&self.graph, &self.results());
         (count.weight(), count.flops())
     }
 
-    /// All that is computed: rows, guards, F.
+    /// Returns all computed edges: rows, guards, F.
     pub fn roots(&self) -> Vec<Edge> {
         [self.results(), self.rates.clone()].concat()
     }
 
-    /// Edges of another graph that stand for the roots there, apart.
+    /// Splits edges of another graph that correspond to [`Linear::roots`] into rows, guards and F.
     pub fn apart(&self, mut roots: Vec<Edge>) -> Apart {
         let columns = self.rows.first().map_or(1, |row| row.len().max(1));
         let rates = roots.split_off(roots.len() - self.rates.len());
@@ -101,13 +105,13 @@ impl Linear {
 /// Rows, guards and F of a linearisation.
 type Apart = (Vec<Vec<Edge>>, Vec<(Edge, Cause)>, Vec<Edge>);
 
-/// The frame that displacements are measured in, as edges of the graph of F.
+/// Frame in which displacements are measured, as edges of the graph of F.
 pub struct Displacements {
-    /// A of the full frame, ν rows of n; without the column of ξ⁰.
+    /// A of the full frame, ν × n, without the column of ξ⁰.
     pub a: Vec<Vec<Edge>>,
-    /// Y of the full frame, n rows of ν; without the row of ξ⁰.
+    /// Y of the full frame, n × ν, without the row of ξ⁰.
     pub y: Vec<Vec<Edge>>,
-    /// The places of the displacements in ξ: all but that of ξ⁰, as the time is not displaced.
+    /// Indices of the displacements in ξ: all but that of ξ⁰, since time is not displaced.
     places: Vec<usize>,
     /// ξ = C ξₐ.
     xi: Vec<Edge>,
@@ -116,7 +120,7 @@ pub struct Displacements {
 }
 
 impl Displacements {
-    /// Those of a model, in the graph of its program.
+    /// Derives the displacement frame of a model in the graph of its program.
     pub fn new(full: &Model, reduction: Option<&Reduction>, graph: &mut Graph) -> Option<Self> {
         let mut own = full.clone();
         let mut calculus = Calculus::new(&own);
@@ -143,14 +147,16 @@ impl Displacements {
         })
     }
 
-    /// Number of displacements.
+    /// Returns the number of displacements.
     pub fn n(&self) -> usize {
         self.places.len()
     }
 }
 
-/// The rows of a model with states of first order, (h, δξ, δz): those of ż follow, and the columns of z stand before
-/// those of u. F is given in the graph of the rows.
+/// Extends the rows of the linearisation to states z of first order: (h, δξ, δz).
+///
+/// The rows of ż are appended, and the columns of z precede those of u. F is given in the graph of
+/// the rows.
 pub fn with_states(
     model: &Model,
     displacements: &Displacements,
@@ -173,8 +179,9 @@ pub fn with_states(
     rows
 }
 
-/// The slopes of expressions of the model by (h, δξ, δz, δu), by rows, in a graph that grew from the model's: ξ̇ is F
-/// there, and moves as the rows of δξ̇ say.
+/// Returns the derivatives of expressions of the model by (h, δξ, δz, δu), by rows.
+///
+/// The graph extends the model's. ξ̇ is F there, and `changes` are the rows of δξ̇.
 pub fn slopes(
     model: &Model,
     displacements: &Displacements,
@@ -185,7 +192,7 @@ pub fn slopes(
     let expressions = rebuild(&model.graph, graph, expressions);
     let n = displacements.n();
     let one = graph.one();
-    // z stands before u.
+    // In the model's inputs, z comes after u; here it precedes it.
     let (u, z) = model.u.split_at(model.m());
     let moved: Vec<Edge> = [&model.xi, z, u].concat();
     let columns: Vec<Vec<Edge>> = (0..n + moved.len())
@@ -209,13 +216,18 @@ pub fn slopes(
         .collect()
 }
 
-/// Linearises; `model` is that of the active velocities. The cheapest of four ways is taken: of a tree of links, by recursion,
-/// where F comes out on the way; F itself differentiated; M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all
-/// columns; the entries expanded, their coefficients computed when parameters are set.
+/// Linearises the dynamics; `model` is that of the active velocities.
+///
+/// The cheapest of four ways is chosen:
+///
+/// - for a tree of links, recursion, which also yields F;
+/// - F itself differentiated;
+/// - M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all columns;
+/// - the entries expanded, with their coefficients computed when parameters are set.
 pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear {
     let upper = upper(model, motion);
     let recursions = recursions(&Setting::given(model), care);
-    // Beyond a few links the recursion is certainly cheapest.
+    // For more than a few links the recursion is certainly the cheapest.
     let long = recursions.first().is_some_and(Recursion::is_long);
     let plain = motion.displacements.n() == model.n() && motion.implicit.is_some();
     let traced = recursions.iter().filter(|_| plain);
@@ -237,7 +249,7 @@ pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear
     };
     let costs: Vec<_> = candidates.iter().map(cost).collect();
     let (loss, weight, _) = costs.iter().min().copied().unwrap_or_default();
-    // What is far behind before it is polished is behind afterwards.
+    // Candidates that are far more expensive before polishing remain so afterwards.
     let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
     let near = candidates.into_iter().zip(costs);
     let near = near.filter(|(_, cost)| *cost <= most);
@@ -245,13 +257,14 @@ pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear
         Some(linear) if cost(&linear) < before => (cost(&linear), linear),
         _ => (before, linear),
     });
-    // The first of equals; there is always one.
+    // The first of equal ones; there is always at least one.
     let best = polished.min_by_key(|(cost, _)| *cost);
     best.map_or_else(|| explicit(model, motion, &upper), |(_, linear)| linear)
 }
 
-/// After resubstitution, where that finds something: above what F is made from, or what the model is, where F comes out on
-/// the way.
+/// Returns the linearisation after resubstitution, if that finds anything.
+///
+/// The base is the graph of F, or the model's graph if F is obtained along with the derivatives.
 fn polished(linear: &Linear, model: &Model, motion: &ForwardDynamics) -> Option<Linear> {
     let base = match linear.rates.is_empty() {
         true => motion.graph,
@@ -267,7 +280,7 @@ fn polished(linear: &Linear, model: &Model, motion: &ForwardDynamics) -> Option<
     })
 }
 
-/// The rows of ḣ.
+/// Returns the rows of ḣ.
 fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
     let mut graph = motion.graph.clone();
     let displacements = &motion.displacements;
@@ -290,7 +303,7 @@ fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
     Linear::of(motion, graph, rows)
 }
 
-/// The derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
+/// Returns the derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
 fn columns(model: &Model, graph: &mut Graph, displacements: &Displacements) -> Vec<Derivation> {
     let one = graph.one();
     let along = |j: usize| {
@@ -305,7 +318,7 @@ fn columns(model: &Model, graph: &mut Graph, displacements: &Displacements) -> V
         .collect()
 }
 
-/// F differentiated as it stands.
+/// Differentiates F as it is.
 fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
     let mut graph = motion.graph.clone();
     let mut columns = columns(model, &mut graph, &motion.displacements);
@@ -317,7 +330,7 @@ fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
     Linear::of(motion, graph, rows)
 }
 
-/// M δξ̇ = ∂(M F) − (∂M) F, all columns with one factorisation.
+/// Solves M δξ̇ = ∂(M F) − (∂M) F for all columns with one factorisation.
 fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<Linear> {
     let (mass, right) = motion.implicit?;
     let mut graph = motion.graph.clone();
@@ -343,7 +356,7 @@ fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<L
     Some(Linear::of(motion, graph, rows))
 }
 
-/// The same for a tree of links, by recursion; M factored from the leaves to the root.
+/// Linearises a tree of links by recursion, with M factored from the leaves to the root.
 fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
     let RatesAndSlopes {
         mut graph,
@@ -365,7 +378,8 @@ fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
     })
 }
 
-/// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
+/// Writes every entry as a sum of monomials whose coefficients depend on parameters alone; `None`
+/// if one of them is long.
 fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
     let mut forms = NormalForms::within(&model.points, MOST_WORK)
         .of_terms(MOST_INTERMEDIATE_TERMS)
@@ -396,7 +410,7 @@ fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Optio
     Some(Linear::of(motion, graph, rows))
 }
 
-/// The rows of ḣ in another graph.
+/// Copies the rows of ḣ to another graph.
 fn rebuilt(upper: &Linear, graph: &mut Graph) -> Vec<Vec<Edge>> {
     let rows = upper.rows.iter();
     rows.map(|row| rebuild(&upper.graph, graph, row)).collect()

@@ -1,4 +1,4 @@
-//! Generalised forces: fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ of applied loads, KR18 (28), and −∂ᵢV.
+//! Generalised forces: fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ of applied loads, KR18 (28), and −∂ᵢV of potentials.
 
 use super::calculus::{Calculus, into_frame};
 use hamel_algebra::graph::Edge;
@@ -6,7 +6,8 @@ use hamel_algebra::linear::{add3, cross};
 use hamel_language::model::{Model, Wrench};
 use hamel_language::syntax::ast::Axes;
 
-/// The generalised force of one wrench: F·(vᵢ + ωᵢ × at) + τ·ωᵢ in the axes it is given in.
+/// Returns the generalised force F·(vᵢ + ωᵢ × at) + τ·ωᵢ of one wrench, in the axes in which it is
+/// given.
 pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Vec<Edge> {
     let frame = model.frames[wrench.frame].clone();
     let graph = &mut model.graph;
@@ -33,7 +34,7 @@ pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Ve
                 .collect()
         }
         Axes::World => {
-            // The torque about the frame's origin, taken into the frame's axes for ωᵢ.
+            // The torque about the frame's origin is transformed to the frame's axes, as ωᵢ is.
             let force = into_frame(graph, &frame.rotation, wrench.force);
             let lever = cross(graph, wrench.at, force);
             let turned = into_frame(graph, &frame.rotation, wrench.torque);
@@ -50,14 +51,14 @@ pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Ve
     }
 }
 
-/// −∂ᵢV of everything but gravity on bodies, which has routes of its own.
+/// Returns −∂ᵢV of everything except gravity on bodies, which is computed separately.
 pub fn potential(model: &mut Model, calculus: &mut Calculus, potential: Edge) -> Vec<Edge> {
     (0..model.n())
         .map(|i| -calculus.along(&mut model.graph, i, potential))
         .collect()
 }
 
-/// −∂ᵢV of the same, where springs along lines act by their wrenches.
+/// Returns the same −∂ᵢV as [`potential`], but with springs along lines acting by their wrenches.
 pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     let mut sum = potential(model, calculus, model.elements.scalar_potential);
     for spring in model.elements.springs.clone() {
@@ -71,7 +72,7 @@ pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     sum
 }
 
-/// Applied forces fᵢᴱ, one vector for every load: wrenches, then generalised forces.
+/// Returns the applied forces fᵢᴱ, one vector for every load: wrenches, then generalised forces.
 pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     let mut loads: Vec<Vec<Edge>> = Vec::new();
     for load in model.wrenches.clone() {
@@ -87,7 +88,7 @@ pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     loads
 }
 
-/// Applied forces summed, for the reference of validation.
+/// Returns the sum of the applied forces, as a reference for validation.
 pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     let all = applied(model, calculus);
     (0..model.n())

@@ -1,4 +1,4 @@
-//! The Hamiltonian side: p = M ξ, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ (KR18 (30a)), and ξ = M⁻¹ p.
+//! Hamiltonian form: p = M ξ, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ (KR18 (30a)), and ξ = M⁻¹ p.
 
 use super::accel::all_plans;
 use super::accel::parts::Parts;
@@ -11,12 +11,17 @@ use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 use hamel_program::count::count;
 
-/// Models with more velocities get ṗ from what is traced for ξ̇: the n² entries of M and n³ of γ that it
-/// would be written out from are long then, and never the cheaper ones.
+/// Largest number of velocities for which ṗ is also written out.
+///
+/// In larger models the n² entries of M and n³ of γ are long and never the cheapest, so that ṗ is
+/// computed from the quantities traced for ξ̇.
 pub const MOST_WRITTEN_OUT: usize = 8;
 
-/// ṗ in the graph of `parts`: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with what is there for ξ̇
-/// anyway, M written out or as it is traced, whichever costs least; then −∂V and the applied forces.
+/// Returns ṗ in the graph of `parts`.
+///
+/// The cheapest of these is chosen: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with the terms
+/// that ξ̇ needs anyway and M either written out or as traced. −∂V and the applied forces are then
+/// added.
 pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     if model.n() > MOST_WRITTEN_OUT {
         return traced_rate(model, graph, parts);
@@ -77,7 +82,8 @@ pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     sums.into_iter().min_by_key(cost).unwrap_or_default()
 }
 
-/// d/dt (M ξ) at ξ̇ = 0, differentiated from M as it is traced, then −Γ ξ ξ − ∂V and the applied forces.
+/// Returns d/dt (M ξ) at ξ̇ = 0, differentiated from M as traced, minus Γ ξ ξ and ∂V, plus the
+/// applied forces.
 fn traced_rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     let rates = rebuild(&model.graph, graph, &model.rate);
     let moving = model.x.iter().map(|x| x.node()).zip(rates);
@@ -97,8 +103,8 @@ fn traced_rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     .collect()
 }
 
-/// M⁻¹ p with the cheapest elimination, its cost and the graph where it is; `None` where M is singular
-/// everywhere.
+/// Computes M⁻¹ p with the cheapest elimination; returns its cost, its graph and the solution, or
+/// `None` if M is singular everywhere.
 pub fn velocity(graph: &Graph, parts: &Parts, p: &[Edge]) -> Option<(usize, Graph, Solution)> {
     let parts = Parts {
         mass: parts.mass.clone(),

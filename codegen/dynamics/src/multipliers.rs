@@ -1,7 +1,7 @@
-//! The multipliers λ of all constraints: M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ.
+//! Multipliers λ of all constraints: M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ.
 //!
-//! Rows that are kept have theirs from the solution for ξ̇. The others follow from the rows of the
-//! equations of motion that the solved velocities belong to, by the pivots of the reduction.
+//! The multipliers of rows that are kept come from the solution for ξ̇. The others follow from the
+//! equations of motion of the velocities that were solved for, by the pivots of the reduction.
 
 use super::accel::Acceleration;
 use super::accel::parts::{Reference, Variant, parts};
@@ -13,7 +13,9 @@ use hamel_algebra::transplant::{map_symbols, rebuild};
 use hamel_language::model::{Model, class};
 use hamel_language::syntax::ast::Axes;
 
-/// M ξ̇ + h + ∂V − f of some velocities of the full frame, with ξ̇ₐ as symbols: bodies traced in the full frame.
+/// Returns M ξ̇ + h + ∂V − f for some velocities of the full frame, with ξ̇ₐ as symbols.
+///
+/// The bodies are traced in the full frame.
 pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (Graph, Vec<Edge>) {
     let mut model = full.clone();
     model.graph = reduction.graph.clone();
@@ -39,8 +41,10 @@ pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (
     (graph, residuals)
 }
 
-/// λ in the graph of the program, in order of the constraints, then the forces of drives whose rates are given; from the
-/// residuals of the velocities that were solved for and of those that are driven. Rows that were dropped have none.
+/// Returns λ in order of the constraints, then the forces of drives with prescribed rates.
+///
+/// They are in the graph of the program, and follow from the residuals of the velocities that were
+/// solved for and of those that are driven. Dropped rows have no multiplier.
 pub fn multipliers(
     full: &Model,
     reduction: &Reduction,
@@ -87,7 +91,7 @@ pub fn multipliers(
     for (&(row, _), value) in reduction.solved.iter().zip(&solution) {
         multipliers[row] = value[0];
     }
-    // What the constraints do not bring up, the drives do.
+    // The drives provide the forces that the constraints do not.
     let drives = full.accelerated.iter().zip(drives);
     let drives: Vec<Edge> = drives
         .map(|(&(velocity, _), residual)| {
@@ -106,7 +110,7 @@ pub fn multipliers(
     )
 }
 
-/// The expressions with ξ̇ₐ put in for its symbols.
+/// Substitutes ξ̇ₐ for its symbols in expressions.
 pub(super) fn with_accelerations(graph: &mut Graph, edges: &[Edge], xi_dot: &[Edge]) -> Vec<Edge> {
     let from = graph.clone();
     let mut values = xi_dot.iter();

@@ -1,5 +1,5 @@
-//! Normal forms modulo φ of small expressions: what people read, and what is expanded to be
-//! factored anew.
+//! Normal forms modulo φ of small expressions, for output that people read and for expressions that
+//! are expanded to be factored anew.
 
 use crate::calculus::Calculus;
 use hamel_algebra::graph::{Edge, Function, Graph, Node};
@@ -15,30 +15,34 @@ use hamel_language::model::points::Points;
 use num_rational::BigRational;
 use std::collections::BTreeMap;
 
-/// Polynomials with their normal forms modulo the ideal of φ; one instance serves one graph, which
-/// may grow.
+/// Polynomials with their normal forms modulo the ideal of φ.
+///
+/// One instance serves one graph, which may grow.
 pub struct NormalForms {
-    /// Polynomials as they stand.
+    /// Polynomials without reduction.
     expander: Expander,
-    /// Those in normal form.
+    /// Polynomials in normal form.
     reduced: Expander,
     ideal: Ideal,
 }
 
-/// Products and sums of terms that are made for one normal form: those of entries that people read take a tenth of it.
+/// Largest number of products and sums of terms for one normal form; entries that people read take
+/// a tenth of it.
 const MOST_WORK: usize = 60_000;
 
-/// Longest normal form on the way to one that is asked for.
+/// Largest number of terms of an intermediate normal form.
 const MOST_REDUCED: usize = 200;
 
 impl NormalForms {
-    /// The Gröbner bases of φ; constraints whose basis is too large are left out.
+    /// Computes the Gröbner bases of φ; constraints whose basis is too large are left out.
     pub fn new(points: &Points) -> Self {
         NormalForms::within(points, usize::MAX)
     }
 
-    /// The same, with so many products and sums of terms for all expansions together: what is not
-    /// expanded by then is too large.
+    /// As [`NormalForms::new`], with a budget of `work` products and sums of terms for all
+    /// expansions together.
+    ///
+    /// Expressions that are not expanded within the budget count as too large.
     pub fn within(points: &Points, work: usize) -> Self {
         let mut expander = Expander::default();
         let mut generators: Vec<Vec<Poly<BigRational>>> = Vec::new();
@@ -62,11 +66,12 @@ impl NormalForms {
             let Some(polynomial) = expander.expand(&points.free, constraint) else {
                 continue;
             };
-            // A function or a quotient is a node of the free graph, which means nothing elsewhere.
+            // A function or a quotient is a node of the free graph and has no meaning in other
+            // graphs.
             if polynomial.variables().iter().any(|v| *v >= OPAQUE) {
                 continue;
             }
-            // Joined with the ideals that share coordinates with it.
+            // Join the constraint with the ideals that share coordinates with it.
             let mut joined = vec![polynomial];
             let mut rest = Vec::new();
             for ideal in generators {
@@ -102,34 +107,36 @@ impl NormalForms {
         }
     }
 
-    /// Gives up on expressions with an intermediate polynomial of more terms than this.
+    /// Limits the number of terms of intermediate polynomials; larger expressions are given up.
     pub fn of_terms(mut self, most: usize) -> Self {
         self.expander = self.expander.of_terms(most);
         self
     }
 
-    /// Gives up on normal forms with one on the way of more terms than this, from now on.
+    /// Limits the number of terms of intermediate normal forms from now on.
     pub fn limit_terms(&mut self, most: usize) {
         self.reduced.limit_terms(most);
     }
 
-    /// The same with powers of linear forms as they are: digits of (x − c)³ near c.
+    /// Keeps powers of linear forms unexpanded, which preserves the digits of, e.g., (x − c)³ near
+    /// c.
     pub fn keeping_powers(mut self) -> Self {
         self.expander = self.expander.keeping_powers();
         self
     }
 
-    /// The polynomial of an expression, as it stands.
+    /// Expands an expression to a polynomial, without reduction.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         self.expander.expand(graph, edge)
     }
 
-    /// The normal form of a polynomial.
+    /// Returns the normal form of a polynomial.
     pub fn reduce(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> Poly<BigRational> {
         self.ideal.reduce(graph, polynomial.clone())
     }
 
-    /// The normal form of an expression, whose polynomials on the way are in normal form, too, where they are long.
+    /// Returns the normal form of an expression; intermediate polynomials are reduced, too, where
+    /// they are long.
     pub fn normal_form(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         let ideal = &mut self.ideal;
         let mut reduce = |graph: &Graph, polynomial| ideal.reduce(graph, polynomial);
@@ -140,7 +147,7 @@ impl NormalForms {
     }
 }
 
-/// The ideal of φ, and those of the circles of cos a and sin a.
+/// Ideal of φ, and those of the circles of cos a and sin a.
 struct Ideal {
     angles: Angles,
     bases: Vec<Basis<BigRational>>,
@@ -171,7 +178,7 @@ impl Ideal {
     }
 }
 
-/// The nodes of sin a and cos a, by angle; the graph is scanned once as it grows.
+/// Nodes of sin a and cos a, by angle; each node of the growing graph is scanned once.
 #[derive(Default)]
 struct Angles {
     scanned: u32,
@@ -179,7 +186,7 @@ struct Angles {
 }
 
 impl Angles {
-    /// The variables of cos a and sin a where a variable is one of them and both exist.
+    /// Returns the variables of cos a and sin a if `var` is one of them and both exist.
     fn pair(&mut self, graph: &Graph, var: Var) -> Option<(Var, Var)> {
         let Node::Apply(Function::Sin | Function::Cos, angle) =
             graph.node(var.checked_sub(OPAQUE)?)
@@ -198,7 +205,7 @@ impl Angles {
     }
 }
 
-/// The node that a variable stands for.
+/// Returns the node that a variable stands for.
 pub fn variable_node(graph: &Graph, var: Var) -> Edge {
     match var.checked_sub(OPAQUE) {
         Some(id) => Edge::of(id),
@@ -206,10 +213,12 @@ pub fn variable_node(graph: &Graph, var: Var) -> Edge {
     }
 }
 
-/// A polynomial in the variables that vary at run time, its coefficients being expressions that do not.
+/// Polynomial in the variables that vary at run time, with expressions that do not vary as
+/// coefficients.
 pub type Collected = BTreeMap<Monomial, Edge>;
 
-/// Sorts a polynomial by its run-time monomials; coefficients are built in the graph.
+/// Collects the terms of a polynomial by run-time monomials; the coefficients are built in the
+/// graph.
 pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
     let mut collected = Collected::new();
     for (monomial, number) in polynomial.terms() {
@@ -234,9 +243,10 @@ pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
     collected
 }
 
-/// An expression that has the same value everywhere on X, written without coordinates: where all
-/// ∂ᵢf = 0 the normal form has no coordinate left. Others are handed back as they are.
-/// The bases are found when they are first needed.
+/// Rewrites an expression that is constant on X without coordinates.
+///
+/// If all ∂ᵢf = 0, no coordinate is left in the normal form. Other expressions are returned
+/// unchanged. The bases are computed when they are first needed.
 pub fn without_coordinates(
     graph: &mut Graph,
     calculus: &mut Calculus,
@@ -263,7 +273,7 @@ pub fn without_coordinates(
     }
 }
 
-/// The expression of a polynomial, term by term.
+/// Builds the expression of a polynomial, term by term.
 pub fn build(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Edge {
     let collected = collect(graph, polynomial);
     let mut sum = graph.zero();

@@ -1,14 +1,14 @@
-//! The norm and the inverse of a matrix of numbers.
+//! Norm and inverse of a numerical matrix.
 
 #[cfg(test)]
 mod tests;
 
-/// The greatest sum of sizes in a row.
+/// Returns the largest absolute row sum.
 pub fn norm(rows: &[Vec<f64>]) -> f64 {
     greatest(rows.iter().map(|row| row.iter().map(|e| e.abs()).sum()))
 }
 
-/// The greatest of numbers that are not negative; infinite where one is none.
+/// Returns the largest of some non-negative numbers; infinite if one of them is NaN.
 pub fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(0.0, |most, number| match number.is_nan() {
         true => f64::INFINITY,
@@ -16,7 +16,7 @@ pub fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-/// The inverse of a positive definite matrix, by Gauss and Jordan without exchange.
+/// Returns the inverse of a positive definite matrix, by Gauss-Jordan elimination without pivoting.
 pub fn inverse(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let n = rows.len();
     for k in 0..n {

@@ -1,4 +1,4 @@
-//! The functions of a program while it is put together.
+//! Builder of the functions of a program.
 
 use super::accel::Acceleration;
 use super::accel::cheapest::Computation;
@@ -10,32 +10,37 @@ use hamel_language::model::Model;
 use hamel_language::model::value::Value;
 use hamel_program::{Cause, Function, FunctionId, Shape};
 
-/// Models with more velocities are looked at for lack of inertia by M as it is traced: the literal one, n²
-/// entries of all bodies, would take longer than all else.
+/// Largest number of velocities for which the literal M is used to detect missing inertia.
+///
+/// In larger models M is used as it is traced: computing the n² literal entries of all bodies would
+/// take longer than everything else.
 pub(super) const MOST_LITERAL: usize = 8;
 
-/// The functions so far, and what they are made from.
+/// Functions that have been added so far, and the quantities they are made from.
 pub(super) struct Builder<'a> {
-    /// The model.
+    /// Model of the program.
     pub(super) model: &'a Model,
-    /// The graph of all functions.
+    /// Graph of all functions.
     pub(super) graph: Graph,
-    /// ξ̇.
+    /// Computation of ξ̇.
     pub(super) chosen: Acceleration,
-    /// M and forces.
+    /// M and the forces.
     pub(super) parts: Parts,
-    /// The same in a graph where nothing but ξ̇ is computed, sharing what they can with it.
+    /// M and the forces in a graph in which only ξ̇ is computed, sharing as much as possible with
+    /// it.
     pub(super) shared: Computation,
-    /// The functions.
+    /// Functions added so far.
     pub(super) functions: Vec<Function>,
-    /// How candidates are compared.
+    /// Criterion by which candidates are compared.
     pub(super) care: Care,
     /// Pivots of [Y; Φ].
     pub(super) kinematic_guards: Vec<Edge>,
-    /// What it means where a guard is not positive.
+    /// Meaning of each guard, should it not be positive.
     pub(super) causes: Vec<(Edge, Cause)>,
-    /// What else has to be positive when parameters are set: pivots of the inertias of a system that splits, where M has
-    /// none that are constant; the mass that centres of mass are divided by.
+    /// Further expressions that have to be positive when parameters are set.
+    ///
+    /// These are the pivots of the inertias of a system that splits, if M has no constant ones, and
+    /// the mass by which centres of mass are divided.
     pub(super) constant_guards: Vec<Edge>,
 }
 
@@ -73,7 +78,7 @@ impl<'a> Builder<'a> {
         builder
     }
 
-    /// What the pivots of a computation of ξ̇ belong to.
+    /// Returns the meaning of the pivots of a computation of ξ̇.
     pub(super) fn causes_of(&self, motion: &Acceleration) -> Vec<Cause> {
         let n = self.model.n();
         let of = |number: usize| match number.checked_sub(n) {
@@ -90,7 +95,7 @@ impl<'a> Builder<'a> {
             .push(Function::known(id, self.model.n(), outputs));
     }
 
-    /// Adds a function that has a value where the guards are positive.
+    /// Adds a function that has a value only if the guards are positive.
     pub(super) fn push_guarded(&mut self, id: FunctionId, outputs: Vec<Edge>, guards: Vec<Edge>) {
         self.functions.push(Function {
             guards,
@@ -99,7 +104,7 @@ impl<'a> Builder<'a> {
         });
     }
 
-    /// Gives the function that was added last so many columns.
+    /// Sets the number of columns of the function that was added last.
     pub(super) fn shaped(&mut self, columns: usize) {
         if let Some(function) = self.functions.last_mut() {
             let rows = function.outputs.len() / columns.max(1);
@@ -107,7 +112,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Pivots that vary at run time.
+    /// Returns the pivots that vary at run time.
     pub(super) fn guards(&self) -> Vec<Edge> {
         let pivots = self.chosen.pivots.iter().copied();
         pivots
@@ -117,7 +122,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The shape of a function with this value.
+/// Returns the shape of a function with this value.
 pub(super) fn shape_of(value: &Value) -> Shape {
     match value {
         Value::Scalar(_) => Shape::Scalar,

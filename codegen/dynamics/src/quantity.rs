@@ -1,5 +1,7 @@
-//! Energy and momenta in world axes: P = Σ m ċ and L_p = Σ (c − p) × m ċ + R Θ ω over the bodies
-//! with their centres of mass c and inertia Θ about them, and over particles.
+//! Energy and momenta in world axes.
+//!
+//! P = Σ m ċ and L_p = Σ (c − p) × m ċ + R Θ ω over the bodies, with their centres of mass c and
+//! inertia Θ about these, and over the particles.
 
 use super::calculus::Calculus;
 use hamel_algebra::graph::{Edge, Graph};
@@ -8,7 +10,9 @@ use hamel_language::model::Model;
 use hamel_language::model::invariants::Quantity;
 use hamel_language::model::value::Value;
 
-/// What an invariant names; `energies` are the part of T in the energy, and V.
+/// Returns the value of the quantity that an invariant names.
+///
+/// `energies` are the part of T in the energy, and V.
 pub fn value(
     model: &mut Model,
     calculus: &mut Calculus,
@@ -39,8 +43,8 @@ pub fn value(
     }
 }
 
-/// The same from the momentum of everything, linear and about the origin of the world; `None` for what it
-/// does not give.
+/// Returns the value from the total linear momentum, and the angular momentum about the origin of
+/// the world; `None` for quantities that these do not determine.
 pub fn of_total(
     graph: &mut Graph,
     (linear, angular): (Vec3, Vec3),
@@ -64,19 +68,19 @@ pub fn of_total(
     })
 }
 
-/// One mass in motion, world axes.
+/// One mass in motion, in world axes.
 pub struct MovingMass {
-    /// The mass (kg).
+    /// Mass (kg).
     pub mass: Edge,
-    /// Its centre of mass (m).
+    /// Centre of mass (m).
     pub centre: Vec3,
-    /// m ċ.
+    /// Linear momentum m ċ.
     pub momentum: Vec3,
-    /// R Θ ω, about the centre of mass.
+    /// Angular momentum R Θ ω about the centre of mass.
     pub spin: Vec3,
 }
 
-/// The bodies on a frame, or everything.
+/// Returns the motions of the bodies on a frame, or of all bodies and particles.
 pub fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec<MovingMass> {
     let graph = &mut model.graph;
     let mut all = Vec::new();

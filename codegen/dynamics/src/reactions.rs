@@ -1,4 +1,4 @@
-//! Functions of systems with constraints: the multipliers, and what leads back to where they hold.
+//! Functions of systems with constraints: the multipliers, and projections onto the constraints.
 
 use super::accel::recursions;
 use super::accel::setting::Setting;
@@ -13,11 +13,11 @@ use hamel_language::functions::Needs;
 use hamel_language::model::{Model, entry};
 use hamel_program::FunctionId;
 
-/// The most that is shown of a constraint as it was written.
+/// Largest number of characters shown of a constraint as it was written.
 const SHOWN: usize = 72;
 
 impl Builder<'_> {
-    /// φ of the loops that multipliers keep.
+    /// Returns φ of the loops that are kept closed by multipliers.
     pub(super) fn loops(&mut self) -> Vec<Edge> {
         let zero = self.model.graph.zero();
         let constraints = self.model.constraints.iter();
@@ -28,8 +28,9 @@ impl Builder<'_> {
         rebuild(&self.model.graph, &mut self.graph, &residuals)
     }
 
-    /// λ of all constraints that say something, then the forces of drives whose rates are given. Where they are not unique, those
-    /// of a solution; the docs name them.
+    /// Adds λ of all non-redundant constraints, then the forces of drives with prescribed rates.
+    ///
+    /// If they are not unique, those of one solution are returned; the docs name them.
     pub(super) fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
         let constraints = || full.constraints.iter().filter(|row| !row.redundant);
         let rows = constraints().count() + full.accelerated.len();
@@ -40,7 +41,7 @@ impl Builder<'_> {
         let solved = reduction.solved.iter().map(|&(_, velocity)| velocity);
         let driven = full.accelerated.iter().map(|&(velocity, _)| velocity);
         let velocities: Vec<usize> = solved.chain(driven).collect();
-        // Where the other velocities are given ahead, by the recursion over links.
+        // If the other velocities are prescribed, the recursion over links applies.
         let whole = self.model.full_frame.is_some() || full.constraints.is_empty();
         let mut traced: Vec<(Graph, Vec<Edge>)> = Vec::new();
         if whole {
@@ -70,7 +71,7 @@ impl Builder<'_> {
         outputs.truncate(rows);
         let guards = self.guards();
         self.push_guarded(FunctionId::ConstraintForce, outputs, guards);
-        // Which is which.
+        // Document which entry belongs to which constraint.
         let rows = constraints().map(|row| (row.written.clone(), row.entry.clone()));
         let drives = full.accelerated.iter();
         let drives = drives.map(|&(velocity, _)| {
@@ -100,14 +101,14 @@ impl Builder<'_> {
         }
     }
 
-    /// What leads back to the constraints that are kept.
+    /// Adds the projections onto the constraints that are kept.
     pub(super) fn projections(&mut self) {
         let Some(projections) = self.chosen.projections.clone() else {
             return;
         };
         let guards = self.guards();
         let loops = !self.loops().is_empty();
-        // States of first order stay as they are.
+        // Projections do not change states of first order.
         let states = rebuild(&self.model.graph, &mut self.graph, self.model.z());
         if loops {
             let mut outputs = projections.position;

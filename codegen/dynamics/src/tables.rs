@@ -1,4 +1,4 @@
-//! The tables that people read: φ, A, Y, γ, M, Γ, as expressions, on demand.
+//! Tables for people to read: φ, A, Y, γ, M, Γ as expressions, on demand.
 
 use super::calculus::Calculus;
 use super::complement::{Complement, complement};
@@ -8,29 +8,30 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 
-/// All symbols of the formalism for one model.
+/// All quantities of the formalism for one model.
 #[derive(Clone, Debug)]
 pub struct Geometry {
-    /// The model, its graph holding the expressions below.
+    /// Model, whose graph contains the expressions below.
     pub model: Model,
-    /// ∂ᵢ and d/dt.
+    /// Derivations ∂ᵢ and d/dt.
     pub calculus: Calculus,
-    /// Y, n rows of ν.
+    /// Y, n × ν.
     pub y: Vec<Vec<Edge>>,
-    /// Φ and Ψ.
+    /// Complements Φ and Ψ.
     pub complement: Complement,
     /// `γ[i][j][k]` = γᵢⱼᵏ.
     pub gamma: Vec<Vec<Vec<Edge>>>,
-    /// M.
+    /// Mass matrix M.
     pub mass: Vec<Vec<Edge>>,
     /// `Γ[i][j][k]` = Γᵢⱼₖ.
     pub connection: Vec<Vec<Vec<Edge>>>,
-    /// V.
+    /// Potential V.
     pub potential: Edge,
 }
 
 impl Geometry {
-    /// Derives all symbols; `None` where AᵀA or [Y; Φ] is singular, which the model's checks exclude.
+    /// Derives all quantities; `None` if AᵀA or [Y; Φ] is singular, which the model's checks
+    /// exclude.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);
@@ -62,8 +63,9 @@ impl Geometry {
         })
     }
 
-    /// The same symbols in a graph whose points do not satisfy φ, so that nothing is simplified
-    /// modulo φ: what a proof by normal forms starts from.
+    /// Derives the same quantities in a graph whose points do not satisfy φ.
+    ///
+    /// Nothing is simplified modulo φ there, so that proofs by normal forms can start from them.
     pub fn unreduced(model: &Model) -> Option<Self> {
         let mut free = model.transplanted(model.points.free.clone(), rebuild);
         let mut calculus = Calculus::new(&free);

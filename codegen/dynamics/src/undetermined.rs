@@ -1,6 +1,8 @@
-//! Which multipliers are not determined: those of rows of B that depend on other rows. λ is unique up to what Bᵀ maps to 0, so
-//! that the multiplier of a row is unique where the row is independent of all others. What was dropped as redundant takes part:
-//! it shares the force of the rows that it follows from.
+//! Detection of multipliers that are not determined: those of rows of B that depend on other rows.
+//!
+//! λ is unique up to the kernel of Bᵀ, so that the multiplier of a row is unique if the row is
+//! independent of all others. Rows that were dropped as redundant count, too: they share the force
+//! of the rows from which they follow.
 
 use super::reduction::{independent, unit};
 use hamel_algebra::fp::Random;
@@ -8,13 +10,15 @@ use hamel_algebra::numeric::evaluate;
 use hamel_language::model::Model;
 use hamel_language::model::closure::{Closure, normalise};
 
-/// How far from the start rows are looked at, too, in the units of the coordinates: a start may be singular.
+/// Distance from the start, in the units of the coordinates, at which rows are examined as well,
+/// since a start may be singular.
 const ASIDE: f64 = 0.1;
-/// How many such places there are.
+/// Number of such configurations.
 const PLACES: u64 = 3;
 
-/// For each constraint of the full frame that says something, and then for each drive whose rate is given, whether its force is
-/// not determined where the loops are closed, but for singular positions.
+/// Returns whether the force is not determined where the loops are closed, singular positions
+/// excepted, for each non-redundant constraint of the full frame and then for each drive with a
+/// prescribed rate.
 pub fn undetermined(full: &Model) -> Vec<bool> {
     let shown = || {
         let constraints = full.constraints.iter().map(|row| !row.redundant);
@@ -39,7 +43,7 @@ pub fn undetermined(full: &Model) -> Vec<bool> {
     shown.map(|(_, depends)| depends).collect()
 }
 
-/// Configurations that close the loops: some beside the start, then the start.
+/// Returns configurations that close the loops: some near the start, then the start itself.
 fn places(full: &Model) -> Vec<Vec<f64>> {
     let closure = Closure::of(full, &full.defaults);
     let time = full.clock.map(|clock| clock.x);
@@ -62,7 +66,7 @@ fn places(full: &Model) -> Vec<Vec<f64>> {
     places
 }
 
-/// The rows of B and those of drives, each over its length, without the column of the time.
+/// Returns the rows of B and those of drives, normalised, without the column of the time.
 fn rows(full: &Model, x: &[f64]) -> Vec<Vec<f64>> {
     let n = full.n();
     let numbers = full.numbers(

@@ -1,13 +1,13 @@
-//! Functions of bounded size.
+//! Splits long functions into parts of bounded size.
 //!
-//! rustc nests one debug scope in each `let` and overflows its stack at about 3,000 of them; code
-//! that keeps all values in memory compiles slowly. So a long body is cut in parts of plain
-//! `let`s, and only values that are read in a later part go through an array of slots.
+//! rustc nests a debug scope in every `let` and overflows its stack at about 3,000 of them; code
+//! that keeps all values in memory compiles slowly. So a long body is split into parts with plain
+//! `let`s, and only values that a later part reads go through an array of slots.
 //!
-//! A function that is larger than the cache of instructions takes as long as its code takes to come from the next one,
-//! so that the shortest code is the fastest. Where most values are read far from where they are computed, as in the
-//! slopes of a robot with legs, that is code in short parts: a long one would read a value from its slot, soon put it
-//! on the stack for want of registers, and read it from there again.
+//! The run time of a function that exceeds the instruction cache is the time to fetch its code from the next cache
+//! level, so the shortest code is the fastest. If most values are read far from where they are computed, as in the
+//! linearization of a legged robot, short parts give the shortest code: a long part would load a value from its slot,
+//! soon spill it to the stack for want of registers, and load it from there again.
 
 use hamel_algebra::graph::{Edge, NodeId};
 use hamel_program::places::{Place, Places, Time};
@@ -17,55 +17,55 @@ use std::cmp::Reverse;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// The fewest `let`s that a part is allowed: one statement with its numbers has to fit.
+/// Smallest limit on the `let`s of a part: one statement with its numbers has to fit.
 const SMALLEST: usize = 8;
 
-/// The most `let`s of a short part.
+/// Largest number of `let`s in a short part.
 const SHORT: usize = 70;
 
-/// A function of at most this many statements fits in the cache of instructions, 32 KB on most machines.
+/// Number of statements up to which a function fits in the instruction cache, 32 KB on most machines.
 const FITS: usize = 3000;
 
-/// Parts are short where more than this many values for so many statements cross them.
+/// Threshold for short parts, as (values, statements): used if more than 21 values per 20 statements cross parts.
 const MANY: (usize, usize) = (21, 20);
 
-/// A run of statements that becomes one function.
+/// A range of statements that becomes one function.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
-    /// Its statements.
+    /// Its statements, as indices into the body.
     pub statements: Range<usize>,
-    /// The numbers that it reads, in order of first use.
+    /// Numbers that it reads, in order of first use.
     pub numbers: Vec<NodeId>,
 }
 
-/// How a body is cut.
+/// The division of a body into parts.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Whether the body is small enough for one function.
     pub whole: bool,
-    /// The parts, in order; a single one where the body is whole.
+    /// The parts in order; at most one if `whole`.
     pub parts: Vec<Part>,
-    /// The slot of every value that is read in a later part.
+    /// Slot of every value that is read in a later part.
     pub slots: FxHashMap<NodeId, usize>,
     /// Number of slots.
     pub size: usize,
-    /// The results that later parts read where they were written, by their place. In short parts that is the case of
-    /// all: neighbours in a row are then often computed from neighbours, which processors do at once.
+    /// Index of each result that later parts read from the output array instead of a slot. Short parts do so with all
+    /// results that they write at once. Neighbours in a row are then often computed from neighbours, which suits SIMD.
     pub results: FxHashMap<NodeId, usize>,
 }
 
-/// Cuts a body in parts of at most `limit` `let`s: statements, numbers, and the constants' name. Parts write results at
-/// once, or leave them in slots.
+/// Splits a body into parts of at most `limit` `let`s, counting statements, numbers, and the name of the constants.
+/// The parts write results when they compute them, or leave them in slots, as `when` says.
 pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) -> Plan {
     let none = FxHashMap::default();
     let plan = cut(body, places, time, limit, &none, &FxHashSet::default());
-    // What depends on parameters alone is computed once.
+    // The function of constants runs only when parameters change, and a body that fits the cache gains nothing.
     if time != Time::Call || body.statements.len() <= FITS {
         return plan;
     }
     let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
     let computed = results.filter(|&(_, node)| places.of(node, time) == Place::Temporary);
-    // Of equal ones the first.
+    // Of several equal results the first.
     let mut results: FxHashMap<NodeId, usize> =
         computed.map(|(place, node)| (node, place)).rev().collect();
     let kept = match when {
@@ -94,19 +94,20 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) 
     }
 }
 
-/// When parts write results.
+/// When the parts of a function write its results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// Where they are computed.
     AtOnce,
-    /// Those that are known before the last pivot is behind all parts: nothing is written where it is not positive.
+    /// Results computed before the last pivot check are written after all parts, the others where they are computed.
+    /// So nothing is written if a pivot is not positive.
     BehindPivots,
-    /// All behind all parts.
+    /// All after the last part.
     AtTheEnd,
 }
 
-/// How many values parts read that others computed, counted for each part that reads them, and once for the one that
-/// computes them.
+/// Counts accesses to values that cross parts: one for each part that reads a value computed elsewhere, and one for the
+/// part that computes it.
 fn crossings(body: &Body, parts: &[Part]) -> usize {
     let mut home: FxHashMap<NodeId, usize> = FxHashMap::default();
     for (index, part) in parts.iter().enumerate() {
@@ -127,8 +128,8 @@ fn crossings(body: &Body, parts: &[Part]) -> usize {
     reads + crossing.len()
 }
 
-/// The parts, and slots for all values that cross them and are not among the results, and for those read `last`, behind
-/// all of them.
+/// Forms the parts. Assigns slots to all values that cross them, except those in `results`, and to the values `last`,
+/// which are read after all parts.
 fn cut(
     body: &Body,
     places: &Places,
@@ -150,7 +151,7 @@ fn cut(
     if whole {
         let mut part = parts.pop().unwrap_or_default();
         let lets = body.statements.iter().filter(|s| s.is_let()).count();
-        // A single body binds the numbers among its results too.
+        // An undivided body also binds the numbers among its results.
         let read = part.numbers.len();
         let outputs = body.outputs.iter().filter(|edge| is_number(edge));
         for node in outputs.map(|edge| edge.node()) {
@@ -176,8 +177,8 @@ fn cut(
     }
 }
 
-/// The longest part that begins with a statement. It ends behind one of the results that later parts read, if half of
-/// it still does: neighbours in a row are then more often computed together.
+/// Returns the longest part that begins at `start`. It is cut back to end after one of `results`, if at least half of
+/// it remains: results that are neighbours in a row are then more often computed together.
 fn longest(
     body: &Body,
     start: usize,
@@ -215,7 +216,7 @@ fn longest(
     }
 }
 
-/// Slots by liveness: one is used again after the last part that reads its value.
+/// Assigns slots by liveness: a slot is free again after the last part that reads its value.
 fn slots(
     body: &Body,
     parts: &[Part],
@@ -256,7 +257,7 @@ fn slots(
     (slots, size)
 }
 
-/// Slots numbered by how many parts use them: the offsets of the first are shorter, and they are next to one another.
+/// Renumbers slots by how many parts use them: the first ones have shorter offsets, and lie close together.
 fn most_used_first(body: &Body, plan: &Plan) -> FxHashMap<NodeId, usize> {
     let mut uses = vec![0_usize; plan.size];
     for part in &plan.parts {

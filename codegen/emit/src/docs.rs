@@ -1,4 +1,4 @@
-//! Doc comments.
+//! Doc comments of the generated code.
 
 use super::names;
 use hamel_algebra::graph::NodeId;
@@ -8,10 +8,10 @@ use hamel_language::syntax::ast::{CoordKind, ShapeKind};
 use hamel_program::count::{Count, count_nodes};
 use hamel_program::{Argument, Cause, Function, Program, Shape};
 
-/// Width at which lists of names are broken.
+/// Width at which lists of names are wrapped.
 const WIDTH: usize = 90;
 
-/// Lines as a doc comment.
+/// Prints lines as a doc comment.
 pub fn comment(lines: &[String]) -> String {
     let mut text = String::new();
     for line in lines.iter().flat_map(|line| line.split(['\n', '\r'])) {
@@ -26,7 +26,7 @@ pub fn comment(lines: &[String]) -> String {
     text
 }
 
-/// A line of a comment in which what turns the direction of writing is spelled out: rustc refuses it.
+/// Escapes characters of a comment line that change the direction of writing, which rustc rejects.
 pub fn spelled(line: &str) -> String {
     let turns = |letter| matches!(letter, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let mut text = String::with_capacity(line.len());
@@ -39,7 +39,7 @@ pub fn spelled(line: &str) -> String {
     text
 }
 
-/// "66 mul, 54 add; parameters hoisted".
+/// Prints operation counts, as in "Operations: 66 mul, 54 add; parameters hoisted."
 pub fn operations(count: Count, end: &str) -> String {
     let counts = [
         (count.mul, "mul"),
@@ -60,7 +60,7 @@ pub fn operations(count: Count, end: &str) -> String {
     }
 }
 
-/// The documentation of a function in Rust: what it evaluates, its cost, arguments, result, errors.
+/// Returns the Rust documentation of a function: what it evaluates, its cost, arguments, result and errors.
 pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = described(program, function, nodes);
     let result = result(function.shape);
@@ -71,7 +71,7 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
     lines
 }
 
-/// The section on errors.
+/// Returns the section on errors.
 pub fn errors(program: &Program, function: &Function) -> [String; 3] {
     let why = missing(program, function);
     [
@@ -81,7 +81,7 @@ pub fn errors(program: &Program, function: &Function) -> [String; 3] {
     ]
 }
 
-/// When a function has no value: what its guards see.
+/// Returns the conditions under which a function has no value, according to its guards.
 pub fn missing(program: &Program, function: &Function) -> String {
     let causes = function.guards.iter().map(|&guard| program.cause(guard));
     let causes: Vec<Cause> = causes.collect();
@@ -104,7 +104,7 @@ pub fn missing(program: &Program, function: &Function) -> String {
     text
 }
 
-/// What a function evaluates, its cost, and its arguments.
+/// Returns the description of a function, its cost and its arguments.
 pub fn described(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = function.docs.clone();
     if lines.is_empty() {
@@ -136,7 +136,7 @@ pub fn described(program: &Program, function: &Function, nodes: &[NodeId]) -> Ve
     lines
 }
 
-/// A shape in words.
+/// Returns a result's shape in words.
 pub fn result(shape: Shape) -> String {
     match shape {
         Shape::Scalar => "a number".into(),
@@ -154,7 +154,7 @@ fn numbers(n: usize) -> String {
     }
 }
 
-/// The names that an argument consists of, those of a vector as a range.
+/// Returns the names of which an argument consists; those of a vector as a range.
 pub fn groups(program: &Program, argument: Argument) -> Vec<String> {
     match argument {
         Argument::Coordinates => program.coordinates.iter().flat_map(coordinate).collect(),
@@ -202,7 +202,7 @@ fn matrix(name: &str, n: usize) -> String {
     format!("{name}[1..{n}, 1..{n}]")
 }
 
-/// A shape as written in a description.
+/// Returns a shape in words, as it is declared in a description.
 pub fn shape(shape: ShapeKind) -> String {
     match shape {
         ShapeKind::Scalar => "a number".into(),
@@ -212,7 +212,7 @@ pub fn shape(shape: ShapeKind) -> String {
     }
 }
 
-/// The sizes of lists of numbers: a name, what it is, the number of the first symbol, the size.
+/// Returns the size constants: name, documentation, number of the first symbol, and size.
 pub fn sizes(program: &Program) -> Vec<(&'static str, &'static str, usize, usize)> {
     let [_, x, xi, u, z, ..] = program.symbols();
     let states =
@@ -237,7 +237,7 @@ pub fn sizes(program: &Program) -> Vec<(&'static str, &'static str, usize, usize
     sizes
 }
 
-/// "ν, the length of x = [r[1], r[2], …]", broken in lines; `first` is the first symbol's number.
+/// Returns `what` followed by the names of the entries, in wrapped lines; `first` is the number of the first symbol.
 pub fn entries(program: &Program, what: &str, first: usize, length: usize) -> Vec<String> {
     let symbols = program.graph.symbols().iter().skip(first).take(length);
     let mut lines = vec![what.to_string()];
@@ -259,7 +259,7 @@ pub fn entries(program: &Program, what: &str, first: usize, length: usize) -> Ve
     lines
 }
 
-/// A block of x as an expression.
+/// Returns a block of x as a Rust expression.
 pub fn block(block: Block) -> String {
     match block {
         Block::Flat(n) => format!("::hamel::Block::Flat({n})"),

@@ -1,10 +1,10 @@
-//! Functions in Rust: the trait of those who have them, by which the generated type is generic. A description without
-//! such functions has neither.
+//! External functions, which the user implements in Rust: the trait that declares them, over which the generated type
+//! is generic. A description without external functions has neither the trait nor the type parameter.
 
 use super::{Emitter, docs};
 use hamel_algebra::external::External;
 
-/// What stands behind `impl`: `<S: ::hamel::Scalar>`, with the functions in Rust where there are some.
+/// Returns the generics of an `impl`: `<S: ::hamel::Scalar>`, plus the bound `F` if there are external functions.
 pub fn generics(emitter: &Emitter) -> String {
     match bound(emitter) {
         Some(bound) => format!("<S: ::hamel::Scalar, {bound}>"),
@@ -12,13 +12,13 @@ pub fn generics(emitter: &Emitter) -> String {
     }
 }
 
-/// `F: NameFunctions<S>`
+/// The bound `F: NameFunctions<S>`.
 fn bound(emitter: &Emitter) -> Option<String> {
     let names = &emitter.names.externals;
     (!names.methods.is_empty()).then(|| format!("{}: {}<S>", names.parameter, names.of))
 }
 
-/// The type with its parameters: `Name<S>`, `Name<S, F>`.
+/// Returns the type with its arguments: `Name<S>` or `Name<S, F>`.
 pub fn applied(emitter: &Emitter) -> String {
     let name = &emitter.names.type_name;
     match has(emitter) {
@@ -27,12 +27,12 @@ pub fn applied(emitter: &Emitter) -> String {
     }
 }
 
-/// Whether there are functions in Rust.
+/// Whether there are external functions.
 pub fn has(emitter: &Emitter) -> bool {
     !emitter.names.externals.methods.is_empty()
 }
 
-/// Where their bound is wanted beside that of defaults.
+/// Returns the `where` clause that `impl Default` needs if there are external functions.
 pub fn default_where(emitter: &Emitter) -> String {
     match has(emitter) {
         true => format!(
@@ -43,7 +43,7 @@ pub fn default_where(emitter: &Emitter) -> String {
     }
 }
 
-/// The trait, with the formula and the shape of each function.
+/// Prints the trait, with the formula and the shape of each function.
 pub fn functions(emitter: &Emitter) -> String {
     if !has(emitter) {
         return String::new();
@@ -84,7 +84,7 @@ pub fn functions(emitter: &Emitter) -> String {
     )
 }
 
-/// What is said of components and of slopes.
+/// Returns the documentation of the components and of the slopes of a function.
 fn documentation(external: &External) -> [Vec<String>; 2] {
     let given = external.arguments.join(", ");
     let (name, m, n) = (
@@ -111,7 +111,7 @@ fn documentation(external: &External) -> [Vec<String>; 2] {
     }
 }
 
-/// The field in which they are.
+/// Prints the struct field that holds the external functions.
 pub fn field(emitter: &Emitter) -> String {
     let names = &emitter.names.externals;
     match has(emitter) {

@@ -1,4 +1,4 @@
-//! One generated function.
+//! Text of one generated function.
 
 use super::chunk::{Part, Plan, plan};
 use super::docs;
@@ -12,37 +12,37 @@ use hamel_program::statements::{Body, Operation};
 use hamel_program::{Argument, Cause, Program, Shape, tape};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The argument to which slopes are written besides a result.
+/// Argument to which slopes are written in addition to the result.
 pub const SLOPES: &str = Array::Slopes.name();
 
-/// What a function is.
+/// Specification of a generated function.
 pub struct Spec<'a> {
     /// Name.
     pub name: String,
     /// Whether it is `pub`.
     pub public: bool,
-    /// Documentation, one string a line.
+    /// Lines of its documentation.
     pub docs: Vec<String>,
     /// Arguments.
     pub arguments: &'a [Argument],
     /// Shape of the result.
     pub shape: Shape,
-    /// Shape of what is written to the argument `slopes` besides.
+    /// Shape of the output argument `slopes`, if it has one.
     pub beside: Option<Shape>,
-    /// Results, behind them what is written besides.
+    /// Entries of the result, followed by those written to `slopes`.
     pub outputs: Vec<Edge>,
-    /// Pivots.
+    /// Pivots that must be positive.
     pub guards: Vec<Edge>,
     /// Whether it returns a `Result`.
     pub fallible: bool,
-    /// Nodes that it computes, children first.
+    /// Nodes that it computes; children come first.
     pub nodes: Vec<NodeId>,
     /// When it runs.
     pub time: Time,
 }
 
 impl Spec<'_> {
-    /// The array with a result, its shape, and the place there.
+    /// Returns the array that holds an output, its shape, and the index of the output there.
     pub fn place(&self, result: usize) -> (Array, Shape, usize) {
         let entries = self.shape.entries();
         match self.beside.filter(|_| result >= entries) {
@@ -52,7 +52,7 @@ impl Spec<'_> {
     }
 }
 
-/// The statements of a function, and the names that the user gave to values of it.
+/// Lowers a function to statements, and names the values that the user has named.
 pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
     let locals = Locals::new(&emitter.words, &emitter.program.names, &spec.nodes);
     let named = tape::named(emitter.program, &spec.nodes);
@@ -72,7 +72,7 @@ pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
     (locals, body)
 }
 
-/// The function as Rust, its parts before it.
+/// Prints the function as Rust, preceded by its parts.
 pub fn text(emitter: &Emitter, spec: &Spec) -> String {
     let parameters =
         super::parameters::expressions(emitter.program, &emitter.names.fields, "self.");
@@ -85,7 +85,7 @@ pub fn text(emitter: &Emitter, spec: &Spec) -> String {
     })
 }
 
-/// A function with its statements, names and parts, for the text of a language.
+/// Lowers, names and splits a function, and passes it to `text`, which prints it in a language.
 pub fn draw(
     emitter: &Emitter,
     spec: &Spec,
@@ -122,7 +122,7 @@ pub fn draw(
     })
 }
 
-/// The type of a result or of an argument.
+/// Returns the Rust type of a result or an argument.
 pub fn shape_type(shape: Shape) -> String {
     match shape {
         Shape::Scalar => "S".into(),
@@ -131,28 +131,28 @@ pub fn shape_type(shape: Shape) -> String {
     }
 }
 
-/// All that a function's text is made from.
+/// A function with everything that is needed to print it.
 pub struct Drawing<'a> {
     /// The program.
     pub emitter: &'a Emitter<'a>,
     /// The function.
     pub spec: &'a Spec<'a>,
-    /// What it is printed in.
+    /// Target language.
     pub language: &'a dyn Language,
     /// Names of its values.
     pub locals: &'a Locals,
     /// Its statements.
     pub body: &'a Body,
-    /// How it is cut.
+    /// Its division into parts.
     pub plan: &'a Plan,
-    /// Results that are read where they were written.
+    /// Results that are read from the array to which they were written.
     pub written: &'a FxHashMap<NodeId, Written>,
     /// The parameters as expressions.
     pub parameters: &'a [String],
 }
 
 impl Drawing<'_> {
-    /// A printer that has printed nothing.
+    /// Returns a printer that has printed nothing yet.
     pub fn printer(&self) -> Printer<'_> {
         Printer {
             language: self.language,
@@ -170,7 +170,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// One body.
+    /// Prints the function as a single body.
     fn whole(&self) -> String {
         let mut printer = self.printer();
         let mut text = String::new();
@@ -195,7 +195,7 @@ impl Drawing<'_> {
         self.head(&printer.used, &body)
     }
 
-    /// The name of the kept constants, where it is used.
+    /// Binds the array of kept constants to `k`, if it is used.
     pub fn bind_kept(&self, used: &Used) -> String {
         match used.kept {
             true => format!("let k = &self.{};\n", self.emitter.names.kept),
@@ -203,7 +203,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The end of the function.
+    /// Returns the final expression of the function.
     pub fn value(&self, value: &str) -> String {
         if self.spec.fallible {
             format!("::core::result::Result::Ok({value})\n")
@@ -212,14 +212,14 @@ impl Drawing<'_> {
         }
     }
 
-    /// The function around its body.
+    /// Wraps a body in the signature of the function.
     pub fn head(&self, used: &Used, body: &str) -> String {
         let taken = |argument: Argument| used.arguments.contains(&argument);
         head(self.emitter.program, self.spec, taken, body)
     }
 }
 
-/// Entries in a shape.
+/// Returns the entries as an expression of a shape.
 fn shaped(shape: Shape, entries: &[String]) -> String {
     let list = |entries: &[String]| format!("[{}]", entries.join(", "));
     match shape {
@@ -233,7 +233,7 @@ fn shaped(shape: Shape, entries: &[String]) -> String {
     }
 }
 
-/// A function around its body, which depends on the arguments that are taken.
+/// Wraps a body in the signature of a function; `taken` tells which arguments the body reads.
 pub fn head(
     program: &Program,
     spec: &Spec,
@@ -276,7 +276,7 @@ pub fn head(
     )
 }
 
-/// The statements of a part; `after` is asked for what follows each value.
+/// Prints the statements of a part; `after` returns the text that follows each value.
 pub fn statements(
     printer: &mut Printer,
     body: &Body,
@@ -299,7 +299,7 @@ pub fn statements(
     text
 }
 
-/// Zeros in a shape.
+/// Returns the zero of a shape.
 pub fn zeros(shape: Shape) -> String {
     match shape {
         Shape::Scalar => "S::default()".into(),

@@ -1,11 +1,11 @@
-//! What statements are spelled by: what Rust and C write differently.
+//! The syntax of statements: everything that Rust and C spell differently.
 
 use super::chunk::When;
 use super::number;
 use hamel_algebra::graph::{Function, Graph, NodeId};
 use hamel_program::{Cause, Program, Shape};
 
-/// A value that an operation reads.
+/// An operand of an operation.
 pub struct Operand {
     /// The value without its sign.
     pub value: String,
@@ -14,13 +14,13 @@ pub struct Operand {
 }
 
 impl Operand {
-    /// With its sign, as an operand.
+    /// The operand with its sign, as an argument or a term.
     pub fn signed(&self) -> String {
         let sign = if self.negative { "-" } else { "" };
         format!("{sign}{}", self.value)
     }
 
-    /// With its sign, as the receiver of a method.
+    /// The operand with its sign, as the receiver of a method: a negative one in parentheses.
     fn receiver(&self) -> String {
         match self.negative {
             true => format!("(-{})", self.value),
@@ -29,19 +29,19 @@ impl Operand {
     }
 }
 
-/// An array that the parts of a function share.
+/// An array that is shared by the parts of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Array {
-    /// Values that are read in later parts.
+    /// Intermediate values that later parts read.
     Slots,
     /// Results.
     Out,
-    /// Slopes that are written besides a result.
+    /// Slopes [A B], written to an argument in addition to the result.
     Slopes,
 }
 
 impl Array {
-    /// Its name.
+    /// Name of the array in the generated text.
     pub const fn name(self) -> &'static str {
         match self {
             Array::Slots => "slots",
@@ -51,34 +51,34 @@ impl Array {
     }
 }
 
-/// A language that functions are printed in.
+/// A target language.
 pub trait Language {
-    /// When parts of a function with such a result write it.
+    /// Tells when the parts of a function write its result, given its shape and whether the function can fail.
     fn when(&self, shape: Shape, fallible: bool) -> When;
-    /// An entry of an array of this shape in a part, by its place.
+    /// Entry of a shared array of this shape, by its index, as a part refers to it.
     fn entry(&self, array: Array, shape: Shape, place: usize) -> String;
-    /// A number by its digits.
+    /// A number as a literal.
     fn literal(&self, graph: &Graph, node: NodeId) -> String;
-    /// A number where it is read; `name` is that of its binding.
+    /// A number as an operand; `name` is the name of its binding.
     fn number(&self, graph: &Graph, node: NodeId, name: &str) -> String;
-    /// What gives a number its name; nothing where numbers stand where they are read.
+    /// The statement that binds a number to its name; empty in languages that write literals in place.
     fn number_binding(&self, graph: &Graph, node: NodeId, name: &str) -> String;
     /// The number 0.
     fn zero(&self) -> String;
-    /// What gives a value its name.
+    /// The statement that binds a value to a name.
     fn binding(&self, name: &str, value: &str) -> String;
-    /// What gives the sine and the cosine of an angle their names.
+    /// The statement that binds the sine and the cosine of an angle to names; `None` for one that is not used.
     fn pair(&self, names: [Option<&str>; 2], angle: &Operand) -> String;
-    /// a b + c
+    /// The fused product and sum a b + c.
     fn fused(&self, operands: &[Operand; 3]) -> String;
-    /// The angle of (x, y), operands y, x.
+    /// atan2(y, x), the angle of the vector (x, y); the operands are y, x.
     fn atan2(&self, operands: &[Operand; 2]) -> String;
-    /// a where c > 0, else b; operands c, a, b.
+    /// a if c > 0, otherwise b; the operands are c, a, b.
     fn select(&self, operands: &[Operand; 3]) -> String;
-    /// f(a)
+    /// The function call f(a).
     fn function(&self, function: Function, operand: &Operand) -> String;
-    /// Leaves the function unless a pivot is positive: a pivot of [Y; Φ], by its number among these, or of the
-    /// mass matrix, by its number among the pivots.
+    /// The statement that returns an error unless a pivot is positive. `cause` says which pivot: that of [Y; Φ] by its
+    /// number, or that of the mass matrix by its place among the pivots.
     fn check(&self, pivot: &Operand, cause: Cause, program: &Program) -> String;
 }
 

@@ -1,13 +1,13 @@
-//! Generated text as Rust: parsed, which finds faults of the generator, and laid out for files.
+//! Parsing of generated text, which finds defects of the generator, and formatting for files.
 
 use std::fmt;
 
-/// Text that is no Rust was generated: an error in the generator, whatever the description is.
+/// The generated text is not valid Rust: a defect of the generator, whatever the description is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotRust {
-    /// What the parser says.
+    /// Message of the parser.
     pub why: String,
-    /// The line that is wrong, where it is known.
+    /// The offending line, if known.
     pub line: Option<String>,
 }
 
@@ -23,10 +23,10 @@ impl fmt::Display for NotRust {
 
 impl std::error::Error for NotRust {}
 
-/// Parses a text.
+/// Parses a text as a Rust file.
 ///
 /// # Errors
-/// Where it is no Rust.
+/// If the text is not valid Rust.
 pub fn parsed(text: &str) -> Result<syn::File, NotRust> {
     syn::parse_file(text).map_err(|error| NotRust {
         why: error.to_string(),
@@ -34,16 +34,16 @@ pub fn parsed(text: &str) -> Result<syn::File, NotRust> {
     })
 }
 
-/// The text as it is written to files.
+/// Formats a text for a file.
 ///
 /// # Errors
-/// Where it is no Rust.
+/// If the text is not valid Rust.
 #[cfg(feature = "files")]
 pub fn formatted(text: &str) -> Result<String, NotRust> {
     Ok(prettyplease::unparse(&parsed(text)?))
 }
 
-/// The line of an error, where places are known.
+/// Line of an error, if its position is known.
 #[cfg(feature = "files")]
 fn line_of(error: &syn::Error, text: &str) -> Option<String> {
     let line = error.span().start().line;

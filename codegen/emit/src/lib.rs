@@ -1,36 +1,37 @@
-//! From a program to text: Rust, and C99 in [`c`]. No algebra here: what is computed, and in which order, is given.
+//! Prints a program as source text: Rust, and C99 in [`c`]. This crate does no algebra: the operations and their order
+//! are given.
 //!
 #![doc = include_str!("../README.md")]
 //!
 //! | file | owns |
 //! |---|---|
-//! | `names` | every generated identifier |
+//! | `names` | all generated identifiers |
 //! | `number` | decimal literals |
-//! | `chunk` | statements to functions of bounded size, values that cross them to slots |
-//! | `locals` | names of the values of one function |
-//! | `print` | a statement as text, in any language |
-//! | `language` | what languages spell differently; Rust's way |
+//! | `chunk` | splits statements into functions of bounded size; values shared between them go to slots |
+//! | `locals` | names of the values within one function |
+//! | `print` | prints a statement in any language |
+//! | `language` | the syntax in which languages differ, and its implementation for Rust |
 //! | `function` | one generated function with its parts |
 //! | `docs` | doc comments |
-//! | `layout` | the text parsed, and laid out for files |
-//! | `parts` | a function that is cut |
-//! | `together` | ξ̇ and [A B] by one function |
+//! | `layout` | parses the generated text, and formats it for files |
+//! | `parts` | a function that is split into parts |
+//! | `together` | one function that computes both ξ̇ and [A B] |
 //! | `structure` | the type: fields, sizes, constructor, defaults |
-//! | `parameters` | accessors, and the constants kept for parameters |
+//! | `parameters` | accessors of the parameters, and the constants computed from them |
 //! | `system` | `impl hamel::System` |
-//! | `externals` | functions in Rust: the trait of those who have them |
-//! | `views` | parameters, states and inputs by name |
-//! | `methods` | `impl hamel::Split`, `impl hamel::Canonical` |
+//! | `externals` | external functions (implemented in Rust by the user): the trait that declares them |
+//! | `views` | structures with the parameters, states and inputs by name |
+//! | `methods` | `impl hamel::Split`, `impl hamel::Canonical`, `impl hamel::Tangent` |
 //! | [`c`] | the same program as C99 |
 //!
-//! Text is built first and parsed second, so that all front ends share every byte. What is no Rust is an
-//! error, and does not leave the generator.
+//! Text is built first and parsed afterwards, so that all front ends produce exactly the same bytes. Text that is not
+//! valid Rust is reported as an error and never leaves the generator.
 //!
 //! # Features
 //!
 //! | feature | default | what it adds |
 //! |---|---|---|
-//! | `files` | yes | formatted files of Rust, and C99 |
+//! | `files` | yes | formatted Rust files, and C99 |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -63,14 +64,14 @@ pub use layout::NotRust;
 use names::{Names, Words};
 use proc_macro2::TokenStream;
 
-/// What the generated text says about itself, and how its functions are cut.
+/// Options of the generator: contents of the file header, and the size of functions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Hash of the description.
+    /// Hash of the description, quoted in the header.
     pub source_hash: u64,
-    /// The command that generates the file again.
+    /// Command that regenerates the file, quoted in the header; none if empty.
     pub command: String,
-    /// The most `let`s of one function; rustc overflows its stack at about 3,000 where debug
+    /// Largest number of `let`s in one function; rustc overflows its stack at about 3,000 when debug
     /// information is on.
     pub chunk: usize,
 }
@@ -85,12 +86,12 @@ impl Default for Options {
     }
 }
 
-/// The program with all that its text is made from.
+/// A program with everything that is needed to print it.
 struct Emitter<'a> {
     program: &'a Program,
     places: Places<'a>,
     schedule: Schedule,
-    /// Constants kept in the field `k`, in order; pivots of a constant mass matrix among them.
+    /// Constants stored in the field `k`, in order, including the pivots of a constant mass matrix.
     kept: Vec<Edge>,
     names: Names,
     words: Words,
@@ -98,7 +99,7 @@ struct Emitter<'a> {
     chunk: usize,
 }
 
-/// How a function is documented, whose nodes are given.
+/// Writes the documentation of a function that evaluates the given nodes.
 type Document = fn(&Program, &Function, &[NodeId]) -> Vec<String>;
 
 impl<'a> Emitter<'a> {
@@ -129,7 +130,7 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// `fn constants`: everything that depends on parameters alone.
+    /// `fn constants`, which computes everything that depends on parameters alone.
     fn constants(&self) -> Spec<'_> {
         let count = hamel_program::count::count_nodes(&self.program.graph, &self.schedule.hoisted);
         Spec {
@@ -151,7 +152,7 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// A function that is called while the system moves.
+    /// A function that is evaluated while the system moves.
     fn function(&self, index: usize, function: &'a Function) -> Spec<'a> {
         let guards = if function.fallible {
             function.guards.clone()
@@ -187,7 +188,7 @@ impl<'a> Emitter<'a> {
     }
 }
 
-/// The generated type as items of Rust, without a file header.
+/// Returns the generated type as Rust items, without a file header.
 pub fn rust(program: &Program, options: &Options) -> String {
     let emitter = Emitter::new(program, options.chunk);
     let mut methods = structure::sizes(&emitter);
@@ -220,10 +221,10 @@ pub fn rust(program: &Program, options: &Options) -> String {
     text
 }
 
-/// The text of [`rust`], parsed.
+/// Returns the text of [`rust`] as tokens, after parsing it.
 ///
 /// # Errors
-/// Where it is no Rust: an error in the generator.
+/// If the text is not valid Rust, which is a defect of the generator.
 pub fn tokens(program: &Program, options: &Options) -> Result<TokenStream, NotRust> {
     let text = rust(program, options);
     layout::parsed(&text)?;
@@ -234,10 +235,10 @@ pub fn tokens(program: &Program, options: &Options) -> Result<TokenStream, NotRu
         })
 }
 
-/// The text of [`rust`], formatted, below a header that says where it comes from.
+/// Returns the text of [`rust`], formatted, below a header that says how it was generated.
 ///
 /// # Errors
-/// Where it is no Rust: an error in the generator.
+/// If the text is not valid Rust, which is a defect of the generator.
 #[cfg(feature = "files")]
 pub fn file(program: &Program, options: &Options) -> Result<String, NotRust> {
     let text = layout::formatted(&rust(program, options))?;
@@ -254,7 +255,7 @@ pub fn file(program: &Program, options: &Options) -> Result<String, NotRust> {
     Ok(format!("{header}\n{text}"))
 }
 
-/// Number of statements of all functions: the size of the generated code.
+/// Counts the statements of all functions, a measure of the size of the generated code.
 pub fn statements(program: &Program) -> usize {
     let emitter = Emitter::new(program, Options::default().chunk);
     let specs = emitter.specs();

@@ -1,4 +1,4 @@
-//! The limits of joints, as constants of the type: they document the machine, and no function uses
+//! Joint limits as constants of the generated type: they document the machine, and no function uses
 //! them.
 
 use super::names::{Unique, snake};
@@ -7,17 +7,17 @@ use hamel_language::model::joints::Joint;
 use hamel_language::syntax::ast::JointKind;
 use hamel_program::Program;
 
-/// A documented constant of a joint.
+/// A joint limit, generated as a documented constant.
 pub struct Limit {
-    /// Its name.
+    /// Name of the constant.
     pub name: String,
-    /// What it is.
+    /// Text of its doc comment.
     pub title: String,
-    /// One number, or the smallest and the largest.
+    /// One number, or the lower and the upper limit.
     pub values: Vec<f64>,
 }
 
-/// All limits of a program, in the order of its joints.
+/// Returns all limits of a program, in the order of its joints.
 pub fn limits(program: &Program) -> Vec<Limit> {
     let mut names = Unique::default();
     let mut all = Vec::new();
@@ -47,7 +47,7 @@ pub fn limits(program: &Program) -> Vec<Limit> {
     all
 }
 
-/// `pub const ELBOW_LIMIT: [f64; 2] = [-2.0, 2.0];` and the like.
+/// Prints the limits as constants, such as `pub const ELBOW_LIMIT: [f64; 2] = [-2.0, 2.0];`.
 pub fn constants(program: &Program) -> String {
     let constant = |limit: Limit| {
         let (kind, value) = match limit.values.as_slice() {
@@ -63,7 +63,7 @@ pub fn constants(program: &Program) -> String {
     limits(program).into_iter().map(constant).collect()
 }
 
-/// Units of the coordinate, the velocity and the force of a joint.
+/// Units of coordinate, velocity and force of a joint.
 fn units(joint: &Joint) -> [&'static str; 3] {
     match joint.kind {
         JointKind::Prismatic => ["m", "m/s", "N"],

@@ -1,4 +1,4 @@
-//! Names of the values of one function.
+//! Local names of the values within one function.
 
 use super::names::{Unique, Words, snake};
 use super::number;
@@ -7,7 +7,7 @@ use hamel_program::places::Places;
 use hamel_program::statements::{Operation, Statement};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Names of temporaries and numbers.
+/// Names of the temporaries and numbers of one function.
 #[derive(Clone, Debug)]
 pub struct Locals {
     scope: Unique,
@@ -16,7 +16,7 @@ pub struct Locals {
 }
 
 impl Locals {
-    /// Gives the user's names to those of his expressions that are computed here.
+    /// Creates the names of a function that computes `nodes`. Expressions that the user named keep their names.
     pub fn new(words: &Words, named: &[(String, Edge)], nodes: &[NodeId]) -> Self {
         let here: FxHashSet<NodeId> = nodes.iter().copied().collect();
         let mut locals = Locals {
@@ -34,12 +34,12 @@ impl Locals {
         locals
     }
 
-    /// The name of a value.
+    /// Name of a value; empty if it has none.
     pub fn name(&self, node: NodeId) -> &str {
         self.names.get(&node).map_or("", String::as_str)
     }
 
-    /// Names the values of all statements, and numbers in order of first use.
+    /// Names the values of all statements, and the numbers in order of first use.
     pub fn fill(
         &mut self,
         statements: &[Statement],
@@ -70,7 +70,7 @@ impl Locals {
         }
     }
 
-    /// `sin_q` and `cos_q` of an entry q, `sin1` and `cos1` of another angle.
+    /// Names a sine and a cosine: `sin_q` and `cos_q` if the angle is an entry q, else `sin1` and `cos1`.
     fn pair(
         &mut self,
         angle: Edge,
@@ -95,7 +95,7 @@ impl Locals {
         }
     }
 
-    /// The next free name of a numbered series.
+    /// Gives a value the next free name of a numbered series.
     fn count(&mut self, node: NodeId, letter: &str, count: &mut usize) {
         loop {
             *count += 1;

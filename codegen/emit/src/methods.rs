@@ -1,4 +1,4 @@
-//! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, where all that they consist of was generated.
+//! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, if all functions that they need are generated.
 
 use super::{Emitter, externals, names, structure, together};
 use hamel_algebra::graph::Edge;
@@ -9,8 +9,8 @@ use hamel_program::structure::{Inertia, RotorForm, Symmetry};
 use hamel_program::{Argument, FunctionId, Program, Shape};
 use num_traits::{One, Zero};
 
-/// The implementations for a type that implements `System`.
-/// `together` says whether ξ̇ and [A B] have a function in common.
+/// Prints the implementations for a type that implements `System`.
+/// `together` tells whether one function computes both ξ̇ and [A B].
 pub fn implementations(emitter: &Emitter, together: bool) -> String {
     let all = [
         split(emitter),
@@ -20,7 +20,7 @@ pub fn implementations(emitter: &Emitter, together: bool) -> String {
     all.into_iter().flatten().collect()
 }
 
-/// The generated name of a function.
+/// Returns the generated name of a function, if it is generated.
 fn generated<'a>(emitter: &'a Emitter, name: &str) -> Option<&'a str> {
     let functions = emitter.program.functions.iter();
     let index = functions.into_iter().position(|f| f.name == name)?;
@@ -43,7 +43,7 @@ fn split(emitter: &Emitter) -> Option<String> {
         generated(emitter, "split_velocities")?,
         generated(emitter, "kick")?,
     ];
-    // Where no plain coordinate moves to a centre of mass, y is x.
+    // If no plain coordinate is shifted to a centre of mass, y = x.
     let moved = |name: &str, argument: &str| match generated(emitter, name) {
         Some(function) => format!("self.{function}({argument})"),
         None => format!("*{argument}"),
@@ -63,7 +63,7 @@ fn split(emitter: &Emitter) -> Option<String> {
     Some(head(emitter, "Split", &body))
 }
 
-/// The rotors from the numbers of `rotor_inertia`, each with what is known of it.
+/// Returns the array of rotors, from the numbers of `rotor_inertia` and the known symmetry of each.
 fn rotors(emitter: &Emitter, forms: &[RotorForm]) -> Option<String> {
     if forms.is_empty() {
         return Some("[]".into());
@@ -100,7 +100,7 @@ fn rotors(emitter: &Emitter, forms: &[RotorForm]) -> Option<String> {
 
 fn canonical(emitter: &Emitter) -> Option<String> {
     let program = emitter.program;
-    // There ξ has no entries but velocities.
+    // With states z, ξ has entries that are not velocities, and so no momenta.
     if program.n_z > 0 {
         return None;
     }
@@ -167,7 +167,7 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
     let mut few = format!("::hamel::Dual<S, {}>", sparsity.directions());
     let mut generics = externals::generics(emitter);
     if externals::has(emitter) {
-        // Functions in Rust take such numbers, too: of one length alone.
+        // External functions take dual numbers, too, but of one length only.
         let names = &emitter.names.externals;
         let own = format!("{}<S>", names.of);
         generics = generics.replace(&own, &format!("{own} + {}<{number}>", names.of));
@@ -179,7 +179,7 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
         [&number, &few].map(|number| of.replacen("<S", &format!("<{number}"), 1));
     let name = &emitter.names.type_name;
     let slopes = slopes(emitter, together)?;
-    // What is constant for its coordinate kind, and nothing else.
+    // Whether the only constraints are those that the coordinate kinds themselves bring (such as unit length).
     let own: usize = program.blocks.iter().map(|block| block.constraints()).sum();
     let constraint = program.function(FunctionId::Constraint);
     let charted = constraint.is_none_or(|phi| phi.outputs.len() == own);
@@ -211,7 +211,7 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
     ))
 }
 
-/// Whether coordinates are numbers whose displacements are those of the frame, ẋ = ξ.
+/// Whether all coordinates are plain numbers and the displacement frame is the identity, so that ẋ = ξ.
 fn plain(program: &Program) -> bool {
     let flat = |block: &Block| matches!(block, Block::Flat(_));
     let Some(frame) = program.function(FunctionId::DisplacementFrame) else {
@@ -230,7 +230,7 @@ fn plain(program: &Program) -> bool {
     program.nu == n && program.blocks.iter().all(flat) && identity && entries.all(entry)
 }
 
-/// ξ̇ and the linearisation, as the trait has them.
+/// Prints `slopes`, the trait's method for ξ̇ and the linearization.
 fn slopes(emitter: &Emitter, together: bool) -> Option<String> {
     let functions = &emitter.program.functions;
     let place = |id: FunctionId| functions.iter().position(|f| f.id == Some(id));

@@ -1,29 +1,29 @@
 //! All generated identifiers.
 //!
-//! | what | pattern |
+//! | identifier | pattern |
 //! |---|---|
 //! | type | as written |
-//! | functions that every description can have | `rate`, `accel` …, whether they are generated or not |
-//! | parameter's field and accessor | `snake_case` of the name as written |
-//! | the same of `M` beside a parameter `m` | `m_upper` |
-//! | parameter's setter | `set_` + accessor |
+//! | functions that every description can have | `rate`, `accel` …, reserved even if they are not generated |
+//! | field and accessor of a parameter | `snake_case` of the name as written |
+//! | the same for `M` if there is a parameter `m`, too | `m_upper` |
+//! | setter of a parameter | `set_` + accessor |
 //! | function of an output or an invariant | `snake_case` of the name as written |
-//! | the same where that is taken | `snake_case` + `_output` |
+//! | the same if that name is taken | `snake_case` + `_output` |
 //! | field of kept constants | `k` |
 //! | private functions | `constants`, `update`, function + `_part1` … |
-//! | functions in Rust: their trait, their field | type + `Functions`, `functions` |
-//! | their methods | `snake_case` of the name as written, the same + `_jacobian` |
-//! | ξ̇ and [A B] by one function, where it is generated | `accel_and_linearize` |
-//! | arguments | `x`, `xi`, `u`, `xi_dot`, `slopes`; `slots`, `out` in parts |
-//! | temporaries | the user's name, `t1` …, `sin1`, `sin_q` …, `minus_` + name of a negated one |
+//! | external functions: their trait, their field | type + `Functions`, `functions` |
+//! | methods of external functions | `snake_case` of the name as written, the same + `_jacobian` |
+//! | function for both ξ̇ and [A B], if generated | `accel_and_linearize` |
+//! | arguments | `x`, `xi`, `u`, `xi_dot`, `slopes`; in parts `slots`, `out` |
+//! | temporaries | the user's name, `t1` …, `sin1`, `sin_q` …, `minus_` + name for a negated one |
 //! | numbers | `zero`, `one`, `two`, `half` …, `c1` … |
 //!
-//! ASCII only: Greek letters by their names, combining dots as `_dot`, other letters as `u` + hex
+//! Identifiers are ASCII only: Greek letters are spelled out, combining dots become `_dot`, and other letters `u` + hex
 //! code. A name that is taken gets `_2`, `_3` …; a keyword gets `_`.
 //!
-//! Names are given in the order of the table, those of one row in the order of the text. So the names of
-//! parameters depend on the parameters alone: an output more or less, and what is asked for by `generate`,
-//! change none of them. Fields have a scope of their own, since Rust tells them from methods.
+//! Names are given in the order of the table, and within a row in the order of the text. So the names of parameters
+//! depend on the parameters alone: adding or removing an output, or a function under `generate`, does not change them.
+//! Fields have a scope of their own, since Rust distinguishes them from methods.
 
 use hamel_language::functions::FunctionId;
 use hamel_program::{Argument, Program};
@@ -64,8 +64,8 @@ const KEYWORDS: &[&str] = &[
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "Self",
 ];
 
-/// Methods of every generated type, or of the traits that it implements. `into` and `try_into` take a value,
-/// which Rust prefers to a method of the type that takes a reference.
+/// Methods of every generated type, or of the traits that it implements. `into` and `try_into` are among them because
+/// they take `self` by value, and Rust prefers them to a method of the type that takes a reference.
 const METHODS: &[&str] = &[
     "new",
     "default",
@@ -85,24 +85,24 @@ const METHODS: &[&str] = &[
     super::together::NAME,
 ];
 
-/// Local names that a function may use besides those of its values.
+/// Local names that a function may use in addition to the names of its values.
 const LOCALS: &[&str] = &[
     "x", "xi", "u", "xi_dot", "momentum", "k", "slots", "out", "slopes",
 ];
 
-/// The generic parameter, the primitive types, and the tool of `#[rustfmt::skip]`: the text mentions some of them.
+/// The generic parameter, the primitive types, and the tool of `#[rustfmt::skip]`: generated text uses some of them.
 const TYPES: &[&str] = &[
     "S", "rustfmt", "bool", "char", "str", "f16", "f32", "f64", "f128", "i8", "i16", "i32", "i64",
     "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize",
 ];
 
-/// Whether a word is one of Rust's own.
+/// Whether a word is a Rust keyword.
 pub fn is_keyword(word: &str) -> bool {
-    // None ends in a digit, as most generated names do.
+    // No keyword ends in a digit, but most generated names do.
     !word.ends_with(|last: char| last.is_ascii_digit()) && KEYWORDS.contains(&word)
 }
 
-/// The name of an argument.
+/// Returns the name of an argument.
 pub fn argument(argument: Argument) -> &'static str {
     match argument {
         Argument::Coordinates => "x",
@@ -113,14 +113,14 @@ pub fn argument(argument: Argument) -> &'static str {
     }
 }
 
-/// A name in lower snake case; never empty, never a keyword.
+/// Converts a name to lower snake case; never empty, never a keyword.
 pub fn snake(name: &str) -> String {
     let mut text = String::new();
     let mut last = ' ';
     for letter in name.trim_start_matches("r#").chars() {
         let spelled = spell(letter);
         let is_word = spelled.len() > 1;
-        // A new word at each capital after a small letter, and around the name of a letter.
+        // A new word begins at each capital after a small letter, and before and after a spelled-out letter.
         let starts = letter.is_ascii_uppercase() && last.is_ascii_lowercase();
         let borders = (is_word && last.is_alphabetic())
             || (letter.is_alphabetic() && !last.is_ascii() && last.is_alphabetic());
@@ -134,7 +134,7 @@ pub fn snake(name: &str) -> String {
     legal(words.join("_"), KEYWORDS)
 }
 
-/// The name of the type: case is kept.
+/// Converts a name to the name of the type; its case is kept.
 pub fn type_name(name: &str) -> String {
     let mut text = String::new();
     for letter in name.trim_start_matches("r#").chars() {
@@ -151,7 +151,7 @@ pub fn type_name(name: &str) -> String {
     legal(text, TYPES)
 }
 
-/// Names in lower snake case; of two that differ by case alone, the one with capitals gets `_upper`.
+/// Converts names to lower snake case; if two differ by case alone, the one with capitals gets `_upper`.
 pub fn cased(names: &[&str]) -> Vec<String> {
     let is_lower = |name: &str| !name.chars().any(char::is_uppercase);
     let snakes: Vec<String> = names.iter().map(|name| snake(name)).collect();
@@ -190,33 +190,33 @@ fn legal(text: String, reserved: &[&str]) -> String {
     }
 }
 
-/// Names of one scope, each given out once.
+/// The names of one scope, each given out once.
 #[derive(Clone, Debug, Default)]
 pub struct Unique {
     taken: FxHashSet<String>,
 }
 
 impl Unique {
-    /// A scope in which some names are taken.
+    /// Creates a scope in which some names are taken.
     pub fn new(taken: &[&str]) -> Self {
         Unique {
             taken: taken.iter().map(|&name| name.into()).collect(),
         }
     }
 
-    /// The wanted name where it is free, or the first free one of `name_2`, `name_3` ….
+    /// Takes the wanted name if it is free, or else the first free one of `name_2`, `name_3` ….
     pub fn claim(&mut self, wanted: &str) -> String {
         let name = self.free_where(wanted, |_| true);
         self.taken.insert(name.clone());
         name
     }
 
-    /// The name that `claim` would give, without taking it.
+    /// Returns the name that `claim` would give, without taking it.
     pub fn free(&self, wanted: &str) -> String {
         self.free_where(wanted, |_| true)
     }
 
-    /// Whether `claim` would give this very name.
+    /// Whether `claim` would return exactly this name.
     pub fn is_free(&self, name: &str) -> bool {
         !self.taken.contains(name)
     }
@@ -232,17 +232,17 @@ impl Unique {
     }
 }
 
-/// The words that values of a function cannot be called.
+/// Words that cannot be names of values in a function.
 #[derive(Clone, Debug)]
 pub(crate) struct Words {
     /// Names that are taken in every function.
     pub locals: Unique,
-    /// Another name in the place of a reserved word; names in snake case are none of Rust's.
+    /// Replaces a reserved word; the identity for Rust, where names in snake case are legal already.
     pub legal: fn(String) -> String,
 }
 
 impl Words {
-    /// Those of Rust.
+    /// The reserved words of Rust.
     pub fn rust() -> Self {
         Words {
             locals: Unique::new(LOCALS),
@@ -251,18 +251,18 @@ impl Words {
     }
 }
 
-/// The names of what a program's functions in Rust go by.
+/// Names related to a program's external functions.
 #[derive(Clone, Debug, Default)]
 pub struct ExternalNames {
-    /// The trait of those who have them.
+    /// The trait that declares them.
     pub of: String,
-    /// The type that has them, a parameter of the program's type.
+    /// The type that implements the trait, a parameter of the program's type.
     pub parameter: String,
-    /// The field in which they are.
+    /// The field that holds a value of this type.
     pub field: String,
-    /// For each function, that of its components and that of its slopes.
+    /// Names of the methods for the components and the slopes of each function.
     pub methods: Vec<[String; 2]>,
-    /// Its arguments.
+    /// Names of the arguments of each function.
     pub arguments: Vec<Vec<String>>,
 }
 
@@ -310,22 +310,22 @@ pub struct Names {
     pub accessors: Vec<String>,
     /// The field of kept constants.
     pub kept: String,
-    /// The function that computes them.
+    /// The function that computes the kept constants.
     pub constants: String,
-    /// The function that computes them and checks pivots.
+    /// The function that computes the kept constants and checks the pivots among them.
     pub update: String,
-    /// Functions in Rust.
+    /// Names related to external functions.
     pub externals: ExternalNames,
     methods: Unique,
 }
 
 impl Names {
-    /// Names for all that is public, then for what is private.
+    /// Names everything that is public, then everything that is private.
     pub fn new(program: &Program) -> Self {
         Names::beside(program, &[])
     }
 
-    /// The same where more names are taken than those of methods.
+    /// Does the same with more names reserved than those of methods.
     pub(crate) fn beside(program: &Program, taken: &[&str]) -> Self {
         let mut methods = Unique::new(&[METHODS, taken].concat());
         let known = FunctionId::ALL.iter();
@@ -372,7 +372,7 @@ impl Names {
         }
     }
 
-    /// The name of a part of a function, counted from 1.
+    /// Returns the name of a part of a function; parts are counted from 1.
     pub fn part(&self, function: &str, number: usize) -> String {
         // Two parts never want the same name, so nothing has to be remembered.
         let function = function.trim_end_matches('_');

@@ -3,7 +3,7 @@
 use hamel_algebra::graph::{Graph, Node, NodeId};
 use hamel_program::tape;
 
-/// The numbers that have names.
+/// Numbers with names of their own: numerator, denominator, name.
 const NAMES: &[(i32, i32, &str)] = &[
     (0, 1, "zero"),
     (1, 1, "one"),
@@ -15,7 +15,7 @@ const NAMES: &[(i32, i32, &str)] = &[
     (1, 4, "quarter"),
 ];
 
-/// The shortest literal that reads as this number.
+/// Returns the shortest literal that parses to this number.
 pub fn literal(value: f64) -> String {
     if value.is_nan() {
         "f64::NAN".into()
@@ -27,12 +27,12 @@ pub fn literal(value: f64) -> String {
     }
 }
 
-/// A number of the generated scalar type.
+/// Returns a number as an expression of the generated scalar type.
 pub fn scalar(value: f64) -> String {
     format!("S::from_f64({})", literal(value))
 }
 
-/// The number that a node is, in the generated scalar type: the nearest to an exact rational, or π.
+/// Returns a constant node as an expression of the scalar type: the double nearest to an exact rational, or π.
 pub fn of(graph: &Graph, node: NodeId) -> String {
     match graph.node(node) {
         Node::Constant(_) => scalar(tape::number(graph, node)),
@@ -40,7 +40,7 @@ pub fn of(graph: &Graph, node: NodeId) -> String {
     }
 }
 
-/// The name of a number, where it has one.
+/// Returns the name of a number, if it has one.
 pub fn name(graph: &Graph, node: NodeId) -> Option<&'static str> {
     let Node::Constant(index) = graph.node(node) else {
         return Some("pi");

@@ -1,4 +1,4 @@
-//! Parameters: their shapes, their accessors, and the constants that are kept for them.
+//! Parameters: their shapes, their accessors, and the constants computed from them.
 
 use super::language::{Language, Operand, Rust};
 use super::{Emitter, docs};
@@ -10,7 +10,7 @@ use hamel_program::schedule::is_hoisted;
 
 const RESULT: &str = "::core::result::Result<(), ::hamel::Singular>";
 
-/// The type of a group, as Rust.
+/// Returns the Rust type of a parameter group.
 pub fn group_type(shape: ShapeKind) -> String {
     match shape {
         ShapeKind::Scalar => "S".into(),
@@ -19,7 +19,7 @@ pub fn group_type(shape: ShapeKind) -> String {
     }
 }
 
-/// The indices of the entries of a group, in the order of its symbols.
+/// Returns the index expressions of the entries of a group, in the order of its symbols.
 pub fn indices(shape: ShapeKind) -> Vec<String> {
     let matrix = |n: usize, first: fn(usize) -> usize| {
         let rows = (0..n).flat_map(move |i| (first(i)..n).map(move |j| format!("[{i}][{j}]")));
@@ -33,7 +33,7 @@ pub fn indices(shape: ShapeKind) -> Vec<String> {
     }
 }
 
-/// All parameters as expressions, in the order of their symbols; `owner` stands before the names of their fields.
+/// Returns all parameters as expressions, in the order of their symbols; `owner` is the prefix of the field names.
 pub fn expressions(program: &Program, fields: &[String], owner: &str) -> Vec<String> {
     let groups = program.params.iter().zip(fields);
     let of = |(group, field): (&Group, &String)| -> Vec<String> {
@@ -45,7 +45,7 @@ pub fn expressions(program: &Program, fields: &[String], owner: &str) -> Vec<Str
     groups.flat_map(of).collect()
 }
 
-/// A value in the shape of a group, its entries given by row and column.
+/// Returns an expression in the shape of a group, with entries given by row and column.
 pub fn shaped(shape: ShapeKind, entry: impl Fn(usize, usize) -> String) -> String {
     let row = |i: usize, n: usize| (0..n).map(|j| entry(i, j)).collect::<Vec<_>>().join(", ");
     match shape {
@@ -58,7 +58,7 @@ pub fn shaped(shape: ShapeKind, entry: impl Fn(usize, usize) -> String) -> Strin
     }
 }
 
-/// What is kept of a given value: a symmetric matrix is read above its diagonal.
+/// Returns the value to store for a given parameter: only the upper triangle of a symmetric matrix is read.
 pub fn kept_value(group: &Group, name: &str) -> String {
     match group.shape {
         ShapeKind::Symmetric(_) => shaped(group.shape, |i, j| {
@@ -68,18 +68,18 @@ pub fn kept_value(group: &Group, name: &str) -> String {
     }
 }
 
-/// What a doc comment says about errors.
+/// Returns the section on errors of a doc comment.
 pub fn errors() -> Vec<String> {
     let text = "`Singular` where the mass matrix is not positive definite with these parameters.";
     vec![String::new(), "# Errors".into(), text.into()]
 }
 
-/// Whether anything depends on parameters that has to be computed or checked when they are set.
+/// Whether setting parameters requires constants to be computed or pivots to be checked.
 pub fn needs_update(emitter: &Emitter) -> bool {
     !emitter.kept.is_empty() || !emitter.program.constant_guards.is_empty()
 }
 
-/// Accessors of all parameters, and the function that keeps constants in step with them.
+/// Prints the accessors of all parameters, and the function that updates the kept constants.
 pub fn accessors(emitter: &Emitter) -> String {
     let groups = 0..emitter.program.params.len();
     groups
@@ -114,7 +114,7 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
     )
 }
 
-/// Computes the constants and checks the pivots among them.
+/// Prints the function that computes the constants and checks the pivots among them.
 fn update(emitter: &Emitter) -> String {
     if !needs_update(emitter) {
         return String::new();
@@ -140,7 +140,7 @@ fn update(emitter: &Emitter) -> String {
     )
 }
 
-/// The checks of the pivots that depend on parameters alone, in the order of their numbers.
+/// Prints the checks of the pivots that depend on parameters alone, in the order of their numbers.
 pub fn checks(
     emitter: &Emitter,
     language: &dyn Language,

@@ -1,4 +1,4 @@
-//! A long function as a row of calls: its parts share one array of slots and write the results.
+//! A long function as a sequence of calls: its parts share one array of slots and write the results.
 
 use super::function::{Drawing, SLOPES, Spec, shape_type, statements, zeros};
 use super::language::{Array, Language, Rust};
@@ -9,12 +9,12 @@ use hamel_program::Shape;
 use hamel_program::places::Place;
 use rustc_hash::FxHashMap;
 
-/// Above this number of statements the parts of a function are never inlined: the compiler is then
-/// fastest, and the call costs little beside the part.
+/// Number of statements above which the parts of a function are never inlined: this compiles fastest, and a
+/// call costs little compared with a part.
 const INLINE: usize = 2000;
 
 impl Drawing<'_> {
-    /// The parts, then the function that calls them.
+    /// Prints the parts, then the function that calls them.
     pub fn split(&self) -> String {
         let Spec { name, .. } = self.spec;
         let entries = self.spec.shape.entries();
@@ -97,8 +97,8 @@ impl Drawing<'_> {
         parts + &self.head(&main.used, &body)
     }
 
-    /// Zeros in what is written besides. A function in short parts has them only where nothing else comes, which is
-    /// more code, but less to write.
+    /// Clears the argument `slopes`. A function in short parts clears only the entries that stay zero: this is more
+    /// code, but it writes less.
     fn cleared(&self, shape: Shape) -> String {
         let columns = match shape {
             Shape::Matrix(_, columns) if !self.written.is_empty() => columns,
@@ -123,7 +123,7 @@ impl Drawing<'_> {
         rows.collect()
     }
 
-    /// Parameters of a part with their types, and what is given for them.
+    /// Returns the parameter list of a part, and the arguments of the call.
     fn part_arguments(&self, used: &Used) -> (String, String) {
         let mut arguments = vec!["&self".to_string()];
         let mut values = Vec::new();
@@ -162,7 +162,7 @@ impl Drawing<'_> {
     }
 }
 
-/// A result that is written, behind a reference or not.
+/// Returns an output as the target of an assignment; `reference` tells whether the array is behind a reference.
 fn target(spec: &Spec, index: usize, reference: bool) -> String {
     match spec.place(index) {
         (array, Shape::Scalar, _) if reference => format!("*{}", array.name()),

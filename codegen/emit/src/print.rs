@@ -1,4 +1,4 @@
-//! Statements as text: what all languages share, where values are found, and signs.
+//! Prints statements: everything that all languages share, such as the places of values, and signs.
 
 use super::language::{Array, Language, Operand};
 use super::locals::Locals;
@@ -10,28 +10,28 @@ use hamel_program::{Argument, Program, Shape};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What a text reads and writes beyond its own values.
+/// The arguments, constants and arrays that a text uses, in addition to its own values.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Used {
     /// Arguments read.
     pub arguments: BTreeSet<Argument>,
     /// Whether kept constants are read.
     pub kept: bool,
-    /// Entries of arrays that are read or written, as often as they are.
+    /// Entries of arrays that are read or written, once for each access.
     pub entries: Vec<(Array, usize)>,
-    /// What becomes of arrays.
+    /// Access to each array.
     access: BTreeMap<Array, Access>,
-    /// Whether it can return an error.
+    /// Whether the text can return an error.
     pub checks: bool,
 }
 
 impl Used {
-    /// What becomes of an array.
+    /// Returns how an array is accessed.
     pub fn access(&self, array: Array) -> Access {
         self.access.get(&array).copied().unwrap_or_default()
     }
 
-    /// Notes that an entry is read or written.
+    /// Records that an entry is read or written.
     pub fn touch(&mut self, array: Array, place: usize, access: Access) {
         self.entries.push((array, place));
         let known = self.access.entry(array).or_default();
@@ -39,29 +39,29 @@ impl Used {
     }
 }
 
-/// What a text does with an array.
+/// How a text accesses an array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Access {
-    /// Nothing.
+    /// Not at all.
     #[default]
     None,
-    /// It reads entries.
+    /// It only reads entries.
     Read,
-    /// It writes entries.
+    /// It writes entries, and may read some.
     Written,
 }
 
-/// A result that is read where it was written.
+/// A result that is read from the output array to which it was written.
 pub struct Written {
-    /// Its place, in an array of some shape.
+    /// The array, its shape, and the index of the entry.
     pub place: (Array, Shape, usize),
-    /// Whether it is the negative of the value.
+    /// Whether the entry is the negative of the value.
     pub negative: bool,
 }
 
 /// Prints the statements of one function or part.
 pub struct Printer<'a> {
-    /// How statements are spelled.
+    /// Target language.
     pub language: &'a dyn Language,
     /// The program.
     pub program: &'a Program,
@@ -69,17 +69,17 @@ pub struct Printer<'a> {
     pub places: &'a Places<'a>,
     /// When the function runs.
     pub time: Time,
-    /// What the function takes.
+    /// Arguments of the function.
     pub arguments: &'a [Argument],
     /// Names of values.
     pub locals: &'a Locals,
     /// The parameters as expressions, in order.
     pub parameters: &'a [String],
-    /// Names of functions in Rust.
+    /// Names of external functions.
     pub externals: &'a ExternalNames,
     /// Slots of values that cross parts.
     pub slots: &'a FxHashMap<NodeId, usize>,
-    /// Results that are read where they were written.
+    /// Results that are read from the output array.
     pub written: &'a FxHashMap<NodeId, Written>,
     /// Values computed by statements printed so far.
     pub here: FxHashSet<NodeId>,
@@ -91,8 +91,8 @@ impl Printer<'_> {
     /// A value without its sign.
     fn value(&mut self, node: NodeId) -> String {
         match self.places.of(node, self.time) {
-            // The value of the function does not depend on it, as was proved, but expressions that are equal
-            // are one node. The interpreter takes 0 as well.
+            // The function was proved not to depend on this argument, but equal expressions share a node, which may
+            // read it elsewhere. The interpreter substitutes 0 as well.
             Place::Argument(argument, _) if !self.arguments.contains(&argument) => {
                 self.language.zero()
             }
@@ -112,20 +112,20 @@ impl Printer<'_> {
             Place::Temporary if self.here.contains(&node) => self.locals.name(node).into(),
             Place::Temporary => match self.slots.get(&node) {
                 Some(&slot) => self.slot(slot, Access::Read),
-                // No text of any language, so that it never leaves the generator.
+                // Not valid in any language, so that the text never leaves the generator.
                 None => format!("no value for node {node}"),
             },
         }
     }
 
-    /// The slot of a value that is read or written there.
+    /// Returns the slot of a value, and records the access.
     fn slot(&mut self, slot: usize, access: Access) -> String {
         self.used.touch(Array::Slots, slot, access);
         let shape = Shape::Vector(self.slots.len());
         self.language.entry(Array::Slots, shape, slot)
     }
 
-    /// A value with its sign, as an operand.
+    /// Returns a value with its sign, as an operand.
     pub fn signed(&mut self, edge: Edge) -> String {
         self.operand(edge).signed()
     }
@@ -153,7 +153,7 @@ impl Printer<'_> {
         }
     }
 
-    /// A result that is written by itself: a number stands as a literal.
+    /// Returns a result that is written separately: numbers are literals.
     pub fn result(&mut self, edge: Edge) -> String {
         match self.places.of(edge.node(), self.time) {
             Place::Number => {
@@ -165,14 +165,14 @@ impl Printer<'_> {
         }
     }
 
-    /// The binding of a number.
+    /// Returns the binding of a number.
     pub fn number(&self, node: NodeId) -> String {
         let name = self.locals.name(node);
         self.language
             .number_binding(self.places.graph(), node, name)
     }
 
-    /// A statement; its values go to their slots at once.
+    /// Prints a statement; values that have a slot are copied to it at once.
     pub fn statement(&mut self, statement: &Statement) -> String {
         if let Operation::Check(cause, edge) = statement.operation {
             self.used.checks = true;
@@ -206,7 +206,7 @@ impl Printer<'_> {
         text
     }
 
-    /// What a function in Rust gives, by rows where it has several components.
+    /// Returns the pattern that binds the result of an external function; a matrix of slopes by rows.
     fn pattern(&self, call: &Call) -> String {
         let name = |node: &Option<NodeId>| node.map_or("_", |node| self.locals.name(node));
         let list = |nodes: &[Option<NodeId>]| {
@@ -252,7 +252,7 @@ impl Printer<'_> {
                 let operand = self.operand(a);
                 self.language.function(function, &operand)
             }
-            // Statements of their own.
+            // Printed by `statement` as statements of their own.
             Operation::SinCos(a) | Operation::Check(_, a) => self.signed(a),
             Operation::Call(ref call) => {
                 let given: Vec<String> = call.arguments.iter().map(|&a| self.signed(a)).collect();

@@ -5,7 +5,7 @@ use super::parameters::{errors, group_type, kept_value, needs_update};
 use super::{Emitter, docs, externals};
 use hamel_program::{FunctionId, Shape};
 
-/// Lints that generated functions cannot obey in general.
+/// Lint attributes for generated functions, which cannot satisfy these lints in general.
 pub const ALLOW: &str = concat!(
     "#[rustfmt::skip]\n",
     "#[allow(dead_code, unreachable_pub, reason = \"a program may use a part of what is generated\")]\n",
@@ -15,12 +15,13 @@ pub const ALLOW: &str = concat!(
      reason = \"numbers, names and shapes are those of the description\")]\n",
 );
 
-/// Lints that generated implementations of traits cannot obey in general.
+/// Lint attributes for generated trait implementations, which cannot satisfy these lints in general.
 pub const ALLOW_TRAIT: &str = r#"#[rustfmt::skip]
 #[allow(unused_qualifications, clippy::approx_constant, clippy::nursery, clippy::pedantic, reason = "full paths are right whatever is imported")]
 "#;
 
-/// Whether there is a field of constants: the type has at least one field.
+/// Whether there is a field of constants. There is one even without constants if there are no parameters, so that the
+/// type has at least one field.
 pub fn has_kept(emitter: &Emitter) -> bool {
     !emitter.kept.is_empty() || emitter.program.params.is_empty()
 }
@@ -29,7 +30,7 @@ fn zero_constants(emitter: &Emitter) -> String {
     zeros(Shape::Vector(emitter.kept.len()))
 }
 
-/// `struct Name<S> { … }`
+/// Prints the type: `struct Name<S> { … }`.
 pub fn structure(emitter: &Emitter) -> String {
     let program = emitter.program;
     let mut lines = program.docs.clone();
@@ -63,7 +64,7 @@ pub fn structure(emitter: &Emitter) -> String {
     )
 }
 
-/// Sizes and `new`.
+/// Prints the size constants and `new`.
 pub fn sizes(emitter: &Emitter) -> String {
     let program = emitter.program;
     let [params, x, ..] = program.symbols();
@@ -110,7 +111,7 @@ fn constructor(emitter: &Emitter) -> String {
     )
 }
 
-/// `Self { … }` with constants not yet computed.
+/// Returns `Self { … }` with the constants not yet computed.
 fn literal(emitter: &Emitter, mut fields: Vec<String>, functions: Option<&str>) -> String {
     if has_kept(emitter) {
         fields.push(format!(
@@ -126,7 +127,7 @@ fn literal(emitter: &Emitter, mut fields: Vec<String>, functions: Option<&str>) 
     format!("Self {{ {} }}", fields.join(", "))
 }
 
-/// `impl Default`
+/// Prints `impl Default`.
 pub fn default(emitter: &Emitter) -> String {
     let program = emitter.program;
     let fields = emitter.names.fields.iter();

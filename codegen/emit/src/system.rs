@@ -1,4 +1,4 @@
-//! `impl hamel::System`, where all that it consists of was generated.
+//! `impl hamel::System`, if all functions that it needs are generated.
 
 use super::function::zeros;
 use super::{Emitter, docs, externals, names, number, structure};
@@ -8,7 +8,7 @@ const X: Argument = Argument::Coordinates;
 const XI: Argument = Argument::Velocities;
 const U: Argument = Argument::Inputs;
 
-/// The trait's methods that evaluate functions, with the arguments and result that they have there.
+/// Methods of the trait that evaluate functions: name, arguments, and result type.
 const METHODS: &[(&str, &[Argument], &str)] = &[
     ("rate", &[X, XI], "Self::Coordinates"),
     ("chart_rate", &[X, XI], "Self::Chart"),
@@ -23,7 +23,7 @@ const METHODS: &[(&str, &[Argument], &str)] = &[
     ("potential_energy", &[X], "S"),
 ];
 
-/// The implementation; nothing where a function is missing.
+/// Prints the implementation; empty if a function is missing.
 pub fn implementation(emitter: &Emitter) -> String {
     let program = emitter.program;
     let Some(methods) = METHODS
@@ -139,7 +139,7 @@ fn method(emitter: &Emitter, row: &(&str, &[Argument], &str)) -> Option<String> 
     })
 }
 
-/// One of the projections on constraints that are kept by multipliers; nothing where there are none.
+/// Prints a projection onto the constraints that are enforced by multipliers; empty if it is not generated.
 fn projection(emitter: &Emitter, name: &str) -> String {
     let Some(index) = emitter
         .program

@@ -1,4 +1,4 @@
-//! ξ̇ and [A B] by one function, for steps with slopes: [A B] contains nearly all that ξ̇ is made from.
+//! One function for both ξ̇ and [A B], for steps with slopes: computing [A B] already needs most operations of ξ̇.
 
 use super::function::{self, SLOPES, Spec, zeros};
 use super::{Emitter, docs, names};
@@ -6,11 +6,11 @@ use hamel_program::Function;
 use hamel_program::places::Time;
 use hamel_program::together::{Together, together};
 
-/// What the function is called.
+/// Name of the function.
 pub const NAME: &str = "accel_and_linearize";
 
-/// The place of `linearize` among the functions, and ξ̇ with [A B] in a tuple; nothing where one of them was not
-/// generated, or where too little is common to both.
+/// Returns the index of `linearize` among the functions, and a function that computes both ξ̇ and [A B]. `None` if
+/// one of them is not generated, or if they have too little in common.
 pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
     let program = emitter.program;
     let Together {
@@ -58,7 +58,7 @@ pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
     ))
 }
 
-/// The function, and after it `linearize` by it.
+/// Prints the function, followed by a `linearize` that calls it.
 pub fn text(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
     let given: Vec<&str> = both
         .arguments

@@ -1,10 +1,10 @@
-//! Numbers by their names: structures for the parameters, for x and ξ, and for the inputs of a generated type, with
-//! the arrays that its functions take.
+//! Access by name: structures with the parameters, with x and ξ, and with the inputs of a generated type, and their
+//! conversions to the arrays that its functions take.
 //!
-//! | type | is | `default` |
+//! | type | contents | `default` |
 //! |---|---|---|
-//! | `NameParameters<S>` | what `new` takes | those of the description |
-//! | `NameState<S>` | x, ξ, and the states behind ξ | the start of the description |
+//! | `NameParameters<S>` | the argument of `new` | parameters of the description |
+//! | `NameState<S>` | x, ξ, and the states after ξ | initial state of the description |
 //! | `NameInputs<S>` | u | zeros |
 
 use super::names::{Unique, cased};
@@ -15,17 +15,17 @@ use hamel_language::model::{Coordinate, Group};
 use hamel_language::syntax::ast::{CoordKind, ShapeKind};
 use hamel_program::Program;
 
-/// Some entries of an array, under a name.
+/// A named range of entries of an array.
 pub struct Field {
     /// Its name in the generated text.
     pub name: String,
-    /// What it is.
+    /// Text of its doc comment.
     pub docs: String,
     /// Its shape.
     pub shape: ShapeKind,
     /// The array.
     pub array: &'static str,
-    /// The place of the first entry in it.
+    /// Index of its first entry in the array.
     pub offset: usize,
 }
 
@@ -39,7 +39,7 @@ impl Field {
         }
     }
 
-    /// Its value, with entries that an expression of their place gives.
+    /// Returns its value; `entry` returns an entry by its index in the array.
     fn value(&self, entry: impl Fn(usize) -> String) -> String {
         shaped(self.shape, |i, j| {
             entry(
@@ -53,7 +53,7 @@ impl Field {
         })
     }
 
-    /// Its entries in the order of the array, as expressions.
+    /// Returns its entries in the order of the array, as expressions.
     fn entries(&self) -> Vec<String> {
         let indices = super::parameters::indices(self.shape).into_iter();
         let name = &self.name;
@@ -61,7 +61,7 @@ impl Field {
     }
 }
 
-/// The fields of groups of symbols.
+/// Returns the fields of groups of symbols.
 fn groups(groups: &[Group], what: &str, array: &'static str) -> Vec<(String, Field)> {
     let field = |group: &Group| {
         let field = Field {
@@ -76,7 +76,7 @@ fn groups(groups: &[Group], what: &str, array: &'static str) -> Vec<(String, Fie
     groups.iter().map(field).collect()
 }
 
-/// The fields of a coordinate: position and rotation of a pose are two.
+/// Returns the fields of a coordinate: one, or two for a pose, namely its position and its rotation.
 fn coordinate(coordinate: &Coordinate) -> Vec<(String, Field)> {
     let Coordinate {
         name, kind, offset, ..
@@ -119,7 +119,7 @@ fn coordinate(coordinate: &Coordinate) -> Vec<(String, Field)> {
     }
 }
 
-/// Fields with the names that they have in Rust.
+/// Gives the fields their names in Rust.
 fn named(fields: Vec<(String, Field)>) -> Vec<Field> {
     let written: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
     let names = cased(&written);
@@ -132,7 +132,7 @@ fn named(fields: Vec<(String, Field)>) -> Vec<Field> {
     fields.map(field).collect()
 }
 
-/// A structure with what it says of itself, and its default.
+/// A structure with its documentation and its default.
 struct View<'a> {
     name: String,
     docs: String,
@@ -141,7 +141,7 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// The structure, and `Default`.
+    /// Prints the structure and its `Default`.
     fn text(&self, public: &str, value: impl Fn(&Field, usize) -> String) -> String {
         let View {
             name,
@@ -175,7 +175,7 @@ fn public(program: &Program) -> &'static str {
     if program.public { "pub " } else { "" }
 }
 
-/// The parameters; nothing where there are none.
+/// Prints the structure of parameters; empty if there are none.
 pub fn parameters(emitter: &Emitter) -> String {
     let program = emitter.program;
     if program.params.is_empty() {
@@ -208,7 +208,7 @@ pub fn parameters(emitter: &Emitter) -> String {
     })
 }
 
-/// x and ξ by name; `system` tells whether there is the trait `System`.
+/// Prints the structure of x and ξ; `system` tells whether the type implements `System`.
 pub fn state(emitter: &Emitter, system: bool) -> String {
     let program = emitter.program;
     let of = &emitter.names.type_name;
@@ -278,7 +278,7 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
     text
 }
 
-/// The entries of x and ξ by name, states among the latter.
+/// Returns the entries of x and ξ by name; the states z are part of ξ.
 pub fn state_fields(program: &Program) -> Vec<Field> {
     let mut fields: Vec<(String, Field)> =
         program.coordinates.iter().flat_map(coordinate).collect();
@@ -291,12 +291,12 @@ pub fn state_fields(program: &Program) -> Vec<Field> {
     named(fields)
 }
 
-/// The entries of u by name.
+/// Returns the entries of u by name.
 pub fn input_fields(program: &Program) -> Vec<Field> {
     named(groups(&program.inputs, "Input", "u"))
 }
 
-/// u by name; nothing where there are no inputs.
+/// Prints the structure of the inputs u; empty if there are none.
 pub fn inputs(emitter: &Emitter) -> String {
     let program = emitter.program;
     if program.inputs.is_empty() {
@@ -329,7 +329,7 @@ pub fn inputs(emitter: &Emitter) -> String {
     text
 }
 
-/// The place of entry (i, j), i ≤ j, of a symmetric matrix among those on and above the diagonal, by rows.
+/// Index of entry (i, j), i ≤ j, of a symmetric matrix among the entries on and above its diagonal, row by row.
 fn symmetric_entry(n: usize, i: usize, j: usize) -> usize {
     i * n - i * (i + 1) / 2 + j
 }

@@ -1,32 +1,32 @@
-//! Placed errors, collected so that one build reports all of them; placed warnings have the same form.
+//! Errors and warnings with their places in the source. Errors are collected so that one build reports all of them.
 
 use crate::functions::Needs;
 use crate::syntax::ast::{Span, Texts};
 use std::panic::Location;
 
-/// One error or warning: where, what is wrong, and what to do about it.
+/// One error or warning: its place, the problem, and a suggestion.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// The place it is about.
+    /// Place of the problem.
     pub span: Span,
-    /// What is wrong, in one sentence.
+    /// The problem, in one sentence.
     pub message: String,
-    /// What to do.
+    /// Suggested fix.
     pub help: Option<String>,
     /// Other places involved, each with a short label.
     pub notes: Vec<(Span, String)>,
-    /// The included texts that these places are in.
+    /// Included texts that contain the places of this error.
     pub texts: Texts,
-    /// What the system lacks, where only functions that need it are in the way: all else can be derived.
+    /// Inertia that the system lacks, if only the functions that need it are at fault and all others can be derived.
     pub lacking: Option<Needs>,
-    /// Whether a proof failed: a fault of the generator, or of the point that was read at.
+    /// Whether a proof failed. The cause is a fault of the generator, or an unlucky choice of the evaluation point.
     pub unproved: bool,
-    /// Where the generator makes it: the book has an example for every such place.
+    /// Location in the generator's source that creates the error. The book has an example for every such location.
     pub site: &'static Location<'static>,
 }
 
 impl Diagnostic {
-    /// An error at a place.
+    /// Creates an error at a place.
     #[track_caller]
     pub fn new(span: Span, message: impl Into<String>) -> Self {
         Diagnostic {
@@ -41,31 +41,31 @@ impl Diagnostic {
         }
     }
 
-    /// It is about a proof that failed.
+    /// Marks the error as a failed proof.
     pub fn about_proof(mut self) -> Self {
         self.unproved = true;
         self
     }
 
-    /// Says that only functions that need this are in the way.
+    /// Records that only functions that need this much inertia are at fault.
     pub fn lacking(mut self, needs: Needs) -> Self {
         self.lacking = Some(needs);
         self
     }
 
-    /// Adds what to do.
+    /// Adds a suggested fix.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Adds another place.
+    /// Adds another place with a label.
     pub fn note(mut self, span: Span, label: impl Into<String>) -> Self {
         self.notes.push((span, label.into()));
         self
     }
 
-    /// Adds the call of the function that it is in.
+    /// Adds the function call that contains the error, unless [`MOST_CALLS`] notes exist already.
     pub(crate) fn in_call(self, span: Span) -> Self {
         match self.notes.len() < MOST_CALLS {
             true => self.note(span, "in this call"),
@@ -74,17 +74,17 @@ impl Diagnostic {
     }
 }
 
-/// Calls around an error that are shown with it.
+/// Largest number of enclosing calls that are shown with an error.
 const MOST_CALLS: usize = 4;
 
-/// The errors of one description, in the order they were found.
+/// The errors of one description, in the order in which they were found.
 #[derive(Debug, Default)]
 pub struct Report {
     errors: Vec<Diagnostic>,
 }
 
 impl Report {
-    /// An empty report.
+    /// Creates an empty report.
     pub fn new() -> Self {
         Report::default()
     }
@@ -94,7 +94,7 @@ impl Report {
         self.errors.push(error);
     }
 
-    /// Whether the same is said of the same place already.
+    /// Returns whether the report already has an error with this message at this place.
     pub fn has(&self, error: &Diagnostic) -> bool {
         let same = |known: &Diagnostic| {
             known.message == error.message && known.span.range() == error.span.range()
@@ -102,14 +102,14 @@ impl Report {
         self.errors.iter().any(same)
     }
 
-    /// Adds an error, unless the same is said of the same place already.
+    /// Adds an error unless the report already has one with the same message at the same place.
     pub fn push_once(&mut self, error: Diagnostic) {
         if !self.has(&error) {
             self.errors.push(error);
         }
     }
 
-    /// Keeps the error of a result and hands on its value.
+    /// Records the error of a result and returns its value.
     pub fn keep<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
@@ -120,17 +120,17 @@ impl Report {
         }
     }
 
-    /// How many errors there are.
+    /// Returns the number of errors.
     pub fn len(&self) -> usize {
         self.errors.len()
     }
 
-    /// Whether nothing was reported.
+    /// Returns whether the report has no errors.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
-    /// A checkpoint: `Ok` where nothing was reported, all errors otherwise.
+    /// Ends a stage: returns `Ok` if there are no errors, and all errors otherwise.
     pub fn finish(self) -> Result<(), Vec<Diagnostic>> {
         if self.errors.is_empty() {
             Ok(())
@@ -140,7 +140,8 @@ impl Report {
     }
 }
 
-/// A number with four digits, as messages show how far something is off: `3`, `-0.62`, `1.556e-7`.
+/// Formats a number with four significant digits, for messages that say how far something is off: `3`, `-0.62`,
+/// `1.556e-7`.
 pub fn rough(value: f64) -> String {
     let text = format!("{value:.3e}");
     let exponent = text

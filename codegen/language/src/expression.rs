@@ -1,4 +1,4 @@
-//! Expressions written in Rust: numbers, arrays, operators and the functions of the language.
+//! Building expressions in Rust code: numbers, arrays, operators and the functions of the language.
 
 use crate::syntax::ast::{BinaryOp, Choice, Comparison, Expr, ExprKind, Ident, Span};
 use crate::syntax::path;
@@ -7,13 +7,13 @@ use num_rational::BigRational;
 use num_traits::Signed;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What is written in the place of what is not a number, since no name is spelt so.
+/// Placeholder for a NaN value. It is a name that no valid description can contain.
 pub const NO_NUMBER: &str = "((0 / 0))";
 
-/// What is written in the place of a number that is not finite.
+/// Placeholder for an infinite value. It is a name that no valid description can contain.
 pub const INFINITE: &str = "((1 / 0))";
 
-/// A name, which stands nowhere in a text.
+/// Creates an identifier that has no place in a source text.
 pub fn ident(name: &str) -> Ident {
     Ident {
         name: path::spelling(name),
@@ -28,7 +28,7 @@ fn expr(kind: ExprKind) -> Expr {
     }
 }
 
-/// The name that stands for a number that is not finite.
+/// Returns the placeholder for a value that is not finite, negated for negative values.
 fn not_finite(value: f64) -> Expr {
     let name = if value.is_nan() { NO_NUMBER } else { INFINITE };
     let inner = expr(ExprKind::Name(name.to_string()));
@@ -40,8 +40,8 @@ fn number(number: BigRational) -> Expr {
     if number.is_negative() { -size } else { size }
 }
 
-/// A function of the language, such as `sin`, `norm`, `axis_angle`; which there are stands in the
-/// reference of the language.
+/// Calls a function of the language, such as `sin`, `norm` or `axis_angle`. The reference of the language lists all
+/// functions.
 ///
 /// ```
 /// use hamel_language::expression::call;
@@ -54,7 +54,7 @@ pub fn call(function: &str, arguments: impl IntoIterator<Item = Expr>) -> Expr {
     expr(ExprKind::Call(ident(function), arguments))
 }
 
-/// Components of the motion of a frame in the axes of another: `velocity(f, p) in g`; the `motion` is a [`call`].
+/// Expresses the motion of a frame in the axes of another: `velocity(f, p) in g`. The `motion` is a [`call`].
 ///
 /// ```
 /// use hamel_language::expression::{call, in_axes};
@@ -70,7 +70,7 @@ pub fn in_axes(motion: Expr, frame: &str) -> Expr {
     ))
 }
 
-/// `if a < b { then } else { otherwise }`: of two values of one shape the first where a < b.
+/// Builds `if a < b { then } else { otherwise }`. Both values must have the same shape.
 ///
 /// ```
 /// use hamel_language::expression::if_less;
@@ -88,7 +88,7 @@ pub fn if_less(
     choice(a, Comparison::Less, b, then, otherwise)
 }
 
-/// Of two values of one shape the first where a comparison holds: `if a >= b { then } else { otherwise }`.
+/// Builds `if a >= b { then } else { otherwise }` with any comparison. Both values must have the same shape.
 pub fn choice(
     a: impl Into<Expr>,
     comparison: Comparison,
@@ -105,67 +105,67 @@ pub fn choice(
     })))
 }
 
-/// sin a, a in rad.
+/// Returns sin a, a in rad.
 pub fn sin(angle: impl Into<Expr>) -> Expr {
     call("sin", [angle.into()])
 }
 
-/// cos a, a in rad.
+/// Returns cos a, a in rad.
 pub fn cos(angle: impl Into<Expr>) -> Expr {
     call("cos", [angle.into()])
 }
 
-/// √a.
+/// Returns √a.
 pub fn sqrt(value: impl Into<Expr>) -> Expr {
     call("sqrt", [value.into()])
 }
 
-/// A pose: axes by columns and origin (m).
+/// Returns a pose from a rotation matrix, whose columns are the axes, and an origin (m).
 pub fn pose(axes: impl Into<Expr>, origin: impl Into<Expr>) -> Expr {
     call("pose", [axes.into(), origin.into()])
 }
 
-/// A place without rotation (m).
+/// Returns a pose without rotation at `origin` (m).
 pub fn shifted(origin: impl Into<Expr>) -> Expr {
     pose(call("identity", [3.into()]), origin)
 }
 
-/// The matrix with these three numbers on its diagonal, and zeros beside it.
+/// Returns the diagonal matrix with these three entries.
 pub fn diagonal(entries: [impl Into<Expr>; 3]) -> Expr {
     call("diag", entries.map(Into::into))
 }
 
 impl Expr {
-    /// What a name stands for: a parameter, a coordinate, a velocity, an input, a frame; also with indices and parts,
-    /// as in `leg[i + 1].knee`.
+    /// Refers to a parameter, a coordinate, a velocity, an input or a frame by name. Indices and parts are allowed, as
+    /// in `leg[i + 1].knee`.
     pub fn name(name: &str) -> Expr {
         path::expression(name).unwrap_or_else(|| expr(ExprKind::Name(name.to_string())))
     }
 
-    /// A part: `c` and `s` of a circle, `R` and `p` of a pose, `T` of a matrix.
+    /// Returns a part: `c` and `s` of a circle, `R` and `p` of a pose, `T` of a matrix.
     pub fn part(&self, name: &str) -> Expr {
         expr(ExprKind::Field(Box::new(self.clone()), ident(name)))
     }
 
-    /// An entry of a vector; the first one has the index 1, as in the paper.
+    /// Returns an entry of a vector. Indices start at 1, as in the paper.
     pub fn entry(&self, index: impl Into<Expr>) -> Expr {
         let index = vec![index.into()];
         expr(ExprKind::Index(Box::new(self.clone()), index))
     }
 
-    /// An entry of a matrix by its row and column, from 1.
+    /// Returns an entry of a matrix by row and column, both counted from 1.
     pub fn element(&self, row: impl Into<Expr>, column: impl Into<Expr>) -> Expr {
         let indices = vec![row.into(), column.into()];
         expr(ExprKind::Index(Box::new(self.clone()), indices))
     }
 
-    /// A power; the exponent is a whole number or a quotient of two.
+    /// Returns a power. The exponent is a whole number or a quotient of two.
     pub fn pow(&self, exponent: impl Into<Expr>) -> Expr {
         binary(BinaryOp::Pow, self.clone(), exponent.into())
     }
 }
 
-/// The expression in the language.
+/// Prints the expression in the syntax of the language.
 impl std::fmt::Display for Expr {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&crate::syntax::written::written(self))
@@ -178,8 +178,8 @@ impl From<&Expr> for Expr {
     }
 }
 
-/// The decimal number that `{}` prints, exactly: 0.1 is 1/10. For what is not finite there is a name that no text has, so that
-/// a scene with it is refused where it is built.
+/// Converts a number to exactly the decimal that `{}` prints: 0.1 becomes 1/10. A number that is not finite becomes a
+/// name that no text can contain, so that a scene with it is refused when it is built.
 impl From<f64> for Expr {
     fn from(value: f64) -> Expr {
         if !value.is_finite() {
@@ -189,7 +189,7 @@ impl From<f64> for Expr {
     }
 }
 
-/// The shortest decimal that rounds to a finite number.
+/// Returns the shortest decimal that rounds to a finite number.
 fn decimal(value: f64) -> Option<BigRational> {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e')?;

@@ -1,14 +1,14 @@
-//! Systems without inertia: they have kinematics, and what needs more is refused by its name.
+//! Systems without inertia: these have kinematics only, and everything that needs inertia is refused by name.
 
 use crate::diagnostics::Diagnostic;
 use crate::functions::{Asked, FunctionId, Needs};
 use crate::syntax::ast::Span;
 
-/// Names in a message.
+/// Largest number of names listed in the message.
 const MOST_NAMED: usize = 4;
 
-/// What is wrong where functions are wanted, or something is claimed of the motion, that need inertia, and there is
-/// none.
+/// Returns the error for a system without inertia if a requested function, or a claim about the motion, needs inertia.
+/// Returns `None` if the system has inertia or nothing needs it.
 pub fn lacking<'a>(
     span: Span,
     has_inertia: bool,

@@ -1,32 +1,32 @@
-//! From the description of a mechanical system to a model of it.
+//! Reads the description of a mechanical system and builds a model from it.
 //!
 #![doc = include_str!("../README.md")]
 //!
 //! # The stages
 //!
-//! `text or tokens → ast → names → shapes → model`, one module for each stage. Dependencies point one way:
+//! `text or tokens → ast → names → shapes → model`, with one module per stage. Dependencies point one way:
 //!
-//! | module | what it owns |
+//! | module | contents |
 //! |---|---|
 //! | [`syntax`] | grammar and source positions |
-//! | [`expression`] | expressions that are written in Rust |
-//! | [`reuse`] | components, parts and repetition, which are written out here |
-//! | `symbols` | what names stand for, and every error about them |
-//! | `shapes` | the shapes of all expressions, and every error about them |
+//! | [`expression`] | building expressions in Rust code |
+//! | [`reuse`] | expansion of components, parts and repetition into plain statements |
+//! | `symbols` | name resolution, and every error about names |
+//! | `shapes` | the shapes of all expressions, and every error about shapes |
 //! | [`mod@lower`] | from a description to a model, and every other semantic error |
 //! | [`model`] | a mechanical system as expressions of a graph |
-//! | [`functions`] | the functions that can be asked for |
-//! | [`inertia`] | what is said of systems without inertia |
+//! | [`functions`] | the functions that can be generated |
+//! | [`inertia`] | the error for systems that lack the inertia they need |
 //! | [`vocabulary`] | the words of the language, for references and editors |
 //! | [`diagnostics`], [`render`] | errors, and how they are shown |
 //!
-//! The expressions are those of [`algebra`]; `hamel-codegen` derives equations of motion from a model.
+//! Expressions are built with [`algebra`]; `hamel-codegen` derives equations of motion from a model.
 //!
 //! # Features
 //!
-//! | feature | default | what it adds |
+//! | feature | default | effect |
 //! |---|---|---|
-//! | `files` | yes | texts besides tokens: source positions, and errors that are underlined in them |
+//! | `files` | yes | parsing of text in addition to tokens: source positions, and errors with underlined source |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

@@ -1,11 +1,11 @@
-//! Errors and warnings as people read them: underlined source in a terminal, or errors of the compiler.
+//! Presentation of errors and warnings: underlined source in a terminal, or compiler errors.
 
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, TokenStream, TokenTree};
 
 use crate::diagnostics::Diagnostic;
 use crate::syntax::Places;
 
-/// The errors as calls of `compile_error!`, each placed on its region of the macro's input.
+/// Returns the errors as calls of `compile_error!`, each placed on its region of the macro's input.
 pub fn to_compile_errors(errors: &[Diagnostic], places: &Places) -> TokenStream {
     let errors = errors.iter();
     errors
@@ -13,8 +13,9 @@ pub fn to_compile_errors(errors: &[Diagnostic], places: &Places) -> TokenStream 
         .collect()
 }
 
-/// Warnings of the compiler, for what is legal and looks like a mistake: a constant that is deprecated, with the message
-/// for its reason, is used at the place that the warning is about. No macro can warn in another way.
+/// Returns compiler warnings for code that is legal but looks like a mistake. Each warning is the use of a deprecated
+/// constant, with the message as the reason for the deprecation, at the place of the warning. A macro has no other way
+/// to warn.
 pub fn to_compile_warnings(list: &[Diagnostic], places: &Places) -> TokenStream {
     let one = |warning: &Diagnostic| {
         let (first, _) = places.ends(warning.span);
@@ -34,11 +35,12 @@ pub fn to_compile_warnings(list: &[Diagnostic], places: &Places) -> TokenStream 
     list.iter().map(one).collect()
 }
 
-/// `::core::compile_error! { "message" }`; the compiler underlines from the span of its first token to that of its last.
+/// Builds `::core::compile_error! { "message" }`. The compiler underlines from the span of its first token to that of
+/// its last.
 fn compile_error(error: &Diagnostic, places: &Places) -> [TokenTree; 8] {
     let mut message = error.message.clone();
     let mut span = error.span;
-    // What is wrong in an included file is shown where it is included.
+    // An error in an included file is shown at the statement that includes the file.
     while let Some((text, range)) = error.texts.find(span) {
         let (line, column) = text.line(range.start);
         message = match span.range() == error.span.range() {
@@ -89,9 +91,9 @@ mod text {
     use crate::diagnostics::Diagnostic;
     use crate::syntax::ast::Span;
 
-    /// The errors in the order of the text, each with its source underlined, and their number.
+    /// Renders the errors in the order of the text, each with its source underlined, and their number.
     ///
-    /// `path` is how the file is named, `source` the text that was parsed; `color` adds terminal colours.
+    /// `path` is the name shown for the file, `source` the parsed text; `color` adds terminal colours.
     pub fn render(errors: &[Diagnostic], path: &str, source: &str, color: bool) -> String {
         let mut rendered = listed(errors, Level::Error, path, source, color);
         let plural = if errors.len() == 1 { "" } else { "s" };
@@ -99,7 +101,7 @@ mod text {
         rendered
     }
 
-    /// The warnings in the order of the text, each with its source underlined; empty where there are none.
+    /// Renders the warnings in the order of the text, each with its source underlined. Empty if there are none.
     pub fn warnings(list: &[Diagnostic], path: &str, source: &str, color: bool) -> String {
         listed(list, Level::Warning, path, source, color)
     }
@@ -131,12 +133,12 @@ mod text {
         renderer.decor_style(DecorStyle::Ascii)
     }
 
-    /// What is wrong, or looks as if it were.
+    /// Severity of a note.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Level {
-        /// Wrong.
+        /// The text is wrong.
         Error,
-        /// Legal.
+        /// The text is legal but looks like a mistake.
         Warning,
     }
 
@@ -149,18 +151,18 @@ mod text {
         }
     }
 
-    /// An error or a warning about a text that is no description.
+    /// An error or a warning about a text that is not a description.
     #[derive(Clone, Debug)]
     pub struct Note {
-        /// The bytes that it is about.
+        /// Byte range of the note in the text.
         pub range: Range<usize>,
-        /// What it says.
+        /// The message.
         pub message: String,
-        /// What to do, a sentence each.
+        /// Suggested fixes, one sentence each.
         pub help: Vec<String>,
     }
 
-    /// The notes in the order of the text, underlined; errors with their number.
+    /// Renders the notes in the order of the text, each with its source underlined; for errors, also their number.
     pub fn notes(list: &[Note], level: Level, path: &str, source: &str, color: bool) -> String {
         let renderer = renderer(color);
         let mut sorted: Vec<&Note> = list.iter().collect();
@@ -185,7 +187,8 @@ mod text {
         rendered
     }
 
-    /// A region of the description, or of a text that it includes: the path of the text, the text, its bytes.
+    /// Finds a region in the description or in an included text. Returns the path of that text, the text, and the byte
+    /// range.
     fn found<'a>(
         span: Span,
         error: &'a Diagnostic,
@@ -199,7 +202,7 @@ mod text {
         Some((path.into(), source, place(span, source)?))
     }
 
-    /// The path of what a description names, from where the path of the description starts.
+    /// Resolves a file name relative to the folder of the description's path.
     fn beside<'a>(path: &str, name: &'a str) -> Cow<'a, str> {
         let folder = Path::new(path).parent();
         match folder.filter(|folder| !folder.as_os_str().is_empty()) {
@@ -220,7 +223,7 @@ mod text {
         let none = primary.is_none();
         let primary = primary.clone().map(Some).into_iter();
         let primary = primary.map(|place| (AnnotationKind::Primary, place, ""));
-        // One snippet a text, that of the error first.
+        // One snippet per text, starting with the text of the error.
         let mut snippets: Vec<(Cow<'a, str>, &str, Vec<_>)> = Vec::new();
         for (kind, place, label) in primary.chain(notes) {
             let Some((name, text, range)) = place else {
@@ -244,7 +247,7 @@ mod text {
         group.elements(messages)
     }
 
-    /// The lines from the first place to the last, underlined.
+    /// Returns the lines from the first place to the last, with the places underlined.
     fn snippet<'a>(
         places: Vec<(AnnotationKind, Range<usize>, &'a str)>,
         path: impl Into<Cow<'a, str>>,
@@ -291,18 +294,18 @@ mod text {
             .annotations(annotations)
     }
 
-    /// The bytes of a region in a text.
+    /// Returns the byte range of a region in a text.
     pub fn span_bytes(span: Span, source: &str) -> Option<Range<usize>> {
         place(span, source)
     }
 
-    /// The bytes of a region, `None` where its tokens have no place in a text.
+    /// Returns the byte range of a region, or `None` if the region has no place in the text.
     fn place(span: Span, source: &str) -> Option<Range<usize>> {
         let range = span.range()?;
         (range.start <= source.len()).then(|| within(range, source))
     }
 
-    /// The region that ends where characters of the text begin.
+    /// Clamps a range to the text and widens it to character boundaries.
     fn within(range: Range<usize>, source: &str) -> Range<usize> {
         let mut start = range.start.min(source.len());
         while !source.is_char_boundary(start) {

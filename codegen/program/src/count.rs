@@ -3,10 +3,12 @@
 use hamel_algebra::function::Cost;
 use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
 
-/// Operations of a function at run time; negation is free, parameters are hoisted.
+/// Number of operations of a function at run time, by kind.
+///
+/// Negation is free, and whatever depends on parameters alone is hoisted and does not count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Count {
-    /// Additions and subtractions, and what is as dear: absolute values, signs, choices.
+    /// Additions, subtractions, and operations of the same cost: absolute values, signs, selections.
     pub add: usize,
     /// Multiplications.
     pub mul: usize,
@@ -14,30 +16,30 @@ pub struct Count {
     pub div: usize,
     /// Square roots.
     pub sqrt: usize,
-    /// Pairs of sine and cosine of one angle (one of the two alone is a pair too).
+    /// Pairs of sine and cosine of one angle; a sine or cosine alone counts as a pair.
     pub sincos: usize,
     /// Other functions.
     pub other: usize,
 }
 
 impl Count {
-    /// mul + add + div.
+    /// Returns mul + add + div.
     pub fn flops(self) -> usize {
         self.add + self.mul + self.div
     }
 
-    /// A cost that weighs the dearer operations: a division 4, a root 5, functions 15.
+    /// Returns a weighted cost: a division counts 4, a square root 5, other functions 15.
     pub fn weight(self) -> usize {
         self.add + self.mul + 4 * self.div + 5 * self.sqrt + 15 * (self.sincos + self.other)
     }
 }
 
-/// The operations that the roots need at run time.
+/// Counts the operations that evaluate the roots at run time.
 pub fn count(graph: &Graph, roots: &[Edge]) -> Count {
     count_nodes(graph, &graph.varying(roots))
 }
 
-/// The operations of a list of nodes.
+/// Counts the operations of a list of nodes.
 pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
     let mut count = Count::default();
     let (mut angles, mut calls) = (Vec::new(), Vec::new());
@@ -57,7 +59,7 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
             },
             Node::Atan2(..) => count.other += 1,
             Node::Listed(..) => {}
-            // One call gives all components, another one all slopes.
+            // One call returns all components of the value, another call all slopes.
             Node::External(component, list) => {
                 calls.push((component.function, component.order(), list));
             }

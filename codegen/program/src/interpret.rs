@@ -1,4 +1,4 @@
-//! Evaluation of a program's functions in floating point, without compiling them.
+//! Interpreter: evaluates the functions of a program in floating point, without compiling them.
 
 use super::{Argument, Function, Program};
 use hamel_algebra::graph::{Edge, Node, NodeId};
@@ -7,17 +7,17 @@ use hamel_algebra::numeric::Floats;
 use num_traits::ToPrimitive;
 use std::ops::Range;
 
-/// A function compiled to steps, with everything that is constant evaluated once.
+/// A function translated to steps for given parameters; its constants are evaluated once.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
-    /// The number 0, as in a graph, the symbols, and what follows.
+    /// Initial values of all places: the number 0 (as in a graph), the symbols, then constants and results of steps.
     initial: Vec<f64>,
-    /// Places with nodes of earlier places.
+    /// Steps: the place of the result, and a node whose operands are earlier places.
     steps: Vec<(usize, Node)>,
     outputs: Vec<Edge>,
-    /// Guards with their numbers, in the order in which they are computed.
+    /// Guards with their indices in the function, in the order of their places.
     guards: Vec<(usize, Edge)>,
-    /// Where x, ξ, u, ξ̇ and p begin, and the place of z.
+    /// Places at which x, ξ, u, ξ̇ and p begin.
     inputs: [usize; 5],
     states: Range<usize>,
     arguments: [bool; 5],
@@ -32,7 +32,7 @@ const ORDER: [Argument; 5] = [
 ];
 
 impl Interpreter {
-    /// Compiles a function of a program with given parameters.
+    /// Prepares a function of a program for given parameters.
     pub fn new(program: &Program, function: &Function, params: &[f64]) -> Self {
         let graph = &program.graph;
         let roots: Vec<Edge> = function
@@ -71,7 +71,7 @@ impl Interpreter {
         let mut guards: Vec<(usize, Edge)> =
             function.guards.iter().map(place).enumerate().collect();
         guards.sort_by_key(|(_, place)| place.node());
-        // The number 0 stands before the symbols.
+        // The number 0 precedes the symbols.
         let [_, x, xi, u, z, xi_dot, p, _] = program.symbols().map(|start| start + 1);
         Interpreter {
             outputs: function.outputs.iter().map(place).collect(),
@@ -84,7 +84,10 @@ impl Interpreter {
         }
     }
 
-    /// The function's value; the number of the first pivot that is not positive where it has none.
+    /// Evaluates the function.
+    ///
+    /// # Errors
+    /// The index of the first pivot that is not positive.
     pub fn call(
         &self,
         x: &[f64],
@@ -95,7 +98,12 @@ impl Interpreter {
         self.call_with([x, xi, u, xi_dot, &[]])
     }
 
-    /// The same for all arguments in the order x, ξ, u, ξ̇, p; z stands behind ξ, and what stands behind ξ̇ is not read.
+    /// Evaluates the function, with all arguments in the order x, ξ, u, ξ̇, p.
+    ///
+    /// z follows ξ in its argument; entries behind the n of ξ̇ are ignored.
+    ///
+    /// # Errors
+    /// The index of the first pivot that is not positive.
     pub fn call_with(&self, arguments: [&[f64]; 5]) -> Result<Vec<f64>, usize> {
         let mut values = self.initial.clone();
         for (index, part) in arguments.into_iter().enumerate() {
@@ -103,7 +111,7 @@ impl Interpreter {
                 continue;
             }
             let (part, behind) = match ORDER[index] {
-                // u stands behind ξ.
+                // u follows ξ among the symbols, so that the difference of their places is n.
                 Argument::Velocities | Argument::Accelerations => {
                     part.split_at(part.len().min(self.inputs[2] - self.inputs[1]))
                 }
@@ -138,7 +146,7 @@ fn read(edge: Edge, values: &[f64]) -> f64 {
 
 fn run(step: Node, values: &[f64]) -> f64 {
     let at = |edge: Edge| values.get(edge.node() as usize);
-    // Numbers and symbols are there from the start.
+    // Numbers and symbols have their values from the start.
     let value = Floats(&[]).node(step, at, &Form::new);
     value.unwrap_or(f64::NAN)
 }

@@ -1,4 +1,4 @@
-//! Straight-line programs: what is computed when, and at what cost.
+//! Straight-line programs: the generated functions as graphs, their schedule and their operation counts.
 //!
 #![doc = include_str!("../README.md")]
 
@@ -24,7 +24,7 @@ use structure::Structure;
 use hamel_language::functions::Returns;
 pub use hamel_language::functions::{Argument, FunctionId};
 
-/// The shape of a result.
+/// Shape of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// One number.
@@ -36,7 +36,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// How many numbers it consists of.
+    /// Returns the number of entries.
     pub fn entries(self) -> usize {
         match self {
             Shape::Scalar => 1,
@@ -46,44 +46,45 @@ impl Shape {
     }
 }
 
-/// What it means where a pivot is not positive.
+/// Reason why a pivot is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cause {
-    /// This velocity has no inertia where those that were eliminated before it follow freely, and the others are held.
+    /// The velocity at this index has no inertia: with the velocities eliminated before it free to follow and the
+    /// others held, it can change without effort.
     Velocity(usize),
-    /// The mass matrix, or an inertia that parameters give, is not positive definite.
+    /// The mass matrix, or an inertia given by parameters, is not positive definite.
     Mass,
-    /// This constraint of those that multipliers keep depends on others.
+    /// The constraint at this index, one of those kept by multipliers, depends on the others.
     Constraint(usize),
-    /// This pivot of [Y; Φ] has changed its sign, KR18 (5): a kinematic singularity.
+    /// The pivot at this index of [Y; Φ] has changed its sign, KR18 (5): a kinematic singularity.
     Kinematics(usize),
 }
 
 /// One generated function.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// Which one it is; none for outputs and invariants of the description.
+    /// Identity of the function; `None` for outputs and invariants of the description.
     pub id: Option<FunctionId>,
     /// Rust name.
     pub name: String,
     /// Documentation: the equation it evaluates, shapes, units; one string a line.
     pub docs: Vec<String>,
-    /// Its arguments.
+    /// Arguments.
     pub arguments: Vec<Argument>,
     /// Shape of the result.
     pub shape: Shape,
-    /// The result, matrices by rows.
+    /// Entries of the result, matrices by rows.
     pub outputs: Vec<Edge>,
-    /// Pivots that have to be positive, or the function returns the error `Singular`.
+    /// Pivots that have to be positive; otherwise the function returns the error `Singular`.
     pub guards: Vec<Edge>,
-    /// Whether it returns a `Result`.
+    /// Whether the function returns a `Result`.
     pub fallible: bool,
-    /// ξ̇ as it comes out on the way to [A B]; empty where it is that of `accel`.
+    /// ξ̇ as an intermediate result of [A B]; empty where that is the ξ̇ of `accel`.
     pub rates: Vec<Edge>,
 }
 
 impl Function {
-    /// A function that the generator knows, without guards.
+    /// Creates one of the functions in the generator's table, without guards.
     pub fn known(id: FunctionId, n: usize, outputs: Vec<Edge>) -> Self {
         let row = id.row();
         let matrix = |rows: usize| Shape::Matrix(rows, outputs.len() / rows.max(1));
@@ -91,7 +92,7 @@ impl Function {
             Returns::Number => Shape::Scalar,
             Returns::Vector => Shape::Vector(outputs.len()),
             Returns::Rows => matrix(n),
-            // Its shape depends on inputs and constraints, too, and is set where it is derived.
+            // The shape depends on inputs and constraints as well; it is set where the function is derived.
             Returns::Linear => matrix(2 * n),
         };
         Function {
@@ -107,7 +108,7 @@ impl Function {
         }
     }
 
-    /// An output or invariant of the description.
+    /// Creates the function of an output or invariant of the description.
     pub fn described(
         name: &str,
         docs: String,
@@ -132,17 +133,17 @@ impl Function {
 /// Everything that is emitted for a system.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Name of the type.
+    /// Name of the generated type.
     pub name: String,
-    /// Whether it is `pub`.
+    /// Whether the type is `pub`.
     pub public: bool,
-    /// Its documentation, as the user wrote it.
+    /// Documentation of the type, as the user wrote it.
     pub docs: Vec<String>,
-    /// The graph of all functions.
+    /// Graph that contains all functions.
     pub graph: Graph,
-    /// Parameters, with their default values by symbol.
+    /// Parameters.
     pub params: Vec<Group>,
-    /// Default values, in order of the parameters' symbols.
+    /// Default values of the parameters, in the order of their symbols.
     pub defaults: Vec<f64>,
     /// Coordinates.
     pub coordinates: Vec<Coordinate>,
@@ -152,53 +153,54 @@ pub struct Program {
     pub velocities: Vec<Group>,
     /// Inputs.
     pub inputs: Vec<Group>,
-    /// States of first order, which stand behind ξ.
+    /// States of first order, z, which follow ξ in the argument of velocities.
     pub states: Vec<Group>,
-    /// Joints, whose limits are constants of the type.
+    /// Joints, whose limits become constants of the type.
     pub joints: Vec<Joint>,
-    /// ν.
+    /// Number ν of coordinates.
     pub nu: usize,
-    /// n.
+    /// Number n of velocities.
     pub n: usize,
     /// Number of inputs.
     pub m: usize,
     /// Number of states of first order.
     pub n_z: usize,
-    /// Number of rows of φ.
+    /// Number of rows of the constraint function φ(x).
     pub phi: usize,
-    /// The place of the time in x, where the description declares it.
+    /// Index of the time in x, if the description declares it.
     pub clock: Option<usize>,
-    /// Whether φ has rows that the kinds of coordinates do not keep by themselves: integrators lead x back to them.
+    /// Whether φ has rows that the kinds of coordinates do not satisfy by themselves, so that integrators have to
+    /// project x onto φ = 0.
     pub embedded: bool,
-    /// x at the start.
+    /// Initial x.
     pub start_x: Vec<f64>,
-    /// (ξ, z) at the start.
+    /// Initial (ξ, z).
     pub start_xi: Vec<f64>,
-    /// The user's named expressions, for names of temporaries.
+    /// The user's named expressions, which give names to temporaries.
     pub names: Vec<(String, Edge)>,
-    /// Pivots of a mass matrix that is constant at run time: checked when parameters are set.
+    /// Pivots of a mass matrix that is constant at run time; they are checked when parameters are set.
     pub constant_guards: Vec<Edge>,
-    /// What it means where a guard is not positive.
+    /// Reasons for guards that are not positive, by guard.
     pub causes: Vec<(Edge, Cause)>,
-    /// The functions.
+    /// Generated functions.
     pub functions: Vec<Function>,
-    /// What methods of integration ask of the system.
+    /// Properties of the equations that decide which integration methods apply.
     pub structure: Structure,
 }
 
 impl Program {
-    /// What it means where a guard is not positive.
+    /// Returns the reason why a guard is not positive; [`Cause::Mass`] if none is recorded.
     pub fn cause(&self, guard: Edge) -> Cause {
         let known = self.causes.iter().find(|(pivot, _)| *pivot == guard);
         known.map_or(Cause::Mass, |(_, cause)| *cause)
     }
 
-    /// The name of a velocity as the language writes it: `q_dot`, `w[2]`.
+    /// Returns the name of a velocity as the language writes it: `q_dot`, `w[2]`.
     pub fn velocity(&self, place: usize) -> String {
         entry(&self.velocities, place)
     }
 
-    /// The length of an argument: states of first order stand behind the velocities, their rates behind ξ̇.
+    /// Returns the length of an argument: states of first order follow the velocities, and their rates follow ξ̇.
     pub fn length(&self, argument: Argument) -> usize {
         match argument {
             Argument::Coordinates => self.nu,
@@ -208,7 +210,8 @@ impl Program {
         }
     }
 
-    /// Where the symbols of parameters, x, ξ, u, z, ξ̇ and p begin, in this order, after π: and the end of all.
+    /// Returns the first symbols of the parameters, x, ξ, u, z, ξ̇ and p, in this order, and the end of the last group.
+    /// Symbol 0 is π.
     pub fn symbols(&self) -> [usize; 8] {
         let params = self.params.iter().map(|group| group.len).sum();
         let sizes = [params, self.nu, self.n, self.m, self.n_z, self.n, self.n];
@@ -219,24 +222,24 @@ impl Program {
         starts
     }
 
-    /// What the argument ξ consists of: the velocities, and behind them the states of first order.
+    /// Returns the groups of the argument ξ: the velocities, followed by the states of first order.
     pub fn moving(&self) -> Vec<Group> {
         [self.velocities.clone(), behind(&self.states, self.n)].concat()
     }
 
-    /// The emitted ξ̇.
+    /// Returns the emitted ξ̇, if `accel` is generated.
     pub fn xi_dot(&self) -> Option<&[Edge]> {
         let accel = self.function(FunctionId::Accel)?;
         accel.outputs.get(..self.n)
     }
 
-    /// The emitted ż.
+    /// Returns the emitted ż, if `accel` is generated.
     pub fn state_rates(&self) -> Option<&[Edge]> {
         let accel = self.function(FunctionId::Accel)?;
         accel.outputs.get(self.n..)
     }
 
-    /// A function: one that the generator knows, or an output or invariant by its name.
+    /// Returns the function with this name, be it of the generator's table, an output or an invariant.
     pub fn function(&self, name: impl AsRef<str>) -> Option<&Function> {
         let name = name.as_ref();
         self.functions.iter().find(|function| function.name == name)

@@ -1,11 +1,11 @@
-//! Where a value is found when a statement reads it.
+//! Places of values: where a statement finds each operand.
 
 use super::schedule::is_hoisted;
 use super::{Argument, Program};
 use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
 use rustc_hash::FxHashMap;
 
-/// When a function runs.
+/// Time at which a function runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Time {
     /// When parameters are set.
@@ -17,42 +17,42 @@ pub enum Time {
 /// Where a value is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// An entry of an argument.
+    /// Entry of an argument.
     Argument(Argument, usize),
-    /// A parameter, by its number among the parameters' symbols.
+    /// Parameter, by its index among the parameters' symbols.
     Parameter(usize),
-    /// A kept constant.
+    /// Kept constant: computed when parameters are set, and stored.
     Kept(usize),
-    /// A number known when code is generated.
+    /// Number known when code is generated.
     Number,
-    /// The result of a statement.
+    /// Result of a statement.
     Temporary,
 }
 
-/// The places of all nodes of a program.
+/// Places of all nodes of a program.
 pub struct Places<'a> {
     graph: &'a Graph,
-    /// Where the symbols of parameters, x, ξ, u, z, ξ̇, p begin.
+    /// First symbols of the parameters, x, ξ, u, z, ξ̇ and p, and the end of the last group.
     starts: [usize; 8],
     kept: Vec<NodeId>,
     index: FxHashMap<NodeId, usize>,
 }
 
-/// The arguments that the symbols after the parameters are entries of.
+/// Arguments to which the symbols after the parameters belong, in the order of the symbols.
 const ORDER: [Argument; 6] = [
     Argument::Coordinates,
     Argument::Velocities,
     Argument::Inputs,
-    // z, behind ξ.
+    // z, which follows ξ in the argument.
     Argument::Velocities,
     Argument::Accelerations,
     Argument::Momenta,
 ];
-/// The place of z in this order.
+/// Index of z in [`ORDER`].
 const STATES: usize = 3;
 
 impl<'a> Places<'a> {
-    /// Places with these constants kept, and the pivots that are checked when parameters are set.
+    /// Assigns places for the given kept constants; pivots that are checked when parameters are set are kept, too.
     pub fn new(program: &'a Program, kept: &[NodeId]) -> Self {
         let graph = &program.graph;
         let mut kept = kept.to_vec();
@@ -76,22 +76,22 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The kept constants.
+    /// Returns the kept constants.
     pub fn kept(&self) -> Vec<Edge> {
         self.kept.iter().map(|&node| Edge::of(node)).collect()
     }
 
-    /// How many parameters there are.
+    /// Returns the number of parameters.
     pub fn parameters(&self) -> usize {
         self.starts[1] - self.starts[0]
     }
 
-    /// The graph.
+    /// Returns the graph of the program.
     pub fn graph(&self) -> &'a Graph {
         self.graph
     }
 
-    /// Where a node's value is found.
+    /// Returns the place of a node's value for a function that runs at the given time.
     pub fn of(&self, node: NodeId, time: Time) -> Place {
         match self.graph.node(node) {
             Node::Constant(_) => Place::Number,
@@ -103,12 +103,12 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Whether a node is a number that is known when code is generated.
+    /// Returns whether a node is a number known when code is generated.
     pub fn is_number(&self, node: NodeId) -> bool {
         self.of(node, Time::Call) == Place::Number
     }
 
-    /// The number of the parameter that a node is.
+    /// Returns the index of the parameter that a node is, if it is one.
     pub fn parameter(&self, node: NodeId) -> Option<usize> {
         match self.of(node, Time::Parameters) {
             Place::Parameter(index) => Some(index),
@@ -133,7 +133,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The name of the entry that an argument or a parameter is, as the user wrote it.
+    /// Returns the user's name of an entry of an argument or of a parameter; `None` for other nodes.
     pub fn entry(&self, node: NodeId) -> Option<&'a str> {
         match self.graph.node(node) {
             Node::Symbol(symbol) if symbol > 0 => {

@@ -1,25 +1,27 @@
-//! The digits that rounding takes of the functions of a program: each computed in `f64` and in twice
-//! the length at the same states.
+//! Digits that the functions of a program lose to rounding, found by evaluating each in `f64` and in twice that
+//! precision at the same states.
 //!
-//! A function loses log₁₀(max ‖f − f*‖ / u max ‖f*‖) digits, where f is its result in `f64`, f* that in
-//! twice the length, both maxima are over the states, norms are largest entries, and u = 2^-53. So a
-//! result that is 0 at one state is measured by what it is at others.
+//! A function loses log₁₀(max ‖f − f*‖ / u max ‖f*‖) digits, where f is its result in `f64`, f* its result in twice the
+//! precision, both maxima are over the states, norms are largest entries, and u = 2^-53. So a result that happens to be
+//! 0 at one state is measured relative to its size at the others.
 
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::rounding::{Rounded, UNIT, rounded};
 
-/// Results to be measured together: their entries, and the pivots that have to be positive for them to
+/// Results that are measured together: the entries of a function, and the pivots that have to be positive for it to
 /// have a value.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
-    /// The entries.
+    /// Entries of the result.
     pub outputs: &'a [Edge],
-    /// The pivots.
+    /// Pivots that have to be positive.
     pub guards: &'a [Edge],
 }
 
-/// The digits that rounding takes of each of several functions at states, given by the values of all
-/// symbols; `None` where a function has no value at any of them, or is 0 at all.
+/// Returns the decimal digits that each function loses to rounding.
+///
+/// Each state lists the values of all symbols. The entry of a function is `None` if it has no value at any of the
+/// states, or is 0 at all of them.
 pub fn digits_lost(graph: &Graph, functions: &[Measured], states: &[Vec<f64>]) -> Vec<Option<f64>> {
     let mut sizes = vec![(0.0_f64, 0.0_f64); functions.len()];
     let roots: Vec<Edge> = functions
@@ -44,8 +46,9 @@ pub fn digits_lost(graph: &Graph, functions: &[Measured], states: &[Vec<f64>]) -
     sizes.into_iter().map(digits).collect()
 }
 
-/// The largest error and the largest entry; `None` where there is no value. What has a value but none
-/// in `f64` is infinitely far from it.
+/// Returns the largest error and the largest entry of a function at one state; `None` if it has no value there.
+///
+/// The error is infinite if an entry has a value, but not in `f64`.
 fn compared(outputs: &[Rounded], guards: &[Rounded]) -> Option<(f64, f64)> {
     let exists = |value: &Rounded| value.exact.to_f64().is_finite();
     let positive = |pivot: &Rounded| pivot.exact.to_f64() > 0.0;

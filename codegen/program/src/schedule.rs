@@ -1,21 +1,20 @@
-//! Binding times: what is computed once when parameters are set, and what on every call.
+//! Binding times: which values are computed once when parameters are set, and which on every call.
 
 use super::Program;
 use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
 
-/// The order of computation of a program.
+/// Order of computation of a program.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// Nodes computed when parameters are set, children first; only those that are no symbol and
-    /// no number.
+    /// Nodes computed when parameters are set, children first, without symbols and numbers.
     pub hoisted: Vec<NodeId>,
-    /// Those hoisted nodes that functions read at run time, in order: the constants that are kept.
+    /// Hoisted nodes that functions read at run time, in order of their ids: the constants that are kept.
     pub kept: Vec<NodeId>,
     /// For every function its nodes computed at run time, in depth-first order of the results.
     ///
-    /// Other orders gain nothing, because LLVM makes its own: for UR5, Solo12 and a chain of 32 links this one
-    /// takes 156, 526 and 1906 ns; the greatest need of registers first 155, 523, 1855; the fewest live values
-    /// first 158, 518, 1935; by depth from the arguments 150, 607, 1933, from the results 151, 558, 1917.
+    /// Other orders gain nothing, because LLVM reorders anyway. Run times for UR5, Solo12 and a chain of 32 links:
+    /// this order 156, 526, 1906 ns; greatest register need first 155, 523, 1855; fewest live values first 158, 518,
+    /// 1935; by depth from the arguments 150, 607, 1933; by depth from the results 151, 558, 1917.
     pub bodies: Vec<Vec<NodeId>>,
 }
 
@@ -70,7 +69,7 @@ impl Schedule {
     }
 }
 
-/// Whether a node is computed when parameters are set: constant at run time, no plain symbol, no number.
+/// Returns whether a node is computed when parameters are set: constant at run time, but neither symbol nor number.
 pub fn is_hoisted(graph: &Graph, id: NodeId) -> bool {
     graph.is_free(id) && !matches!(graph.node(id), Node::Constant(_) | Node::Symbol(_))
 }

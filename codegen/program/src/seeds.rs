@@ -1,11 +1,14 @@
-//! Directions that entries of a sparse pattern share.
+//! Shared directions for the entries of a sparse pattern (colouring of columns).
 
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeSet;
 
-/// Directions for a pattern: entries that most rows meet come first, each takes the lowest that is free in these rows.
+/// Assigns a direction to each entry (column) of a sparse pattern, so that no two entries of one row share one.
+///
+/// `rows` lists the entries of each row. The assignment is greedy: entries that occur in most rows come first, and each
+/// takes the lowest direction that is free in all of its rows. Entries in no row get direction 0.
 pub fn seeds(rows: &[Vec<usize>], entries: usize) -> Vec<usize> {
     let meeting: Vec<Vec<usize>> = (0..entries)
         .map(|entry| {

@@ -1,9 +1,10 @@
-//! The sparsity of a motion along the chart rate: which displacements and velocities each displacement at its end
-//! depends on, and directions that many of them share.
+//! Sparsity of a motion along the chart rate: the displacements and velocities on which each displacement at its end
+//! depends, and directions of differentiation that many of them share.
 //!
-//! x⁺ is x moved along the chart rate for a time, block by block, and η⁺ = Y(x⁺) δx⁺. Entries of (η, ξ) that no row meets
-//! together vary along one direction, so that dual numbers of few directions have all slopes in them. Source: A. R. Curtis,
-//! M. J. D. Powell, J. K. Reid, *On the estimation of sparse Jacobian matrices*, J. Inst. Maths Applics 13 (1974).
+//! x⁺ is x moved along the chart rate for a time, block by block, and η⁺ = Y(x⁺) δx⁺. Entries of (η, ξ) that occur
+//! together in no row can share one direction, so that dual numbers with few directions yield all slopes. Source:
+//! A. R. Curtis, M. J. D. Powell, J. K. Reid, *On the estimation of sparse Jacobian matrices*, J. Inst. Maths Applics
+//! 13 (1974).
 
 use std::collections::BTreeSet;
 
@@ -13,21 +14,21 @@ use hamel_algebra::graph::{Edge, Node};
 use hamel_language::model::layout::Block;
 use num_traits::Zero;
 
-/// The patterns, and a direction for each entry of η, ξ and z.
+/// Sparsity patterns, and a direction for each entry of η, ξ and z.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sparsity {
-    /// For each row of the frame A(x) the entries that are not 0.
+    /// Nonzero entries of each row of the frame A(x).
     pub frame: Vec<Vec<usize>>,
-    /// For each row of the coframe Y(x) the entries that are not 0.
+    /// Nonzero entries of each row of the coframe Y(x).
     pub coframe: Vec<Vec<usize>>,
-    /// For each row of η⁺ the entries of (η, ξ, z) that it depends on, in order.
+    /// For each row of η⁺ the entries of (η, ξ, z) on which it depends, in order.
     pub motion: Vec<Vec<usize>>,
-    /// The direction of each entry of (η, ξ, z); 0 where it moves nothing.
+    /// Direction of each entry of (η, ξ, z); 0 for entries on which nothing depends.
     pub seeds: Vec<usize>,
 }
 
 impl Sparsity {
-    /// That of a program with a frame of displacements; nothing where there is none.
+    /// Returns the sparsity of a program; `None` if it has no frame of displacements.
     pub fn of(program: &Program) -> Option<Self> {
         let [frame, coframe, rate] = [
             FunctionId::DisplacementFrame,
@@ -59,11 +60,11 @@ impl Sparsity {
         let coframe = pattern(&coframe.outputs, program.nu);
         let moved_by = |place: usize| frame.get(place).into_iter().flatten().copied();
         let [_, coordinates, velocities, inputs, states, rates, ..] = program.symbols();
-        // Entries of (η, ξ, z) that move the coordinates of a block.
+        // For each coordinate the entries of (η, ξ, z) that move the block to which it belongs.
         let mut blocks: Vec<BTreeSet<usize>> = Vec::with_capacity(program.nu);
         let (mut place, mut chart) = (0, 0);
         for block in &program.blocks {
-            // A plain coordinate moves by itself.
+            // Each plain coordinate moves by itself.
             let (parts, part) = match *block {
                 Block::Flat(n) => (n, Block::Flat(1)),
                 other => (1, other),
@@ -108,7 +109,7 @@ impl Sparsity {
         })
     }
 
-    /// How many directions there are.
+    /// Returns the number of directions.
     pub fn directions(&self) -> usize {
         1 + self.seeds.iter().max().copied().unwrap_or_default()
     }

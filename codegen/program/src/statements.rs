@@ -1,7 +1,7 @@
-//! Nodes to statements.
+//! Translation of the nodes of a graph to statements.
 //!
-//! Sums become chains of fused products; sine and cosine of one angle become one statement; a guard
-//! follows the pivot that it checks.
+//! Sums become chains of fused multiply-adds; the sine and cosine of one angle become one statement; a guard directly
+//! follows the statement that computes its pivot.
 
 use super::Cause;
 use super::places::{Place, Places, Time};
@@ -10,7 +10,7 @@ use hamel_algebra::graph::{Component, Edge, Function, Graph, Node, NodeId};
 use num_traits::Signed;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// What a statement computes.
+/// Operation of a statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// a + b
@@ -27,29 +27,29 @@ pub enum Operation {
     Apply(Function, Edge),
     /// atan2(y, x)
     Atan2(Edge, Edge),
-    /// a where c > 0, else b
+    /// a if c > 0, else b
     Select(Edge, Edge, Edge),
-    /// A function in Rust, or its slopes.
+    /// Call of a function in Rust, or of its derivatives.
     Call(Call),
-    /// Leaves the function unless a pivot is positive.
+    /// Leaves the function if a pivot is not positive.
     Check(Cause, Edge),
 }
 
-/// A call of a function in Rust.
+/// Call of a function in Rust.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Call {
-    /// The function, by its place.
+    /// Index of the function among the external functions of the graph.
     pub function: usize,
-    /// Whether its slopes are asked for, and not its components.
+    /// Whether the partial derivatives are returned, and not the components.
     pub slopes: bool,
-    /// What it is called with.
+    /// Arguments of the call.
     pub arguments: Vec<Edge>,
-    /// The nodes that its components give values to, slopes by rows.
+    /// Nodes that receive the returned numbers, derivatives by rows; `None` for those that nobody reads.
     pub results: Vec<Option<NodeId>>,
 }
 
 impl Operation {
-    /// What is read, in order.
+    /// Returns the operands, in order.
     pub fn operands(&self) -> impl Iterator<Item = Edge> {
         let mut call = &[][..];
         let list = match *self {
@@ -69,7 +69,7 @@ impl Operation {
         list.into_iter().flatten().chain(call.iter().copied())
     }
 
-    /// The same with other operands.
+    /// Replaces the operands.
     fn map(self, to: impl Fn(Edge) -> Edge) -> Self {
         match self {
             Operation::Add(a, b) => Operation::Add(to(a), to(b)),
@@ -92,19 +92,19 @@ impl Operation {
 /// One statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Statement {
-    /// What it computes.
+    /// Operation.
     pub operation: Operation,
-    /// The nodes that it gives values to; the second for a cosine.
+    /// Nodes that receive the results: one, or a sine and a cosine; none for calls and checks.
     pub results: [Option<NodeId>; 2],
 }
 
 impl Statement {
-    /// Whether it binds names.
+    /// Returns whether the statement binds names.
     pub fn is_let(&self) -> bool {
         !matches!(self.operation, Operation::Check(..))
     }
 
-    /// The nodes that it gives values to.
+    /// Returns the nodes that receive values.
     pub fn defined(&self) -> impl Iterator<Item = NodeId> {
         let called = match &self.operation {
             Operation::Call(call) => call.results.as_slice(),
@@ -114,16 +114,16 @@ impl Statement {
     }
 }
 
-/// The statements of a function, operands before their readers, and its results.
+/// Body of a function: statements, operands before their readers, and results.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// The statements.
+    /// Statements.
     pub statements: Vec<Statement>,
-    /// The results.
+    /// Results.
     pub outputs: Vec<Edge>,
 }
 
-/// The statements of nodes, given children first. Nodes in `named` keep a statement of their own.
+/// Translates nodes, given children first, to statements. Nodes in `named` keep a statement of their own.
 pub fn statements(
     places: &Places,
     time: Time,
@@ -135,8 +135,8 @@ pub fn statements(
     let graph = places.graph();
     let roots = outputs.iter().chain(guards.iter().map(|(guard, _)| guard));
     let mut sums = sums(places, time, nodes, roots, named);
-    // Functions that hold off X too are copied into the graph unmerged, so that a sine or cosine may have
-    // several nodes. All are read from the first.
+    // Functions that have values off X, too, are copied into the graph without merging equal nodes, so that several
+    // nodes may stand for one sine or cosine. All are read from the first.
     let mut angles: FxHashMap<Edge, [Option<NodeId>; 2]> = FxHashMap::default();
     let mut first: FxHashMap<NodeId, NodeId> = FxHashMap::default();
     for &id in nodes {
@@ -209,14 +209,14 @@ pub fn statements(
     }
 }
 
-/// What components have in common that one call gives.
+/// Key that all components returned by one call have in common: function, order of derivative, arguments.
 type Key = (u8, usize, Edge);
 
 fn key(component: Component, list: Edge) -> Key {
     (component.function, component.order(), list)
 }
 
-/// The calls of functions in Rust, each for all of its components that are wanted.
+/// Collects the calls of functions in Rust; one call gives all of its components that are read.
 fn calls(graph: &Graph, nodes: &[NodeId]) -> FxHashMap<Key, Call> {
     let mut calls: FxHashMap<Key, Call> = FxHashMap::default();
     for &id in nodes {

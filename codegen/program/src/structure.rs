@@ -1,70 +1,69 @@
-//! What the equations of a system are made of, as far as methods of integration ask.
+//! Structure of the equations of motion: the properties that decide which integration methods apply.
 
 use std::fmt;
 
-/// The structure of a system, decided by algebra for all values of its parameters.
+/// Structure of a system, decided by algebra for all values of its parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Structure {
-    /// Whether it is a product of torque-free rotors and uniform motions, kicked by forces that do
-    /// not depend on velocities.
+    /// Whether the system is a product of torque-free rotors and uniform motions, kicked by forces that do
+    /// not depend on velocities; otherwise the reasons why it is not.
     pub split: Result<Splitting, Vec<Reason>>,
-    /// Whether it has momenta p = M ξ of its own, KR18 (30a).
+    /// Whether the velocities have conjugate momenta p = M ξ, KR18 (30a); otherwise the reason why not.
     pub canonical: Result<(), Reason>,
-    /// The coordinates on which the mass matrix M(x) in the velocities ξ depends; none where it is
-    /// constant.
+    /// Coordinates on which the mass matrix M(x) in the velocities ξ depends; empty if it is constant.
     pub mass: Vec<String>,
-    /// What makes forces depend on velocities; nothing where they do not.
+    /// Reasons why forces depend on velocities; empty if they do not.
     pub damped: Vec<Reason>,
-    /// Whether all forces have a potential: nothing is applied, nothing dissipated.
+    /// Whether all forces have a potential: no loads are applied, and nothing dissipates.
     pub conservative: bool,
-    /// Whether constraints are kept by multipliers, and drift is projected away after every step.
+    /// Whether constraints are kept by multipliers, so that drift is projected away after every step.
     pub multipliers: bool,
 }
 
-/// A system that splits.
+/// Properties of a system that splits into free motion and kicks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Splitting {
-    /// One rotor for every quaternion and rotation, in their order.
+    /// Rotors, one for every quaternion and rotation matrix, in their order.
     pub rotors: Vec<RotorForm>,
-    /// Whether no force acts, whatever the inputs.
+    /// Whether no force acts, for any input.
     pub free: bool,
 }
 
-/// What is known of a rotor whatever the parameters are.
+/// Properties of a rotor that hold for all parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RotorForm {
-    /// The coordinate that it is the attitude of.
+    /// Coordinate that describes the attitude of the rotor.
     pub name: String,
-    /// Its inertia J in body axes, about the centre of mass or the fixed point.
+    /// Form of the inertia J in body axes, about the centre of mass or the fixed point.
     pub inertia: Inertia,
-    /// Whether the torque on it, about that point, changes with the configuration.
+    /// Whether the torque on the rotor, about that point, changes with the configuration.
     pub steered: bool,
 }
 
-/// The form of an inertia.
+/// Form of an inertia matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inertia {
-    /// Diagonal, the equality of moments known.
+    /// Diagonal; it is known which moments are equal.
     Principal(Symmetry),
-    /// Diagonal, three numbers that parameters decide.
+    /// Diagonal; parameters decide which moments are equal.
     Moments,
     /// A full matrix.
     General,
 }
 
-/// How principal moments are equal.
+/// Equalities among principal moments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
-    /// All three.
+    /// All three are equal.
     Spherical,
-    /// The two beside this axis (0, 1, 2).
+    /// The two moments about the axes other than this one (0, 1, 2) are equal.
     Axial(usize),
-    /// No two.
+    /// No two are equal.
     None,
 }
 
 impl Inertia {
-    /// Numbers that `rotor_inertia` gives for it: J₁, J₂, J₃, or J by rows.
+    /// Returns how many numbers `rotor_inertia` gives for this form: J₁, J₂, J₃, or J by rows.
     pub fn entries(self) -> usize {
         match self {
             Inertia::Principal(_) | Inertia::Moments => 3,
@@ -87,42 +86,42 @@ impl fmt::Display for Inertia {
     }
 }
 
-/// Why equations of motion do not split; each is a sentence that names what stands in the way.
+/// Reason why the equations of motion do not split; displayed as a clause that names the obstacle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// Constraints on velocities.
+    /// The velocities are constrained.
     Constrained {
-        /// What they are: "`inactive` velocities", ….
+        /// Kind of the constraints: "`inactive` velocities", ….
         by: String,
     },
-    /// The equations depend on the time.
+    /// The equations depend on time.
     Time,
-    /// There are states of first order, which are no momenta.
+    /// There are states of first order, which are not momenta.
     States,
-    /// Coordinates that the description ties to one another, or fewer velocities than directions.
+    /// The description ties coordinates to one another, or there are fewer velocities than directions of motion.
     Tied {
-        /// Dimension of the coordinates' kinds.
+        /// Sum of the dimensions of the coordinates' kinds.
         directions: usize,
-        /// n.
+        /// Number n of velocities.
         velocities: usize,
     },
-    /// ξ does not measure ẋ alike everywhere: the determinant of the map changes with x.
+    /// The determinant of the map between ẋ and ξ changes with x.
     Rates,
-    /// M in the rates of the coordinates changes with these.
+    /// The mass matrix in the rates of the coordinates changes with these coordinates.
     Mass {
-        /// Coordinates.
+        /// Coordinates on which it depends; empty if the mass matrix is singular.
         on: Vec<String>,
     },
-    /// A rotor and another coordinate that exchange momentum without any force.
+    /// A rotor exchanges momentum with another coordinate without any force.
     Coupled {
-        /// The rotor.
+        /// Rotor.
         rotor: String,
-        /// The other one.
+        /// Other coordinate.
         other: String,
     },
-    /// Something makes forces depend on velocities.
+    /// Forces depend on velocities.
     Velocities {
-        /// What does: "a damper", ….
+        /// Cause of the dependence: "a damper", ….
         what: String,
     },
 }
@@ -159,7 +158,7 @@ impl fmt::Display for Reason {
 }
 
 impl Structure {
-    /// What people read of it, a line for each fact.
+    /// Describes the structure for people, one line per fact.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         match &self.split {
@@ -188,7 +187,7 @@ impl Structure {
         lines
     }
 
-    /// Which methods fit, for the documentation of a generated type.
+    /// Describes which integration methods fit, for the documentation of a generated type.
     pub fn documentation(&self) -> Vec<String> {
         let mut lines = vec!["Works with all general-purpose integrators.".to_string()];
         match &self.split {
@@ -211,7 +210,7 @@ impl Structure {
     }
 }
 
-/// "`a`, `b` and `c`".
+/// Joins names as "`a`, `b` and `c`".
 pub fn list(names: &[String]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.as_slice() {

@@ -1,33 +1,33 @@
-//! Sums as chains: a sum that only another sum reads becomes a part of it, and each product that is
-//! read once one fused operation.
+//! Sums as chains of fused multiply-adds.
 //!
-//! (a b + c d) + (e f + g) is three operations, not five. A chain starts with a term that is no product
-//! and goes on where its terms are computed, so that they need not be kept.
+//! A sum that is read only by another sum becomes part of it, and each product that is read once is fused:
+//! (a b + c d) + (e f + g) takes three operations, not five. A chain starts with a term that is no product, and
+//! continues at the places where its other terms are computed, so that they need not be kept.
 
 use super::places::{Place, Places, Time};
 use super::statements::{Operation, Statement};
 use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The sums of a body.
+/// Sums of a body.
 #[derive(Clone, Debug, Default)]
 pub struct Sums {
-    /// Nodes without a statement of their own: sums, and the products and sums within them.
+    /// Nodes without a statement of their own: sums, and the products and sums fused into them.
     pub absorbed: FxHashSet<NodeId>,
-    /// The statements that follow the node at an index.
+    /// Statements that follow the node at an index.
     pub after: FxHashMap<usize, Vec<Statement>>,
 }
 
-/// A term of a sum.
+/// Term of a sum.
 #[derive(Clone, Copy)]
 struct Term {
     edge: Edge,
     product: Option<[Edge; 2]>,
-    /// The index of its node, where it is computed here.
+    /// Index of the term's node, if it is computed in this body.
     at: Option<usize>,
 }
 
-/// Finds the sums among nodes, given children first; `named` and `roots` stay values.
+/// Finds the sums among nodes, given children first. Nodes in `named` and `roots` keep their values.
 pub fn sums<'a>(
     places: &Places,
     time: Time,
@@ -49,12 +49,12 @@ pub fn sums<'a>(
     let index: FxHashMap<NodeId, usize> =
         nodes.iter().enumerate().map(|(i, &id)| (id, i)).collect();
     let mut sums = Sums::default();
-    // Readers come last, so that a sum is seen before the sums within it.
+    // Readers come last, so that, going backwards, a sum is visited before the sums within it.
     for (root_at, &root) in nodes.iter().enumerate().rev() {
         if !matches!(graph.node(root), Node::Add(..)) || !sums.absorbed.insert(root) {
             continue;
         }
-        // A difference of sums that share a term would add it and take it away again.
+        // Flattening a difference of sums that share a term would add the term and subtract it again.
         let whole = whole.contains(&root);
         let (mut terms, mut names, mut absorbed) = (Vec::new(), vec![root], Vec::new());
         let mut stack = vec![Edge::of(root)];
@@ -82,7 +82,7 @@ pub fn sums<'a>(
             }
         }
         sums.absorbed.extend(absorbed);
-        // What is read stands before its readers.
+        // Operands come before their readers.
         for (at, statement) in chain(terms, names, root_at).into_iter().rev() {
             sums.after.entry(at).or_default().insert(0, statement);
         }
@@ -90,10 +90,10 @@ pub fn sums<'a>(
     sums
 }
 
-/// The sums in which, together with the sums that only they read, no term stands with both signs.
+/// Finds the sums in which no term occurs with both signs once the sums that only they read are flattened into them.
 fn one_sign_each(graph: &Graph, nodes: &[NodeId], single: &FxHashSet<NodeId>) -> FxHashSet<NodeId> {
     let mut found = FxHashSet::default();
-    // The terms of sums that their reader has still to take over, with their signs, all of them opposite where `opposite`.
+    // Terms of sums that their reader has not yet taken over, with their signs; all signs are opposite if `opposite`.
     let mut signs: FxHashMap<NodeId, (FxHashMap<NodeId, bool>, bool)> = FxHashMap::default();
     for &id in nodes {
         let Node::Add(a, b) = graph.node(id) else {
@@ -110,7 +110,7 @@ fn one_sign_each(graph: &Graph, nodes: &[NodeId], single: &FxHashSet<NodeId>) ->
         let (Some(one), Some(other)) = (part(a), part(b)) else {
             continue;
         };
-        // The shorter list goes over to the longer one, so that no term moves often.
+        // The shorter list is merged into the longer one, so that terms are moved rarely.
         let (mut longer, shorter) = match one.0.len() < other.0.len() {
             true => (other, one),
             false => (one, other),
@@ -128,7 +128,7 @@ fn one_sign_each(graph: &Graph, nodes: &[NodeId], single: &FxHashSet<NodeId>) ->
     found
 }
 
-/// The statements of a sum, each with the index of the node that it follows; the last gives the first of
+/// Returns the statements of a sum, each with the index of the node that it follows; the last one defines the first of
 /// the names.
 fn chain(mut terms: Vec<Term>, mut names: Vec<NodeId>, root: usize) -> Vec<(usize, Statement)> {
     terms.sort_by_key(|term| (term.product.is_some(), term.at));

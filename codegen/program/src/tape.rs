@@ -1,7 +1,7 @@
-//! Functions as tapes: the statements that are emitted, in single assignment, without the graph that they come from.
+//! Functions as tapes: lists of steps in single assignment form, without the graph from which they come.
 //!
-//! A tape has numbers in place of nodes and can go to other threads. What reads it does nothing but arithmetic: it is
-//! what machine code is made of.
+//! A tape refers to values by index in place of nodes and can be sent to other threads. Evaluating it takes nothing but
+//! arithmetic: machine code is made from it.
 
 use super::places::{Place, Places, Time};
 use super::schedule::Schedule;
@@ -12,53 +12,53 @@ use hamel_algebra::graph::{self, Edge, Graph, Node, NodeId};
 use num_traits::ToPrimitive;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Where a value is found.
+/// Where an operand is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// An entry of an argument.
+    /// Entry of an argument.
     Argument(Argument, usize),
-    /// A parameter; behind the parameters stands what depends on them alone.
+    /// Parameter, or, at indices behind the parameters, a value that depends on parameters alone.
     Constant(usize),
-    /// A number.
+    /// Number known when code is generated.
     Number(f64),
-    /// The result of a step, by its number among all results.
+    /// Result of a step, by its index among all results.
     Value(usize),
 }
 
-/// A value with its sign.
+/// Operand of a step: a value and a sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Operand {
-    /// Where it is found.
+    /// Where the value is found.
     pub source: Source,
-    /// Whether it is read with the other sign.
+    /// Whether the value is negated when it is read.
     pub negative: bool,
 }
 
-/// One step. All but `SinCos` and `Check` have one result, which is the next value of the tape.
+/// One step. Every step but `SinCos` and `Check` has one result, which becomes the next value of the tape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// a + b
     Add(Operand, Operand),
     /// a b
     Multiply(Operand, Operand),
-    /// a b + c, rounded once where the machine can
+    /// a b + c, rounded only once if the machine has fused multiply-add.
     Fused(Operand, Operand, Operand),
     /// a / b
     Divide(Operand, Operand),
-    /// sin a and cos a, two results.
+    /// sin a and cos a, as two results.
     SinCos(Operand),
     /// f(a)
     Apply(graph::Function, Operand),
     /// atan2(y, x)
     Atan2(Operand, Operand),
-    /// a where c > 0, b where it is not, NaN where c is NaN
+    /// a if c > 0, NaN if c is NaN, else b
     Select(Operand, Operand, Operand),
-    /// No result; ends the tape unless a pivot is positive.
+    /// Ends the tape if a pivot is not positive; has no result.
     Check(Cause, Operand),
 }
 
 impl Step {
-    /// What it reads, in order.
+    /// Returns the operands, in order.
     pub fn operands(&self) -> impl Iterator<Item = Operand> {
         let list = match *self {
             Step::Add(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) | Step::Atan2(a, b) => {
@@ -70,7 +70,7 @@ impl Step {
         list.into_iter().flatten()
     }
 
-    /// How many results it has.
+    /// Returns the number of results.
     pub fn results(&self) -> usize {
         match self {
             Step::SinCos(_) => 2,
@@ -80,19 +80,19 @@ impl Step {
     }
 }
 
-/// One function.
+/// Tape of one function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tape {
-    /// Its name.
+    /// Name of the function.
     pub name: String,
-    /// Its steps, operands before their readers.
+    /// Steps, operands before their readers.
     pub steps: Vec<Step>,
-    /// Its results, matrices by rows.
+    /// Results of the function, matrices by rows.
     pub outputs: Vec<Operand>,
 }
 
 impl Tape {
-    /// Whether steps and results read only values that are there before them.
+    /// Returns whether steps and results read only values that have been computed before.
     pub fn is_in_order(&self) -> bool {
         let mut known = 0;
         let there = |operand: Operand, known: usize| match operand.source {
@@ -108,28 +108,30 @@ impl Tape {
         self.outputs.iter().all(|&output| there(output, known))
     }
 
-    /// How many values its steps have.
+    /// Returns the number of values that the steps compute.
     pub fn values(&self) -> usize {
         self.steps.iter().map(Step::results).sum()
     }
 }
 
-/// Functions of a program, and what they have in common.
+/// Tapes of functions of a program, and the data that they share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tapes {
-    /// How many parameters there are.
+    /// Number of parameters.
     pub parameters: usize,
-    /// How many entries the arguments x, ξ with z, u, ξ̇ and p have.
+    /// Lengths of the arguments x, (ξ, z), u, ξ̇ and p.
     pub lengths: [usize; 5],
-    /// What depends on parameters alone: computed whenever they are set, and kept behind them.
+    /// Computes the values that depend on parameters alone; runs whenever parameters are set, and its results are
+    /// stored behind them.
     pub constants: Tape,
-    /// Pivots of what is constant at run time, which are constants: where one is not positive, M is not either.
+    /// Pivots of a mass matrix that is constant at run time, all of them constants; if one is not positive, neither is
+    /// M.
     pub pivots: Vec<(Operand, Cause)>,
-    /// The functions.
+    /// Tapes of the functions.
     pub functions: Vec<Tape>,
 }
 
-/// The arguments in the order of [`Tapes::lengths`].
+/// Arguments in the order of [`Tapes::lengths`].
 pub const ARGUMENTS: [Argument; 5] = [
     Argument::Coordinates,
     Argument::Velocities,
@@ -138,20 +140,21 @@ pub const ARGUMENTS: [Argument; 5] = [
     Argument::Momenta,
 ];
 
-/// A function in Rust that a tape would have to call.
+/// Function in Rust that a tape would have to call, which it cannot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Foreign {
-    /// Its name.
+    /// Name of the function in Rust.
     pub name: String,
 }
 
 impl Tapes {
-    /// The tapes of functions of a program.
+    /// Translates functions of a program to tapes.
     ///
     /// # Errors
-    /// Where one of them calls a function in Rust, of which nothing is known here.
+    /// The name of a function in Rust, if one of the functions calls it: its code is not known here.
     pub fn new(program: &Program, functions: &[&Function]) -> Result<Self, Foreign> {
-        // All that the program keeps, not only what these functions read: so sums are rounded as in generated code.
+        // Keeps all constants of the program, not only those that these functions read: so sums are rounded as in
+        // generated code.
         let schedule = Schedule::of(program);
         let places = Places::new(program, &schedule.kept);
         let parameters = places.parameters();
@@ -180,7 +183,7 @@ impl Tapes {
             &[],
             &[],
         )?;
-        // As it is emitted: products that both read are not fused.
+        // As in generated code, where [A B] is computed together with ξ̇: products that both read are not fused.
         let both = together(program);
         let functions = functions.iter().map(|function| {
             let guards: &[Edge] = match function.fallible {
@@ -229,25 +232,25 @@ impl Tapes {
         })
     }
 
-    /// All tapes: the functions, and behind them the constants.
+    /// Returns all tapes: those of the functions, then that of the constants.
     pub fn all(&self) -> impl Iterator<Item = &Tape> {
         self.functions.iter().chain([&self.constants])
     }
 
-    /// How many numbers depend on parameters alone, parameters among them.
+    /// Returns the number of values that depend on parameters alone, including the parameters.
     pub fn kept(&self) -> usize {
         self.parameters + self.constants.outputs.len()
     }
 }
 
-/// The nodes among these that the user named: each keeps a statement of its own.
+/// Returns those of the given nodes that the user has named; each of them keeps a statement of its own.
 pub fn named(program: &Program, nodes: &[NodeId]) -> FxHashSet<NodeId> {
     let here: FxHashSet<NodeId> = nodes.iter().copied().collect();
     let names = program.names.iter().map(|(_, edge)| edge.node());
     names.filter(|node| here.contains(node)).collect()
 }
 
-/// From statements to steps.
+/// Translation of statements to steps.
 struct Lowering<'a> {
     places: &'a Places<'a>,
     time: Time,
@@ -300,7 +303,8 @@ impl Lowering<'_> {
     fn operand(&self, edge: Edge) -> Operand {
         let node = edge.node();
         let source = match self.places.of(node, self.time) {
-            // The value does not depend on it, as was proved, but expressions that are equal are one node.
+            // The node is written in an argument that the function does not take: expressions that are equal on X share
+            // a node. The value was proved not to depend on this argument, so that any number does.
             Place::Argument(argument, _) if !self.arguments.contains(&argument) => {
                 Source::Number(0.0)
             }
@@ -320,7 +324,7 @@ impl Lowering<'_> {
     }
 }
 
-/// The number that a node is: the nearest to an exact rational, or π.
+/// Returns the value of a constant node: the nearest `f64` to an exact rational, or π.
 pub fn number(graph: &Graph, node: NodeId) -> f64 {
     match graph.node(node) {
         Node::Constant(index) => graph.constant(index).to_f64().unwrap_or(f64::NAN),

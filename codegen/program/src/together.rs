@@ -1,28 +1,29 @@
-//! ξ̇ and [A B] computed together: [A B] contains nearly all that ξ̇ is made from.
+//! Joint computation of ξ̇ and [A B]: nearly all that ξ̇ needs is computed on the way to [A B].
 
 use super::count::count_nodes;
 use super::{FunctionId, Program};
 use hamel_algebra::graph::{Edge, NodeId};
 
-/// [A B] is not computed apart where ξ̇ beside it takes at most one in so many of its operations.
+/// [A B] is never computed alone if ξ̇ adds at most 1/`LITTLE` to its weighted operations.
 const LITTLE: usize = 100;
 
-/// What computes both.
+/// Joint computation of ξ̇ and [A B].
 #[derive(Clone, Debug)]
 pub struct Together {
-    /// The place of `accel` among the functions.
+    /// Index of `accel` among the functions.
     pub accel: usize,
-    /// The place of `linearize` among the functions.
+    /// Index of `linearize` among the functions.
     pub linearize: usize,
-    /// ξ̇, and behind it [A B] by rows.
+    /// ξ̇, followed by [A B] by rows.
     pub outputs: Vec<Edge>,
-    /// Pivots of both.
+    /// Pivots of both functions.
     pub guards: Vec<Edge>,
-    /// What varies at run time, children first.
+    /// Nodes that vary at run time, children first.
     pub nodes: Vec<NodeId>,
 }
 
-/// ξ̇ with [A B]; nothing where one of them was not generated, or where too little is common to both.
+/// Plans the joint computation of ξ̇ and [A B]; `None` if one of them is not generated, or if too little is common to
+/// both.
 pub fn together(program: &Program) -> Option<Together> {
     let place = |id: FunctionId| program.functions.iter().position(|f| f.id == Some(id));
     let (accel, linearize) = (place(FunctionId::Accel)?, place(FunctionId::Linearize)?);

@@ -10,10 +10,10 @@ use crate::syntax::ast::{
 use crate::syntax::parse_text;
 use hamel_language::expression::ident;
 
-/// Builds a [`Scene`] statement by statement, in the order in which a text would have them.
+/// Builds a [`Scene`] statement by statement, in the same order as in a text.
 ///
 /// Names, and whether numbers are finite, are checked when the scene is [built](Self::build), everything else when it
-/// is [generated](Scene::generate), by the checks that texts go through; errors show the statement that they are about.
+/// is [generated](Scene::generate), by the same checks as for texts. Errors show the statement that they are about.
 #[derive(Clone, Debug)]
 pub struct SceneBuilder {
     system: System,
@@ -41,14 +41,14 @@ impl SceneBuilder {
         self.system.items.push(item);
     }
 
-    /// Statements that stand inside of another one.
+    /// Collects the statements that are nested in another one.
     pub(super) fn inner(&self, statements: impl FnOnce(&mut SceneBuilder)) -> Vec<Item> {
         let mut inner = SceneBuilder::new(&self.system.name.name);
         statements(&mut inner);
         inner.system.items
     }
 
-    /// Adds a line to the documentation of the generated type, or several.
+    /// Adds a line, or several, to the documentation of the generated type.
     pub fn doc(&mut self, line: &str) {
         let lines = line.replace("\r\n", "\n").replace('\r', "\n");
         let none = lines.is_empty().then(String::new);
@@ -56,7 +56,7 @@ impl SceneBuilder {
         self.system.docs.extend(lines.chain(none));
     }
 
-    /// Whether the generated type is `pub`; it is by default.
+    /// Sets whether the generated type is `pub`; it is by default.
     pub fn public(&mut self, public: bool) {
         self.system.public = public;
     }
@@ -64,21 +64,21 @@ impl SceneBuilder {
     /// Adds statements as text: `arm.text("output reach = norm(tool.p);")`.
     ///
     /// # Errors
-    /// Everything in the text that is no statement.
+    /// All parts of the text that are not valid statements.
     pub fn text(&mut self, statements: &str) -> Result<(), SceneError> {
-        // On one line, so that the lines of errors are those of the statements.
+        // The text begins on the first line, so that the line numbers of errors are those of the statements.
         let text = format!("system S {{ {statements}\n}}");
         let parsed = parse_text(&text).map_err(|errors| SceneError::new(errors, &text))?;
         self.system.items.extend(parsed.items);
         Ok(())
     }
 
-    /// A scalar parameter with its default value: constant along the motion, and set at run time.
+    /// Adds a scalar parameter with its default value. It is constant along the motion, and is set at run time.
     pub fn param(&mut self, name: &str, value: impl Into<Expr>) -> Expr {
         self.param_of(name, ShapeKind::Scalar, value)
     }
 
-    /// A vector or matrix of parameters with its default value.
+    /// Adds a vector or matrix of parameters with its default value.
     pub fn param_of(&mut self, name: &str, shape: ShapeKind, value: impl Into<Expr>) -> Expr {
         self.add(ItemKind::Param(vec![declared(
             name,
@@ -88,7 +88,7 @@ impl SceneBuilder {
         Expr::name(name)
     }
 
-    /// An exact constant of the build.
+    /// Adds an exact constant, whose value is fixed in the generated code.
     pub fn constant(&mut self, name: &str, value: impl Into<Expr>) -> Expr {
         let value = Some(value.into());
         self.add(ItemKind::Const(vec![declared(
@@ -99,7 +99,7 @@ impl SceneBuilder {
         Expr::name(name)
     }
 
-    /// A name for an expression.
+    /// Adds a name for an expression.
     pub fn define(&mut self, name: &str, value: impl Into<Expr>) -> Expr {
         let value = Some(value.into());
         self.add(ItemKind::Let(vec![declared(
@@ -110,8 +110,8 @@ impl SceneBuilder {
         Expr::name(name)
     }
 
-    /// A function of expressions, each of its parameters with its shape; a scalar's stands for any shape. It is
-    /// called by [`call`](super::call).
+    /// Adds a function that is defined by an expression. Each parameter has a shape; a scalar one accepts any shape.
+    /// Call it with [`call`](super::call).
     pub fn function(
         &mut self,
         name: &str,
@@ -129,8 +129,8 @@ impl SceneBuilder {
         }));
     }
 
-    /// A function in Rust of some numbers, which gives `components` numbers; the stand-in has its place where the
-    /// function is not there. It is called by [`call`](super::call).
+    /// Adds an external function in Rust of some numbers, which returns `components` numbers. The stand-in replaces it
+    /// wherever the function is not available. Call it with [`call`](super::call).
     pub fn external(
         &mut self,
         name: &str,
@@ -147,7 +147,7 @@ impl SceneBuilder {
         }));
     }
 
-    /// A function by its values at increasing arguments, called by [`call`](super::call).
+    /// Adds a function that interpolates values at increasing arguments. Call it with [`call`](super::call).
     pub fn table(&mut self, name: &str, points: &[(f64, f64)], between: Between, beyond: Beyond) {
         let points = points.iter().map(|&(a, b)| (a.into(), b.into()));
         self.add(ItemKind::Table(Table {
@@ -158,8 +158,8 @@ impl SceneBuilder {
         }));
     }
 
-    /// The same with its values in a file: a scene has no folder, so it can be printed, and is derived where its text
-    /// stands.
+    /// Adds such a function with its values in a file. A scene has no folder for the file: it can be printed, and its
+    /// text can be derived where the file is.
     pub fn table_from(&mut self, name: &str, path: &str, between: Between, beyond: Beyond) {
         self.add(ItemKind::Table(Table {
             name: ident(name),
@@ -169,44 +169,44 @@ impl SceneBuilder {
         }));
     }
 
-    /// A configuration coordinate.
+    /// Adds a configuration coordinate.
     pub fn coordinate(&mut self, name: &str, kind: CoordKind) -> Expr {
         self.add(ItemKind::Coord(vec![(ident(name), kind)]));
         Expr::name(name)
     }
 
-    /// A velocity coordinate: an entry of ξ, or several.
+    /// Adds a velocity coordinate: one entry of ξ, or several.
     pub fn velocity(&mut self, name: &str, shape: ShapeKind) -> Expr {
         self.add(ItemKind::Velocity(vec![declared(name, shape, None)]));
         Expr::name(name)
     }
 
-    /// A velocity coordinate by rates of coordinates: ξ = Y(x) ẋ, with `rate(…)` in the value.
+    /// Adds a velocity coordinate that is defined by rates of coordinates: ξ = Y(x) ẋ, with `rate(…)` in the value.
     pub fn velocity_by(&mut self, name: &str, shape: ShapeKind, value: impl Into<Expr>) -> Expr {
         let value = Some(value.into());
         self.add(ItemKind::Velocity(vec![declared(name, shape, value)]));
         Expr::name(name)
     }
 
-    /// A scalar input u, given at run time.
+    /// Adds a scalar input u, given at run time.
     pub fn input(&mut self, name: &str) -> Expr {
         self.input_of(name, ShapeKind::Scalar)
     }
 
-    /// A vector or matrix of inputs.
+    /// Adds a vector or matrix of inputs.
     pub fn input_of(&mut self, name: &str, shape: ShapeKind) -> Expr {
         self.add(ItemKind::Input(vec![declared(name, shape, None)]));
         Expr::name(name)
     }
 
-    /// A state of first order z with its value at the start; [`rate`](Self::rate) says how it changes.
+    /// Adds a state of first order z with its initial value; [`rate`](Self::rate) defines ż.
     pub fn state(&mut self, name: &str, shape: ShapeKind, start: impl Into<Expr>) -> Expr {
         let value = Some(start.into());
         self.add(ItemKind::State(vec![declared(name, shape, value)]));
         Expr::name(name)
     }
 
-    /// ẋ of a coordinate, or of a part such as `X.p`: a row of ẋ = A ξ; or ż of a state.
+    /// Defines ẋ of a coordinate, or of a part such as `X.p`, as a row of ẋ = A ξ; or ż of a state.
     pub fn rate(&mut self, coordinate: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Rate {
             target: target(coordinate),
@@ -214,7 +214,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A constraint φ(x) = 0 among coordinates: left = right.
+    /// Adds a geometric constraint φ(x) = 0 on the coordinates: left = right.
     pub fn constraint(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
         self.add(ItemKind::Constraint {
             left: left.into(),
@@ -222,13 +222,13 @@ impl SceneBuilder {
         });
     }
 
-    /// The time: a coordinate t with ṫ = 1.
+    /// Adds the time: a coordinate t with ṫ = 1.
     pub fn time(&mut self, name: &str) -> Expr {
         self.add(ItemKind::Time(ident(name)));
         Expr::name(name)
     }
 
-    /// The motion of a coordinate or a velocity is given, as a function of time.
+    /// Prescribes the motion of a coordinate or a velocity as a function of time.
     pub fn prescribe(&mut self, of: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Prescribe {
             target: target(of),
@@ -237,7 +237,7 @@ impl SceneBuilder {
         });
     }
 
-    /// The rate of a velocity is given, as a function of anything but rates of velocities.
+    /// Prescribes the rate of a velocity, as a function of anything but rates of velocities.
     pub fn prescribe_rate(&mut self, velocity: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Prescribe {
             target: target(velocity),
@@ -246,17 +246,17 @@ impl SceneBuilder {
         });
     }
 
-    /// Velocities that stay zero.
+    /// Declares velocities that stay zero.
     pub fn inactive(&mut self, velocities: impl IntoIterator<Item = Expr>) {
         self.add(ItemKind::Inactive(velocities.into_iter().collect()));
     }
 
-    /// Velocities that no constraint is solved for: they stay in ξ.
+    /// Declares velocities for which no constraint is solved: they stay in ξ.
     pub fn independent(&mut self, velocities: impl IntoIterator<Item = Expr>) {
         self.add(ItemKind::Independent(velocities.into_iter().collect()));
     }
 
-    /// A constraint B(x) ξ = 0: both sides linear in the velocities.
+    /// Adds a constraint B(x) ξ = 0, where both sides are linear in the velocities.
     pub fn nonholonomic(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
         self.add(ItemKind::Nonholonomic {
             left: left.into(),
@@ -265,7 +265,7 @@ impl SceneBuilder {
         });
     }
 
-    /// The same; what starts off it decays at a rate (1/s).
+    /// Adds a stabilized constraint B(x) ξ = 0: an initial violation decays at a rate (1/s).
     pub fn nonholonomic_stabilized(
         &mut self,
         left: impl Into<Expr>,
@@ -279,7 +279,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A closed loop, kept by multipliers: left = right.
+    /// Adds a closed loop, left = right, enforced by multipliers.
     pub fn closed_loop(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
         self.add(ItemKind::Loop {
             left: left.into(),
@@ -288,7 +288,7 @@ impl SceneBuilder {
         });
     }
 
-    /// The same; what starts off it decays at a rate (1/s).
+    /// Adds a stabilized closed loop: an initial violation decays at a rate (1/s).
     pub fn closed_loop_stabilized(
         &mut self,
         left: impl Into<Expr>,
@@ -302,7 +302,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A frame with its pose in another one.
+    /// Adds a frame with its pose in another one.
     pub fn frame(&mut self, name: &str, on: impl Into<Frame>, pose: impl Into<Expr>) -> Frame {
         let on = on.into();
         let on = (on != super::WORLD.into()).then(|| on.ident());
@@ -314,19 +314,19 @@ impl SceneBuilder {
         name.into()
     }
 
-    /// A joint; returns the frame that it carries.
+    /// Adds a joint; returns the frame that it carries.
     pub fn joint(&mut self, joint: Joint) -> Frame {
         let moves = joint.0.moves.name.as_str().into();
         self.add(ItemKind::Joint(Box::new(joint.0)));
         moves
     }
 
-    /// A rigid body.
+    /// Adds a rigid body.
     pub fn body(&mut self, body: Body) {
         self.add(ItemKind::Body(body.0));
     }
 
-    /// A point mass (kg) at a position in world axes (m).
+    /// Adds a point mass (kg) at a position in world axes (m).
     pub fn particle(&mut self, mass: impl Into<Expr>, at: impl Into<Expr>) {
         self.add(ItemKind::Particle {
             mass: mass.into(),
@@ -335,7 +335,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A point mass (kg) fixed to a frame, in its axes (m).
+    /// Adds a point mass (kg) fixed to a frame, at a position in its axes (m).
     pub fn particle_on(
         &mut self,
         frame: impl Into<Frame>,
@@ -349,37 +349,37 @@ impl SceneBuilder {
         });
     }
 
-    /// A kinetic energy beyond that of bodies and particles (J).
+    /// Adds a kinetic energy (J) to that of bodies and particles.
     pub fn kinetic(&mut self, energy: impl Into<Expr>) {
         self.add(ItemKind::Kinetic(energy.into()));
     }
 
-    /// A potential beyond that of gravity (J).
+    /// Adds a potential energy (J) to that of gravity.
     pub fn potential(&mut self, energy: impl Into<Expr>) {
         self.add(ItemKind::Potential(energy.into()));
     }
 
-    /// The acceleration of gravity, world axes (m/s²).
+    /// Sets the acceleration of gravity, world axes (m/s²).
     pub fn gravity(&mut self, acceleration: impl Into<Expr>) {
         self.add(ItemKind::Gravity(acceleration.into()));
     }
 
-    /// A force, torque or wrench.
+    /// Adds a force, torque or wrench.
     pub fn load(&mut self, load: Load) {
         self.add(load.item());
     }
 
-    /// A spring, a damper, or a force along a line.
+    /// Adds a spring, a damper, an inerter, or a force along a line.
     pub fn element(&mut self, element: Element) {
         self.add(element.0);
     }
 
-    /// Rayleigh's function D(x, ξ); its force is −∂D/∂ξ (W).
+    /// Adds a Rayleigh dissipation function D(x, ξ) (W); its generalised force is −∂D/∂ξ.
     pub fn dissipation(&mut self, power: impl Into<Expr>) {
         self.add(ItemKind::Dissipation(power.into()));
     }
 
-    /// A generalised force, dual to a velocity.
+    /// Adds a generalised force, dual to a velocity.
     pub fn generalized_force(&mut self, velocity: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Generalized {
             target: target(velocity),
@@ -387,7 +387,7 @@ impl SceneBuilder {
         });
     }
 
-    /// The value of a coordinate or velocity at the start.
+    /// Sets the initial value of a coordinate or velocity.
     pub fn start(&mut self, of: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Start {
             target: target(of),
@@ -395,7 +395,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A value near that of a coordinate or velocity at the start: it chooses how loops are assembled.
+    /// Sets an approximate initial value of a coordinate or velocity: it selects how loops are assembled.
     pub fn guess(&mut self, of: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Guess {
             target: target(of),
@@ -403,7 +403,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A function that the generated type has besides those of the formalism.
+    /// Adds a function to the generated type, in addition to those of the formalism.
     pub fn output(&mut self, name: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Output {
             name: ident(name),
@@ -411,8 +411,8 @@ impl SceneBuilder {
         });
     }
 
-    /// What is constant along the motion, where some inputs or parameters have the given values; refused by
-    /// [`generate`](Scene::generate) where it is not.
+    /// Claims that a value is constant along the motion, if some inputs or parameters have the given values.
+    /// [`generate`](Scene::generate) refuses a claim that does not hold.
     pub fn invariant(
         &mut self,
         name: &str,
@@ -429,19 +429,19 @@ impl SceneBuilder {
         });
     }
 
-    /// That energy or momentum is constant along the motion.
+    /// Claims that an energy or momentum is constant along the motion.
     pub fn claim(&mut self, claim: Claim) {
         self.add(claim.item());
     }
 
-    /// The functions to generate, such as `accel`; all by default.
+    /// Selects the functions to generate, such as `accel`; all by default.
     pub fn generate(&mut self, functions: &[&str]) {
         let functions = functions.iter().map(|name| Wanted::Function(ident(name)));
         self.add(ItemKind::Generate(functions.collect()));
     }
 
-    /// The kinematics of a frame, components in the axes of the world or of the frame itself: pose, twist, Jacobian,
-    /// bias acceleration.
+    /// Generates the kinematics of a frame: pose, twist, Jacobian, bias acceleration. Components are in the axes of the
+    /// world or of the frame itself.
     pub fn generate_jacobian(&mut self, frame: &str, axes: &str) {
         self.add(ItemKind::Generate(vec![Wanted::Jacobian {
             frame: ident(frame),
@@ -449,11 +449,11 @@ impl SceneBuilder {
         }]));
     }
 
-    /// The scene.
+    /// Returns the scene.
     ///
     /// # Errors
-    /// Names that the language does not have, numbers that are not finite and expressions that are too deep, each with
-    /// the statement in which it stands.
+    /// Names that are not valid in the language, numbers that are not finite, and expressions that are too deep, each
+    /// with the statement in which it occurs.
     pub fn build(&self) -> Result<Scene, SceneError> {
         check::checked(&self.system)
     }
@@ -470,7 +470,7 @@ fn declared(name: &str, shape: ShapeKind, value: Option<Expr>) -> Declaration {
     }
 }
 
-/// `R`, `X.p`, `leg[3].knee`
+/// Parses a target such as `R`, `X.p` or `leg[3].knee`.
 fn target(text: &str) -> Target {
     match text.rsplit_once('.') {
         Some((name, field)) if !field.contains('[') => Target {

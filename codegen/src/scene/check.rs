@@ -1,7 +1,8 @@
-//! What a scene cannot say, found when it is built: numbers that are not finite, expressions that are too deep, and
-//! names that are none.
+//! Checks of a scene when it is built: it must not contain numbers that are not finite, expressions that are too deep,
+//! or invalid names.
 //!
-//! What has no text stands in a scene as a name that no text has; so it is shown where it stands.
+//! Anything that cannot be written as text is stored in the scene as a name that no valid text contains. So its
+//! position in the printed scene is that of the error.
 
 use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
@@ -10,7 +11,7 @@ use crate::syntax::ast::{Counter, Expr, ExprKind, Ident, Item, ItemKind, Span, S
 use crate::syntax::{MAX_DEPTH, parse_text};
 use hamel_language::expression::{INFINITE, NO_NUMBER};
 
-/// What is printed in the place of an expression that is too deep for a text, since no name is spelt so.
+/// Placeholder for an expression that is too deep. It is a name that no valid text contains.
 const TOO_DEEP: &str = "((deeper))";
 
 fn named(name: &str) -> Expr {
@@ -20,10 +21,10 @@ fn named(name: &str) -> Expr {
     }
 }
 
-/// The scene with a system's statements, which its text says, too.
+/// Returns the scene of a system's statements, if its text reads back as the same statements.
 pub(super) fn checked(system: &System) -> Result<Scene, SceneError> {
     let text = print::text(system);
-    // Docs may say anything, a line each.
+    // Docs may contain anything, one line each.
     let docs = text.split_inclusive('\n').take(system.docs.len());
     let mut errors = strange(&text, docs.map(str::len).sum());
     match parse_text(&text) {
@@ -40,7 +41,7 @@ pub(super) fn checked(system: &System) -> Result<Scene, SceneError> {
             let differing = differing.filter(|span| !of_a_number(*span));
             let mut places: Vec<Span> = differing.collect();
             if !same {
-                // Behind the first one statements stand beside others.
+                // After the first difference, statements are no longer compared with their counterparts.
                 places.truncate(1);
             }
             if places.is_empty() && errors.is_empty() {
@@ -64,7 +65,7 @@ fn inside(inner: Span, outer: Span) -> bool {
     both.is_some_and(|(inner, outer)| outer.start <= inner.start && inner.end <= outer.end)
 }
 
-/// An error for each thing behind a place in a text that no text can say.
+/// Returns an error for each placeholder in a text; the first `docs` bytes, which are documentation, do not count.
 fn strange(text: &str, docs: usize) -> Vec<Diagnostic> {
     let all = |of: &'static str| {
         let found = text.match_indices(of).filter(move |(at, _)| *at >= docs);
@@ -87,7 +88,7 @@ fn strange(text: &str, docs: usize) -> Vec<Diagnostic> {
     numbers.chain(all(TOO_DEEP).map(deep)).collect()
 }
 
-/// Replaces expressions that are so deep that no walk along them should be begun.
+/// Replaces expressions that are too deep for recursive functions.
 pub(super) fn cut(item: &mut Item) {
     visit(item, &mut Cut);
     let counted = |counter: &mut Counter| {
@@ -122,7 +123,7 @@ impl Visit for Cut {
         if !is_deep(expr) {
             return;
         }
-        // Taken apart piece by piece: to drop it whole would walk along it.
+        // Taken apart piece by piece, since dropping the whole would be recursive.
         let mut rest = vec![std::mem::replace(expr, named(TOO_DEEP))];
         while let Some(mut piece) = rest.pop() {
             let pieces = parts(&mut piece);

@@ -4,8 +4,8 @@ use super::parts::Frame;
 use crate::syntax::ast::{Condition, Conserved, Expr, ExprKind, Ident, ItemKind};
 use hamel_language::expression::ident;
 
-/// A claim about energy or momentum, by the name of that unless [`named`](Self::named) gives another one; proved, or
-/// refused with what d/dt leaves.
+/// A claim that energy or momentum is constant. Its name is that of the quantity, unless [`named`](Self::named) gives
+/// another one. The claim is proved, or refused with an error that shows the remaining time derivative.
 #[derive(Clone, Debug)]
 pub struct Claim {
     name: Ident,
@@ -22,12 +22,12 @@ impl Claim {
         }
     }
 
-    /// The energy T + V (J).
+    /// Claims that the energy T + V (J) is constant.
     pub fn energy() -> Claim {
         Claim::new("energy", Conserved::Energy)
     }
 
-    /// The momentum of everything, world axes (kg m/s).
+    /// Claims that the total linear momentum is constant, world axes (kg m/s).
     pub fn linear_momentum() -> Claim {
         let all = Conserved::LinearMomentum {
             of: None,
@@ -36,7 +36,7 @@ impl Claim {
         Claim::new("linear_momentum", all)
     }
 
-    /// The angular momentum of everything about the origin of the world, world axes (kg m²/s).
+    /// Claims that the total angular momentum about the origin of the world is constant, world axes (kg m²/s).
     pub fn angular_momentum() -> Claim {
         let all = Conserved::AngularMomentum {
             of: None,
@@ -46,7 +46,7 @@ impl Claim {
         Claim::new("angular_momentum", all)
     }
 
-    /// That of the bodies of a frame alone. Energy is that of everything.
+    /// Restricts a momentum to the bodies of a frame. This has no effect on energy, which is always the total.
     pub fn of(mut self, frame: impl Into<Frame>) -> Claim {
         match &mut self.conserved {
             Conserved::LinearMomentum { of, .. } | Conserved::AngularMomentum { of, .. } => {
@@ -57,7 +57,7 @@ impl Claim {
         self
     }
 
-    /// The point of the world that an angular momentum is about (m).
+    /// Sets the point of the world about which an angular momentum is taken (m).
     pub fn about(mut self, point: impl Into<Expr>) -> Claim {
         if let Conserved::AngularMomentum { about, .. } = &mut self.conserved {
             *about = Some(point.into());
@@ -65,7 +65,7 @@ impl Claim {
         self
     }
 
-    /// The component of a momentum along a direction, world axes.
+    /// Restricts a momentum to its component along a direction, world axes.
     pub fn along(mut self, direction: impl Into<Expr>) -> Claim {
         match &mut self.conserved {
             Conserved::LinearMomentum { along, .. } | Conserved::AngularMomentum { along, .. } => {
@@ -76,13 +76,13 @@ impl Claim {
         self
     }
 
-    /// The name of the function that watches it.
+    /// Sets the name of the generated function that evaluates the quantity.
     pub fn named(mut self, name: &str) -> Claim {
         self.name = ident(name);
         self
     }
 
-    /// Where it holds: an input or a parameter, or an entry of one, with its value.
+    /// Adds a condition under which the claim holds: the value of an input or a parameter, or of an entry of one.
     pub fn when(mut self, target: impl Into<Expr>, value: impl Into<Expr>) -> Claim {
         let (target, value) = (target.into(), value.into());
         self.when.push(Condition { target, value });
@@ -98,7 +98,7 @@ impl Claim {
     }
 }
 
-/// What an expression stands for as a claim: the names of energy and momenta are theirs.
+/// Converts an expression to a claimed quantity; the names of energy and momenta stand for these.
 pub(super) fn claimed(value: Expr) -> Conserved {
     let name = match &value.kind {
         ExprKind::Name(name) => name.as_str(),

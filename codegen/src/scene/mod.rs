@@ -1,8 +1,8 @@
 //! Descriptions as data: read from text, or built in Rust.
 //!
-//! A [`Scene`] says what a mechanical system is, before any algebra: its statements, with their names and exact
+//! A [`Scene`] describes a mechanical system before any algebra: it is a list of statements, with their names and exact
 //! numbers. It can be cloned, compared, sent to other threads, and printed as text that reads back as an equal
-//! scene. What a text can say, a program can build, and the same checks apply:
+//! scene. A program can build everything that a text can express, and the same checks apply:
 //!
 //! ```
 //! use hamel_codegen::scene::{Body, Joint, Scene, diagonal};
@@ -62,7 +62,7 @@ pub use reuse::Parameter;
 
 /// A description of a mechanical system.
 ///
-/// Two scenes are equal where they say the same; comments, layout and places take no part.
+/// Two scenes are equal if they have the same statements; comments, layout and source positions do not count.
 #[derive(Clone, Debug)]
 pub struct Scene {
     system: System,
@@ -76,7 +76,7 @@ impl PartialEq for Scene {
 }
 
 impl Scene {
-    /// Starts a scene; `name` is that of the generated type.
+    /// Starts to build a scene; `name` becomes the name of the generated type.
     pub fn builder(name: &str) -> SceneBuilder {
         SceneBuilder::new(name)
     }
@@ -84,7 +84,7 @@ impl Scene {
     /// Reads a scene from text, such as that of an `.eom` file.
     ///
     /// # Errors
-    /// Everything in the text that is no description.
+    /// All parts of the text that are not valid in a description.
     pub fn parse(text: &str) -> Result<Scene, SceneError> {
         match parse_text(text) {
             Ok(system) => Ok(Scene {
@@ -95,12 +95,12 @@ impl Scene {
         }
     }
 
-    /// The name of the generated type.
+    /// Name of the generated type.
     pub fn name(&self) -> &str {
         &self.system.name.name
     }
 
-    /// The description as it was read, with comments; as it is printed where it was built.
+    /// Text of the description: as it was read, with comments, or as printed if the scene was built.
     pub fn source(&self) -> &str {
         &self.text
     }
@@ -108,15 +108,15 @@ impl Scene {
     /// Derives the equations of motion, and proves them.
     ///
     /// # Errors
-    /// Everything that is wrong with the description, each with the statement that it is about.
+    /// Everything that is wrong with the description; each error names the statement that it is about.
     pub fn generate(&self) -> Result<Generated, SceneError> {
         of_system(&self.system, &self.text).map_err(|errors| SceneError::new(errors, &self.text))
     }
 
-    /// Rust code of what [`generate`](Self::generate) derived: the file that a build script would write.
+    /// Returns Rust code for the result of [`generate`](Self::generate): the file that a build script would write.
     ///
     /// # Errors
-    /// An error of hamel itself, if what it wrote were no Rust.
+    /// If the generated text is not valid Rust, which is a defect of hamel itself.
     pub fn rust(&self, generated: &Generated) -> Result<String, SceneError> {
         let options = emit::Options {
             source_hash: generated.hash,
@@ -127,7 +127,7 @@ impl Scene {
     }
 }
 
-/// The description in the language, one statement a line.
+/// Prints the description in the language, one statement per line.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&print::text(&self.system))
@@ -141,10 +141,10 @@ impl std::str::FromStr for Scene {
     }
 }
 
-/// What is wrong with a scene: all errors, each with the statement that it is about.
+/// The errors of a scene, each with the statement that it is about.
 #[derive(Clone)]
 pub struct SceneError {
-    /// The errors, placed in the text.
+    /// The errors, with their positions in `text`.
     pub errors: Vec<Diagnostic>,
     /// The text of the scene.
     pub text: String,
@@ -165,7 +165,7 @@ impl fmt::Display for SceneError {
     }
 }
 
-// A program that returns the error from `main` prints its `Debug` form: that must be readable, too.
+// A program that returns the error from `main` prints its `Debug` form, which must be readable, too.
 impl fmt::Debug for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "\n{self}")

@@ -1,4 +1,4 @@
-//! What statements of a scene are made of: frames, points, joints, bodies, loads, springs and dampers.
+//! Components of statements of a scene: frames, points, joints, bodies, loads, springs and dampers.
 
 use crate::syntax::ast::{
     self, About, Acting, Components, End, Expr, Ident, ItemKind, JointField, JointKind, Span,
@@ -9,11 +9,11 @@ use hamel_language::expression::ident;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame(String);
 
-/// The name of the frame that does not move.
+/// Name of the frame that does not move.
 pub const WORLD: &str = "world";
 
 impl Frame {
-    /// Its name, as an expression: its pose in the world, with the parts `R` and `p`.
+    /// Returns the pose of the frame in the world, an expression with the parts `R` and `p`.
     pub fn pose(&self) -> Expr {
         Expr::name(&self.0)
     }
@@ -22,7 +22,7 @@ impl Frame {
         ident(&self.0)
     }
 
-    /// The frame, where it is not the world.
+    /// Returns the frame's name, or `None` for the world.
     fn moving(&self) -> Option<Ident> {
         (self.0 != WORLD).then(|| self.ident())
     }
@@ -45,7 +45,7 @@ impl From<&Frame> for Frame {
 pub struct Point(pub(super) End);
 
 impl Point {
-    /// The point with these components in the frame's axes (m).
+    /// Creates the point with these components in the frame's axes (m).
     pub fn of(frame: impl Into<Frame>, at: impl Into<Expr>) -> Point {
         Point(End {
             at: Some(at.into()),
@@ -53,7 +53,7 @@ impl Point {
         })
     }
 
-    /// The origin of a frame.
+    /// Creates the point at the origin of a frame.
     pub fn origin(frame: impl Into<Frame>) -> Point {
         Point(End {
             at: None,
@@ -62,7 +62,7 @@ impl Point {
     }
 }
 
-/// A joint: it carries a new frame, which has the name of the joint with `_frame` behind it unless
+/// A joint, which carries a new frame. That frame has the name of the joint followed by `_frame`, unless
 /// [`moves`](Self::moves) names it.
 #[derive(Clone, Debug)]
 pub struct Joint(pub(super) ast::Joint);
@@ -81,76 +81,76 @@ impl Joint {
         })
     }
 
-    /// Turns about an axis; its coordinate is the angle (rad).
+    /// Creates a revolute joint about an axis; its coordinate is the angle (rad).
     pub fn revolute(name: &str, axis: impl Into<Expr>) -> Joint {
         Joint::new(name, JointKind::Revolute, vec![axis.into()])
     }
 
-    /// Turns about an axis; its coordinate is the pair (cos, sin), without a limit.
+    /// Creates an unlimited revolute joint about an axis; its coordinate is the pair (cos, sin).
     pub fn continuous(name: &str, axis: impl Into<Expr>) -> Joint {
         Joint::new(name, JointKind::Continuous, vec![axis.into()])
     }
 
-    /// Slides along an axis (m).
+    /// Creates a prismatic joint along an axis (m).
     pub fn prismatic(name: &str, axis: impl Into<Expr>) -> Joint {
         Joint::new(name, JointKind::Prismatic, vec![axis.into()])
     }
 
-    /// Turns about a point; its coordinate is a rotation matrix.
+    /// Creates a spherical joint; its coordinate is a rotation matrix.
     pub fn spherical(name: &str) -> Joint {
         Joint::new(name, JointKind::Spherical, Vec::new())
     }
 
-    /// Turns about a point; its coordinate is a unit quaternion.
+    /// Creates a spherical joint; its coordinate is a unit quaternion.
     pub fn spherical_quaternion(name: &str) -> Joint {
         Joint::new(name, JointKind::SphericalS3, Vec::new())
     }
 
-    /// Moves freely.
+    /// Creates a joint with six degrees of freedom.
     pub fn free(name: &str) -> Joint {
         Joint::new(name, JointKind::Free, Vec::new())
     }
 
-    /// Slides in the plane with this normal, and turns about it.
+    /// Creates a planar joint: it slides in the plane with this normal, and turns about the normal.
     pub fn planar(name: &str, normal: impl Into<Expr>) -> Joint {
         Joint::new(name, JointKind::Planar, vec![normal.into()])
     }
 
-    /// Turns about two axes, one after the other.
+    /// Creates a universal joint: it turns about two axes, one after the other.
     pub fn universal(name: &str, first: impl Into<Expr>, second: impl Into<Expr>) -> Joint {
         let axes = vec![first.into(), second.into()];
         Joint::new(name, JointKind::Universal, axes)
     }
 
-    /// Turns about an axis and slides along it.
+    /// Creates a cylindrical joint: it turns about an axis and slides along it.
     pub fn cylindrical(name: &str, axis: impl Into<Expr>) -> Joint {
         Joint::new(name, JointKind::Cylindrical, vec![axis.into()])
     }
 
-    /// Does not move.
+    /// Creates a fixed joint, which does not move.
     pub fn fixed(name: &str) -> Joint {
         Joint::new(name, JointKind::Fixed, Vec::new())
     }
 
-    /// The frame that it is fixed to; the world by default.
+    /// Sets the frame to which it is fixed; the world by default.
     pub fn on(mut self, frame: impl Into<Frame>) -> Joint {
         self.0.on = frame.into().moving();
         self
     }
 
-    /// Where it stands in that frame, a pose; its origin by default.
+    /// Sets its pose in that frame; at the frame's origin by default.
     pub fn at(mut self, pose: impl Into<Expr>) -> Joint {
         self.0.at = Some(pose.into());
         self
     }
 
-    /// The name of the frame that it carries.
+    /// Sets the name of the frame that it carries.
     pub fn moves(mut self, frame: &str) -> Joint {
         self.0.moves = ident(frame);
         self
     }
 
-    /// What its coordinate is, where it has none of its own: a coupled joint.
+    /// Couples the joint: its coordinate has this value, and is not a coordinate of the system.
     pub fn follows(mut self, value: impl Into<Expr>) -> Joint {
         self.0.follows = Some(value.into());
         self
@@ -162,42 +162,42 @@ impl Joint {
         self
     }
 
-    /// Viscous friction: the force −d q̇ (N s/m, N m s).
+    /// Sets the viscous friction d of the force −d q̇ (N s/m, N m s).
     pub fn damping(self, coefficient: impl Into<Expr>) -> Joint {
         self.field(JointField::Damping, [coefficient.into()])
     }
 
-    /// The inertia of its drive, J in ½ J q̇² (kg, kg m²).
+    /// Sets the inertia of its drive, J in ½ J q̇² (kg, kg m²).
     pub fn armature(self, inertia: impl Into<Expr>) -> Joint {
         self.field(JointField::Armature, [inertia.into()])
     }
 
-    /// A spring: the force −k (q − q₀), q₀ given by [`rest`](Self::rest) (N/m, N m).
+    /// Adds a spring with the force −k (q − q₀) (N/m, N m); [`rest`](Self::rest) sets q₀.
     pub fn stiffness(self, stiffness: impl Into<Expr>) -> Joint {
         self.field(JointField::Stiffness, [stiffness.into()])
     }
 
-    /// Where its spring is without force.
+    /// Sets the coordinate q₀ at which its spring exerts no force.
     pub fn rest(self, coordinate: impl Into<Expr>) -> Joint {
         self.field(JointField::Rest, [coordinate.into()])
     }
 
-    /// A force or torque of the joint (N, N m).
+    /// Adds a force or torque of the joint (N, N m).
     pub fn force(self, force: impl Into<Expr>) -> Joint {
         self.field(JointField::Force, [force.into()])
     }
 
-    /// Its limits, as information for those who use the generated code.
+    /// Sets its limits, as information for users of the generated code.
     pub fn limit(self, lower: impl Into<Expr>, upper: impl Into<Expr>) -> Joint {
         self.field(JointField::Limit, [lower.into(), upper.into()])
     }
 
-    /// The greatest rate of its coordinate, as information (m/s, rad/s).
+    /// Sets the largest rate of its coordinate, as information (m/s, rad/s).
     pub fn max_speed(self, speed: impl Into<Expr>) -> Joint {
         self.field(JointField::MaxSpeed, [speed.into()])
     }
 
-    /// The greatest force or torque of its drive, as information (N, N m).
+    /// Sets the largest force or torque of its drive, as information (N, N m).
     pub fn max_force(self, force: impl Into<Expr>) -> Joint {
         self.field(JointField::MaxForce, [force.into()])
     }
@@ -208,7 +208,7 @@ impl Joint {
 pub struct Body(pub(super) ast::Body);
 
 impl Body {
-    /// A body on a frame, without mass so far.
+    /// Creates a body on a frame, without mass so far.
     pub fn on(frame: impl Into<Frame>) -> Body {
         Body(ast::Body {
             frame: frame.into().ident(),
@@ -218,25 +218,25 @@ impl Body {
         })
     }
 
-    /// Its mass m (kg).
+    /// Sets its mass m (kg).
     pub fn mass(mut self, mass: impl Into<Expr>) -> Body {
         self.0.mass = Some(mass.into());
         self
     }
 
-    /// Its centre of mass, frame axes (m); the origin by default.
+    /// Sets its centre of mass, frame axes (m); the origin by default.
     pub fn com(mut self, com: impl Into<Expr>) -> Body {
         self.0.com = Some(com.into());
         self
     }
 
-    /// Its inertia about its centre of mass, frame axes, 3×3 (kg m²).
+    /// Sets its inertia about its centre of mass, frame axes, 3×3 (kg m²).
     pub fn inertia_about_com(mut self, inertia: impl Into<Expr>) -> Body {
         self.0.inertia = Some((inertia.into(), Some(About::Com)));
         self
     }
 
-    /// Its inertia about the origin of the frame, frame axes, 3×3 (kg m²).
+    /// Sets its inertia about the origin of the frame, frame axes, 3×3 (kg m²).
     pub fn inertia_about_origin(mut self, inertia: impl Into<Expr>) -> Body {
         self.0.inertia = Some((inertia.into(), Some(About::Origin)));
         self
@@ -263,19 +263,19 @@ impl Load {
         }
     }
 
-    /// A force (N) at the origin of a frame.
+    /// Creates a force (N) at the origin of a frame.
     pub fn force(force: impl Into<Expr>, on: impl Into<Frame>) -> Load {
         let force = force.into();
         Load::new(ast::Load::Force { force, at: None }, on)
     }
 
-    /// A torque (N m) on a frame.
+    /// Creates a torque (N m) on a frame.
     pub fn torque(torque: impl Into<Expr>, on: impl Into<Frame>) -> Load {
         let torque = torque.into();
         Load::new(ast::Load::Torque { torque }, on)
     }
 
-    /// A force (N) and a torque (N m) at the origin of a frame.
+    /// Creates a wrench on a frame: a force (N) at its origin and a torque (N m).
     pub fn wrench(force: impl Into<Expr>, torque: impl Into<Expr>, on: impl Into<Frame>) -> Load {
         let (force, torque) = (force.into(), torque.into());
         let load = ast::Load::Wrench {
@@ -286,7 +286,7 @@ impl Load {
         Load::new(load, on)
     }
 
-    /// The point of attack in the frame's axes (m). A torque is the same at every point.
+    /// Sets the point of application in the frame's axes (m). It does not matter for a torque.
     pub fn at(mut self, point: impl Into<Expr>) -> Load {
         match &mut self.load {
             ast::Load::Force { at, .. } | ast::Load::Wrench { at, .. } => *at = Some(point.into()),
@@ -295,13 +295,13 @@ impl Load {
         self
     }
 
-    /// The frame that exerts it, and takes the reaction.
+    /// Sets the frame that exerts the load, and on which the reaction acts.
     pub fn from(mut self, frame: impl Into<Frame>) -> Load {
         self.from = Some(frame.into());
         self
     }
 
-    /// The frame in whose axes its components are written, the world among them.
+    /// Sets the frame, possibly the world, in whose axes its components are given.
     pub fn in_axes_of(mut self, frame: impl Into<Frame>) -> Load {
         self.axes = match frame.into().moving() {
             Some(frame) => Components::Frame(frame),
@@ -320,8 +320,8 @@ impl Load {
     }
 }
 
-/// What a spring or a damper acts on: two points, as a pair, along the line between them; or a scalar, of the
-/// configuration for a spring, linear in the velocities for a damper and an inerter.
+/// The ends of a spring or a damper: two points, as a pair, which it connects along a straight line; or a scalar, which
+/// depends on the configuration for a spring, and is linear in the velocities for a damper and an inerter.
 #[derive(Clone, Debug)]
 pub struct Between(Acting);
 
@@ -348,7 +348,7 @@ impl From<&Expr> for Between {
 pub struct Element(pub(super) ItemKind);
 
 impl Element {
-    /// A spring (N/m), without force where its points meet or its scalar is zero.
+    /// Creates a spring (N/m) that exerts no force where its points coincide or its scalar is zero.
     pub fn spring(stiffness: impl Into<Expr>, between: impl Into<Between>) -> Element {
         Element(ItemKind::Spring {
             stiffness: stiffness.into(),
@@ -357,7 +357,7 @@ impl Element {
         })
     }
 
-    /// A spring (N/m) with the length or scalar at which it is without force.
+    /// Creates a spring (N/m) with the length or scalar at which it exerts no force.
     pub fn spring_of_length(
         stiffness: impl Into<Expr>,
         length: impl Into<Expr>,
@@ -370,7 +370,7 @@ impl Element {
         })
     }
 
-    /// A damper (N s/m).
+    /// Creates a damper (N s/m).
     pub fn damper(coefficient: impl Into<Expr>, between: impl Into<Between>) -> Element {
         Element(ItemKind::Damper {
             coefficient: coefficient.into(),
@@ -378,7 +378,7 @@ impl Element {
         })
     }
 
-    /// An inerter (kg, kg m²): its force is in proportion to the relative acceleration.
+    /// Creates an inerter (kg, kg m²), whose force is proportional to the relative acceleration.
     pub fn inerter(inertance: impl Into<Expr>, between: impl Into<Between>) -> Element {
         Element(ItemKind::Inerter {
             inertance: inertance.into(),
@@ -386,7 +386,7 @@ impl Element {
         })
     }
 
-    /// A force along the line between two points, positive where it pushes them apart (N).
+    /// Creates a force along the line between two points (N), positive if it pushes them apart.
     pub fn push(force: impl Into<Expr>, from: Point, to: Point) -> Element {
         Element(ItemKind::Push {
             force: force.into(),

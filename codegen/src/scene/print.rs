@@ -1,6 +1,6 @@
-//! A scene as text: one statement a line, in the order of the description, with exact numbers.
+//! Prints a scene as text: one statement per line, in the order of the description, with exact numbers.
 //!
-//! Comments and layout of the text that a scene was read from are not part of it. What is printed reads back as
+//! Comments and layout of the text from which a scene was read are not part of it. The printed text reads back as
 //! an equal scene.
 
 use crate::syntax::ast::{
@@ -11,13 +11,13 @@ use crate::syntax::ast::{
 use crate::syntax::written::{conditions, equation, list, written};
 use crate::syntax::{joint_field, joint_kind};
 
-/// The text of a description.
+/// Returns the text of a description.
 pub fn text(system: &System) -> String {
     let mut text = String::new();
     for line in &system.docs {
         let line = match line {
             line if line.is_empty() => "///".into(),
-            // No comment has a carriage return.
+            // A comment cannot contain a carriage return.
             line if line.contains('\r') => format!("#[doc = {:?}]", format!(" {line}")),
             line => format!("/// {line}"),
         };
@@ -35,7 +35,7 @@ pub fn text(system: &System) -> String {
     text
 }
 
-/// A statement with its end.
+/// Returns a statement with its final `;` or `}`.
 pub fn statement(item: &Item) -> String {
     let line = match &item.kind {
         ItemKind::Param(list) => format!("param {}", declarations(list)),
@@ -193,7 +193,7 @@ pub fn statement(item: &Item) -> String {
     line + ";"
 }
 
-/// Statements in braces, a step further to the right.
+/// Returns statements in braces, indented.
 fn block(items: &[Item]) -> String {
     let lines: Vec<String> = items.iter().map(statement).collect();
     let lines = lines.iter().flat_map(|statement| statement.lines());
@@ -201,7 +201,7 @@ fn block(items: &[Item]) -> String {
     format!("{{\n{lines}}}")
 }
 
-/// `i in 1..n`
+/// Returns a counter with its range, such as `i in 1..n`.
 fn counter(counter: &Counter) -> String {
     let (first, last) = (written(&counter.first), written(&counter.last));
     format!("{} in {first}..{last}", counter.name.name)
@@ -248,7 +248,7 @@ fn table(table: &Table) -> String {
     format!("table {name} {points} {between} extrapolate {beyond}")
 }
 
-/// A kind of coordinate after a name: `: S1`, nothing for a real.
+/// Returns a coordinate's kind as it follows the name, such as `: S1`; empty for a real number.
 pub fn kind(kind: CoordKind) -> String {
     match kind {
         CoordKind::Real => String::new(),
@@ -287,7 +287,7 @@ fn word(name: &Ident) -> String {
     name.name.clone()
 }
 
-/// What follows a word of the language, where there is any.
+/// Returns a keyword followed by the text; empty if there is no text.
 fn after(word: &str, text: Option<String>) -> String {
     text.map_or(String::new(), |text| format!(" {word} {text}"))
 }
@@ -372,7 +372,7 @@ fn on_what(acting: &Acting) -> String {
     }
 }
 
-/// A claim, with its name where that is not the one of the quantity.
+/// Returns a claim, with its name if that differs from the name of the quantity.
 fn claim(name: &Ident, conserved: &Conserved) -> String {
     let (quantity, text) = match conserved {
         Conserved::Energy => ("energy", "energy".to_string()),

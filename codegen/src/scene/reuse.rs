@@ -1,4 +1,4 @@
-//! Statements of a scene that stand for others: repetition, components and their parts, included files.
+//! Statements of a scene that expand to others: repetition, components and their parts, included files.
 
 use super::build::SceneBuilder;
 use crate::syntax::ast::{
@@ -20,17 +20,17 @@ impl Parameter {
         })
     }
 
-    /// Stands for a frame.
+    /// Creates a parameter that stands for a frame.
     pub fn frame(name: &str) -> Parameter {
         Parameter::new(name, true)
     }
 
-    /// Stands for an expression.
+    /// Creates a parameter that stands for an expression.
     pub fn value(name: &str) -> Parameter {
         Parameter::new(name, false)
     }
 
-    /// Stands for an expression of this shape, a vector or a matrix.
+    /// Creates a parameter that stands for an expression of this shape, a vector or a matrix.
     pub fn shaped(name: &str, kind: ShapeKind) -> Parameter {
         let mut parameter = Parameter::new(name, false);
         let span = Span::NOWHERE;
@@ -38,22 +38,23 @@ impl Parameter {
         parameter
     }
 
-    /// What it is where a part does not say.
+    /// Sets the default, for parts that do not give a value.
     pub fn or(mut self, default: impl Into<Expr>) -> Parameter {
         self.0.default = Some(default.into());
         self
     }
 }
 
-/// Names with the index of a counter are written as in texts: `link[i - 1]`.
+/// Statements that expand to others. Names with an index that contains a counter are written as in texts, for example
+/// `link[i - 1]`.
 impl SceneBuilder {
-    /// The statements of a file. A scene that includes files has no folder: it can be printed, and is
-    /// derived where its text stands.
+    /// Includes the statements of a file. A scene has no folder for the file: it can be printed, and its text can be
+    /// derived where the file is.
     pub fn include(&mut self, path: &str) {
         self.add(ItemKind::Include(path.to_string(), Span::NOWHERE));
     }
 
-    /// Statements for every value of a counter, from a first one to a last one.
+    /// Repeats statements for every value of a counter, from a first one to a last one.
     pub fn repeat(
         &mut self,
         counter: &str,
@@ -66,7 +67,7 @@ impl SceneBuilder {
         self.add(ItemKind::Repeat(Repeat { counter, items }));
     }
 
-    /// A component: statements with names of their own for every part that is one.
+    /// Adds a component: statements that are instantiated, under names of their own, by every part of this component.
     pub fn component(
         &mut self,
         name: &str,
@@ -81,8 +82,8 @@ impl SceneBuilder {
         }));
     }
 
-    /// A part of the mechanism that is a component, with the parameters of that by their names. What it declares is
-    /// called `NAME.knee`.
+    /// Adds a part of the mechanism that instantiates a component, with arguments by name. A declaration `knee` of the
+    /// component is called `NAME.knee`.
     pub fn part<'a>(
         &mut self,
         name: &str,
@@ -92,7 +93,7 @@ impl SceneBuilder {
         self.add(made(name, None, component, arguments));
     }
 
-    /// An array of parts, with a counter that the arguments mention; the parts are `NAME[1]` and so on.
+    /// Adds an array of parts. Arguments may contain the counter; the parts are called `NAME[1]` and so on.
     pub fn parts<'a>(
         &mut self,
         name: &str,

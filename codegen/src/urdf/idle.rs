@@ -1,5 +1,5 @@
-//! Which equations of a robot's closing joints say nothing new: the importer writes all of them, and what reads and derives the
-//! description knows which of them it would leave out.
+//! Removes redundant equations of a robot's closing joints. The importer writes all equations; which of them are
+//! redundant is known only after the description is read and derived.
 
 use crate::derive::reduction::reduce;
 use crate::lower;
@@ -11,8 +11,9 @@ use crate::syntax;
 use hamel_import::{Idle, Imported, Options, import_without};
 use std::collections::BTreeMap;
 
-/// The same robot without equations of closing joints that say nothing wherever its tree is. As it was where there are none,
-/// where the description has errors, which are said when it is derived, or where the equations that remain are closed elsewhere.
+/// Imports the robot again without those equations of closing joints that say nothing new in any configuration of its
+/// tree. The robot stays as it was if there are none, if the description has errors (they are reported when it is
+/// derived), or if the remaining equations lead to a start in which the removed ones do not hold.
 pub(super) fn without_idle(xml: &str, options: &Options, imported: Imported) -> Imported {
     fewer(xml, options, &imported).unwrap_or(imported)
 }
@@ -34,14 +35,14 @@ fn fewer(xml: &str, options: &Options, imported: &Imported) -> Option<Imported> 
     Some(fewer)
 }
 
-/// The model of a robot's description.
+/// Builds the model of a robot's description.
 fn model(text: &str) -> Option<Model> {
     let mut system = syntax::parse_text(text).ok()?;
     system.starts_anywhere = true;
     lower::build(&system).ok()
 }
 
-/// Equations that have no row, since both sides are equal, and those whose row follows from others.
+/// Finds equations without a row, since both sides are equal, and those whose row follows from others.
 fn idle(model: &Model, imported: &Imported) -> Option<BTreeMap<usize, Idle>> {
     let dropped = reduce(model).ok()?.map_or(Vec::new(), |of| of.dropped);
     let constraints = model.constraints.iter().enumerate();

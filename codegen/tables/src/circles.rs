@@ -1,5 +1,5 @@
-//! c² + s² = 1 used where it shortens a polynomial: a normal form knows one direction only, and
-//! c² → 1 − s² may be longer where s² → 1 − c² is shorter.
+//! Shortens polynomials by c² + s² = 1. A normal form applies this in one direction only, and
+//! c² → 1 − s² may lengthen a polynomial that s² → 1 − c² shortens.
 
 use hamel_algebra::graph::{Edge, Function, Graph, Node};
 use hamel_algebra::poly::monomial::{Monomial, Var};
@@ -9,10 +9,10 @@ use hamel_algebra::topoly::OPAQUE;
 use hamel_language::model::layout::Block;
 use num_rational::BigRational;
 
-/// Polynomials beyond this are left alone.
+/// Largest number of terms of a polynomial that is processed.
 const MOST_TERMS: usize = 300;
 
-/// Pairs of variables on a unit circle: coordinates on S¹, sine and cosine of one angle.
+/// Returns pairs of variables on a unit circle: coordinates on S¹, and cosine and sine of a common angle.
 pub fn pairs(
     graph: &Graph,
     first: Var,
@@ -45,7 +45,7 @@ pub fn pairs(
     pairs
 }
 
-/// The polynomial with fewest terms that replacing squares on circles leads to, one circle after
+/// Returns the shortest polynomial found by substituting squares on circles, one circle after
 /// the other.
 pub fn shortened(polynomial: Poly<BigRational>, pairs: &[(Var, Var)]) -> Poly<BigRational> {
     let mut best = polynomial;
@@ -63,7 +63,7 @@ pub fn shortened(polynomial: Poly<BigRational>, pairs: &[(Var, Var)]) -> Poly<Bi
     best
 }
 
-/// Every square² replaced by 1 − other²; `None` where there is none.
+/// Replaces every square² by 1 − other²; `None` if there is no square.
 fn replaced(polynomial: &Poly<BigRational>, square: Var, other: Var) -> Option<Poly<BigRational>> {
     let squares = |monomial: &Monomial| monomial.exponent(square) / 2;
     if polynomial.terms().iter().all(|term| squares(&term.0) == 0) {

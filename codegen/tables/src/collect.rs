@@ -1,4 +1,4 @@
-//! The entries of every table, as edges of the graph that they live in.
+//! The entries of every table, as edges of the graph to which they belong.
 
 use super::entries::Cell;
 use super::kind::Table;
@@ -12,14 +12,14 @@ use hamel_language::functions::FunctionId;
 use hamel_language::model::Model;
 use hamel_language::model::value::Value;
 
-/// Derives what tables are asked for, the geometry only where one of them needs it.
+/// Derives the requested tables; the geometry is derived when the first table needs it.
 pub struct Collector<'a> {
     derivation: Derivation<'a>,
     geometry: Option<(Geometry, Simplifier)>,
 }
 
 impl<'a> Collector<'a> {
-    /// Nothing is derived yet.
+    /// Creates a collector that has derived nothing yet.
     pub fn new(derivation: Derivation<'a>) -> Self {
         Collector {
             derivation,
@@ -27,7 +27,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// One table.
+    /// Derives one table.
     pub fn listing(&mut self, table: Table) -> Result<Listing, String> {
         match table {
             Table::Phi => Ok(self.phi()),
@@ -46,7 +46,7 @@ impl<'a> Collector<'a> {
                 ..cell(vec![i], *edge)
             })
             .collect();
-        // Not modulo φ, where every row is 0.
+        // Not modulo φ, since all rows are 0 there.
         let mut simplifier = Simplifier::free(&model.points);
         let shape = vec![model.phi.len()];
         listing(
@@ -172,7 +172,7 @@ fn cells(geometry: &mut Geometry, table: Table) -> (Vec<usize>, Vec<Cell>) {
     }
 }
 
-/// Γᵢⱼₖ ξʲ ξᵏ.
+/// Returns the bias forces Γᵢⱼₖ ξʲ ξᵏ.
 fn bias(geometry: &mut Geometry) -> Vec<Edge> {
     let xi = geometry.model.xi.clone();
     let graph = &mut geometry.model.graph;
@@ -213,7 +213,7 @@ fn outputs(model: &Model) -> Vec<Cell> {
     cells
 }
 
-/// A cell, its indices counted from 0.
+/// Creates a cell from indices that are counted from 0.
 fn cell(index: Vec<usize>, edge: Edge) -> Cell {
     let index = index.into_iter().map(|i| i + 1).collect();
     Cell {
@@ -264,7 +264,7 @@ fn names(model: &Model, edges: &[Edge]) -> Vec<String> {
     edges.iter().filter_map(name).collect()
 }
 
-/// The rate of a velocity, `v[1]` to `v_dot[1]`.
+/// Returns the name of the rate of a velocity, such as `v_dot[1]` for `v[1]`.
 fn rate_name(name: &str) -> String {
     match name.split_once('[') {
         Some((head, rest)) => format!("{head}_dot[{rest}"),

@@ -1,33 +1,33 @@
-//! Expressions as they are read: products of powers over products of powers, sums, calls.
+//! Expressions in readable form: quotients of products of powers, sums, calls.
 
 use hamel_algebra::graph::Function;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
-/// A factor.
+/// A factor of a product.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Atom {
-    /// A symbol of the description or a temporary, as it is written in text.
+    /// A symbol of the description or a temporary, by its name in text.
     Name(String),
-    /// Two or more terms.
+    /// A sum of two or more terms.
     Sum(Vec<Term>),
-    /// A function with its arguments.
+    /// A built-in function with its arguments.
     Call(Function, Vec<Term>),
-    /// A component of a function in Rust.
+    /// A component of an external function.
     External {
-        /// What stands before the arguments.
+        /// Text before the arguments.
         name: String,
         /// The arguments.
         arguments: Vec<Term>,
-        /// Which component it is, where there are several: `[1]`.
+        /// Index of the component, as in `[1]`; empty if there is only one.
         part: String,
     },
 }
 
-/// coefficient · Π over / Π under, every factor with its power.
+/// A product: coefficient · Π over / Π under, where every factor has a power.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Term {
-    /// The number in front.
+    /// Numeric coefficient.
     pub coefficient: BigRational,
     /// Factors of the numerator.
     pub over: Vec<(Atom, u32)>,
@@ -36,7 +36,7 @@ pub struct Term {
 }
 
 impl Term {
-    /// A number.
+    /// Creates a number.
     pub fn number(value: BigRational) -> Self {
         Term {
             coefficient: value,
@@ -45,7 +45,7 @@ impl Term {
         }
     }
 
-    /// A single factor.
+    /// Creates a product of a single factor.
     pub fn atom(atom: Atom) -> Self {
         Term {
             coefficient: BigRational::one(),
@@ -54,22 +54,22 @@ impl Term {
         }
     }
 
-    /// A name.
+    /// Creates a name.
     pub fn name(name: &str) -> Self {
         Term::atom(Atom::Name(name.to_string()))
     }
 
-    /// Whether this is 0.
+    /// Whether the term is 0.
     pub fn is_zero(&self) -> bool {
         self.coefficient.is_zero()
     }
 
-    /// Whether a minus stands in front.
+    /// Whether the coefficient is negative.
     pub fn is_negative(&self) -> bool {
         self.coefficient.is_negative()
     }
 
-    /// −t, the sign moved into a sum that stands alone.
+    /// Returns −t. If the term is a sum alone, its terms change their signs.
     pub fn negated(mut self) -> Self {
         match self.terms_mut() {
             Some(terms) => {
@@ -83,12 +83,12 @@ impl Term {
         self
     }
 
-    /// −t where `negative`.
+    /// Returns −t if `negative`, else t.
     pub fn signed(self, negative: bool) -> Self {
         if negative { self.negated() } else { self }
     }
 
-    /// a b; equal factors above and below cancel.
+    /// Returns the product a b; equal factors of numerator and denominator cancel.
     pub fn times(mut self, other: &Term) -> Self {
         self.coefficient *= &other.coefficient;
         if self.coefficient.is_zero() {
@@ -103,7 +103,7 @@ impl Term {
         self
     }
 
-    /// a / b; a itself where b is 0, which no quotient of the graph is.
+    /// Returns the quotient a / b, or a if b is 0, which is no case of a quotient in the graph.
     pub fn divided(self, other: &Term) -> Self {
         if other.is_zero() {
             return self;
@@ -115,7 +115,7 @@ impl Term {
         })
     }
 
-    /// Σ terms: sums among them are joined, a positive term stands first where there is one.
+    /// Returns the sum of the parts. Nested sums are flattened, and a positive term comes first if there is one.
     pub fn sum(parts: Vec<Term>) -> Self {
         let mut terms: Vec<Term> = Vec::new();
         for part in parts {
@@ -133,7 +133,7 @@ impl Term {
         }
     }
 
-    /// The terms of a sum that stands alone.
+    /// Returns the terms of a sum that is the whole expression, with coefficient 1.
     pub fn bare_sum(&self) -> Option<&[Term]> {
         match self.over.as_slice() {
             [(Atom::Sum(terms), 1)] if self.coefficient.is_one() && self.under.is_empty() => {
@@ -152,14 +152,14 @@ impl Term {
         }
     }
 
-    /// Number of names and numbers to read.
+    /// Counts the names and numbers in the expression.
     pub fn weight(&self) -> usize {
         let factors = self.over.iter().chain(&self.under);
         let inner: usize = factors.map(|(atom, _)| atom.weight()).sum();
         inner + usize::from(!self.coefficient.abs().is_one() || inner == 0)
     }
 
-    /// All names, in order of appearance.
+    /// Returns all names, in order of appearance.
     pub fn names(&self) -> Vec<&str> {
         let factors = self.over.iter().chain(&self.under);
         factors.flat_map(|(atom, _)| atom.names()).collect()
@@ -189,7 +189,7 @@ impl Atom {
     }
 }
 
-/// Multiplies `into` by a power that may stand in `against`, the other side of the fraction.
+/// Multiplies `into` by a power, after cancelling it against `against`, the other side of the fraction.
 fn multiply(into: &mut Vec<(Atom, u32)>, against: &mut Vec<(Atom, u32)>, atom: &Atom, power: u32) {
     let mut left = power;
     if let Some(place) = against.iter().position(|(other, _)| other == atom) {

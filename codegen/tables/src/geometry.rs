@@ -12,10 +12,10 @@ use hamel_dynamics::geometry::symmetry::Symmetry;
 use hamel_dynamics::geometry::{Block, Inspection};
 use serde_json::{Value, json as object};
 
-/// Larger mass matrices are not drawn.
+/// Size of the largest mass matrix whose pattern is drawn.
 const MOST_DRAWN: usize = 24;
 
-/// The report as lines of two columns.
+/// Returns the report as lines of two columns.
 pub fn lines(inspection: &Inspection) -> Vec<String> {
     let mut rows = integrability(inspection);
     rows.extend(algebra(inspection));
@@ -106,7 +106,7 @@ fn described(block: &Block) -> String {
     text
 }
 
-/// On which side T is invariant: M is constant in an invariant frame.
+/// Returns the side on which T is invariant: M is constant in a left- or right-invariant frame of a group.
 fn invariant(inspection: &Inspection) -> Option<Side> {
     let is_group = inspection.constant_mass() && inspection.algebra().is_some();
     is_group.then(|| inspection.side()).flatten()
@@ -174,7 +174,7 @@ fn symmetries(inspection: &Inspection) -> Vec<Row> {
     ]
 }
 
-/// The report as JSON.
+/// Returns the report as JSON.
 pub fn json(inspection: &Inspection) -> Value {
     let names = |members: &[usize]| -> Vec<&str> {
         let velocities = members.iter().filter_map(|&i| inspection.velocities.get(i));

@@ -2,9 +2,9 @@
 //!
 //! `{ "hamel": version, "system", "coordinates", "velocities", "tables": { name: { "symbol", "shape",
 //! "nonzero", "entries": [{ "index", "value" }], "groups": [{ "value", "plus", "minus" }],
-//! "constants": [{ "name", "value" }], "temporaries": [{ "name", "value" }] } } }`; entries of φ have
-//! `reads`, entries with a name of their own have `name`. `geometry`, where it was asked for, is
-//! described in `geometry`.
+//! "constants": [{ "name", "value" }], "temporaries": [{ "name", "value" }] } } }`. Entries of φ also
+//! have `reads`, and entries with a name of their own have `name`. If the report on the geometry was
+//! requested, it is in `geometry`, in the format that the module `geometry` describes.
 
 use super::entries::{Definition, Entry, Group};
 use super::listing::Listing;
@@ -12,7 +12,7 @@ use super::print::Notation;
 use super::{Tables, geometry};
 use serde_json::{Value, json as object};
 
-/// All tables as JSON; entries that are zero are among the entries where `all`.
+/// Returns all tables as JSON; if `all`, the entries include those that are zero.
 pub fn json(tables: &Tables, all: bool) -> Value {
     let listings = tables.listings.iter();
     let listings = listings.map(|listing| (listing.table.name().to_string(), table(listing, all)));

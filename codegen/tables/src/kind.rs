@@ -1,6 +1,6 @@
-//! Which tables there are.
+//! The kinds of tables.
 
-/// A table.
+/// A kind of table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Table {
     /// φ(x), ν − n or more rows.
@@ -9,9 +9,9 @@ pub enum Table {
     A,
     /// Y(x), n×ν.
     Y,
-    /// Φ(x), ν−n×ν.
+    /// Φ(x), (ν−n)×ν.
     Gradient,
-    /// Ψ(x), ν×ν−n.
+    /// Ψ(x), ν×(ν−n).
     Psi,
     /// γᵢⱼᵏ.
     Gamma,
@@ -19,19 +19,19 @@ pub enum Table {
     Mass,
     /// Γᵢⱼₖ.
     Connection,
-    /// ξ̇ by the emitted route.
+    /// ξ̇ as it is computed by the generated code.
     Accel,
     /// Γᵢⱼₖ ξʲ ξᵏ.
     Bias,
     /// ∂ᵢV.
     PotentialForce,
-    /// fᵢ of applied loads.
+    /// Generalised forces fᵢ of the applied loads.
     GeneralizedForce,
-    /// ż of the states of first order.
+    /// ż, the rates of the states of first order.
     States,
     /// The outputs of the description.
     Outputs,
-    /// No coefficients, but what they say about the geometry.
+    /// A report on the geometry instead of coefficients.
     Geometry,
 }
 
@@ -172,7 +172,7 @@ const ROWS: [Row; 15] = [
 ];
 
 impl Table {
-    /// What is shown where nothing is asked for; of systems with states of first order, their rates, too.
+    /// Tables shown by default; for systems with states of first order, `States` is shown in addition.
     pub const DEFAULT: [Table; 6] = [
         Table::Phi,
         Table::A,
@@ -182,7 +182,7 @@ impl Table {
         Table::Connection,
     ];
 
-    /// Whether it is about M, which a system without inertia does not have.
+    /// Whether the table depends on M, which a system without inertia does not have.
     pub fn needs_inertia(self) -> bool {
         matches!(
             self,
@@ -196,12 +196,12 @@ impl Table {
             .unwrap_or(&ROWS[0])
     }
 
-    /// The names of all tables.
+    /// Returns the names of all tables.
     pub fn names() -> Vec<&'static str> {
         ROWS.iter().map(|row| row.name).collect()
     }
 
-    /// The table of a name; the error lists the names.
+    /// Returns the table with this name; the error lists all names.
     pub fn parse(name: &str) -> Result<Table, String> {
         let found = ROWS.iter().find(|row| row.name == name.trim());
         found.map(|row| row.table).ok_or_else(|| {
@@ -213,7 +213,7 @@ impl Table {
         })
     }
 
-    /// The tables of a list with commas, `A,gamma,M`.
+    /// Parses a comma-separated list of tables, such as `A,gamma,M`.
     pub fn parse_list(list: &str) -> Result<Vec<Table>, String> {
         list.split(',')
             .filter(|name| !name.trim().is_empty())
@@ -221,32 +221,32 @@ impl Table {
             .collect()
     }
 
-    /// Its name on the command line and in JSON.
+    /// Name on the command line and in JSON.
     pub fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// Its symbol.
+    /// Symbol of the table.
     pub fn symbol(self) -> &'static str {
         self.row().symbol
     }
 
-    /// Its symbol in LaTeX.
+    /// Symbol of the table in LaTeX.
     pub fn latex(self) -> &'static str {
         self.row().latex
     }
 
-    /// The letters of its indices.
+    /// Letters of its indices.
     pub fn indices(self) -> &'static str {
         self.row().indices
     }
 
-    /// What it is, in a few words.
+    /// Short description of the table.
     pub fn title(self) -> &'static str {
         self.row().title
     }
 
-    /// Whether equal values share a row.
+    /// Whether entries with equal values share a row.
     pub fn is_grouped(self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! Tables as LaTeX, one displayed array each; needs amsmath. The report on the geometry is comments.
+//! Tables as LaTeX, one displayed array each; needs amsmath. The report on the geometry is printed as comments.
 
 use super::entries::{Definition, Entry, Group};
 use super::kind::Table;
@@ -8,7 +8,7 @@ use super::print::{Notation, index};
 use super::text::leads;
 use super::{Tables, geometry};
 
-/// All tables as LaTeX; ungrouped and with zeros where `all`.
+/// Prints all tables as LaTeX; if `all`, ungrouped and with zeros.
 pub fn latex(tables: &Tables, all: bool) -> String {
     let mut text = format!("% {}\n", tables.system);
     text.push_str(&display(
@@ -121,13 +121,13 @@ fn single(listing: &Listing, entry: &Entry) -> String {
     format!("{name} & = & {value}")
 }
 
-/// What an entry of a table is called: its label, or its symbol with its indices.
+/// Returns the left-hand side of an entry: its label, or the symbol of the table with the indices.
 pub(super) fn left(listing: &Listing, indices: &[usize], label: &str) -> String {
     let subscript = index(indices, &listing.shape);
     match listing.table {
         _ if !label.is_empty() => latex_name(label),
         Table::PotentialForce => format!(r"\partial_{{{subscript}}} V"),
-        // The third index of γ stands above.
+        // The third index of γ is a superscript.
         Table::Gamma => match indices.split_last() {
             Some((above, below)) => format!(
                 r"\gamma_{{{}}}{{}}^{{{above}}}",

@@ -1,21 +1,21 @@
-//! The symbols of the formalism as tables to read: text, Markdown, LaTeX, JSON.
+//! The symbols of the formalism as tables for people to read: text, Markdown, LaTeX, JSON.
 //!
 #![doc = include_str!("../README.md")]
 //!
 //! | file | owns |
 //! |---|---|
-//! | `kind` | which tables there are, their symbols, shapes and names |
+//! | `kind` | the kinds of tables, with their symbols, shapes and names |
 //! | `collect` | the entries of every table as edges of a graph |
-//! | `simplify`, `circles` | the polynomial shown for an expression, modulo φ |
-//! | `write`, `style` | nodes to expressions; what is shared gets a name |
-//! | `naming` | those names |
-//! | `polish` | polynomials to expressions, common factors in front |
+//! | `simplify`, `circles` | the polynomial that is shown for an expression, modulo φ |
+//! | `write`, `style` | turns nodes into expressions; shared subexpressions get names |
+//! | `naming` | names of shared subexpressions |
+//! | `polish` | turns polynomials into expressions, with common factors in front |
 //! | `expression` | products, sums, calls |
 //! | `listing`, `rows` | entries in order, and grouped by value |
 //! | `geometry` | the report on integrable velocities, Lie algebras, symmetries |
-//! | `regressor` | base parameters, in all four forms |
+//! | `regressor` | base parameters, in all four formats |
 //! | `notation`, `print` | names and expressions as text or LaTeX |
-//! | `text`, `markdown`, `latex`, `json`, `typeset` | a whole set of tables |
+//! | `text`, `markdown`, `latex`, `json`, `typeset` | output of a whole set of tables |
 
 mod circles;
 mod collect;
@@ -53,7 +53,7 @@ use hamel_dynamics::geometry::Inspection;
 use hamel_language::model::Model;
 use hamel_program::Program;
 
-/// The tables that were asked for, ready to be printed.
+/// The requested tables of a system, ready to be printed.
 #[derive(Clone, Debug)]
 pub struct Tables {
     /// Name of the system.
@@ -62,25 +62,25 @@ pub struct Tables {
     pub coordinates: Vec<String>,
     /// Names of ξ, in order.
     pub velocities: Vec<String>,
-    /// The tables, in the order asked for.
+    /// The tables, in the order requested.
     pub listings: Vec<Listing>,
-    /// The report on the geometry, where it was asked for.
+    /// The report on the geometry, if requested.
     pub geometry: Option<Inspection>,
 }
 
-/// A derived system, of which tables are made.
+/// A derived system, from which tables are made.
 #[derive(Clone, Copy, Debug)]
 pub struct Derivation<'a> {
     /// The system in the full frame.
     pub model: &'a Model,
-    /// The same in the velocities that constraints leave.
+    /// The system in the independent velocities that remain after constraints are solved.
     pub active: &'a Model,
     /// Its functions.
     pub program: &'a Program,
 }
 
-/// Derives tables; all of [`Table::DEFAULT`] that the system has where none is named, and the rates of states. The error says which table
-/// cannot be had, and why.
+/// Derives tables. If none is requested: all of [`Table::DEFAULT`] that the system has, plus the rates of states if it
+/// has states. The error says which table is not available, and why.
 pub fn tables(derivation: Derivation, asked: &[Table]) -> Result<Tables, String> {
     let model = derivation.model;
     let of = match asked {

@@ -1,4 +1,4 @@
-//! The entries of a table in order of their indices, and grouped by value as in KR18 (45).
+//! The entries of a table, in order of their indices and grouped by value as in KR18 (45).
 
 use super::entries::{Cell, Definition, Entry, Group};
 use super::expression::Term;
@@ -12,28 +12,28 @@ use super::write::Writer;
 use hamel_algebra::graph::{Edge, Graph};
 use num_rational::BigRational;
 
-/// One table.
+/// One table with its entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Listing {
-    /// Which.
+    /// Kind of the table.
     pub table: Table,
-    /// Its sizes.
+    /// Its sizes, one for each index.
     pub shape: Vec<usize>,
-    /// Every entry that is not zero, by index.
+    /// All nonzero entries, sorted by index.
     pub entries: Vec<Entry>,
-    /// Those that are zero, by index.
+    /// All zero entries, sorted by index.
     pub zeros: Vec<Entry>,
-    /// The same, by value.
+    /// The nonzero entries, grouped by value.
     pub groups: Vec<Group>,
-    /// Temporaries that depend on parameters alone.
+    /// Temporaries that depend on parameters alone; only for the generated code's ξ̇.
     pub constants: Vec<Definition>,
     /// Other temporaries.
     pub temporaries: Vec<Definition>,
 }
 
 impl Listing {
-    /// The entries to list one by one; those that are zero only where `all` are wanted, or where
-    /// each has a name of its own.
+    /// Returns the entries to list one by one. Zero entries are included if `all`, or if each entry
+    /// has a name of its own.
     pub fn listed(&self, all: bool) -> Vec<&Entry> {
         let mut listed: Vec<&Entry> = self.entries.iter().collect();
         if all || matches!(self.table, Table::Accel | Table::States | Table::Outputs) {
@@ -43,13 +43,13 @@ impl Listing {
         listed
     }
 
-    /// Number of entries, zero or not.
+    /// Total number of entries, zero or not.
     pub fn size(&self) -> usize {
         self.entries.len() + self.zeros.len()
     }
 }
 
-/// Writes the cells of a table; `theirs` are the user's names of values.
+/// Writes the cells of a table as expressions; `theirs` are the values that the user named.
 pub fn listing(
     table: Table,
     shape: Vec<usize>,

@@ -1,4 +1,4 @@
-//! Tables as Markdown, expressions in code spans.
+//! Tables as Markdown, with expressions in code spans.
 
 use super::entries::Definition;
 use super::listing::Listing;
@@ -6,7 +6,7 @@ use super::print::Notation;
 use super::text::{indices, label, leads, summary};
 use super::{Table, Tables, geometry};
 
-/// All tables as Markdown; ungrouped and with zeros where `all`.
+/// Prints all tables as Markdown; if `all`, ungrouped and with zeros.
 pub fn markdown(tables: &Tables, all: bool) -> String {
     let mut text = format!("# {}\n\n", tables.system);
     text.push_str(&format!(

@@ -1,5 +1,5 @@
-//! Names of temporaries: t1, t2 … for values, k1, k2 … for those of parameters alone, or as the user
-//! named them.
+//! Names of temporaries: `k1`, `k2` … for values that depend on parameters alone, `t1`, `t2` … for others, or the
+//! names that the user gave.
 
 use super::entries::Definition;
 use super::expression::Term;
@@ -20,7 +20,7 @@ pub struct Temporaries {
 }
 
 impl Temporaries {
-    /// Names that no symbol of the graph has; `theirs` are the user's own.
+    /// Creates an empty list whose names differ from all symbols of the graph; `theirs` are the user's names.
     pub fn new(graph: &Graph, roots: &[Edge], theirs: &[(String, Edge)]) -> Self {
         let symbols = graph.symbols().iter().map(|symbol| symbol.name.as_str());
         let taken: Vec<&str> = symbols
@@ -55,7 +55,7 @@ impl Temporaries {
         self.named.contains(&id)
     }
 
-    /// Names a value, and gives what is written in its place.
+    /// Names a value, and returns the expression to write in its place.
     pub fn claim(&mut self, id: NodeId, value: Term, constant: bool) -> Term {
         self.named.insert(id);
         let (name, negative) = match self.theirs.get(&id) {
@@ -84,13 +84,13 @@ impl Temporaries {
         Term::name(&name).signed(negative)
     }
 
-    /// Constants, then values, each in order of definition.
+    /// Returns the constants and the other values, each in order of definition.
     pub fn definitions(self) -> (Vec<Definition>, Vec<Definition>) {
         (self.constants, self.values)
     }
 }
 
-/// `prefix`, doubled until no taken name is it with a number behind.
+/// Repeats `prefix` until no taken name begins with it and a digit.
 fn free_prefix(prefix: &str, taken: &[&str]) -> String {
     let mut chosen = prefix.to_string();
     let clashes = |chosen: &str| {

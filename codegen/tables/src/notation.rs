@@ -1,9 +1,9 @@
-//! Names of the description in LaTeX.
+//! LaTeX for the names of a description.
 
 #[cfg(test)]
 mod tests;
 
-/// Letters that have a command of their own, as they are spelled and as they look.
+/// Greek letters: name of the LaTeX command, and the letter.
 const GREEK: &[(&str, &str)] = &[
     ("alpha", "α"),
     ("beta", "β"),
@@ -44,7 +44,7 @@ const GREEK: &[(&str, &str)] = &[
     ("Omega", "Ω"),
 ];
 
-/// A name with its indices: `s[1]` is s_{1}, `Theta[1,2]` is \Theta_{12}, `q.c` is q_c, `T.p[1]` is
+/// Converts a name with its indices to LaTeX: `s[1]` is s_{1}, `Theta[1,2]` is \Theta_{12}, `q.c` is q_c, `T.p[1]` is
 /// T_{p,1}, `v_dot[1]` is \dot{v}_{1}, `q_dot_dot` is \ddot{q}, `m1` is m_{1}, `th1` is \mathrm{th1}.
 pub fn latex_name(name: &str) -> String {
     let (path, index) = match name.split_once('[') {
@@ -79,7 +79,7 @@ pub fn latex_name(name: &str) -> String {
     }
 }
 
-/// What a name is the rate of, and how often it is differentiated: the rate of a velocity `q_dot` is `q_dot_dot`.
+/// Removes `_dot` from a name and counts how often (0 to 2): `q_dot_dot` is the rate of the velocity `q_dot`.
 fn undot(name: &str) -> (&str, usize) {
     let once = |name| str::strip_suffix(name, "_dot").filter(|rest| !rest.is_empty());
     match once(name) {
@@ -91,7 +91,7 @@ fn undot(name: &str) -> (&str, usize) {
     }
 }
 
-/// A head and the subscripts that are part of the name: `m1`, `alpha_2`, `l_rod`.
+/// Splits a name into a head and the subscripts that are part of it: `m1`, `alpha_2`, `l_rod`.
 fn split(name: &str) -> (String, Vec<String>) {
     if let Some((head, rest)) = name.split_once('_')
         && !head.is_empty()
@@ -110,7 +110,7 @@ fn split(name: &str) -> (String, Vec<String>) {
     }
 }
 
-/// One letter, or the command of a Greek one.
+/// Returns a single letter, or the command of a Greek one.
 fn letter(text: &str) -> Option<String> {
     if let Some((name, _)) = GREEK
         .iter()
@@ -123,7 +123,7 @@ fn letter(text: &str) -> Option<String> {
     (letters.next().is_none() && first.is_ascii_alphabetic()).then(|| first.to_string())
 }
 
-/// A letter, digits, or an upright word.
+/// Returns a letter, digits, or an upright word.
 fn word(text: &str) -> String {
     if text.chars().all(|c| c.is_ascii_digit()) {
         return text.to_string();

@@ -1,4 +1,4 @@
-//! From polynomials to expressions as a person would write them.
+//! Turns polynomials into expressions as a person would write them.
 //!
 //! m s₁ + m s₂ becomes m (s₁ + s₂), ½ a − ½ b becomes ½ (a − b); terms are sorted by their symbols in
 //! order of declaration, and a sum begins with a positive term.
@@ -21,14 +21,14 @@ pub struct Letters<'a> {
     pub is_free: &'a dyn Fn(Var) -> bool,
 }
 
-/// The terms, those in symbols declared first before others.
+/// Returns the terms in reading order: those in symbols that are declared first come first.
 pub fn sorted(polynomial: &Poly<BigRational>) -> Vec<(Monomial, BigRational)> {
     let mut terms = polynomial.terms().to_vec();
     terms.sort_by(|(a, _), (b, _)| reading_order(a, b));
     terms
 }
 
-/// By the power of the first variable in which two monomials differ, higher powers first.
+/// Compares the powers of the first variable in which two monomials differ; higher powers come first.
 fn reading_order(a: &Monomial, b: &Monomial) -> Ordering {
     let (mut left, mut right) = (a.powers().iter(), b.powers().iter());
     loop {
@@ -46,8 +46,8 @@ fn reading_order(a: &Monomial, b: &Monomial) -> Ordering {
     }
 }
 
-/// Whether −f reads better than f as the value of a row: as few positive terms as there can be,
-/// but one at least, as in KR18 (45); the first term positive where that does not decide.
+/// Whether −f reads better than f as the value of a row: the form with fewer positive terms is better,
+/// if it has at least one, as in KR18 (45); in case of a tie the first term should be positive.
 pub fn reads_better_negated(polynomial: &Poly<BigRational>) -> bool {
     let terms = sorted(polynomial);
     let positive = terms.iter().filter(|(_, c)| c.is_positive()).count();
@@ -60,7 +60,7 @@ pub fn reads_better_negated(polynomial: &Poly<BigRational>) -> bool {
     }
 }
 
-/// The expression of a polynomial, common factors in front.
+/// Returns the expression of a polynomial, with common factors in front.
 pub fn polish(polynomial: &Poly<BigRational>, letters: &Letters) -> Term {
     match split(polynomial, letters) {
         Some((constant, varying)) => {
@@ -76,8 +76,8 @@ pub fn polish(polynomial: &Poly<BigRational>, letters: &Letters) -> Term {
     }
 }
 
-/// A polynomial that is a product of one in run-time constants and one in the rest, neither a
-/// single term: (m₁ + m₂)(x − y).
+/// Factors a polynomial into one in run-time constants and one in the other variables, neither a
+/// single term: (m₁ + m₂)(x − y). `None` if that is not possible.
 fn split(
     polynomial: &Poly<BigRational>,
     letters: &Letters,
@@ -88,7 +88,7 @@ fn split(
         parts.entry(varying).or_default().push((constant, c));
     }
     let mut base = parts.values().next()?.clone();
-    // Signs are left to the varying factor.
+    // The first term becomes positive; signs go to the varying factor.
     if base.first().is_some_and(|(_, c)| c.is_negative()) {
         base = base.into_iter().map(|(m, c)| (m, -c)).collect();
     }
@@ -111,7 +111,7 @@ fn split(
     ))
 }
 
-/// The factors that are constant at run time, and the others.
+/// Splits a monomial into the factors that are constant at run time, and the others.
 fn halves(monomial: &Monomial, letters: &Letters) -> (Monomial, Monomial) {
     let powers = monomial.powers().iter().copied();
     let (constant, varying): (Vec<_>, Vec<_>) = powers.partition(|&(v, _)| (letters.is_free)(v));
@@ -121,7 +121,7 @@ fn halves(monomial: &Monomial, letters: &Letters) -> (Monomial, Monomial) {
     )
 }
 
-/// Terms sorted by what varies first, a common monomial and a common number in front.
+/// Writes the terms sorted by their varying factors first, with a common monomial and a common number in front.
 fn plain(polynomial: &Poly<BigRational>, letters: &Letters) -> Term {
     let mut terms = polynomial.terms().to_vec();
     terms.sort_by(|(a, _), (b, _)| {
@@ -149,7 +149,7 @@ fn plain(polynomial: &Poly<BigRational>, letters: &Letters) -> Term {
     product(&common, &number, atom).times(&inner)
 }
 
-/// n/d for numerators with the common factor n and all denominators d.
+/// Returns n/d if all denominators are d, where n is the greatest common divisor of the numerators; else 1.
 fn common_number(terms: &[(Monomial, BigRational)]) -> BigRational {
     let mut numbers = terms.iter().map(|(_, c)| c);
     let Some(first) = numbers.next() else {

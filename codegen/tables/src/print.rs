@@ -5,17 +5,17 @@ use super::notation::latex_name;
 use hamel_algebra::graph::Function;
 use num_traits::{One, Signed};
 
-/// A way to write expressions.
+/// A notation for expressions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Notation {
-    /// `(Theta[1,1] - Theta[2,2])/2`, as the language reads it.
+    /// `(Theta[1,1] - Theta[2,2])/2`, in the syntax of descriptions.
     Text,
     /// `\tfrac{1}{2}(\Theta_{11} - \Theta_{22})`
     Latex,
 }
 
 impl Notation {
-    /// An expression.
+    /// Prints an expression.
     pub fn term(self, term: &Term) -> String {
         let sign = if term.is_negative() { "-" } else { "" };
         format!("{sign}{}", self.unsigned(term))
@@ -51,7 +51,7 @@ impl Notation {
         text
     }
 
-    /// A term behind a sign: a sum needs parentheses there.
+    /// Prints a term after a sign, where a sum needs parentheses.
     fn unsigned_operand(self, term: &Term) -> String {
         let positive = Term {
             coefficient: term.coefficient.abs(),
@@ -124,7 +124,7 @@ impl Notation {
         }
     }
 
-    /// a where c > 0, else b.
+    /// Prints a selection: a if c > 0, otherwise b.
     fn choice(self, arguments: &[Term]) -> String {
         let [c, a, b] = arguments else {
             return self.arguments(arguments);
@@ -202,7 +202,7 @@ fn latex_product(term: &Term, number: &num_rational::BigRational) -> String {
     )
 }
 
-/// A numerator or denominator; a sum that is all of it needs no parentheses.
+/// Prints a numerator or denominator; a sum that is its only factor needs no parentheses.
 fn alone(factors: &[(Atom, u32)], written: Vec<String>) -> String {
     if let ([(Atom::Sum(terms), 1)], [_]) = (factors, written.as_slice()) {
         return Notation::Latex.sum(terms);
@@ -210,7 +210,7 @@ fn alone(factors: &[(Atom, u32)], written: Vec<String>) -> String {
     juxtaposed(&written)
 }
 
-/// Factors side by side; between words there is a gap.
+/// Joins factors; factors that are words are separated by a gap.
 fn juxtaposed(factors: &[String]) -> String {
     let is_word = |factor: &String| factor.contains(r"\mathrm");
     let mut text = String::new();
@@ -224,7 +224,7 @@ fn juxtaposed(factors: &[String]) -> String {
     text
 }
 
-/// Indices from 1: `135` where every size is at most 9, else `1,3,15`.
+/// Prints indices, which are counted from 1: `135` if every size is at most 9, else `1,3,15`.
 pub fn index(index: &[usize], shape: &[usize]) -> String {
     let digits: Vec<String> = index.iter().map(usize::to_string).collect();
     digits.join(if shape.iter().all(|&size| size <= 9) {

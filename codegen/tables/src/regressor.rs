@@ -17,11 +17,11 @@ use num_integer::Integer;
 use num_rational::BigRational;
 use serde_json::{Value, json as object};
 
-/// Most decimal places of a factor that is not written as a fraction.
+/// Largest number of decimal places of a factor; others are written as fractions.
 const MOST_PLACES: u32 = 12;
 
-/// The pseudo-inertia [[tr(Θ)/2 I − Θ, h], [hᵀ, m]] of a link by its ten standard parameters, positive definite for every
-/// body (Wensing, Kim and Slotine 2018).
+/// Returns the pseudo-inertia `[[tr(Θ)/2 I − Θ, h], [hᵀ, m]]` of a link from its ten standard parameters. It is
+/// positive definite for every physical body (Wensing, Kim and Slotine 2018).
 pub fn pseudo_inertia(ten: [f64; 10]) -> [[f64; 4]; 4] {
     let [xx, xy, xz, yy, yz, zz, x, y, z, m] = ten;
     let half = (xx + yy + zz) / 2.0;
@@ -33,27 +33,27 @@ pub fn pseudo_inertia(ten: [f64; 10]) -> [[f64; 4]; 4] {
     ]
 }
 
-/// A base parameter with its factors written out.
+/// A base parameter with its factors as expressions.
 struct Row {
     name: String,
     kind: Kind,
     value: f64,
-    /// Place of the parameter, factor, and its number.
+    /// Terms of the sum: index of the standard parameter, factor, and the factor's number.
     terms: Vec<(usize, Term, f64)>,
-    /// The same sum as it is written: Θ_xx, Θ_yy and Θ_zz of a link as second moments where there are fewer of these.
+    /// The same sum as it is shown: with second moments instead of Θ_xx, Θ_yy and Θ_zz of a link if that is shorter.
     shown: Vec<(Shown, Term)>,
 }
 
-/// A parameter in a sum.
+/// A parameter as shown in a sum.
 #[derive(Clone, Copy)]
 enum Shown {
-    /// A standard parameter.
+    /// A standard parameter, by its index.
     Standard(usize),
-    /// Σ_xx, Σ_yy or Σ_zz of the link that this standard parameter is of.
+    /// Σ_xx, Σ_yy or Σ_zz of a link: index of the link's first standard parameter, and axis.
     Moment(usize, usize),
 }
 
-/// What is shown of a sum of standard parameters.
+/// Returns a sum of standard parameters as it is shown.
 fn shown(graph: &mut Graph, standard: &[Standard], terms: &[(usize, Edge)]) -> Vec<(Shown, Edge)> {
     let zero = graph.zero();
     let first = |k: usize| match standard[k].kind {
@@ -89,7 +89,7 @@ fn shown(graph: &mut Graph, standard: &[Standard], terms: &[(usize, Edge)]) -> V
     all
 }
 
-/// What is printed.
+/// The base parameters of a system, ready to be printed.
 pub struct BaseParameters {
     system: String,
     velocities: usize,
@@ -100,12 +100,12 @@ pub struct BaseParameters {
     idle: Vec<usize>,
     besides: Vec<&'static str>,
     definitions: Vec<Definition>,
-    /// What Y costs: products, sums and quotients.
+    /// Cost of evaluating Y: number of products, sums and quotients.
     operations: usize,
 }
 
 impl BaseParameters {
-    /// Writes the base parameters out; `π` stands for its number, run-time parameters for their defaults.
+    /// Writes out the base parameters. Numeric values use the default values of run-time parameters, and the number π.
     pub fn new(regressor: &Regressor) -> Self {
         let model = &regressor.model;
         let mut graph = model.graph.clone();
@@ -161,27 +161,28 @@ impl BaseParameters {
         }
     }
 
-    /// The standard parameters: ten of each link, and behind them those of joints.
+    /// The standard parameters: ten for each link, followed by those of joints.
     pub fn standard(&self) -> &[Standard] {
         &self.standard
     }
 
-    /// Their values in the description.
+    /// Values of the standard parameters in the description.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The frames that stand for links.
+    /// Names of the frames that represent the links.
     pub fn links(&self) -> &[String] {
         &self.links
     }
 
-    /// What the base parameters are called.
+    /// Names of the base parameters.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.rows.iter().map(|row| row.name.as_str())
     }
 
-    /// β = K π: for each base parameter the places and factors of its terms.
+    /// Returns K in β = K π, where π are the standard parameters: indices and factors of the terms of each base
+    /// parameter.
     pub fn map(&self) -> Vec<Vec<(usize, f64)>> {
         let row = |row: &Row| {
             row.terms
@@ -192,7 +193,7 @@ impl BaseParameters {
         self.rows.iter().map(row).collect()
     }
 
-    /// Base parameters of inertia, and of joints.
+    /// Counts the base parameters of inertia and those of joints.
     fn counts(&self) -> (usize, usize) {
         let inertial = |row: &&Row| matches!(row.kind, Kind::Inertia(_));
         let own = self.rows.iter().filter(inertial).count();
@@ -214,7 +215,7 @@ impl BaseParameters {
         )
     }
 
-    /// Whether the pseudo-inertia of a link is positive definite in the description, by Cholesky's elimination.
+    /// Whether the pseudo-inertia of a link in the description is positive definite, by Cholesky factorization.
     fn is_consistent(&self, link: usize) -> bool {
         let mut rows = pseudo_inertia(std::array::from_fn(|k| self.values[10 * link + k]));
         for k in (0..4).rev() {
@@ -236,7 +237,7 @@ impl BaseParameters {
         names.join(", ")
     }
 
-    /// The factor, the sign apart; empty for 1.
+    /// Returns the sign and the absolute value of a factor; the value is empty for 1.
     fn factor(term: &Term, notation: Notation) -> (char, String) {
         let sign = if term.is_negative() { '-' } else { '+' };
         let positive = if term.is_negative() {
@@ -280,7 +281,7 @@ impl BaseParameters {
     }
 }
 
-/// A positive number with few decimal places, written with a point; exact.
+/// Returns a positive non-integer number as an exact decimal, if it has few decimal places.
 fn decimal(term: &Term) -> Option<String> {
     if !term.over.is_empty() || !term.under.is_empty() || term.coefficient.is_integer() {
         return None;
@@ -301,7 +302,7 @@ fn decimal(term: &Term) -> Option<String> {
 
 const CONDITIONS: &str = "Physically consistent where for each link the pseudo-inertia [[tr(Theta)/2 I - Theta, h], [h^T, m]] is positive definite";
 
-/// As text.
+/// Prints the base parameters as text.
 pub fn text(all: &BaseParameters) -> String {
     let mut text = format!("{}: {}\n", all.system, all.summary());
     text.push_str("F = Y(x, xi, xi_dot) beta: the force that a motion needs; Theta about the frame's origin, h = m s, Sigma = tr(Theta)/2 I - Theta\n");
@@ -324,7 +325,7 @@ pub fn text(all: &BaseParameters) -> String {
     text
 }
 
-/// What has no effect, what else acts, and the conditions.
+/// Lists the parameters without effect, the other forces that act, and the conditions of physical consistency.
 fn rest(all: &BaseParameters, between: &str) -> String {
     let mut text = String::new();
     if !all.idle.is_empty() {
@@ -354,7 +355,7 @@ fn rest(all: &BaseParameters, between: &str) -> String {
     text
 }
 
-/// As Markdown.
+/// Prints the base parameters as Markdown.
 pub fn markdown(all: &BaseParameters) -> String {
     let mut text = format!("## {}\n\n{}\n\n", all.system, all.summary());
     for definition in &all.definitions {
@@ -376,7 +377,7 @@ pub fn markdown(all: &BaseParameters) -> String {
     text
 }
 
-/// As LaTeX, in lines of an `align*`.
+/// Prints the base parameters as LaTeX, in lines of an `align*`.
 pub fn latex(all: &BaseParameters) -> String {
     let mut text = format!("% {}: {}\n\\begin{{align*}}\n", all.system, all.summary());
     let definitions = all.definitions.iter().map(|definition| {
@@ -396,7 +397,7 @@ pub fn latex(all: &BaseParameters) -> String {
     text
 }
 
-/// Θ_xx of a link as Θ_{xx}^{\text{link}}.
+/// Returns the LaTeX symbol of a standard parameter, such as Θ_{xx}^{\text{link}} for Θ_xx of a link.
 fn symbol(standard: &Standard) -> String {
     let of = standard.of.replace('_', r"\_");
     let own = match standard.kind {
@@ -413,7 +414,7 @@ fn symbol(standard: &Standard) -> String {
     format!(r"{own}^{{\text{{{of}}}}}")
 }
 
-/// As JSON.
+/// Returns the base parameters as JSON.
 pub fn json(all: &BaseParameters) -> Value {
     let standard: Vec<Value> = all
         .standard

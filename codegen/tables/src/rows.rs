@@ -1,4 +1,4 @@
-//! Rows of a table: entries with one value up to its sign.
+//! Rows of a table: entries that have the same value up to sign.
 
 use super::entries::{Cell, Group};
 use super::expression::Term;
@@ -11,19 +11,19 @@ use num_traits::Signed;
 use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
 
-/// One value up to its sign.
+/// A value of one or more entries, up to sign.
 pub struct Row {
     /// The value as an edge.
     pub edge: Edge,
-    /// The value.
+    /// The value as an expression.
     pub value: Term,
-    /// Its negative.
+    /// The negative of the value as an expression.
     pub opposite: Term,
-    /// The value as a polynomial, where it is shown as one.
+    /// The value as a polynomial, if it is shown as one.
     pub polynomial: Option<Poly<BigRational>>,
-    /// Indices of the entries that have it.
+    /// Indices of the entries with this value.
     pub plus: Vec<Vec<usize>>,
-    /// Indices of those that have its negative.
+    /// Indices of the entries with the negative of this value.
     pub minus: Vec<Vec<usize>>,
 }
 
@@ -39,7 +39,7 @@ impl Row {
         }
     }
 
-    /// The row as it is shown: where only the negative occurs, that is the value.
+    /// Returns the row as it is shown: if only the negative occurs, the negative becomes the value.
     pub fn group(self) -> Group {
         if self.plus.is_empty() {
             return Group {
@@ -56,16 +56,16 @@ impl Row {
     }
 }
 
-/// What tells rows apart.
+/// Key by which entries are assigned to rows.
 #[derive(PartialEq, Eq, Hash)]
 enum Key {
     Value(Fp),
     Node(NodeId),
 }
 
-/// For every cell that is not zero its row, and whether it has the row's negative. Values are equal
-/// where they agree at the graph's point, or with square roots below them are one node; the expression without coordinates
-/// is kept.
+/// Assigns each nonzero cell to a row, and tells whether it has the negative of the row's value; `None` for zero cells.
+/// Two values are equal if they agree at the graph's point; if they contain square roots, they must be the same node.
+/// Of equal expressions, the row keeps one that is constant at run time if there is one.
 pub fn rows(cells: &[Cell], graph: &Graph) -> (Vec<Row>, Vec<Option<(usize, bool)>>) {
     let mut rows: Vec<Row> = Vec::new();
     let mut known: FxHashMap<Key, (usize, bool)> = FxHashMap::default();
@@ -76,7 +76,7 @@ pub fn rows(cells: &[Cell], graph: &Graph) -> (Vec<Row>, Vec<Option<(usize, bool
             continue;
         }
         let value = graph.value(cell.edge);
-        // Nodes that the graph does not merge are their own key.
+        // These cannot be told apart by value, and the graph does not merge them: the node is the key.
         let (key, negative) = if value.is_zero() || graph.has_root_below(cell.edge) {
             (Key::Node(cell.edge.node()), cell.edge.is_negative())
         } else if value.is_negative() {
@@ -101,7 +101,7 @@ pub fn rows(cells: &[Cell], graph: &Graph) -> (Vec<Row>, Vec<Option<(usize, bool
     (rows, places)
 }
 
-/// Polynomials before the rest, short ones first, then by their symbols and signs.
+/// Order of rows: polynomials first, short ones before long ones, then by symbols, signs and numbers.
 pub fn order(a: &Row, b: &Row) -> Ordering {
     let first = |row: &Row| {
         row.plus

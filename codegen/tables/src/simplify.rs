@@ -1,4 +1,4 @@
-//! The polynomial that is shown for an expression: as it stands, or in normal form modulo φ.
+//! Chooses the polynomial that is shown for an expression: as it stands, or in normal form modulo φ.
 
 use super::circles::{pairs, shortened};
 use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
@@ -12,35 +12,35 @@ use hamel_language::model::points::Points;
 use num_rational::BigRational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Longest polynomial that is shown as one.
+/// Largest number of terms of a polynomial that is shown.
 pub const MOST_SHOWN: usize = 60;
 
-/// Longest polynomial on the way to one that is shown, as it stands.
+/// Largest number of terms of an intermediate polynomial when an expression is expanded as it stands.
 const MOST_EXPANDED: usize = 100;
 
-/// Expressions without a short polynomial after which polynomials on the way may be no longer than those that are shown:
-/// of a long chain no entry has one, and to find that out takes long for each.
+/// Number of expressions without a short polynomial after which intermediate polynomials are limited to the length of
+/// those that are shown. For a long chain no entry has a short polynomial, and finding that out is slow for each.
 const MOST_FAILURES: usize = 100;
 
-/// Longest polynomial that is expanded inside an expression that is not.
+/// Largest number of terms of a polynomial inside an expression that is not itself a polynomial.
 const MOST_INSIDE: usize = 8;
 
 /// Simplification of the expressions of one graph.
 pub struct Simplifier {
     expander: Expander,
     forms: Option<NormalForms>,
-    /// Expressions that had no short polynomial.
+    /// Number of expressions that had no short polynomial.
     failures: usize,
-    /// The symbol of x₁.
+    /// Symbol of x₁.
     first: NodeId,
-    /// The block of every coordinate.
+    /// Block index of every coordinate.
     blocks: Vec<usize>,
     kinds: Vec<Block>,
     inside: BTreeMap<Var, BTreeSet<usize>>,
 }
 
 impl Simplifier {
-    /// Simplification modulo φ.
+    /// Creates a simplifier that works modulo φ.
     pub fn modulo(points: &Points) -> Self {
         let forms = Some(NormalForms::new(points));
         Simplifier {
@@ -49,7 +49,7 @@ impl Simplifier {
         }
     }
 
-    /// Expansion only: for φ itself, and for functions as they are emitted.
+    /// Creates a simplifier that only expands: for φ itself, and for functions as they are generated.
     pub fn free(points: &Points) -> Self {
         let numbered = points.blocks.iter().enumerate();
         Simplifier {
@@ -65,8 +65,8 @@ impl Simplifier {
         }
     }
 
-    /// The polynomial to show: of the candidates that with fewest blocks of coordinates, then
-    /// fewest coordinates, then fewest terms; `None` where all are too long.
+    /// Returns the polynomial to show: the candidate with the fewest blocks of coordinates, then the
+    /// fewest coordinates, then the fewest terms; `None` if that is too long.
     pub fn whole(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
         let shortest = self.shortest(graph, node);
         if shortest.is_none() {
@@ -94,7 +94,7 @@ impl Simplifier {
                     shortened(candidate.clone(), &pairs)
                 })
                 .collect();
-            // A candidate as it stands is taken where it is as good as one in which squares on circles are replaced.
+            // The first candidate also stays as it is: in a tie it wins over those with squares on circles replaced.
             candidates.truncate(1);
             candidates.extend(shorter);
         }
@@ -104,7 +104,7 @@ impl Simplifier {
             .collect();
         let least = (0..candidates.len()).min_by_key(|&candidate| costs[candidate])?;
         let best = candidates.swap_remove(least);
-        // Products with quotients are shorter as they are than multiplied out.
+        // Products that contain quotients are shorter when they are not multiplied out.
         let quotient = |var: Var| {
             let id = var.checked_sub(OPAQUE);
             id.is_some_and(|id| matches!(graph.node(id), Node::Div(..)))
@@ -116,7 +116,7 @@ impl Simplifier {
         (best.terms().len() <= most).then_some(best)
     }
 
-    /// The polynomial of a part of a longer expression.
+    /// Returns the polynomial of a part of a longer expression, if it is short.
     pub fn part(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
         let plain = self.expander.expand(graph, Edge::of(node))?;
         (plain.terms().len() <= MOST_INSIDE).then_some(plain)
@@ -131,7 +131,7 @@ impl Simplifier {
         (blocks.len(), coordinates.len(), polynomial.terms().len())
     }
 
-    /// The coordinates that a variable is written in.
+    /// Returns the coordinates on which a variable depends.
     fn coordinates(&mut self, graph: &Graph, var: Var) -> BTreeSet<usize> {
         let (first, count) = (self.first, self.blocks.len());
         let place = |symbol: u32| {

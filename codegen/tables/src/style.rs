@@ -1,16 +1,16 @@
-//! How expressions are cut into named values.
+//! How expressions are divided into named values.
 
-/// When a value is named.
+/// The rules by which values are named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// Tables: polynomials where they are short enough, temporaries in what is left.
+    /// Tables: polynomials if they are short enough, otherwise expressions with temporaries.
     Table,
-    /// The emitted route: sums and products as they are computed, parameter-only values named.
+    /// Generated code: sums and products as they are computed; values that depend on parameters alone are named.
     Route,
 }
 
 impl Style {
-    /// The least weight of a value that is named because it is read twice.
+    /// Smallest weight of a value that is named because it is used more than once.
     pub fn shared(self) -> usize {
         match self {
             Style::Table => 4,
@@ -18,7 +18,7 @@ impl Style {
         }
     }
 
-    /// The most weight of a value that is read once.
+    /// Largest weight of a value that is used once and not named.
     pub fn longest(self) -> usize {
         match self {
             Style::Table => 40,

@@ -5,10 +5,10 @@ use super::listing::Listing;
 use super::print::{Notation, index};
 use super::{Table, Tables, geometry};
 
-/// Widest value that indices are aligned behind.
+/// Largest width of a value that counts for the alignment of the indices after it.
 const WIDEST: usize = 60;
 
-/// All tables as text; ungrouped and with zeros where `all`.
+/// Prints all tables as text; if `all`, ungrouped and with zeros.
 pub fn text(tables: &Tables, all: bool) -> String {
     let mut text = format!("{}\n", tables.system);
     text.push_str(&format!("x = ({})\n", tables.coordinates.join(", ")));
@@ -47,12 +47,12 @@ pub fn text(tables: &Tables, all: bool) -> String {
     text
 }
 
-/// Whether temporaries stand before what uses them: in straight-line code.
+/// Whether temporaries are listed before the entries that use them, as in straight-line code.
 pub fn leads(listing: &Listing) -> bool {
     listing.table == Table::Accel
 }
 
-/// `6×6×6, 48 of 216 nonzero`
+/// Prints the size of a table, such as `6×6×6, 48 of 216 nonzero`.
 pub fn summary(listing: &Listing) -> String {
     let sizes: Vec<String> = listing.shape.iter().map(usize::to_string).collect();
     let size = match sizes.as_slice() {
@@ -68,13 +68,13 @@ pub fn summary(listing: &Listing) -> String {
     }
 }
 
-/// The indices of some entries, `135 216 324`.
+/// Prints the indices of some entries, such as `135 216 324`.
 pub fn indices(list: &[Vec<usize>], shape: &[usize]) -> String {
     let written: Vec<String> = list.iter().map(|entry| index(entry, shape)).collect();
     written.join(" ")
 }
 
-/// What stands left of an entry's value: `gamma[1,2,3]`, or its own name.
+/// Returns the left-hand side of an entry: `gamma[1,2,3]`, or its own name.
 pub fn label(listing: &Listing, entry: &Entry) -> String {
     if entry.label.is_empty() {
         let digits: Vec<String> = entry.index.iter().map(usize::to_string).collect();

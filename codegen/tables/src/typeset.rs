@@ -1,8 +1,8 @@
-//! Tables as JSON whose formulas are LaTeX, for pages that set them by themselves.
+//! Tables as JSON with formulas in LaTeX, for web pages that typeset them.
 //!
 //! `{ "system", "coordinates", "velocities", "tables": [{ "name", "symbol", "title", "size", "nonzero", "groups":
-//! [{ "value", "plus", "minus" }], "entries": [{ "left", "value", "reads" }], "before", "after" }] }`. Entries that are
-//! grouped by value are lists of `{ "index", "left" }`; temporaries stand before or after the entries.
+//! [{ "value", "plus", "minus" }], "entries": [{ "left", "value", "reads" }], "before", "after" }] }`. In groups,
+//! `plus` and `minus` are lists of `{ "index", "left" }`; temporaries are listed in `before` or `after` the entries.
 
 use super::Tables;
 use super::entries::Definition;
@@ -13,7 +13,7 @@ use super::print::{Notation, index};
 use super::text::leads;
 use serde_json::{Value, json};
 
-/// All tables, with entries of one value in a group where that is how a table reads best.
+/// Returns all tables; entries with equal values are grouped in the kinds of tables that read best that way.
 pub fn typeset(tables: &Tables) -> Value {
     let names = |list: &[String]| -> Vec<String> { list.iter().map(|n| latex_name(n)).collect() };
     json!({

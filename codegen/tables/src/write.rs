@@ -1,7 +1,7 @@
-//! From nodes of the graph to expressions, shared subexpressions as named temporaries.
+//! Turns nodes of the graph into expressions, with shared subexpressions as named temporaries.
 //!
-//! First it is planned how each node is shown and how often it is read, then expressions are built
-//! from the leaves up; nothing is recursive, since graphs are deep.
+//! First a plan is made of how each node is shown and how often it is used, then expressions are built
+//! from the leaves up. Nothing is recursive, since graphs are deep.
 
 use super::entries::Definition;
 use super::expression::{Atom, Term};
@@ -37,7 +37,7 @@ pub struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// A writer for expressions of a graph.
+    /// Creates a writer for expressions of a graph.
     pub fn new(
         graph: &'a Graph,
         simplifier: &'a mut Simplifier,
@@ -56,7 +56,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Prepares the expressions of all roots; `value` and `polynomial` then give them.
+    /// Prepares the expressions of all roots, which `value` and `polynomial` then return.
     pub fn prepare(&mut self, roots: &[Edge]) {
         self.plan(roots);
         for root in roots {
@@ -64,12 +64,12 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The expression of a root.
+    /// Returns the expression of a root.
     pub fn value(&self, root: Edge) -> Term {
         self.known(root.node()).signed(root.is_negative())
     }
 
-    /// The polynomial of a root that is shown as one, and has no name.
+    /// Returns the polynomial of a root that is shown as one and has no name.
     pub fn polynomial(&self, root: Edge) -> Option<Poly<BigRational>> {
         if self.is_named(root.node()) {
             return None;
@@ -92,7 +92,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A polynomial in what has been written, polished.
+    /// Polishes a polynomial in variables that have been written.
     pub fn polish(&self, polynomial: &Poly<BigRational>) -> Term {
         let is_free = |var| self.graph.is_free(variable_node(self.graph, var).node());
         let letters = Letters {
@@ -102,7 +102,7 @@ impl<'a> Writer<'a> {
         polish(polynomial, &letters)
     }
 
-    /// The names that were given, with their values: first what depends on parameters alone.
+    /// Returns the named values: those that depend on parameters alone, then the others.
     pub fn definitions(self) -> (Vec<Definition>, Vec<Definition>) {
         self.names.definitions()
     }
@@ -195,7 +195,7 @@ impl<'a> Writer<'a> {
             Node::Div(a, b) => self.value(a).divided(&self.value(b)),
             Node::Apply(function, a) => call(function, vec![self.value(a)]),
             Node::Atan2(y, x) => call(Function::Atan2, vec![self.value(y), self.value(x)]),
-            // Read by what is called alone.
+            // Read only by the call that it belongs to.
             Node::Listed(..) => Term::number(BigRational::one()),
             Node::External(component, list) => {
                 let name = self.graph.called(component, "");
@@ -214,7 +214,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The name of a value that deserves one, or the value itself.
+    /// Returns the name of a value if it should have one, or else the value itself.
     fn named(&mut self, id: NodeId, term: Term) -> Term {
         if matches!(self.plans.get(&id), Some(Plan::Leaf)) {
             return term;

@@ -1,6 +1,7 @@
-//! The centre of mass and the momentum about it at a point modulo p, in numbers from the definitions: rates of centres
-//! and of axes by dual numbers along ẋ; the columns of A_G are the slopes of the momentum by ξ, the bias its slope along
-//! ẋ at ξ̇ = 0.
+//! The centre of mass and the momentum about it at a point modulo p, in numbers from their definitions.
+//!
+//! Rates of centres and of axes are taken by dual numbers along ẋ; the columns of A_G are the derivatives of the
+//! momentum by ξ, and the bias is its derivative along ẋ at ξ̇ = 0.
 
 use super::frames::along_velocities;
 use super::kernel::applied;
@@ -13,12 +14,12 @@ use hamel_dynamics::centroidal::moves;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
-/// What is broken where they differ.
+/// Name of the centre of mass and centroidal momentum in messages.
 pub(super) const WHAT: &str = "the centre of mass, or the momentum about it";
 
 type V = [Fp; 3];
 
-/// Mass, centre, its velocity, and the momentum about the centre.
+/// Mass, centre of mass, its velocity, and angular momentum about it, of a body or particle.
 struct Part {
     mass: Fp,
     centre: V,
@@ -26,7 +27,7 @@ struct Part {
     moment: V,
 }
 
-/// Whether the emitted functions are those of the model; the lane is one of the symbols of both.
+/// Returns whether the emitted functions are those of the model; `lane` assigns values to the symbols of both.
 pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<bool> {
     let emitted = |id: FunctionId| program.function(id).map(|f| f.outputs.as_slice());
     if FunctionId::CENTROIDAL
@@ -46,7 +47,7 @@ pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<boo
         Some(found) => value(found)? == centre,
         None => true,
     };
-    // It comes along with the others.
+    // The momentum is emitted together with the other centroidal functions.
     let Some(emitted_momentum) = emitted(FunctionId::CentroidalMomentum) else {
         return Some(holds);
     };
@@ -66,7 +67,7 @@ pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<boo
     Some(holds)
 }
 
-/// c, and (P, L) about it, by the sums over what moves.
+/// Returns c, and (P, L) about it, by the sums over bodies and particles that move.
 fn described(model: &Model, lane: &Lane, along: &[Fp]) -> Option<(Vec<Fp>, Vec<Fp>)> {
     let mut places = Vec::new();
     let mut fixed = Vec::new();
@@ -94,7 +95,7 @@ fn described(model: &Model, lane: &Lane, along: &[Fp]) -> Option<(Vec<Fp>, Vec<F
         let sum = |term: &dyn Fn(usize) -> Fp| (0..3).fold(Fp::ZERO, |sum, k| sum + term(k));
         let centre: V = [0, 1, 2].map(|i| pose[9 + i].0 + sum(&|k| r(i, k) * com(k)));
         let velocity: V = [0, 1, 2].map(|i| pose[9 + i].1 + sum(&|k| turned(i, k) * com(k)));
-        // The body's own angular velocity, ω̂ = Rᵀ Ṙ.
+        // Angular velocity in body axes, ω̂ = Rᵀ Ṙ.
         let spin = |i: usize, j: usize| sum(&|k| r(k, i) * turned(k, j));
         let omega = [spin(2, 1), spin(0, 2), spin(1, 0)];
         let own: V = [0, 1, 2].map(|i| sum(&|k| constants[4 + 3 * i + k] * omega[k]));

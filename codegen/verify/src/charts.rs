@@ -1,5 +1,5 @@
-//! The rates of charts: K(x) times them is ẋ, with the tangents K of `model/charts`, by which the generator does not compute
-//! them.
+//! Rates of charts: K(x) times them has to be ẋ. The tangents K are those of `model/charts`, which the generator does
+//! not use to compute the rates.
 
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
@@ -8,7 +8,7 @@ use hamel_algebra::tape::Tape;
 use hamel_language::model::charts::all_tangents;
 use hamel_program::{FunctionId, Program};
 
-/// K and the emitted rates of the chart, to be evaluated together; nothing where no such rates are emitted.
+/// K and the emitted rates of the chart, evaluated together; `None` inside if no such rates are emitted.
 pub(super) struct Charts(Option<Tangents>);
 
 struct Tangents {
@@ -17,7 +17,7 @@ struct Tangents {
 }
 
 impl Charts {
-    /// Those of a program; `None` where they have no numbers.
+    /// Prepares the comparison for a program; `None` if an expression has no value modulo p.
     pub(super) fn new(program: &Program) -> Option<Self> {
         let Some(chart) = program.function(FunctionId::ChartRate) else {
             return Some(Charts(None));
@@ -34,7 +34,7 @@ impl Charts {
         Some(Charts(Some(Tangents { tape, columns })))
     }
 
-    /// Whether the rates of the chart give these rates ẋ at a point; `None` where they have no value there.
+    /// Returns whether K times the rates of the chart is the given ẋ at a point; `None` if they have no value there.
     pub(super) fn hold(&self, rate: &[Fp], lane: &Lane) -> Option<bool> {
         let Some(Tangents { tape, columns }) = &self.0 else {
             return Some(true);

@@ -1,8 +1,8 @@
-//! The identities that every derivation has to satisfy, evaluated left and right.
+//! Identities that every derivation has to satisfy, with both sides evaluated.
 //!
-//! Both sides are compared at exact points of X in two fields ("checked"). Where they are small
-//! enough they are derived once more in the graph with free coordinates, where nothing is merged
-//! modulo φ, expanded over the rationals, and compared by normal forms modulo φ ("proved").
+//! Both sides are compared at exact points of X in two fields ("checked"). Where they are small enough, they are
+//! derived again in the graph with free coordinates, where nothing is merged modulo φ, expanded over the rationals, and
+//! compared by normal forms modulo φ ("proved").
 
 use super::confidence::{Compared, Confidence};
 use super::forms::Symbols;
@@ -21,11 +21,12 @@ use hamel_dynamics::tables::Geometry;
 use hamel_language::model::{Model, class};
 use hamel_program::Program;
 
-/// Models with more velocities are only checked at points.
+/// Largest number of velocities of a model whose identities are proved; those of larger models are only checked.
 const MOST_PROVED: usize = 8;
-/// Expressions of more nodes are not expanded for a proof.
+/// Largest number of nodes of expressions that are expanded for a proof.
 const MOST_NODES: usize = 20_000;
-/// The same where ξ̇ occurs: twice differentiated rotations are long polynomials in free coordinates.
+/// Largest number of nodes of expressions in which ξ̇ occurs: in free coordinates, second derivatives of rotations are
+/// long polynomials.
 const MOST_MOVING_NODES: usize = 640;
 
 /// Checks all identities of a model and its program.
@@ -40,14 +41,14 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
     }
 }
 
-/// The identities that given symbols of a model do not satisfy at points of X.
+/// Returns the identities that the given symbols of a model do not satisfy at points of X.
 pub fn failures(model: &Model, program: &Program, symbols: Symbols) -> Vec<Identity> {
     let mut identities = verdicts(model, program, symbols, None);
     identities.retain(|identity| matches!(identity.verdict, Verdict::Failed(_)));
     identities
 }
 
-/// The verdicts on all identities; proofs are tried where they are given.
+/// Returns the verdicts on all identities; proofs are attempted if `proofs` is given.
 fn verdicts(
     model: &Model,
     program: &Program,
@@ -58,7 +59,7 @@ fn verdicts(
     if !model.is_constrained() {
         all.extend(motion::emitted(&mut symbols, program));
     }
-    // Nothing is said of what has no entries.
+    // Identities without entries are not reported.
     all.retain(|sides| !sides.left.is_empty());
     let graph = &symbols.geometry.model.graph;
     let mut compared = Compared::new(model, graph);
@@ -86,7 +87,7 @@ fn verdicts(
     identities
 }
 
-/// The identities of motion where there are constraints on ξ.
+/// Returns the identities of motion for a model with constraints on ξ.
 fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
     match reduce(model) {
         Ok(None) => Vec::new(),
@@ -106,7 +107,7 @@ fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
     }
 }
 
-/// The identities of everything but the emitted program.
+/// Returns the identities that do not involve the emitted program.
 fn described(symbols: &mut Symbols) -> Vec<Sides> {
     let mut all = kinematic(symbols);
     all.extend(jacobi(&mut symbols.geometry));
@@ -119,7 +120,7 @@ fn described(symbols: &mut Symbols) -> Vec<Sides> {
     all
 }
 
-/// The same identities with free coordinates, for normal forms.
+/// The same identities in free coordinates, to be proved by normal forms.
 struct Proofs {
     graph: Graph,
     forms: NormalForms,
@@ -144,7 +145,7 @@ impl Proofs {
         proofs
     }
 
-    /// Whether every difference of an identity, with free coordinates, lies in the ideal of φ.
+    /// Returns whether every difference between the sides of an identity, in free coordinates, lies in the ideal of φ.
     fn hold(&mut self, on_x: &Sides) -> bool {
         let same = |sides: &&Sides| (sides.label, sides.equation) == (on_x.label, on_x.equation);
         let Some(sides) = self.sides.iter().find(same) else {
@@ -174,7 +175,7 @@ impl Proofs {
     }
 }
 
-/// (6), (7), (12) = (13).
+/// Returns the sides of (6), (7), (12) = (13).
 fn kinematic(symbols: &mut Symbols) -> Vec<Sides> {
     let geometry = &mut symbols.geometry;
     let n = geometry.model.n();
@@ -204,7 +205,7 @@ fn kinematic(symbols: &mut Symbols) -> Vec<Sides> {
     all
 }
 
-/// Φ Ψ = I, Y Ψ = 0, A Y + Ψ Φ = I.
+/// Returns the sides of Φ Ψ = I, Y Ψ = 0, A Y + Ψ Φ = I.
 fn inverses(geometry: &mut Geometry) -> Vec<Sides> {
     let complement = &geometry.complement;
     // Without constraints there is no Φ, and Y is A⁻¹.
@@ -260,7 +261,7 @@ fn inverses(geometry: &mut Geometry) -> Vec<Sides> {
     vec![inverse, apart, completed]
 }
 
-/// (∂φ/∂x) A = 0: the derivatives are taken with free coordinates and compared on X.
+/// Returns the sides of (∂φ/∂x) A = 0: the derivatives are taken with free coordinates and compared on X.
 fn tangent(geometry: &mut Geometry) -> Sides {
     let mut free = geometry.model.points.free.clone();
     let first = geometry.model.points.first;
@@ -288,7 +289,7 @@ fn tangent(geometry: &mut Geometry) -> Sides {
     }
 }
 
-/// Σ over cyclic i, j, k of ∂ᵢγⱼₖˡ + γⱼₖˢ γᵢₛˡ = 0.
+/// Returns the sides of the Jacobi identity: Σ over cyclic i, j, k of ∂ᵢγⱼₖˡ + γⱼₖˢ γᵢₛˡ = 0.
 fn jacobi(geometry: &mut Geometry) -> Vec<Sides> {
     let n = geometry.model.n();
     let graph = &mut geometry.model.graph;
@@ -327,7 +328,8 @@ fn jacobi(geometry: &mut Geometry) -> Vec<Sides> {
     }]
 }
 
-/// The s with γⱼₖˢ ≠ 0 for each j and k. In large systems most pairs have none, and sums over s would take most of the time.
+/// Returns for each j and k the s with γⱼₖˢ ≠ 0. In large systems most pairs have none, and sums over all s would take
+/// most of the time.
 fn nonzero(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<Vec<usize>>> {
     let places = |row: &Vec<Edge>| {
         let places = row.iter().enumerate();
@@ -338,7 +340,7 @@ fn nonzero(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<Vec<usize>>> {
     rows.map(|rows| rows.iter().map(places).collect()).collect()
 }
 
-/// (21a) and (21b).
+/// Returns the sides of (21a) and (21b).
 fn metric(geometry: &mut Geometry) -> Vec<Sides> {
     let n = geometry.model.n();
     let graph = &mut geometry.model.graph;
@@ -385,19 +387,20 @@ fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
     table.iter().flatten().flatten().copied().collect()
 }
 
-/// What agreement of both sides at all points says.
+/// Bounds the chance that both sides agree at all points although they differ.
 fn confidence(compared: &mut Compared<'_>, graph: &Graph, sides: &Sides) -> Confidence {
     let merged = |(left, right): (&Edge, &Edge)| left == right && left.abs() != graph.zero();
     let mut pairs = sides.left.iter().zip(&sides.right);
     if pairs.any(merged) {
-        // The graph found them equal at its own point; what it merged is a sum or product of its nodes.
+        // The graph has merged both sides into one node because their values agree at its own point; merged nodes are
+        // sums or products of its nodes.
         return compared.merging();
     }
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
     compared.at_points(&roots, POINTS, sides.left.len())
 }
 
-/// Where both sides differ at a point of X, if they do.
+/// Describes where both sides differ at a point of X; `None` if they agree.
 fn at_points(model: &Model, graph: &Graph, sides: &Sides) -> Option<String> {
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
     let compared = at_fresh_points(

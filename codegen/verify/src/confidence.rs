@@ -1,10 +1,10 @@
-//! What equality at random points says: the chance that an identity which does not hold is not noticed.
+//! Confidence in equality at random points: a bound on the chance that an identity that does not hold goes unnoticed.
 //!
-//! Two rational functions that differ by one whose numerator has degree D agree at a random point of
-//! both fields with probability ≤ (D/p)(D/q), at N such points with its N-th power, and one of K
-//! comparisons errs with at most K times that (Schwartz and Zippel, with D of `algebra::degree`).
-//! Coordinates that solve constraints of degrees d₁, d₂, … multiply D by Π dᵢ (Bézout); sums and
-//! solutions in numbers of what was evaluated multiply it by the number of their terms.
+//! Two different rational functions whose difference has a numerator of degree D agree at a random point of both fields
+//! with probability ≤ (D/p)(D/q), and at N such points with the N-th power of that; K comparisons err with at most K
+//! times that probability (Schwartz and Zippel, with D of `algebra::degree`). Coordinates that solve constraints of
+//! degrees d₁, d₂, … multiply D by Π dᵢ (Bézout); sums and linear solves that combine evaluated expressions in numbers
+//! multiply it by the number of their terms.
 
 use hamel_algebra::degree::Degrees;
 use hamel_algebra::graph::{Edge, Graph};
@@ -13,22 +13,22 @@ use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
 use std::fmt;
 
-/// Equality at points, and the chance that it errs, 10^−exponent at most.
+/// Equality at random points, with a chance of error of at most 10^−exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Confidence {
-    /// Points, each in two fields.
+    /// Number of points, each in two fields.
     pub points: u64,
-    /// k of 10^−k; 0 where the degrees allow no statement.
+    /// k of 10^−k; 0 if the degrees are too high for a bound.
     pub exponent: u32,
 }
 
 impl Confidence {
-    /// Of the merging of all nodes of a graph: each pair of them could be equal at its point by chance.
+    /// Bounds the chance that a graph merged nodes that differ: each pair could be equal at its point by chance.
     pub fn of_merging(model: &Model, graph: &Graph) -> Self {
         Compared::new(model, graph).merging()
     }
 
-    /// Of sums of `terms` products of expressions of graphs, compared `comparisons` times at each point.
+    /// Bounds the error for sums of `terms` products of expressions, compared `comparisons` times at each point.
     pub fn new(
         model: &Model,
         expressions: &[(&Graph, &[Edge])],
@@ -57,7 +57,7 @@ impl Confidence {
     }
 }
 
-/// Many comparisons of expressions of one graph.
+/// Repeated comparisons of expressions of one graph.
 pub struct Compared<'a> {
     graph: &'a Graph,
     degrees: Degrees<'a>,
@@ -66,7 +66,7 @@ pub struct Compared<'a> {
 }
 
 impl<'a> Compared<'a> {
-    /// Of no expression yet.
+    /// Prepares comparisons in a graph.
     pub fn new(model: &Model, graph: &'a Graph) -> Self {
         Compared {
             graph,
@@ -76,7 +76,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// Of the merging of all nodes, see [`Confidence::of_merging`].
+    /// Returns the confidence in the merging of all nodes, see [`Confidence::of_merging`].
     pub fn merging(&mut self) -> Confidence {
         *self.merging.get_or_insert_with(|| {
             let all: Vec<Edge> = (0..self.graph.len() as u32).map(Edge::of).collect();
@@ -85,14 +85,14 @@ impl<'a> Compared<'a> {
         })
     }
 
-    /// Of expressions that are compared so many times at each of some points.
+    /// Returns the confidence in expressions that are compared `comparisons` times at each of some points.
     pub fn at_points(&mut self, roots: &[Edge], points: u64, comparisons: usize) -> Confidence {
         let degree = self.degrees.bound(roots);
         Confidence::of_degree(degree, self.solved, 1, points, comparisons)
     }
 }
 
-/// The group of each coordinate: its block, where that has a norm; of symbols before them none.
+/// Returns the group of each symbol: for a coordinate its block, if that has a norm; `None` for all other symbols.
 fn groups(model: &Model) -> Vec<Option<usize>> {
     let mut groups = vec![None; model.points.first];
     for (index, block) in model.points.blocks.iter().enumerate() {
@@ -102,7 +102,7 @@ fn groups(model: &Model) -> Vec<Option<usize>> {
     groups
 }
 
-/// The product of the degrees of the constraints that coordinates solve.
+/// Returns the product of the degrees of the constraints that coordinates solve.
 fn solved(model: &Model) -> f64 {
     let constraints = model.points.constraints.iter();
     let degrees = constraints.map(|&row| {

@@ -1,4 +1,4 @@
-//! The proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
+//! Proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
 
 use super::kernel::applied;
 use super::points::{Unequal, at_fresh_points};
@@ -13,8 +13,10 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
-/// Proves the emitted φ of coordinates off X, at random x, and the emitted correction at fresh points of X: it is 0 there,
-/// and its derivative is −Ψ Φ = A Y − I, KR18 (6), along any direction, be it tangent or not; random ones are taken.
+/// Proves the emitted φ of coordinates and the emitted correction.
+///
+/// φ is compared off X, at random x. The correction is compared at fresh points of X: there it is 0, and its derivative
+/// is −Ψ Φ = A Y − I, KR18 (6), along any direction, tangent or not; random directions are taken.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     constraint(model, program)?;
     let Some(function) = program.function(FunctionId::Correction) else {
@@ -25,7 +27,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     let mut on_x = model.clone();
     let y = left_inverse(&mut on_x).ok_or_else(failure)?;
     let (mut free, first) = (model.points.free.clone(), model.points.first);
-    // Node by node again, in the graph where nothing was simplified modulo φ.
+    // Copied node by node into the graph in which nothing is simplified modulo φ.
     let emitted = rebuild(&program.graph, &mut free, &function.outputs);
     let (n, nu) = (model.n(), model.nu());
     let mut roots = on_x.a.concat();
@@ -42,7 +44,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             let seen = applied(n, y, &step);
             let tangent = applied(nu, a, &seen);
             let slopes = tangent.iter().zip(&step).map(|(&tangent, &h)| tangent - h);
-            // It is 0 on X.
+            // The correction is 0 on X.
             let expected: Vec<Dual> = slopes.map(|slope| (Fp::ZERO, slope)).collect();
             let found = tangent_at(&free, &emitted, &mut lane.clone(), &direction)?;
             Some(if found == expected { Ok(()) } else { Err(()) })
@@ -54,7 +56,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     })
 }
 
-/// φ of coordinates, before that of loops.
+/// Compares φ of coordinates, whose rows precede those of loops.
 fn constraint(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     let Some(function) = program.function(FunctionId::Constraint) else {
         return Ok(());

@@ -1,5 +1,7 @@
-//! Slopes of inverse dynamics, and of ξ̇ by parameters, at a point modulo p: by dual numbers along random directions in the
-//! functions that they are slopes of, which are proved by themselves. No derivative of the generator's own takes part.
+//! Derivatives of inverse dynamics, and of ξ̇ by parameters, at a point modulo p.
+//!
+//! They are compared with dual numbers along random directions in the functions that they are derivatives of, which
+//! have proofs of their own. None of the generator's derivatives is used.
 
 use super::kernel::applied;
 use hamel_algebra::fp::{Fp, Random};
@@ -9,10 +11,11 @@ use hamel_algebra::tangent::tangent_at;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
-/// What is broken where they differ.
+/// Name of these derivatives in messages.
 pub(super) const WHAT: &str = "the slopes of inverse dynamics, or of ξ̇ by parameters";
 
-/// Whether the emitted slopes are those: A of the full model at its point, what is emitted at that of the program.
+/// Returns whether the emitted derivatives hold. A of the full model is evaluated at `point`, the emitted functions at
+/// `inner`.
 pub(super) fn hold(full: &Model, program: &Program, [point, inner]: [&Lane; 2]) -> Option<bool> {
     let emitted = |id: FunctionId| program.function(id).is_some();
     if !(emitted(FunctionId::InverseDynamicsSlopes) || emitted(FunctionId::ParameterSlopes)) {
@@ -55,7 +58,7 @@ pub(super) fn hold(full: &Model, program: &Program, [point, inner]: [&Lane; 2]) 
     are_slopes(program, rates, (&motion, &direction), inner)
 }
 
-/// Whether one function has the slopes of another along a direction: by its columns, and in the symbols.
+/// Returns whether one function has the derivatives of another along a direction, given as columns and in the symbols.
 fn are_slopes(
     program: &Program,
     [slopes, of]: [FunctionId; 2],

@@ -1,4 +1,4 @@
-//! All symbols of a model side by side, each derived on its own way: what identities compare.
+//! All quantities that identities compare, each derived in its own way.
 
 use super::{gibbs, hamel_form, virtual_power};
 use hamel_algebra::graph::Edge;
@@ -7,10 +7,10 @@ use hamel_dynamics::tables::Geometry;
 use hamel_dynamics::{commutation, loads};
 use hamel_language::model::Model;
 
-/// The symbols that `check` compares. They are plain fields, so that a test can break one.
+/// The quantities that `check` compares. They are plain fields, so that a test can break one.
 #[derive(Clone, Debug)]
 pub struct Symbols {
-    /// Y, γ by (12), M by (20), Γ by (23), V, and the graph of everything here.
+    /// Y, γ by (12), M by (20), Γ by (23), V, and the graph that contains everything here.
     pub geometry: Geometry,
     /// γ by (13).
     pub gamma_of_rows: Vec<Vec<Vec<Edge>>>,
@@ -27,13 +27,12 @@ pub struct Symbols {
 }
 
 impl Symbols {
-    /// Derives all symbols of a model; `None` where AᵀA is singular, which the model's checks exclude.
+    /// Derives all quantities of a model; `None` if AᵀA is singular, which the model's checks exclude.
     pub fn new(model: &Model) -> Option<Self> {
         Some(Symbols::of(Geometry::new(model)?))
     }
 
-    /// The same with free coordinates, where nothing is merged modulo φ: what a proof by normal
-    /// forms starts from.
+    /// Derives the same with free coordinates, where nothing is merged modulo φ, as a start for proofs by normal forms.
     pub fn unreduced(model: &Model) -> Option<Self> {
         Some(Symbols::of(Geometry::unreduced(model)?))
     }

@@ -1,6 +1,8 @@
-//! The kinematics of frames at a point modulo p: the emitted pose is that of the description; the twist follows from
-//! its dual numbers along ẋ, with ω̂ = Ṙ Rᵀ; J has the slopes of the twist by ξ, and the bias acceleration is the slope
-//! of the twist along ẋ at ξ̇ = 0. No derivative of the generator's own takes part.
+//! Kinematics of frames at a point modulo p.
+//!
+//! The emitted pose is that of the description; the twist follows from its dual numbers along ẋ, with ω̂ = Ṙ Rᵀ; the
+//! columns of J are the derivatives of the twist by ξ, and the bias acceleration is the derivative of the twist along ẋ
+//! at ξ̇ = 0. None of the generator's derivatives is used.
 
 use super::kernel::applied;
 use hamel_algebra::fp::{Fp, Random};
@@ -12,10 +14,10 @@ use hamel_language::functions::{FrameFunction, Jacobian};
 use hamel_language::model::{Frame, Model};
 use hamel_program::Program;
 
-/// What is broken where they differ.
+/// Name of the functions of frames in messages.
 pub(super) const WHAT: &str = "pose, twist, Jacobian or bias acceleration of a frame";
 
-/// Whether the emitted functions of frames are those; the lane is one of the symbols of model and program.
+/// Returns whether the emitted functions of frames hold; `lane` assigns values to the symbols of model and program.
 pub(super) fn hold(model: &Model, program: &Program, lane: &Lane) -> Option<bool> {
     for jacobian in &model.asked.jacobians {
         let mut frames = model.frames.iter();
@@ -54,7 +56,7 @@ fn frame_holds(
     let rate = evaluate_at(&model.graph, &model.rate, &mut lane.clone())?;
     let mut moving = vec![Fp::ZERO; xi];
     moving[x..xi].copy_from_slice(&rate);
-    // [R p] and its rates.
+    // [R p] and its rate.
     let described: Vec<Edge> = (frame.rotation.iter().zip(frame.position))
         .flat_map(|(row, p)| [row[0], row[1], row[2], p])
         .collect();
@@ -85,7 +87,7 @@ fn frame_holds(
     )
 }
 
-/// A random η, and the direction in which ξ moves by it.
+/// Returns a random η, and the direction in the symbols along which ξ changes by η.
 pub(super) fn along_velocities(program: &Program, seeds: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     let seed = seeds.iter().fold(program.n as u64, |seed, value| {
         seed.rotate_left(7) ^ value.bits()

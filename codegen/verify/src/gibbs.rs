@@ -1,11 +1,11 @@
 //! The equations of Gibbs and Appell, KR18 (30b): ∂S/∂ξ̇ⁱ + ∂ᵢV = fᵢ (N or N m, n entries).
 //!
-//! S = ½ Σ m ‖r̈‖² over particles (kg m²/s⁴); for a rigid body, up to terms without
-//! ξ̇, S = ½ m ‖a_c‖² + ½ α·Θα + α·(ω × Θω) with Θ about the centre of mass. Positions and rotations
-//! are differentiated twice; M, Γ and γ do not occur. The weight enters by its virtual work.
+//! S = ½ Σ m ‖r̈‖² over particles (kg m²/s⁴); for a rigid body, up to terms without ξ̇,
+//! S = ½ m ‖a_c‖² + ½ α·Θα + α·(ω × Θω) with Θ about the centre of mass. Positions and rotations are differentiated
+//! twice; M, Γ and γ do not occur. The weight enters by its virtual work.
 //!
-//! A kinetic energy that the user wrote belongs to no particles. Its own S is
-//! ½ M_ij ξ̇ⁱ ξ̇ʲ + ξ̇ⁱ Γᵢⱼₖ ξʲ ξᵏ, so for that term this form is not independent of the others.
+//! A kinetic energy that the user wrote as `kinetic` belongs to no particles. Its S is ½ M_ij ξ̇ⁱ ξ̇ʲ + ξ̇ⁱ Γᵢⱼₖ ξʲ ξᵏ,
+//! so that for this term (30b) is not independent of the other forms.
 
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::Edge;
@@ -25,7 +25,7 @@ pub enum Coverage {
     None,
 }
 
-/// What (30b) covers independently of M and Γ.
+/// Returns how much of T (30b) covers independently of M and Γ.
 pub fn coverage(model: &Model) -> Coverage {
     let traced = !model.bodies.is_empty() || !model.particles.is_empty();
     match (model.kinetic == model.graph.zero(), traced) {
@@ -35,7 +35,7 @@ pub fn coverage(model: &Model) -> Coverage {
     }
 }
 
-/// S(x, ξ, ξ̇) of bodies and particles. `motion`: d/dt along ẋ = A ξ with ξ̇ as symbols.
+/// Returns S(x, ξ, ξ̇) of bodies and particles. `motion` is d/dt along ẋ = A ξ with ξ̇ as symbols.
 pub fn acceleration_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
     let half = model.graph.ratio(1, 2);
     let mut terms = Vec::new();
@@ -70,7 +70,7 @@ pub fn acceleration_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
     model.graph.sum(&terms)
 }
 
-/// Left side of (30b) at (x, ξ, ξ̇). `gamma` serves a kinetic energy that the user wrote.
+/// Returns the left side of (30b) at (x, ξ, ξ̇). `gamma` is used for a kinetic energy that the user wrote.
 pub fn gibbs_appell(
     model: &mut Model,
     motion: &mut Calculus,
@@ -110,7 +110,7 @@ pub fn gibbs_appell(
     forces
 }
 
-/// m g with the point that it acts at, for every body and particle, world axes.
+/// Returns m g and the point at which it acts, for every body and particle, in world axes.
 fn weights(model: &mut Model) -> Vec<(Vec3, Vec3)> {
     let graph = &mut model.graph;
     let mut weights = Vec::new();

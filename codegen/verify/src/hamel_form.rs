@@ -9,8 +9,9 @@ use hamel_algebra::linear::{add3, apply3, cross};
 use hamel_dynamics::calculus::{Calculus, into_frame};
 use hamel_language::model::Model;
 
-/// T(x, ξ) = Σ ½ m ‖v_c‖² + ½ ω·Θω + Σ ½ m ‖ṙ‖² and what the user wrote (J); v_c and ω in body
-/// axes, Θ about the centre of mass. `motion`: d/dt along ẋ = A ξ.
+/// Returns T(x, ξ) = Σ ½ m ‖v_c‖² + ½ ω·Θω + Σ ½ m ‖ṙ‖² plus the kinetic energy that the user wrote (J).
+///
+/// v_c and ω are in body axes, Θ is about the centre of mass. `motion` is d/dt along ẋ = A ξ.
 pub fn kinetic_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
     let mut twice = Vec::new();
     for body in model.bodies.clone() {
@@ -39,7 +40,7 @@ pub fn kinetic_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
     graph.add(energy, model.kinetic)
 }
 
-/// ∂f/∂ξⁱ for all i.
+/// Returns ∂f/∂ξⁱ for all i.
 pub fn by_velocity(model: &mut Model, f: Edge) -> Vec<Edge> {
     let graph = &mut model.graph;
     let one = graph.one();
@@ -50,7 +51,7 @@ pub fn by_velocity(model: &mut Model, f: Edge) -> Vec<Edge> {
         .collect()
 }
 
-/// Left side of (30a) at (x, ξ, ξ̇). `motion`: d/dt along ẋ = A ξ with ξ̇ as symbols.
+/// Returns the left side of (30a) at (x, ξ, ξ̇). `motion` is d/dt along ẋ = A ξ with ξ̇ as symbols.
 pub fn hamel_form(
     model: &mut Model,
     motion: &mut Calculus,

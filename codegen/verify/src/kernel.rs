@@ -1,4 +1,4 @@
-//! Points of a system with constraints on its velocities: ξ moved to where B ξ + b = 0.
+//! Points of systems with constraints on their velocities: ξ is changed so that B ξ + b = 0.
 
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
@@ -7,14 +7,14 @@ use hamel_algebra::numeric::evaluate_at;
 use hamel_language::model::points::Moved;
 use hamel_language::model::{Model, class};
 
-/// The velocities of a point moved to where all rows of a model's constraints vanish, with the symbols that they are.
+/// Returns velocities that satisfy all constraints of a model, with their symbols, by changing those of a point.
 pub(super) fn at_rest(model: &Model, lane: Lane) -> Option<Moved> {
     let rows = model.constraints.iter().flat_map(|c| c.row.clone());
     let rows: Vec<Edge> = rows.collect();
     rows_at_rest(model, &rows, lane)
 }
 
-/// The same with the rows of B written otherwise; in the full frame with time ξ⁰ is 1.
+/// Does the same with other expressions for the rows of B; in the full frame with time ξ⁰ is 1.
 pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Option<Moved> {
     let places = places(&model.graph, class::VELOCITY);
     let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
@@ -34,7 +34,7 @@ pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Opti
     Some(places.into_iter().zip(moved).collect())
 }
 
-/// A vector with B ξ + b = 0: by elimination, dependent entries replaced; `None` where there is none.
+/// Changes the dependent entries of ξ by elimination, so that B ξ + b = 0; `None` if there is no solution.
 pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
     let n = xi.len();
     let mut rows: Vec<Vec<Fp>> = rows
@@ -46,7 +46,7 @@ pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>
     let mut pivots: Vec<(usize, usize)> = Vec::new();
     for i in 0..rows.len() {
         let Some(pivot) = (0..n).find(|&j| !rows[i][j].is_zero()) else {
-            // It follows from the others, or contradicts them.
+            // The row follows from the others, or contradicts them.
             if rows[i][n].is_zero() {
                 continue;
             }
@@ -73,7 +73,7 @@ pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>
     Some(xi)
 }
 
-/// The places of the symbols of a class.
+/// Returns the indices of the symbols of a class.
 pub(super) fn places(graph: &Graph, class: u8) -> Vec<usize> {
     let symbols = graph.symbols().iter().enumerate();
     symbols
@@ -82,7 +82,7 @@ pub(super) fn places(graph: &Graph, class: u8) -> Vec<usize> {
         .collect()
 }
 
-/// A random v with B v = 0 for the rows that are kept, in which what has a given rate stands still.
+/// Returns a random virtual velocity v: B v = 0 for the kept rows, and vⁱ = 0 for velocities whose rates are given.
 pub(super) fn virtual_velocity(model: &Model, kept: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
     let n = model.n();
     let mut rows = kept.to_vec();
@@ -97,12 +97,12 @@ pub(super) fn virtual_velocity(model: &Model, kept: &[Fp], xi: &[Fp]) -> Option<
     in_kernel(&rows, &vec![Fp::ZERO; rows.len() / n.max(1)], &random)
 }
 
-/// Σ aᵢ bᵢ.
+/// Returns Σ aᵢ bᵢ.
 pub fn dot(a: &[Fp], b: &[Fp]) -> Fp {
     a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// A matrix by rows times a vector; of so many rows where they have no entries.
+/// Returns a matrix, given by rows, times a vector; `count` zeros if the vector is empty.
 pub fn applied(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
     match vector.len() {
         0 => vec![Fp::ZERO; count],

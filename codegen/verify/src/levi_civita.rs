@@ -5,7 +5,7 @@ use hamel_algebra::graph::Edge;
 use hamel_dynamics::calculus::Calculus;
 use hamel_language::model::Model;
 
-/// Γᵢⱼₖ ξʲ ξᵏ, contracted from the table of Γ.
+/// Returns Γᵢⱼₖ ξʲ ξᵏ, contracted from the table of Γ.
 pub fn contracted(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
     let xi = model.xi.clone();
     let graph = &mut model.graph;
@@ -18,7 +18,7 @@ pub fn contracted(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge>
         .collect()
 }
 
-/// Left side of (30c) at (x, ξ, ξ̇), given h = Γ ξ ξ.
+/// Returns the left side of (30c) at (x, ξ, ξ̇), given h = Γ ξ ξ.
 pub fn levi_civita(
     model: &mut Model,
     calculus: &mut Calculus,

@@ -1,40 +1,40 @@
-//! The proof that stands before every emission, and what `hamel check` says.
+//! Proofs of generated functions, required before every emission, and the identities that `hamel check` reports.
 //!
 #![doc = include_str!("../README.md")]
 //!
-//! Everything here is derived once more, on routes that the emitted functions did not take, and compared at fresh
-//! points of X modulo two primes.
+//! Every emitted function is derived a second time, along routes that the generator did not take, and both results are
+//! compared at fresh points of X modulo two primes.
 //!
 //! | file | object | KR18 |
 //! |---|---|---|
-//! | `validate` | every emitted function is the one that the equations imply | (30) |
-//! | `constrained` | the same where constraints act on ξ | |
-//! | `charts` | the rates of charts are those that K leads back to ẋ | |
+//! | `validate` | every emitted function agrees with the equations of motion | (30) |
+//! | `constrained` | the same for systems with constraints on ξ | |
+//! | `charts` | the rates of charts times their tangents K are ẋ | |
 //! | `correction` | the stabilising term leads back to X | (8) |
 //! | `splitting` | the functions of a system that splits | |
-//! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
+//! | `numbers` | the three forms of the equations at points modulo p, the reference of every build | (30) |
 //! | `slopes` | the linearisation, by dual numbers modulo p | |
-//! | `regressor` | base parameters and the columns that go with them | |
-//! | `outputs` | outputs of constrained systems, and slopes of outputs | |
+//! | `regressor` | base parameters and their regressor columns | |
+//! | `outputs` | outputs of constrained systems, and derivatives of outputs | |
 //! | `centroidal` | the centre of mass, and the momentum about it | |
 //! | `frames` | poses, twists, Jacobians and bias accelerations of frames | |
-//! | `states` | rates of states of first order, and their slopes | |
+//! | `states` | rates of states of first order, and their derivatives | |
 //! | `virtual_power` | loads as forces on points, motion of points | (28) |
 //! | `hamel_form` | equations of Lagrange and Hamel, from T and γ | (30a) |
 //! | `gibbs` | equations of Gibbs and Appell, from accelerations | (30b) |
 //! | `levi_civita` | explicit equations, from M and Γ | (30c) |
-//! | `forms` | all symbols side by side, to be compared | (30) |
+//! | `forms` | all quantities that identities compare | (30) |
 //! | `check`, `motion` | the identities that any derivation has to satisfy | (6), (12), (13), (21), (28) |
-//! | `invariants` | claims of constancy along the motion, proved or refuted | |
-//! | `points` | the fresh points that all of it is compared at | |
-//! | `confidence` | what equality at random points says | |
-//! | `verdict` | what a proof says | |
+//! | `invariants` | claimed constants of the motion, proved or refuted | |
+//! | `points` | the fresh points at which everything is compared | |
+//! | `confidence` | the chance of error of equality at random points | |
+//! | `verdict` | the result of a proof | |
 
 mod centroidal;
 mod charts;
 pub mod check;
 pub mod confidence;
-// Open to tests, which put wrong signs in.
+// Public for tests, which insert wrong signs.
 #[doc(hidden)]
 pub mod constrained;
 pub mod correction;
@@ -47,12 +47,12 @@ pub mod invariants;
 mod kernel;
 pub mod levi_civita;
 pub mod motion;
-// As above.
+// Public for tests, as above.
 #[doc(hidden)]
 pub mod numbers;
 mod outputs;
 mod points;
-// As above.
+// Public for tests, as above.
 #[doc(hidden)]
 pub mod reference;
 pub mod regressor;
@@ -69,10 +69,10 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 use hamel_program::Program;
 
-/// Proves the functions of a program, and that what the description claims to be constant along the motion is;
-/// `reduction` solves its constraints,
-/// `regressor` are the base parameters where they are asked for. Claims about a motion with constraints are held against the ξ̇
-/// of `motion`, a program that was proved itself.
+/// Proves the functions of a program, and the claims of the description that quantities are constant along the motion.
+///
+/// `reduction` solves the constraints of the model, if it has any; `regressor` holds the base parameters, if they are
+/// asked for. `motion` is a program that has been proved itself: its ξ̇ decides claims about systems with constraints.
 ///
 /// # Errors
 /// A fault of the generator, with the identities that are broken; or the claims that are false.

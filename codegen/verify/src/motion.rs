@@ -1,5 +1,5 @@
-//! The identities of the equations of motion: T against M (20), loads (28), the three forms (30)
-//! against one another, and the emitted ξ̇ in them.
+//! Identities of the equations of motion: T against M (20), loads (28), the three forms (30) against one another, and
+//! the emitted ξ̇ inserted in them.
 
 use super::forms::Symbols;
 use super::gibbs::{Coverage, coverage};
@@ -13,7 +13,7 @@ use hamel_dynamics::calculus::Calculus;
 use hamel_dynamics::tables::Geometry;
 use hamel_program::Program;
 
-/// ∂²T/∂ξⁱ∂ξʲ = M_ij, fᵢ by virtual work, (30a) = (30b) and (30a) = (30c) for all ξ̇.
+/// Returns the sides of ∂²T/∂ξⁱ∂ξʲ = M_ij, of fᵢ by virtual work, and of (30a) = (30b) and (30a) = (30c) for all ξ̇.
 pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
     let geometry = &mut symbols.geometry;
     let momentum = by_velocity(&mut geometry.model, symbols.kinetic);
@@ -59,7 +59,7 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
     ]
 }
 
-/// fᵢ by virtual work.
+/// Returns the sides of fᵢ by virtual work.
 pub(super) fn loads(symbols: &Symbols) -> Sides {
     Sides {
         label: "(28)",
@@ -69,7 +69,7 @@ pub(super) fn loads(symbols: &Symbols) -> Sides {
     }
 }
 
-/// The emitted ξ̇ in (30c), and d/dt (T + V) = fᵢ ξⁱ.
+/// Returns the sides of (30c) and d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇, and those of emitted ż and loads.
 pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
     let Some(xi_dot) = program.xi_dot() else {
         return Vec::new();
@@ -132,7 +132,8 @@ pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
     all
 }
 
-/// (28): the emitted forces, 2 D, and the motions of points, each on the route of single particles.
+/// Returns the sides of (28) for emitted forces, of 2 D, and of the motions of points, each derived from single
+/// particles.
 fn of_loads(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
     let mut graph = geometry.model.graph.clone();
     let graph = &mut graph;

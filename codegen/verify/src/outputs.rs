@@ -1,4 +1,4 @@
-//! Outputs and their slopes at a point modulo p, as the description has them.
+//! Outputs and their derivatives at a point modulo p, compared with the description.
 
 use super::kernel::applied;
 use super::states::slopes_of;
@@ -9,10 +9,11 @@ use hamel_language::functions::SLOPES;
 use hamel_language::model::Model;
 use hamel_program::Program;
 
-/// What is broken where they differ.
+/// Name of the derivatives of outputs in messages.
 pub(super) const WHAT: &str = "the slopes of an output";
 
-/// Whether the emitted outputs have the values of the description; the lane is one of the model's symbols.
+/// Returns whether the emitted outputs have the values of the description; `lane` assigns values to the model's
+/// symbols.
 pub(super) fn values_hold(model: &Model, program: &Program, lane: &Lane) -> Option<bool> {
     for (name, value) in &model.outputs {
         let Some(function) = program.function(name) else {
@@ -26,8 +27,10 @@ pub(super) fn values_hold(model: &Model, program: &Program, lane: &Lane) -> Opti
     Some(true)
 }
 
-/// Whether the emitted [C D] are the slopes along a direction in the symbols, in which ξ̇ moves by δξ̇; `columns` is
-/// the same direction as (h, δξ, δz, δu).
+/// Returns whether the emitted [C D] are the derivatives of the outputs along a direction.
+///
+/// `direction` is the direction in the symbols, `columns` the same direction as (h, δξ, δz, δu); `motion` is ξ̇, and
+/// the δξ̇ by which ξ̇ changes along it.
 pub(super) fn slopes_hold(
     model: &Model,
     program: &Program,

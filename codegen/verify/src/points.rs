@@ -1,28 +1,30 @@
-//! Fresh points of X: those at which both sides of an identity are evaluated, and no expression was built.
+//! Fresh points of X: points at which both sides of an identity are evaluated, and which no derivation has used.
 
 #[cfg(test)]
 mod tests;
 
 use hamel_algebra::lane::Lane;
 
-/// Points at which everything is compared.
+/// Number of points at which everything is compared.
 pub const POINTS: u64 = 4;
-/// Points tried: roots have values at some of them only.
+/// Largest number of points tried; square roots have values at some points only.
 const TRIES: u64 = 400;
-/// Points that are nowhere to be found, each looked for thousands of times, after which there are none.
+/// Number of searches for a point, each of thousands of attempts, that have to fail until no points are assumed to
+/// exist.
 pub const MISSING: u64 = 2;
 
-/// Why a comparison said nothing or ended.
+/// Reason why a comparison failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unequal<E> {
-    /// What differs at a point.
+    /// Both sides differ at a point.
     Differs(E),
-    /// There were fewer points at which both sides have values than are wanted.
+    /// Both sides have values at too few points.
     Nowhere,
 }
 
-/// Compares at fresh points until both sides had values at as many as are wanted, or differ. `lane` makes the
-/// point of a number, `at` compares there; `None` of either is a point without values.
+/// Compares at fresh points until both sides differ, or have had values at [`POINTS`] points.
+///
+/// `lane` creates the point of a number, and `at` compares there; either returns `None` if there are no values.
 pub fn at_fresh_points<E>(
     lane: impl Fn(u64) -> Option<Lane>,
     mut at: impl FnMut(&Lane, u64) -> Option<Result<(), E>>,

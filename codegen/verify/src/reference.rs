@@ -1,6 +1,7 @@
-//! M, Γ ξ ξ, ∂V and f by the rules of derivation, and not by the routes of emitted functions: what slopes, claims and
-//! constrained systems are compared with in numbers. They are themselves compared with the three forms, which share none of
-//! these rules, by `constrained/frame`.
+//! M, Γ ξ ξ, ∂V and f by the rules of derivation, not by the routes of emitted functions.
+//!
+//! Derivatives, claims and constrained systems are compared with them in numbers. They are themselves compared by
+//! `constrained/frame` with the three forms, which share none of these rules.
 
 use super::virtual_power;
 use hamel_algebra::graph::Edge;
@@ -8,28 +9,28 @@ use hamel_dynamics::calculus::Calculus;
 use hamel_dynamics::{commutation, connection, energy, inertia, kinematics};
 use hamel_language::model::Model;
 
-/// M, h = Γ ξ ξ, ∂V, f, T, V.
+/// M, h = Γ ξ ξ, ∂V, f, T, V, D of a model.
 pub struct Reference {
-    /// The model, its graph holding the rest.
+    /// The model; its graph contains the expressions below.
     pub model: Model,
-    /// M.
+    /// Mass matrix M.
     pub mass: Vec<Vec<Edge>>,
-    /// h.
+    /// Bias forces h = Γ ξ ξ.
     pub bias: Vec<Edge>,
-    /// ∂V.
+    /// Derivatives ∂ᵢV of the potential energy.
     pub slope: Vec<Edge>,
-    /// f.
+    /// Generalised forces f.
     pub force: Vec<Edge>,
-    /// T.
+    /// Kinetic energy T.
     pub kinetic: Edge,
-    /// V.
+    /// Potential energy V.
     pub potential: Edge,
-    /// D.
+    /// Dissipation D.
     pub dissipation: Edge,
 }
 
 impl Reference {
-    /// The explicit form (30c), with the forces by virtual work.
+    /// Derives the explicit form (30c), with forces by virtual work; `None` if AᵀA is singular.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);

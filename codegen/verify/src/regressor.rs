@@ -1,6 +1,9 @@
-//! The proof of base parameters: at fresh points, which have other run-time parameters than those at which the relations
-//! were found, Y_b β is Y π for random π, and the force of (30b), from accelerations of mass points in numbers modulo p: for the
-//! bodies of the description together with a body of random inertia on every link, so that no column goes without a factor.
+//! Proof of base parameters.
+//!
+//! At fresh points, with values of the run-time parameters other than those at which the linear relations were found,
+//! Y_b β has to equal Y π for random π. It also has to equal the force of (30b), from accelerations of mass points in
+//! numbers modulo p, for the bodies of the description together with a body of random inertia on every link, so that no
+//! column is multiplied by 0.
 
 use super::numbers::Numbers;
 use super::points::{Unequal, at_fresh_points};
@@ -18,7 +21,7 @@ use hamel_program::{FunctionId, Program};
 /// Proves the base parameters of a model.
 ///
 /// # Errors
-/// A fault of the generator: what differs.
+/// A fault of the generator: a message that says what differs.
 pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
     let failed = |what: &str| format!("internal check failed: {what}");
     let (heavier, added) = with_random_bodies(model, regressor)
@@ -43,10 +46,10 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
     }
 }
 
-/// Proves the base parameters, and that what is emitted are they and their columns.
+/// Proves the base parameters, and that the emitted functions return them and their columns.
 ///
 /// # Errors
-/// A fault of the generator, never emitted.
+/// A fault of the generator; the program is not emitted.
 pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Result<(), Diagnostic> {
     prove(model, regressor).map_err(|what| failure(model, &what))?;
     let columns: Vec<&Vec<Edge>> = regressor.base.iter().map(|base| &base.column).collect();
@@ -84,8 +87,8 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
     })
 }
 
-/// A model with one more body on each link that has parameters, and what it adds to each of the standard parameters. In the
-/// description most of them are zero, and their columns would be compared with nothing.
+/// Returns the model with one more body on each link that has parameters, and the amounts by which this increases each
+/// of the standard parameters. In a description most of them are zero, so that their columns would not be tested.
 fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Vec<Fp>)> {
     let mut model = model.clone();
     let mut random = Random::new(0xb0d1e5);
@@ -132,7 +135,7 @@ fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Ve
     Some((model, added))
 }
 
-/// Compares at a point; `None` where something has no value.
+/// Compares at a point; `None` if something has no value there.
 fn at(
     numbers: &Numbers,
     (tape, added): (&Tape, &[Fp]),
@@ -172,7 +175,7 @@ fn at(
     if whole(&anything) != based(&anything) {
         return Some(Err("base parameters do not stand for all parameters".into()));
     }
-    // Dampers are no part of (30b), and what else has a potential no part of the regressor.
+    // (30b) contains no dampers, and the regressor contains no other potentials.
     let all: Vec<Fp> = given
         .iter()
         .zip(added)

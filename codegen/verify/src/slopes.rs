@@ -1,9 +1,9 @@
-//! Validation of the linearisation, [A B], and of invariants, at a point modulo p.
+//! Validation of the linearisation [A B], and of invariants, at a point modulo p.
 //!
-//! Slopes are taken by dual numbers, and M ξ̇ = F is solved in numbers: no derivative of the generator's
-//! own takes part. Where M, inverse dynamics and f are emitted, they have been compared with the
-//! independent derivation by then, and equal functions on X have equal slopes along it; so the slopes are
-//! those of the emitted functions. Else M, h, ∂V and f are derived once more.
+//! Derivatives are taken by dual numbers, and M ξ̇ = F is solved in numbers: none of the generator's derivatives is
+//! used. If M, inverse dynamics and f are emitted, they have already been compared with the independent derivation, and
+//! functions that are equal on X have equal derivatives along X; so the emitted functions are differentiated. Otherwise
+//! M, h, ∂V and f are derived once more.
 
 use super::hamel_form;
 use super::kernel::dot;
@@ -20,7 +20,7 @@ use hamel_dynamics::{energy, quantity};
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
-/// Whether ξ̇ as it comes out on the way to [A B] is that of `accel`.
+/// Returns whether ξ̇ as an intermediate result of [A B] is that of `accel`.
 fn rates_at(program: &Program, lane: &Lane) -> Option<bool> {
     let linearize = program.function(FunctionId::Linearize);
     let Some(linearize) = linearize.filter(|function| !function.rates.is_empty()) else {
@@ -31,24 +31,24 @@ fn rates_at(program: &Program, lane: &Lane) -> Option<bool> {
     Some(value(&linearize.rates)? == value(&accel.outputs)?)
 }
 
-/// What is compared at every point.
+/// Quantities that are compared at every point.
 pub struct Slopes {
-    /// Names of the invariants with their entries in the graph of a model.
+    /// Names of the invariants with their entries in the graph of `model`.
     invariants: Vec<(String, Vec<Edge>)>,
     model: Model,
-    /// What slopes are taken of, where the linearisation is wanted.
+    /// Functions to differentiate, if the linearisation is wanted.
     source: Option<Source>,
 }
 
-/// What slopes are taken of.
+/// Functions that are differentiated.
 enum Source {
     /// The functions of the program.
     Emitted,
-    /// A derivation of its own.
+    /// An independent derivation.
     Derived(Box<Reference>),
 }
 
-/// The emitted functions that slopes of ξ̇ follow from.
+/// Emitted functions that together determine the derivatives of ξ̇.
 const EMITTED: [&str; 4] = [
     "accel",
     "mass_matrix",
@@ -56,7 +56,7 @@ const EMITTED: [&str; 4] = [
     "generalized_force",
 ];
 
-/// M, F = f − h − ∂V, A and Aξ of one point, or their slopes.
+/// M, F = f − h − ∂V, A and A ξ at one point, or their derivatives.
 struct Numbers {
     mass: Vec<Vec<Fp>>,
     force: Vec<Fp>,
@@ -93,7 +93,7 @@ impl Numbers {
 }
 
 impl Slopes {
-    /// Prepares for a program; `None` where AᵀA is singular.
+    /// Prepares the comparison for a program; `None` if AᵀA is singular.
     pub fn new(model: &Model, program: &Program) -> Option<Self> {
         let claims: Vec<_> = model
             .invariants
@@ -125,7 +125,7 @@ impl Slopes {
         })
     }
 
-    /// Compares at one point; `None` where it cannot be evaluated there.
+    /// Compares at one point; `None` if something has no value there.
     pub fn at_point(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
         let value = |name: &str| {
             let function = program.function(name)?;
@@ -158,7 +158,7 @@ impl Slopes {
         }
     }
 
-    /// By the slopes of the emitted M, inverse dynamics and f.
+    /// Compares [A B] with the derivatives of the emitted M, inverse dynamics and f.
     fn emitted_at(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
         let (model, graph) = (&self.model, &program.graph);
         let (n, nu) = (model.n(), model.nu());
@@ -193,7 +193,7 @@ impl Slopes {
         if product(&matrix(&here[..nu * n]), &found[..n]) != left {
             return Some(Err(KINEMATIC.into()));
         }
-        // M δξ̇ = δ(f − F(x, ξ, ξ̇)), ξ̇ held.
+        // M δξ̇ = δ(f − F(x, ξ, ξ̇)) with ξ̇ held constant.
         let mut held = lane.clone();
         for (place, &value) in model
             .graph
@@ -223,8 +223,10 @@ impl Slopes {
     }
 }
 
-/// Whether displacements are measured by A, all of it but what is there for the time, and read by a Y with Y A = I:
-/// A of the full model at its point, what is emitted at that of the program.
+/// Returns whether the emitted frame of displacements is A without the column of time, and the emitted coframe a Y with
+/// Y A = I.
+///
+/// A of the full model is evaluated at `point`, the emitted functions at the point `inner` of the program.
 pub(super) fn measured_at(
     full: &Model,
     program: &Program,
@@ -246,7 +248,7 @@ pub(super) fn measured_at(
     let moved = (0..a.len()).filter(|place| Some(place % full.n()) != time);
     let moved: Vec<Fp> = moved.map(|place| a[place]).collect();
     let (n, nu) = (moved.len() / full.nu(), full.nu());
-    // What passes with the time alone is no displacement.
+    // The column of time comes last; Y maps it to 0, as the passing of time alone is no displacement.
     let columns = (0..full.n()).filter(|&j| Some(j) != time).chain(time);
     let identity = columns.enumerate().all(|(j, column)| {
         (0..n).all(|i| {
@@ -259,13 +261,12 @@ pub(super) fn measured_at(
     Some(frame == moved && identity)
 }
 
-/// What is broken where a part of the linearisation is wrong.
+/// Names in messages of the parts of the linearisation.
 const MEASURE: &str = "Y A = I for the emitted frame of displacements";
 const KINEMATIC: &str = "ḣ of the linearisation";
 const DYNAMIC: &str = "δξ̇ of the linearisation";
 
-/// All columns at once, (h, δξ, δu) of random numbers: one wrong entry goes unnoticed with probability
-/// 1/p.
+/// Random (h, δξ, δz, δu), which test all columns of [A B] at once: a wrong entry goes unnoticed with probability 1/p.
 struct Displaced {
     columns: Vec<Fp>,
     /// ẋ as a direction in the symbols.
@@ -297,7 +298,7 @@ impl Displaced {
         }
     }
 
-    /// (A h, δξ, δu) as a direction in the symbols.
+    /// Returns (A h, δξ, δz, δu) as a direction in the symbols.
     fn moved(&self, model: &Model, a: &[Fp]) -> Vec<Fp> {
         let n = model.n();
         let (h, rest) = self.columns.split_at(n);
@@ -312,19 +313,19 @@ impl Displaced {
         moved
     }
 
-    /// (ḣ, δξ̇) by the emitted matrices.
+    /// Returns (ḣ, δξ̇, δż) by the emitted matrices.
     fn found(&self, linear: &[Fp]) -> Vec<Fp> {
         product(&matrix(linear, self.columns.len()), &self.columns)
     }
 }
 
-/// By the slopes of a derivation of its own.
+/// Compares [A B] with the derivatives of an independent derivation.
 fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
     let (model, graph) = (&reference.model, &reference.model.graph);
     let n = model.n();
     let roots = Numbers::roots(reference);
     let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
-    // The slopes of everything along a direction in the symbols.
+    // Derivatives of everything along a direction in the symbols.
     let slope = |direction: &[Fp]| -> Option<Numbers> {
         let duals = tangent_at(graph, &roots, &mut lane.clone(), direction)?;
         let slopes: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();

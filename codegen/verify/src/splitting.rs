@@ -1,10 +1,10 @@
 //! Validation of the functions of a system that splits, at a point modulo p.
 //!
-//! With p free, ξ of p, and ξ̇ solved from M ξ̇ = f − h − ∂V of the independent derivation:
+//! For random p, with ξ(p), and ξ̇ solved from M ξ̇ = f − h − ∂V of the independent derivation:
 //!
 //! | function | has to be |
 //! |---|---|
-//! | `split_velocities` | a right inverse of `split_momenta`: p of ξ of p is p |
+//! | `split_velocities` | a right inverse of `split_momenta`: p(ξ(p)) = p |
 //! | `uncentre` | a left inverse of `centre` |
 //! | `centre` | y with ẏ = p for plain coordinates, x itself for all others |
 //! | `split_momenta` | θ̇ of circles, J ω of rotors |
@@ -22,21 +22,21 @@ use hamel_language::model::Model;
 use hamel_program::structure::Structure;
 use hamel_program::{FunctionId, Program};
 
-/// What is compared with.
+/// Quantities with which the functions of a splitting are compared.
 pub struct Proof {
     parts: Vec<Part>,
-    /// The model, its graph holding the rates of the coordinates.
+    /// The model; its graph contains the rates of the coordinates.
     model: Model,
-    /// These rates.
+    /// Rates of the coordinates in their charts.
     rates: Vec<Edge>,
-    /// Numbers of the symbols x, ξ, p.
+    /// Indices of the symbols of x, ξ, p.
     x: Vec<usize>,
     xi: Vec<usize>,
     p: Vec<usize>,
 }
 
 impl Proof {
-    /// Prepares for a program; `None` where it has no such functions.
+    /// Prepares the comparison; `None` if the program has no splitting.
     pub fn new(model: &Model, program: &Program) -> Option<Self> {
         program.function(FunctionId::Kick)?;
         let mut model = model.clone();
@@ -51,7 +51,7 @@ impl Proof {
         })
     }
 
-    /// Compares at one point; `None` where it cannot be evaluated there.
+    /// Compares at one point; `None` if something has no value there.
     pub fn at_point(
         &self,
         numbers: &Numbers,
@@ -132,7 +132,7 @@ impl Proof {
         Some(Ok(()))
     }
 
-    /// d/dt of the momenta and of y along the motion.
+    /// Returns d/dt of the momenta and of y along the motion.
     fn slopes(
         &self,
         numbers: &Numbers,

@@ -1,4 +1,4 @@
-//! The rates of states of first order at a point, as the description has them: with ξ̇ put in, no other expression.
+//! Rates of states of first order at a point, from the description with ξ̇ inserted.
 
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Node};
@@ -9,11 +9,13 @@ use hamel_algebra::transplant::{rebuild, substitute};
 use hamel_language::model::{Model, class};
 use hamel_program::{FunctionId, Program};
 
-/// What is broken where they differ.
+/// Name of the rates of states in messages.
 pub(super) const WHAT: &str = "ż of the states";
 
-/// The model, with the emitted ξ̇ in the place of its symbols in rates of states and in outputs whose slopes are taken, where
-/// functions are taken of it: f of a symbol with the value of a sum, or of a number, is not f of that sum or number modulo p.
+/// Returns the model with the emitted ξ̇ substituted for its symbols in the rates of states and in outputs.
+///
+/// This is done only if a function is applied to an expression in ξ̇: modulo p, a function of a symbol may differ from
+/// the function of a sum or number that has the same value.
 pub(super) fn with_rates(model: &Model, program: &Program) -> Model {
     let mut model = model.clone();
     let Some(accel) = program.function(FunctionId::Accel) else {
@@ -44,7 +46,7 @@ pub(super) fn with_rates(model: &Model, program: &Program) -> Model {
     model
 }
 
-/// ż where the velocities have the rates ξ̇; the lane is one of the model's symbols.
+/// Returns ż for given rates ξ̇ of the velocities; `lane` assigns values to the model's symbols.
 pub(super) fn rates(model: &Model, xi_dot: &[Fp], lane: &Lane) -> Option<Vec<Fp>> {
     let mut lane = lane.clone();
     for (symbol, &value) in model.xi_dot.iter().zip(xi_dot) {
@@ -53,7 +55,7 @@ pub(super) fn rates(model: &Model, xi_dot: &[Fp], lane: &Lane) -> Option<Vec<Fp>
     evaluate_at(&model.graph, &model.state_rates, &mut lane)
 }
 
-/// δż along a direction in the symbols, in which ξ̇ moves by δξ̇.
+/// Returns δż along a direction in the symbols; `motion` is ξ̇, and the δξ̇ by which ξ̇ changes along it.
 pub(super) fn slopes(
     model: &Model,
     motion: (&[Fp], &[Fp]),
@@ -63,7 +65,7 @@ pub(super) fn slopes(
     slopes_of(model, &model.state_rates, motion, lane, direction)
 }
 
-/// The same of any expressions of the model.
+/// Returns the derivatives of any expressions of the model, as [`slopes`] does of ż.
 pub(super) fn slopes_of(
     model: &Model,
     expressions: &[Edge],

@@ -1,6 +1,7 @@
-//! The proof that stands before every emission: at fresh points of X modulo p the three forms (30a),
-//! (30b), (30c) have the same left side F(x, ξ, ξ̇), and every emitted function is the one that F,
-//! f, T and V imply.
+//! Proof of the emitted functions, required before every emission.
+//!
+//! At fresh points of X modulo p the three forms (30a), (30b), (30c) have the same left side F(x, ξ, ξ̇), and every
+//! emitted function is the one that F, f, T and V imply.
 //!
 //! | function | has to be |
 //! |---|---|
@@ -11,7 +12,7 @@
 //! | `generalized_force` | f by virtual work |
 //! | `momentum` | ∂T/∂ξ |
 //! | `dissipation` | D of the dampers' forces on points |
-//! | `kick` and its kind | the motion of the system, see `splitting` |
+//! | `kick` and related functions | the motion of the system, see `splitting` |
 //! | `mass_matrix` | M |
 //! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
 //! | `velocity_from_momentum` | the ξ with M ξ = p |
@@ -36,11 +37,14 @@ use hamel_language::model::Model;
 use hamel_program::Program;
 use rustc_hash::FxHashMap;
 
-/// Models with more velocities are refused without the identities of their symbols.
+/// Largest number of velocities of a model for which a failure is explained by the identities that are broken.
 const MOST_EXPLAINED: usize = 8;
 
-/// Validates the functions of a program; an error here is a fault of the generator, never emitted. It
-/// names the identities of the symbols that are broken too, so that the fault is found.
+/// Validates the functions of a program.
+///
+/// # Errors
+/// A fault of the generator; the program is not emitted. The message also names the broken identities of the symbols,
+/// to help to find the fault.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     compared(model, program).map_err(|unequal| {
         let Unequal::Differs(what) = unequal else {
@@ -57,7 +61,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     })
 }
 
-/// The first comparison that fails, at the first point at which one does.
+/// Returns the first comparison that fails, at the first point at which one does.
 pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<String>> {
     let without = |what: &str| Unequal::Differs(what.to_string());
     let with_rates = states::with_rates(model, program);
@@ -97,14 +101,14 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<S
     )
 }
 
-/// The functions that are compared with the forms, to be evaluated together.
+/// Emitted functions that are compared with the forms, evaluated together.
 struct Emitted {
-    /// Names with the number of their values.
+    /// Names of the functions with the number of their values.
     names: Vec<(String, usize)>,
     tape: Tape,
 }
 
-/// What is compared here; outputs of the description beside it.
+/// Functions that are compared here, in addition to the outputs of the description.
 pub const COMPARED: [&str; 14] = [
     "accel",
     "bias",
@@ -137,7 +141,7 @@ impl Emitted {
         })
     }
 
-    /// The values of all at a point.
+    /// Returns the values of all functions at a point, by name.
     fn at(&self, lane: &Lane) -> Option<FxHashMap<&str, Vec<Fp>>> {
         let values = self.tape.values(lane)?;
         let mut rest = values.into_iter();
@@ -150,7 +154,9 @@ impl Emitted {
     }
 }
 
-/// Compares at one point; `None` where it cannot be evaluated there. Of the model with the emitted ξ̇ are the rates of states.
+/// Compares at one point; `None` if something has no value there.
+///
+/// `with_rates` is the model with the emitted ξ̇ in the rates of its states.
 fn compare(
     [model, with_rates]: [&Model; 2],
     program: &Program,
@@ -247,7 +253,7 @@ fn compare(
     Some(Ok(()))
 }
 
-/// The pairs of forms that differ.
+/// Names the pairs of forms that differ.
 fn disagreements([hamel, gibbs, levi_civita]: &[Vec<Fp>; 3]) -> Vec<&'static str> {
     let pairs = [
         (hamel == gibbs, "(30a) = (30b)"),

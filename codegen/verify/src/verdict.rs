@@ -1,4 +1,4 @@
-//! What a proof says.
+//! Results of proofs.
 
 use super::confidence::Confidence;
 use hamel_algebra::graph::Edge;
@@ -6,29 +6,29 @@ use hamel_algebra::lane::Roots;
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 
-/// How an identity fared.
+/// Result for one identity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Both sides have the same normal form modulo φ over the rationals.
     Proved,
     /// Both sides agree at random points of X.
     Checked(Confidence),
-    /// They differ.
+    /// Both sides differ, or could not be compared.
     Failed(String),
 }
 
-/// One identity with its verdict.
+/// An identity with its verdict.
 #[derive(Clone, Debug)]
 pub struct Identity {
-    /// KR18's number, or a name.
+    /// Number of the equation in KR18, or a name.
     pub label: &'static str,
     /// The equation.
     pub equation: String,
-    /// How it fared.
+    /// Result.
     pub verdict: Verdict,
 }
 
-/// Left and right sides of an identity.
+/// Both sides of an identity.
 pub(super) struct Sides {
     pub(super) label: &'static str,
     pub(super) equation: &'static str,
@@ -36,7 +36,7 @@ pub(super) struct Sides {
     pub(super) right: Vec<Edge>,
 }
 
-/// A fault of the generator, which is never emitted.
+/// Reports a fault of the generator; the program is not emitted.
 pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
     fault(
         model,
@@ -45,13 +45,13 @@ pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
     )
 }
 
-/// There was nowhere to compare.
+/// Reports that no point was found to compare at.
 pub(super) fn nowhere(model: &Model) -> Diagnostic {
     let why = "no random point was found at which all functions have values";
     fault(model, why, why)
 }
 
-/// Why nothing is emitted: where roots stand within roots, or else by a fault.
+/// Explains why nothing is emitted: nested roots that the proof cannot evaluate, or else a fault of the generator.
 fn fault(model: &Model, unproved: &str, wrong: &str) -> Diagnostic {
     if model.points.roots == Roots::Anything {
         let message = format!("`{}` could not be proved: {unproved}", model.name);

@@ -1,6 +1,8 @@
-//! Generalised forces by their definition, fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩, KR18 (28): every load as forces on
-//! particles, and motion of points from ∂ᵢr and ∂ᵢ∂ⱼr. The route that `loads` and the functions of
-//! the language are compared with; it knows no angular velocities of loads and no derivatives of D.
+//! Generalised forces by their definition, fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩, KR18 (28): every load as forces on particles, and
+//! motion of points from ∂ᵢr and ∂ᵢ∂ⱼr.
+//!
+//! The results are compared with `loads` and with the functions of the language. This route uses neither angular
+//! velocities for loads nor forces as derivatives of D.
 
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
@@ -13,7 +15,7 @@ use hamel_language::model::motion::{Observed, Quantity};
 use hamel_language::model::{Model, Wrench};
 use hamel_language::syntax::ast::Axes;
 
-/// Forces on points of the world: a force F at r.
+/// Sum of forces on points, in world axes, as generalised forces.
 struct Forces<'a> {
     graph: &'a mut Graph,
     calculus: &'a mut Calculus,
@@ -43,13 +45,13 @@ impl<'a> Forces<'a> {
         }
     }
 
-    /// Adds a force along a line, positive apart: on both points.
+    /// Adds a force along a line, positive if it drives the points apart, at both points.
     fn along(&mut self, force: Vec3, from: Vec3, to: Vec3) {
         self.at(force, to);
         self.at(force.map(|entry| -entry), from);
     }
 
-    /// Adds F ∂ᵢe of a scalar of the configuration.
+    /// Adds F ∂ᵢe for a scalar e of the configuration.
     fn on(&mut self, force: Edge, scalar: Edge) {
         for i in 0..self.sum.len() {
             let slope = self.calculus.along(self.graph, i, scalar);
@@ -58,15 +60,15 @@ impl<'a> Forces<'a> {
         }
     }
 
-    /// Adds generalised forces as they were given.
+    /// Adds generalised forces as they are given.
     fn add(&mut self, forces: &[Edge]) {
         for (sum, &force) in self.sum.iter_mut().zip(forces) {
             *sum = self.graph.add(*sum, force);
         }
     }
 
-    /// Adds a wrench: the force at its point, and the torque as three couples, ½ τ × eₖ at the tips
-    /// of the frame's axes eₖ and −½ τ × eₖ at its origin, for Σ eₖ × (τ × eₖ) = 2 τ.
+    /// Adds a wrench: the force at its point, and the torque as three couples, ½ τ × eₖ at the tips of the frame's axes
+    /// eₖ and −½ τ × eₖ at its origin, since Σ eₖ × (τ × eₖ) = 2 τ.
     fn wrench(&mut self, wrench: &Wrench, rotation: &Mat3, position: Vec3) {
         let world = |graph: &mut Graph, a: Vec3| match wrench.axes {
             Axes::World => a,
@@ -74,7 +76,7 @@ impl<'a> Forces<'a> {
         };
         let force = world(self.graph, wrench.force);
         self.at(force, position);
-        // The point of the frame: R turns, `at` stays.
+        // A point fixed in the frame: R moves, the components `at` are constant.
         for (axis, &at) in transpose3(rotation).into_iter().zip(&wrench.at) {
             let part = scale3(self.graph, at, force);
             self.at(part, axis);
@@ -90,7 +92,7 @@ impl<'a> Forces<'a> {
     }
 }
 
-/// fᵢ of all loads: wrenches, forces along lines, dampers, dissipation, generalised forces.
+/// Returns fᵢ of all loads: wrenches, forces along lines, dampers, dissipation, generalised forces.
 pub fn applied(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
     let mut forces = Forces::none(graph, calculus);
     forces.add(&model.elements.generalized);
@@ -115,8 +117,8 @@ pub fn applied(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec
     forces.sum
 }
 
-/// Dampers as forces −c (d·ḋ)/(d·d) d on their second points, −c e ∂e/∂ξⁱ of a rate e, and −C ξ with
-/// C the second derivatives of the given dissipation.
+/// Adds what dissipates energy: dampers along lines as forces −c (d·ḋ)/(d·d) d on their second points, dampers of a
+/// rate e as −c e ∂e/∂ξⁱ, and −C ξ with C the second derivatives of the given dissipation.
 fn resisting(model: &Model, forces: &mut Forces) {
     for damper in &model.elements.dampers {
         let graph = &mut *forces.graph;
@@ -149,7 +151,7 @@ fn resisting(model: &Model, forces: &mut Forces) {
     forces.add(&resistance);
 }
 
-/// 2 D: the power that dampers and dissipation take, −fᵢ ξⁱ.
+/// Returns 2 D, the power −fᵢ ξⁱ that dampers and dissipation take.
 pub fn dissipated(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Edge {
     let mut forces = Forces::none(graph, calculus);
     resisting(model, &mut forces);
@@ -157,7 +159,7 @@ pub fn dissipated(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> 
     -graph.dot(&sum, &model.xi)
 }
 
-/// −∂ᵢV: weights and springs as forces on points, and the given potential.
+/// Returns −∂ᵢV: weights and springs as forces on points, and the given potential.
 pub fn conservative(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
     let minus = -graph.one();
     let mut forces = Forces::none(graph, calculus);
@@ -198,7 +200,7 @@ pub fn conservative(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -
     forces.sum
 }
 
-/// ℓ² and d·d of everything that acts along a line.
+/// Returns ℓ² and d·d of springs and forces along lines, where ℓ is an expression of the model.
 pub fn lengths(model: &Model, graph: &mut Graph) -> (Vec<Edge>, Vec<Edge>) {
     let elements = &model.elements;
     let springs = elements.springs.iter().map(|spring| &spring.along);
@@ -219,8 +221,10 @@ pub fn lengths(model: &Model, graph: &mut Graph) -> (Vec<Edge>, Vec<Edge>) {
     (left, right)
 }
 
-/// What expressions asked of motions, and the same from Jacobians: v = (∂ᵢr + ∂ᵢR p) ξⁱ, and by the
-/// formula of rigid bodies a = r̈ + ω̇ × R p + ω × (ω × R p) with r̈ = ∂ᵢr ξ̇ⁱ + ∂ⱼ(∂ᵢr ξⁱ) ξʲ.
+/// Returns the motions that expressions of the description ask for, and the same motions from Jacobians.
+///
+/// v = (∂ᵢr + ∂ᵢR p) ξⁱ, and, by the formula of rigid bodies, a = r̈ + ω̇ × R p + ω × (ω × R p) with
+/// r̈ = ∂ᵢr ξ̇ⁱ + ∂ⱼ(∂ᵢr ξⁱ) ξʲ.
 pub fn motions(
     model: &Model,
     graph: &mut Graph,
@@ -284,7 +288,7 @@ fn derived(model: &Model, graph: &mut Graph, calculus: &mut Calculus, observed: 
     }
 }
 
-/// Σ columnᵢ cᵢ.
+/// Returns Σ columnᵢ cᵢ.
 fn combined(graph: &mut Graph, columns: &[Vec3], factors: &[Edge]) -> Vec3 {
     let mut sum = zero3(graph);
     for (column, &factor) in columns.iter().zip(factors) {
@@ -294,14 +298,14 @@ fn combined(graph: &mut Graph, columns: &[Vec3], factors: &[Edge]) -> Vec3 {
     sum
 }
 
-/// ∂f/∂ξⁱ for all i.
+/// Returns ∂f/∂ξⁱ for all i.
 fn slopes(graph: &mut Graph, xi: &[Edge], f: Edge) -> Vec<Edge> {
     xi.iter()
         .map(|xi| Derivation::new([(xi.node(), graph.one())]).of(graph, f))
         .collect()
 }
 
-/// a/b, where b is known not to vanish on X.
+/// Returns a/b, where b is known not to vanish on X.
 fn quotient(graph: &mut Graph, a: Edge, b: Edge) -> Edge {
     graph.div(a, b).unwrap_or(graph.zero())
 }

@@ -1,4 +1,4 @@
-//! Calls of functions that are given elsewhere.
+//! Calls of external functions, which are defined elsewhere.
 
 use super::{Edge, Graph, Node, NodeId};
 use crate::external::{Component, External};
@@ -6,28 +6,28 @@ use num_rational::BigRational;
 use num_traits::One;
 use std::sync::Arc;
 
-/// A class of lists alone: whatever is in them, they are no numbers to be kept.
+/// Class bit of lists, which prevents them from being kept as run-time constants, whatever their entries.
 const LIST: u8 = 1 << 7;
 
 impl Graph {
-    /// The functions that are given elsewhere.
+    /// External functions that the graph knows.
     pub fn externals(&self) -> &[External] {
         &self.externals
     }
 
-    /// Says which functions are given elsewhere; components know them by their places.
+    /// Sets the external functions; components refer to them by index.
     pub fn set_externals(&mut self, externals: Vec<External>) {
         self.externals = Arc::new(externals);
     }
 
-    /// A component of a function at these numbers.
+    /// Calls a component of an external function with these arguments.
     pub fn external(&mut self, component: Component, arguments: &[Edge]) -> Edge {
         let zero = self.zero();
         let list = arguments.iter().fold(zero, |list, &a| self.listed(list, a));
         self.external_of(component, list)
     }
 
-    /// A list with one number more; 0 is the empty list.
+    /// Appends a number to a list; 0 is the empty list.
     pub(crate) fn listed(&mut self, rest: Edge, last: Edge) -> Edge {
         let value = self.lane.listed(self.value(rest), self.value(last));
         let class = self.class(rest.node()) | self.class(last.node()) | LIST;
@@ -38,7 +38,8 @@ impl Graph {
         }
     }
 
-    /// A component of a function at what is listed. Of numbers alone it is constant at run time, but no number.
+    /// Calls a component with a list of arguments. If all of them are numbers, the result is constant at
+    /// run time, but it is not a number.
     pub(crate) fn external_of(&mut self, component: Component, list: Edge) -> Edge {
         let value = self.lane.external(component, self.value(list));
         let given = self.list(list).into_iter();
@@ -50,7 +51,7 @@ impl Graph {
         }
     }
 
-    /// The numbers in a list.
+    /// Returns the numbers in a list.
     pub fn list(&self, list: Edge) -> Vec<Edge> {
         let mut numbers = Vec::new();
         let mut rest = list;
@@ -62,7 +63,7 @@ impl Graph {
         numbers
     }
 
-    /// The numbers in a list by their nodes, each with its sign.
+    /// Returns the nodes of the numbers in a list, each with its sign ±1.
     pub(crate) fn signed_list(&self, list: Edge) -> Vec<(NodeId, BigRational)> {
         let signed = |edge: Edge| match edge.is_negative() {
             true => (edge.node(), -BigRational::one()),
@@ -71,7 +72,7 @@ impl Graph {
         self.list(list).into_iter().map(signed).collect()
     }
 
-    /// The component and the list of a call.
+    /// Returns the component and the list of a call, if the edge is a call.
     pub fn called_with(&self, edge: Edge) -> Option<(Component, Edge)> {
         match self.node(edge.node()) {
             Node::External(component, list) => Some((component, list)),
@@ -79,7 +80,8 @@ impl Graph {
         }
     }
 
-    /// The first call of a function in expressions, of the least order at least: its component and its list.
+    /// Finds the first call of an external function in the expressions that is differentiated at least
+    /// `order` times, and returns its component and its list.
     pub fn find_external(&self, edges: &[Edge], order: usize) -> Option<(Component, Edge)> {
         if self.externals.is_empty() {
             return None;
@@ -92,7 +94,8 @@ impl Graph {
         found.find(|(component, _)| component.order() >= order)
     }
 
-    /// A call as text: `lift(a, b)[1]`, and `lift_by_a(a, b)[1]` where it is differentiated by its argument `a`.
+    /// Writes a call as text: `lift(a, b)[1]`, or `lift_by_a(a, b)[1]` for its derivative by the argument
+    /// `a`.
     pub fn called(&self, component: Component, given: &str) -> String {
         let Some(external) = self.externals.get(usize::from(component.function)) else {
             return format!("f{}({given})", component.function);

@@ -1,10 +1,10 @@
-//! What an edge is where it is a leaf: a symbol or a number.
+//! Access to edges whose node is a leaf: a symbol or a number.
 
 use super::{Edge, Graph, Node};
 use num_rational::BigRational;
 
 impl Graph {
-    /// The place among the symbols of the one that an edge is, if it is one.
+    /// Returns the index of the symbol that an edge leads to, if its node is a symbol.
     pub fn as_symbol(&self, edge: Edge) -> Option<usize> {
         match self.nodes[edge.node() as usize] {
             Node::Symbol(index) => Some(index as usize),
@@ -12,13 +12,13 @@ impl Graph {
         }
     }
 
-    /// The places of the symbols that edges are.
+    /// Returns the indices of the symbols among the edges.
     pub fn symbol_places(&self, edges: &[Edge]) -> Vec<usize> {
         let place = |&edge: &Edge| self.as_symbol(edge);
         edges.iter().filter_map(place).collect()
     }
 
-    /// The number that an edge is, if it is one.
+    /// Returns the number that an edge stands for, if it is a number.
     pub fn as_rational(&self, edge: Edge) -> Option<BigRational> {
         match self.nodes[edge.node() as usize] {
             Node::Constant(index) => {

@@ -1,13 +1,13 @@
-//! Which node an expression gets: one that is there already, or a new one.
+//! Merging of nodes: an expression gets an existing node or a new one.
 
 use super::{Edge, Function, Graph, Node, NodeId};
 use crate::fp::Fp;
 use crate::shadow::Shadow;
 
 impl Graph {
-    /// A node with the value of another one, or the small rational that it is; an expression that is
-    /// constant at run time does not give way to one that is not, nor any to what real samples say
-    /// is another number.
+    /// Returns an existing node with this value, or the small rational that has it. An expression that is
+    /// constant at run time is not replaced by one that is not, and no expression is replaced by one that
+    /// is a different number according to the real samples.
     pub(super) fn known(&mut self, node: Node, value: Fp, class: u8) -> Option<Edge> {
         let known = match self.lookup(value) {
             Some(edge) => {
@@ -15,7 +15,8 @@ impl Graph {
                 (!improves).then_some(edge)?
             }
             None => {
-                // Together with a number it is another number only where the rest is one.
+                // An operation on a number and another operand is a number only if the other operand is
+                // one.
                 if class != 0 && node.children().any(|child| self.is_number(child)) {
                     return None;
                 }
@@ -29,25 +30,26 @@ impl Graph {
         (!self.disputes(node, class, known)).then_some(known)
     }
 
-    /// Whether real numbers contradict that a node is what has its values modulo the primes.
+    /// Whether real numbers disprove that a node equals `known`, which has the same value modulo the
+    /// primes.
     pub(crate) fn disputes(&mut self, node: Node, class: u8, known: Edge) -> bool {
         if self.node(known.node()) == node && !known.is_negative() {
             return false;
         }
         let (nodes, constants) = (&self.nodes, &self.constants);
-        // No random point protects numbers: they are compared with certainty.
+        // Numbers are not protected by a random point, so they are compared with certainty.
         if class == 0 && self.classes[known.node() as usize] == 0 {
             return self.shadow.disputes_number(nodes, constants, node, known);
         }
         self.shadow.disputes(nodes, constants, node, known)
     }
 
-    /// The real values of nodes, where square roots take part in some of the given ones.
+    /// Returns the real samples of all nodes, if one of the given nodes contains a square root.
     pub(crate) fn sampled(&self, ids: &[NodeId]) -> Option<Shadow> {
         self.shadow.filled(&self.nodes, &self.constants, ids)
     }
 
-    /// The number whose square a number is, where it is there already.
+    /// Finds an existing number whose square is the given number.
     pub(super) fn known_number_root(&mut self, square: Edge) -> Option<Edge> {
         if self.class(square.node()) != 0 {
             return None;
@@ -67,7 +69,7 @@ impl Graph {
         None
     }
 
-    /// A node that later expressions do not merge with.
+    /// Adds a node that later expressions do not merge with.
     pub(crate) fn push_unmerged(&mut self, node: Node) -> Edge {
         if let Node::Apply(function, argument) = node {
             self.note_content(function, argument);
@@ -83,7 +85,7 @@ impl Graph {
         Edge::of(id)
     }
 
-    /// A sum, product or quotient that does not merge with what has its value but is computed in
+    /// Adds a sum, product or quotient that does not merge with a node of equal value that is computed in
     /// another way.
     pub(crate) fn push_apart(&mut self, node: Node) -> Edge {
         let value = |edge: Edge| self.value(edge);
@@ -104,8 +106,8 @@ impl Graph {
         }
     }
 
-    /// The next node is made as one of another graph, which spares the search for a number that it
-    /// might be: where the points are the same, what is none there is none here.
+    /// Announces that the next node is a copy of a node of another graph at the same points. If that node
+    /// is not a number, the copy is none either, which saves the search for the number.
     pub(crate) fn follow(&mut self, from: &Graph, id: NodeId) {
         self.copied = from.values[id as usize];
     }
@@ -131,9 +133,9 @@ impl Graph {
     }
 }
 
-/// Whether n/d is a fraction that descriptions lead to: small, or with a decimal-like denominator.
-/// A number that is irrational, and so the same at both points, is one of these by chance only once
-/// in a million.
+/// Whether n/d is a fraction that descriptions lead to: small, or with a denominator of factors 2, 3, 5 and
+/// 7. An irrational number, which has the same value at all points, passes by chance only once in a
+/// million.
 fn is_plain(n: i64, d: i64) -> bool {
     let mut rest = d;
     for factor in [2, 3, 5, 7] {
@@ -144,7 +146,7 @@ fn is_plain(n: i64, d: i64) -> bool {
     rest == 1 || (n.abs() < 1 << 16 && d < 1 << 16)
 }
 
-/// The representative of {v, −v}, and whether v is its negative.
+/// Returns the representative of {v, −v}, and whether v is its negative.
 pub(crate) fn canonical(value: Fp) -> (Fp, bool) {
     let negative = value.is_negative();
     (if negative { -value } else { value }, negative)

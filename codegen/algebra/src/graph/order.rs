@@ -1,10 +1,10 @@
-//! Orders in which nodes can be computed: children stand before their parents.
+//! Orders in which nodes can be computed: children precede their parents.
 
 use super::Graph;
 use crate::node::{Edge, Node, NodeId};
 
 impl Graph {
-    /// All nodes that the roots are made of, children before parents.
+    /// Returns all nodes that the roots depend on, including the roots, with children before parents.
     pub fn reachable(&self, roots: &[Edge]) -> Vec<NodeId> {
         let ends = roots.iter().map(|root| root.node());
         let count = ends.clone().max().map_or(0, |last| last + 1);
@@ -12,7 +12,7 @@ impl Graph {
         for id in ends {
             seen[id as usize] = true;
         }
-        // Children are older than what they are in.
+        // Children are older than their parents.
         for id in (0..count as usize).rev() {
             if seen[id] {
                 for child in self.nodes[id].children() {
@@ -23,8 +23,8 @@ impl Graph {
         (0..count).filter(|&id| seen[id as usize]).collect()
     }
 
-    /// The nodes that the roots are made of and that vary at run time, no symbols: in depth-first order of the roots, so
-    /// that a value is computed shortly before it is needed.
+    /// Returns the nodes that the roots depend on and that vary at run time, without symbols. They are in
+    /// depth-first order of the roots, so that a value is computed shortly before it is needed.
     pub fn varying(&self, roots: &[Edge]) -> Vec<NodeId> {
         let mut order = Vec::new();
         let mut seen = vec![false; self.nodes.len()];
@@ -48,7 +48,7 @@ impl Graph {
         order
     }
 
-    /// The length of the longest chain of nodes that vary at run time and depend on one another.
+    /// Returns the length of the longest chain of nodes that vary at run time and depend on one another.
     pub fn depth(&self, roots: &[Edge]) -> usize {
         let mut depths = vec![0; self.nodes.len()];
         let mut deepest = 0;

@@ -1,28 +1,29 @@
-//! Powers: those of sums, and those with a fractional exponent, which are products with a root √s or with exp(f log s).
+//! Powers of sums, and powers with a fractional exponent, which are products with a root √s or with exp(f
+//! log s).
 
 use super::{Edge, Function, Graph, Node, NodeId};
 use num_rational::BigRational;
 use std::cmp::Ordering;
 
-/// Products of more factors are not looked at.
+/// Largest number of factors of a product that is analysed.
 const MOST_FACTORS: usize = 12;
 
-/// w a sᶠ, where a is a constant multiple of s, but for signs of its factors.
+/// A product w a sᶠ, where a is a constant multiple of s up to the signs of its factors.
 pub(crate) struct Power {
-    /// The factors of w.
+    /// Factors of w.
     pub rest: Vec<Edge>,
-    /// Those of a.
+    /// Factors of a.
     pub base: Vec<Edge>,
-    /// sᶠ: √s or exp(f log s).
+    /// The root sᶠ: √s or exp(f log s).
     pub root: Edge,
-    /// f.
+    /// Exponent f.
     pub exponent: BigRational,
-    /// The factors of s that are constant at run time.
+    /// Factors of s that are constant at run time.
     pub constants: Vec<Edge>,
 }
 
 impl Graph {
-    /// √s or exp(f log s), as s and f.
+    /// Reads √s or exp(f log s) as the pair of s and f.
     fn root_of(&self, root: Edge) -> Option<(Edge, BigRational)> {
         match self.node(root.node()) {
             Node::Apply(Function::Sqrt, square) => {
@@ -48,7 +49,7 @@ impl Graph {
         }
     }
 
-    /// A product as such a power; of a factor |v| of s there may be v beside the root.
+    /// Reads a product as a fractional power w a sᶠ. If s has a factor |v|, then a may have v in its place.
     pub(crate) fn fractional_power(&self, id: NodeId) -> Option<Power> {
         let factors = self.whole_factors(Edge::of(id))?;
         (0..factors.len()).find_map(|place| {
@@ -70,7 +71,8 @@ impl Graph {
                 base.push(rest.remove(place).abs());
             }
             (!base.is_empty()).then(|| {
-                // Signs of what was taken out stay with the rest, that of the root too.
+                // The signs of the factors that were taken out, including that of the root, are moved to
+                // the rest.
                 let negative = factors.iter().filter(|f| f.is_negative()).count();
                 let left = rest.iter().filter(|f| f.is_negative()).count();
                 if (negative - left) % 2 == 1 {
@@ -87,7 +89,7 @@ impl Graph {
         })
     }
 
-    /// The sum whose third or a higher power a product has as a factor.
+    /// Finds a sum of which a product contains the third or a higher power.
     pub(crate) fn power_of_sum(&self, id: NodeId) -> Option<NodeId> {
         let Node::Mul(..) = self.node(id) else {
             return None;
@@ -99,8 +101,8 @@ impl Graph {
         sums.find(|sum| times(sum.node()) > 2).map(|sum| sum.node())
     }
 
-    /// The root of a product of even powers, √(c a⁴ b⁶) = √c a² |b| b², which has slopes where a and b are 0. `None` where another
-    /// factor varies, or where no power is higher than a square.
+    /// Takes the root of a product of even powers: √(c a⁴ b⁶) = √c a² |b| b², which is differentiable where
+    /// a and b are 0. `None` if another factor varies, or if no power is higher than a square.
     pub(super) fn even_root(&mut self, square: Edge) -> Option<Edge> {
         let mut factors = self.whole_factors(square)?;
         let negative = factors.iter().filter(|factor| factor.is_negative()).count();
@@ -127,7 +129,7 @@ impl Graph {
         for power in powers {
             let (base, half) = (power[0], power.len() / 2);
             let size = match half {
-                // √(e²)² is e² at every point, |e|² only where it is real.
+                // √(e²)² is e² at every point, whereas |e|² is e² only for real e.
                 1 => {
                     let square = self.mul(base, base);
                     self.apply(Function::Sqrt, square)
@@ -143,7 +145,8 @@ impl Graph {
         Some(root)
     }
 
-    /// The factors of a product, the sign of an edge with one of them; `None` where there are too many.
+    /// Returns the factors of a product, with the sign of the edge moved to one of them; `None` if there
+    /// are too many.
     fn whole_factors(&self, edge: Edge) -> Option<Vec<Edge>> {
         let (mut factors, mut stack) = (Vec::new(), vec![edge]);
         while let Some(edge) = stack.pop() {

@@ -1,4 +1,4 @@
-//! Choices by the side of 0 on which a value is.
+//! Choices that depend on the sign of a value.
 
 use super::{Edge, Graph, Node, NodeId};
 use crate::function::Law;
@@ -7,12 +7,12 @@ use num_traits::Zero;
 use std::cmp::Ordering;
 
 impl Graph {
-    /// a where c > 0, else b.
+    /// Selects a if c > 0, else b.
     pub fn select(&mut self, c: Edge, a: Edge, b: Edge) -> Edge {
         if let Some(side) = self.side(c) {
             return if side == Ordering::Greater { a } else { b };
         }
-        // The sign of the first branch that is not 0 stands before the choice.
+        // The sign of the first branch that is not 0 is moved out of the selection.
         let negative = match a == self.zero() {
             true => b.is_negative(),
             false => a.is_negative(),
@@ -31,7 +31,8 @@ impl Graph {
         edge.signed(negative)
     }
 
-    /// What a node is chosen by, if it is a choice or a function of the side of 0.
+    /// Returns the expression whose sign decides the value of a node, if the node is a selection or a
+    /// function of the sign.
     pub fn chosen_by(&self, id: NodeId) -> Option<Edge> {
         match self.node(id) {
             Node::Select(by, ..) => Some(by),
@@ -40,7 +41,7 @@ impl Graph {
         }
     }
 
-    /// On which side of 0 a number is, as far as that is certain.
+    /// Compares a number with 0; `None` if the result is not certain.
     pub(super) fn side(&mut self, edge: Edge) -> Option<Ordering> {
         if let Some(number) = self.as_rational(edge) {
             return Some(number.cmp(&BigRational::zero()));

@@ -1,5 +1,5 @@
-//! Logarithms and angles between certain bounds: square roots bring the argument near 1 or 0, a series does
-//! the rest.
+//! Logarithms and angles of intervals: repeated square roots bring the argument near 1 or 0, then a series
+//! is summed.
 
 use super::{Interval, power_of_two};
 use num_bigint::{BigInt, Sign};
@@ -7,15 +7,15 @@ use num_rational::BigRational;
 use num_traits::One;
 use std::cmp::Ordering;
 
-/// How often an argument is brought nearer.
+/// Number of square roots that are taken of an argument.
 const ROOTS: u32 = 10;
-/// Terms of the series, whose argument is below 2^−ROOTS.
+/// Number of terms of the series, whose argument is below 2^−ROOTS.
 const TERMS: i64 = 18;
-/// What they leave is below 2 to this.
+/// Binary exponent of a bound on the truncated rest of the series.
 const REST: i64 = -(ROOTS as i64) * (2 * TERMS + 1) + 1;
 
 impl Interval {
-    /// log a = e log 2 + log m with a = m 2^e, ½ ≤ m ≤ 1; `None` where a may not be positive.
+    /// log a = e log 2 + log m with a = m 2^e, ½ ≤ m ≤ 1; `None` if a may be 0 or negative.
     pub(crate) fn log(&self) -> Option<Self> {
         if self.lo.sign() != Sign::Plus {
             return None;
@@ -30,7 +30,7 @@ impl Interval {
         Some(mantissa.log_below_one()?.plus(&whole.times(&two)))
     }
 
-    /// log m = 2^k · 2 artanh (r − 1)/(r + 1) with the 2^k-th root r of m.
+    /// log m = 2^k · 2 artanh((r − 1)/(r + 1)), where r is the 2^k-th root of m.
     fn log_below_one(&self) -> Option<Self> {
         let root = (0..ROOTS).try_fold(self.clone(), |a, _| a.sqrt())?;
         let one = Interval::whole(1);
@@ -39,7 +39,8 @@ impl Interval {
         Some(argument.odd_series(false)?.scaled(i64::from(ROOTS) + 1))
     }
 
-    /// The angle of (x, y), in (−π, π]; `None` where it is not certain on which side of the cut it is.
+    /// Angle of (x, y) in (−π, π], where `self` is y; `None` if it is not certain on which side of the
+    /// branch cut it is.
     pub fn atan2(&self, x: &Interval) -> Option<Self> {
         let half = Interval::pi().scaled(-1);
         match (self.side(), x.side()) {
@@ -57,7 +58,8 @@ impl Interval {
         }
     }
 
-    /// arctan t = 2 arctan t / (1 + √(1 + t²)), again and again; the first time leaves at most 1.
+    /// arctan t = 2 arctan(t / (1 + √(1 + t²))), applied repeatedly; after the first time the argument is
+    /// at most 1.
     fn arctan(&self) -> Option<Self> {
         let one = Interval::whole(1);
         let small = (0..=ROOTS).try_fold(self.clone(), |t, _| {
@@ -75,7 +77,7 @@ impl Interval {
         }
         let square = self.times(self).signed(alternating);
         let rest = power_of_two(0);
-        // Later terms are smaller by 2^(2 ROOTS) each.
+        // Later terms are smaller by a factor of 2^(2 ROOTS) each.
         let mut sum = Interval {
             lo: -&rest,
             hi: rest,

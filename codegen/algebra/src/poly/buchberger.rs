@@ -32,7 +32,7 @@ impl Default for Limits {
     }
 }
 
-/// The basis was not found within the limits.
+/// Error that a basis was not found within the limits.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct LimitExceeded;
 
@@ -44,7 +44,7 @@ impl std::fmt::Display for LimitExceeded {
 
 impl std::error::Error for LimitExceeded {}
 
-/// The reduced Gröbner basis of the ideal of the generators.
+/// Computes the reduced Gröbner basis of the ideal of the generators.
 pub fn groebner<F: Field>(
     generators: &[Poly<F>],
     order: Order,
@@ -53,7 +53,7 @@ pub fn groebner<F: Field>(
     groebner_within(generators, order, &mut limits).ok_or(LimitExceeded)
 }
 
-/// The reduced Gröbner basis; the work done is taken from the limits.
+/// Computes the reduced Gröbner basis, and subtracts the work done from the limits.
 pub(super) fn groebner_within<F: Field>(
     generators: &[Poly<F>],
     order: Order,
@@ -85,7 +85,7 @@ struct State<'a, F> {
     order: Order,
     limits: &'a mut Limits,
     elements: Vec<Divisor<F>>,
-    /// Elements whose leading monomial no other element's divides.
+    /// Elements whose leading monomial is not divisible by that of another element.
     alive: Vec<usize>,
     pairs: Vec<Pair>,
 }
@@ -119,7 +119,7 @@ impl<F: Field> State<'_, F> {
         Some(self.pairs.swap_remove(index))
     }
 
-    /// The remainder of f, within the limits.
+    /// Returns the remainder of f after division by these elements, within the limits.
     fn remainder(&mut self, f: &Poly<F>, by: &[usize]) -> Option<Poly<F>> {
         let divisors: Vec<&Divisor<F>> = by.iter().map(|&i| &self.elements[i]).collect();
         reduce(f, &divisors, self.limits.terms, &mut self.limits.work)
@@ -176,7 +176,7 @@ impl<F: Field> State<'_, F> {
         Some(())
     }
 
-    /// The alive elements, each reduced by the others.
+    /// Returns the basis of the alive elements, each reduced by the others.
     fn reduced(mut self) -> Option<Basis<F>> {
         let mut result = Vec::with_capacity(self.alive.len());
         for position in 0..self.alive.len() {

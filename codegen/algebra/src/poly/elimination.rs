@@ -1,15 +1,15 @@
 //! The minimal polynomial of a variable modulo an ideal: the generator μ of I ∩ `F[x_v]`.
 //!
-//! μ is the first linear dependence among NF(1), NF(x_v), NF(x_v²), …; there is one exactly
-//! where x_v takes finitely many values on the variety.
+//! μ is the first linear dependence among NF(1), NF(x_v), NF(x_v²), …; it exists exactly if x_v takes
+//! finitely many values on the variety.
 
 use super::field::Field;
 use super::monomial::Var;
 use super::normal_form::Basis;
 use super::polynomial::Poly;
 
-/// The coefficients μ_0 … μ_n of the monic minimal polynomial of x_v modulo the ideal of a Gröbner
-/// basis; `None` where there is none up to the given degree.
+/// Returns the coefficients μ_0 … μ_n of the monic minimal polynomial of x_v modulo the ideal of a Gröbner
+/// basis; `None` if there is none of degree up to `most`.
 pub fn minimal_polynomial<F: Field>(
     basis: &Basis<F>,
     variable: Var,

@@ -5,7 +5,7 @@ use super::monomial::{Monomial, Var};
 use super::polynomial::Poly;
 
 impl<F: Field> Poly<F> {
-    /// The value where every variable has the given value.
+    /// Evaluates f with the given value of every variable.
     pub fn eval(&self, value: &dyn Fn(Var) -> F) -> F {
         self.terms().iter().fold(F::zero(), |sum, (monomial, c)| {
             let powers = monomial.powers().iter();
@@ -26,7 +26,7 @@ impl<F: Field> Poly<F> {
         Self::from_terms(self.order(), terms.collect())
     }
 
-    /// f with some variables replaced by field elements.
+    /// Replaces some variables by field elements.
     pub fn specialize(&self, value: &dyn Fn(Var) -> Option<F>) -> Self {
         let terms = self.terms().iter().map(|(monomial, c)| {
             let mut coefficient = c.clone();
@@ -46,13 +46,13 @@ impl<F: Field> Poly<F> {
         Self::from_terms(self.order(), terms.collect())
     }
 
-    /// f with x_v replaced by g.
+    /// Replaces x_v by g.
     pub fn substitute(&self, variable: Var, by: &Self) -> Self {
         let result = self.substitute_limited(variable, by, usize::MAX);
         result.unwrap_or_else(|| Self::from_sorted(self.order(), Vec::new()))
     }
 
-    /// f with x_v replaced by g, unless a product on the way has more than `most` terms.
+    /// Replaces x_v by g, unless an intermediate result has more than `most` terms.
     pub fn substitute_limited(&self, variable: Var, by: &Self, most: usize) -> Option<Self> {
         // Horner in x_v: f = (… (f_n g + f_{n−1}) g + …) g + f_0.
         let degrees = self.terms().iter().map(|term| term.0.exponent(variable));

@@ -1,7 +1,7 @@
-//! A field (F, +, ·): what polynomial arithmetic needs from its coefficients.
+//! Fields (F, +, ·), the coefficients of polynomials.
 //!
-//! Q is used where a computation is a proof, F_p where it is fast, and the pair of two such fields where
-//! expressions are read.
+//! Q is used where a computation is a proof, F_p where speed matters, and the pair of the two prime fields
+//! where expressions are read.
 
 use crate::fp::Fp;
 use crate::prime::Residue;
@@ -36,19 +36,19 @@ pub trait Field: Clone + PartialEq + Debug {
     fn is_one(&self) -> bool {
         *self == Self::one()
     }
-    /// The size in machine words, for limits on work.
+    /// Size in machine words, for limits on work.
     fn words(&self) -> usize {
         1
     }
 }
 
-/// Numerator and denominator, where both fit into a word, as those of most coefficients do: big integers would take memory
-/// in every step of a sum or product.
+/// Returns numerator and denominator if both fit into a machine word, as those of most coefficients do. Big
+/// integers would allocate memory in every step of a sum or product.
 fn words(value: &BigRational) -> Option<(i64, i64)> {
     Some((value.numer().to_i64()?, value.denom().to_i64()?))
 }
 
-/// a/b + c/d for small numbers; `None` where a part of it is no small number.
+/// a/b + c/d in machine words; `None` if a number does not fit.
 fn small_sum(one: &BigRational, other: &BigRational) -> Option<BigRational> {
     let ((a, b), (c, d)) = (words(one)?, words(other)?);
     let (numer, denom) = match b == d {
@@ -66,7 +66,7 @@ fn small_sum(one: &BigRational, other: &BigRational) -> Option<BigRational> {
     Some(BigRational::new_raw(reduced.0.into(), reduced.1.into()))
 }
 
-/// (a/b) (c/d) for small numbers.
+/// (a/b) (c/d) in machine words; `None` if a number does not fit.
 fn small_product(one: &BigRational, other: &BigRational) -> Option<BigRational> {
     let ((a, b), (c, d)) = (words(one)?, words(other)?);
     let common = |numer: i64, denom: i64| match denom {
@@ -115,7 +115,7 @@ impl Field for BigRational {
     }
 }
 
-/// The operations that numbers modulo primes have by the same names.
+/// Implements the operations that numbers modulo primes have under the same names.
 macro_rules! modular {
     () => {
         fn zero() -> Self {
@@ -155,7 +155,7 @@ impl<const K: usize> Field for Residue<K> {
     modular!();
 }
 
-/// Not quite a field: what is 0 in one part alone has no inverse, which happens by chance only.
+/// Not quite a field: an element that is 0 in only one part has no inverse, which happens only by chance.
 impl Field for Fp {
     modular!();
 }

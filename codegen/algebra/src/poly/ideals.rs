@@ -23,7 +23,7 @@ pub fn quaternion<F: Field>(q: [Var; 4]) -> Vec<Poly<F>> {
     vec![unit_norm(&q)]
 }
 
-/// The 21 quadrics of SO(3), R row-major.
+/// The 21 quadrics of SO(3), with R in row-major order.
 pub fn rotation<F: Field>(r: [Var; 9]) -> Vec<Poly<F>> {
     let entry = |i: usize, j: usize| Poly::<F>::var(r[3 * (i % 3) + j % 3]);
     let mut result = Vec::with_capacity(21);

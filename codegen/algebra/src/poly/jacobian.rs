@@ -1,8 +1,8 @@
-//! Variables left free by a system g(x) = 0, from the rank of its Jacobian J = ∂g/∂x.
+//! Variables that a system g(x) = 0 leaves free, from the rank of its Jacobian J = ∂g/∂x.
 //!
-//! At a point, x_v can be varied alone with the others following unless e_v is in the row space of
-//! J. The point used here is random and not on the variety, which is right for constants in
-//! general position (rods of arbitrary lengths). For dependent equations it finds fewer variables.
+//! At a point, x_v can be varied, with the other variables following, unless e_v is in the row space of J.
+//! The point used here is random and not on the variety, which is right for constants in general position
+//! (rods of arbitrary lengths). For dependent equations, fewer variables are found.
 
 use super::monomial::Var;
 use super::polynomial::Poly;
@@ -10,7 +10,7 @@ use crate::echelon::Echelon;
 use crate::fp::Random;
 use crate::prime::Residue;
 
-/// Those of the given variables that are free one at a time, in the given order.
+/// Returns those of the given variables that are free one at a time, in the given order.
 pub fn free_variables<const K: usize>(
     system: &[Poly<Residue<K>>],
     variables: &[Var],

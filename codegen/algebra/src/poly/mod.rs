@@ -3,7 +3,7 @@
 //! | file | object |
 //! |---|---|
 //! | `field` | coefficients: Q and F_p |
-//! | `monomial`, `order` | x^a, and which of two is bigger |
+//! | `monomial`, `order` | monomials x^a and their orders |
 //! | `polynomial`, `evaluation` | Σ c_a x^a, its values, derivatives and substitutions |
 //! | `normal_form`, `sums`, `buchberger` | remainder by a basis, sums of sorted terms, reduced Gröbner basis |
 //! | `ideals` | generators of circle, S³, SO(3) |

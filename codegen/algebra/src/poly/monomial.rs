@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 /// The index of an indeterminate.
 pub type Var = u32;
 
-/// Powers that are held without memory of their own, as those of most monomials are.
+/// Number of powers that are stored without a heap allocation, enough for most monomials.
 const FEW: usize = 6;
 
 /// A product of powers of variables. Its derived `Ord` is a fixed total order for use as a map key,
@@ -14,7 +14,7 @@ const FEW: usize = 6;
 #[derive(PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
 pub struct Monomial(SmallVec<[(Var, u32); FEW]>);
 
-/// One copy of memory, where what is derived would push the powers one by one.
+/// Copies the memory in one piece, where a derived `Clone` would push the powers one by one.
 impl Clone for Monomial {
     fn clone(&self) -> Self {
         Monomial(SmallVec::from_slice(&self.0))
@@ -84,7 +84,7 @@ impl Monomial {
         self.merge(other, u32::min)
     }
 
-    /// x^a / x^b; `None` where it is no monomial.
+    /// x^a / x^b; `None` if it is not a monomial.
     pub fn div(&self, other: &Self) -> Option<Self> {
         if !other.divides(self) {
             return None;
@@ -100,7 +100,7 @@ impl Monomial {
             .all(|&(v, a)| rest.any(|&(w, b)| w == v && b >= a))
     }
 
-    /// Whether no variable is in both.
+    /// Whether the monomials have no variable in common.
     pub fn coprime(&self, other: &Self) -> bool {
         let (mut i, mut j) = (0, 0);
         while let (Some(a), Some(b)) = (self.0.get(i), other.0.get(j)) {
@@ -113,7 +113,7 @@ impl Monomial {
         true
     }
 
-    /// Bits that are a subset of those of every multiple: a quick necessary test of divisibility.
+    /// Bit mask that is a subset of the mask of every multiple: a quick necessary test of divisibility.
     pub fn mask(&self) -> u64 {
         self.0.iter().fold(0, |mask, &(variable, exponent)| {
             let bit = 2 * (variable % 32);
@@ -121,7 +121,7 @@ impl Monomial {
         })
     }
 
-    /// The exponents f(a_i, b_i) over the variables of either.
+    /// Combines exponents: f(a_i, b_i) over the variables of either monomial.
     fn merge(&self, other: &Self, f: impl Fn(u32, u32) -> u32) -> Self {
         let mut result: SmallVec<[_; FEW]> = SmallVec::new();
         let (mut i, mut j) = (0, 0);

@@ -17,7 +17,7 @@ pub(super) struct Divisor<F> {
 }
 
 impl<F: Field> Divisor<F> {
-    /// The divisor of a non-zero polynomial.
+    /// Creates the divisor of a non-zero polynomial; `None` for 0.
     pub(super) fn new(poly: &Poly<F>) -> Option<Self> {
         let poly = poly.monic();
         let lead = poly.leading()?.0.clone();
@@ -50,7 +50,7 @@ impl<F: Field> Basis<F> {
         self.divisors.iter().map(|divisor| &divisor.poly)
     }
 
-    /// Whether the ideal is the whole ring: the variety is empty.
+    /// Whether the ideal is the whole ring, so that the variety is empty.
     pub fn is_unit(&self) -> bool {
         self.divisors.iter().any(|divisor| divisor.lead.is_one())
     }
@@ -60,7 +60,7 @@ impl<F: Field> Basis<F> {
         let f = f.with_order(self.order);
         let divisors: Vec<&Divisor<F>> = self.divisors.iter().collect();
         let mut unlimited = u64::MAX;
-        // Without limits there is always a result.
+        // Without limits, there is always a result.
         reduce(&f, &divisors, usize::MAX, &mut unlimited).unwrap_or(f)
     }
 
@@ -112,7 +112,7 @@ pub(super) fn reduce<F: Field>(
     Some(Poly::from_sorted(order, remainder))
 }
 
-/// Terms of a tail up to which each is put into its place, which is found by halves. More are merged.
+/// Number of terms of a tail up to which each term is inserted by binary search; longer tails are merged.
 const FEW: usize = 8;
 
 /// rest − c m tail, for an ascending `rest` and a descending `tail`.

@@ -1,24 +1,24 @@
 //! Monomial orders: total orders with 1 ≤ m, and a ≤ b implies a m ≤ b m.
 //!
-//! In all of them a smaller variable index is a bigger variable, x_0 > x_1 > ….
+//! In all of them, a variable with a smaller index is bigger: x_0 > x_1 > ….
 
 use super::monomial::{Monomial, Var};
 use std::cmp::Ordering;
 
-/// Which of two monomials is bigger.
+/// A monomial order, which decides which of two monomials is bigger.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Order {
-    /// Degree first; then the smaller exponent of the smallest variable that differs.
+    /// Degree first; then the smaller exponent of the smallest variable in which they differ.
     #[default]
     Grevlex,
-    /// The bigger exponent of the biggest variable that differs.
+    /// The bigger exponent of the biggest variable in which they differ.
     Lex,
-    /// Eliminates the variables below the split: these decide by grevlex, then the others do.
+    /// Eliminates the variables below the split: these are compared by grevlex first, then the others.
     Block(Var),
 }
 
 impl Order {
-    /// The comparison of two monomials.
+    /// Compares two monomials.
     pub fn compare(self, a: &Monomial, b: &Monomial) -> Ordering {
         let (a, b) = (a.powers(), b.powers());
         match self {
@@ -55,6 +55,6 @@ fn grevlex(a: &[(Var, u32)], b: &[(Var, u32)]) -> Ordering {
             decided => return decided,
         }
     }
-    // Equal degrees and one list a tail of the other: they are the same.
+    // With equal degrees and one list a tail of the other, the monomials are equal.
     Ordering::Equal
 }

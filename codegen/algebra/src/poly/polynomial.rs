@@ -33,12 +33,12 @@ impl<F: Field> Poly<F> {
         Self::constant(F::one())
     }
 
-    /// The constant c.
+    /// The constant polynomial c.
     pub fn constant(value: F) -> Self {
         Self::from_terms(Order::default(), vec![(Monomial::one(), value)])
     }
 
-    /// The variable x_v.
+    /// The polynomial x_v.
     pub fn var(variable: Var) -> Self {
         Self::from_terms(Order::default(), vec![(Monomial::var(variable), F::one())])
     }
@@ -49,7 +49,7 @@ impl<F: Field> Poly<F> {
         Poly { order, terms }
     }
 
-    /// The terms must already be descending and non-zero.
+    /// Creates a polynomial from terms that are already descending and non-zero.
     pub(super) fn from_sorted(order: Order, terms: Vec<(Monomial, F)>) -> Self {
         Poly { order, terms }
     }
@@ -84,7 +84,7 @@ impl<F: Field> Poly<F> {
         self.terms.is_empty()
     }
 
-    /// The value, if this is a constant.
+    /// Returns the value, if the polynomial is constant.
     pub fn as_constant(&self) -> Option<F> {
         match self.terms.as_slice() {
             [] => Some(F::zero()),
@@ -93,7 +93,7 @@ impl<F: Field> Poly<F> {
         }
     }
 
-    /// The total degree; 0 for 0.
+    /// Total degree; 0 for the zero polynomial.
     pub fn degree(&self) -> u32 {
         let degrees = self.terms.iter().map(|term| term.0.degree());
         degrees.max().unwrap_or(0)
@@ -150,7 +150,7 @@ impl<F: Field> Poly<F> {
         products.unwrap_or_else(|| Self::from_sorted(self.order, Vec::new()))
     }
 
-    /// f g, unless it (or a part of the sum on the way) has more than `most` terms.
+    /// f g, unless the result or a partial sum has more than `most` terms.
     pub fn mul_limited(&self, other: &Self, most: usize) -> Option<Self> {
         self.products(other, most)
     }
@@ -161,7 +161,7 @@ impl<F: Field> Poly<F> {
         result.unwrap_or_else(|| Self::from_sorted(self.order, Vec::new()))
     }
 
-    /// f^n, unless a power on the way has more than `most` terms.
+    /// f^n, unless an intermediate power has more than `most` terms.
     pub fn pow_limited(&self, exponent: u32, most: usize) -> Option<Self> {
         let mut result = Self::one().with_order(self.order);
         for _ in 0..exponent {
@@ -170,7 +170,7 @@ impl<F: Field> Poly<F> {
         Some(result)
     }
 
-    /// The image under a map of coefficients; `None` where the map has none.
+    /// Maps the coefficients; `None` if one of them has no image.
     pub fn map<G: Field>(&self, f: impl Fn(&F) -> Option<G>) -> Option<Poly<G>> {
         let terms = self.terms.iter().map(|(m, c)| Some((m.clone(), f(c)?)));
         Some(Poly::from_terms(self.order, terms.collect::<Option<_>>()?))
@@ -192,7 +192,7 @@ impl<F: Field> Poly<F> {
     }
 }
 
-/// The sum of two descending lists.
+/// Returns the sum of two descending lists.
 fn united<F: Field>(
     order: Order,
     one: &[(Monomial, F)],
@@ -218,7 +218,7 @@ fn united<F: Field>(
     terms
 }
 
-/// Sorts descending, adds equal monomials up, and drops zeros.
+/// Sorts terms in descending order, adds up equal monomials, and drops zeros.
 fn collect<F: Field>(order: Order, terms: &mut Vec<(Monomial, F)>) {
     terms.sort_by(|a, b| order.compare(&b.0, &a.0));
     terms.dedup_by(|next, kept| {

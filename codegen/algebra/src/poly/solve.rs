@@ -1,11 +1,11 @@
-//! A random point of a variety over F_p: x with g(x) = 0 for all generators g.
+//! Search for a random point of a variety over F_p: x with g(x) = 0 for all generators g.
 //!
-//! Depth first. A variable with finitely many values is set to a root in F_p of its minimal
-//! polynomial; otherwise a free variable is set at random. Independent parts are solved apart.
-//! Where a polynomial has no root in F_p (a quadratic: every second time) the last random choices
-//! are made anew, within a budget. Which variables are free is first decided by the rank of the
-//! Jacobian, quick and right for equations in general position; where that leads nowhere, by
-//! Gröbner bases: a random value of a free variable leaves a consistent system.
+//! The search is depth-first. A variable with finitely many values is set to a root in F_p of its minimal
+//! polynomial; otherwise a free variable is set at random. Independent parts are solved separately. If a
+//! polynomial has no root in F_p (a quadratic has none every second time), the last random choices are
+//! revised, within a budget. Which variables are free is first decided by the rank of the Jacobian, which
+//! is quick, and right for equations in general position. If that fails, it is decided by Gröbner bases: a
+//! random value of a free variable leaves a consistent system.
 
 mod structure;
 
@@ -22,9 +22,10 @@ use crate::prime::Residue;
 use std::collections::{BTreeMap, BTreeSet};
 use structure::{by_preference, dense, determined, parts};
 
-/// Random values tried for the first variable, and for one before an earlier choice is revised.
+/// Numbers of random values tried: for the first variable, and for a later one before an earlier choice is
+/// revised.
 const TRIES: (usize, usize) = (60, 6);
-/// Systems looked at for each variable before giving up.
+/// Largest number of systems examined for each variable before the search gives up.
 const SYSTEMS_PER_VARIABLE: usize = 60;
 /// The largest degree of a minimal polynomial.
 const DEGREE: usize = 64;
@@ -33,8 +34,8 @@ const WORK: (u64, u64) = (60_000, 1_500_000);
 /// The largest amount of work in all systems of a search.
 const TOTAL_WORK: u64 = 8_000_000;
 
-/// A random F_p point of the variety of the generators, by ascending variable; `None` where no
-/// point was found: the system is inconsistent, has no point over F_p, or is too big.
+/// Returns a random F_p point of the variety of the generators, by ascending variable; `None` if no point
+/// was found: the system is inconsistent, has no point over F_p, or is too big.
 pub fn point<const K: usize>(
     generators: &[Poly<Residue<K>>],
     variables: &[Var],
@@ -81,12 +82,12 @@ struct Search<'a> {
     quick: bool,
     systems: usize,
     work: u64,
-    /// Random values now set.
+    /// Number of variables that are now set at random.
     choices: usize,
 }
 
 impl Search<'_> {
-    /// Values of the open variables at which the system vanishes.
+    /// Finds values of the open variables at which the system vanishes.
     fn solve<const K: usize>(
         &mut self,
         system: &[Poly<Residue<K>>],
@@ -134,7 +135,7 @@ impl Search<'_> {
         let basis = groebner_within(system, Order::Grevlex, &mut rest);
         self.work -= limits.work - rest.work;
         let Some(basis) = basis else {
-            // Too big to know: smaller systems may do.
+            // Too big to decide: smaller systems may be easier.
             let Some(&variable) = variables.first() else {
                 return Err(Failure::Unlucky);
             };
@@ -168,8 +169,8 @@ impl Search<'_> {
         self.free(system, Some(basis), open, variable.ok_or(Failure::Unlucky)?)
     }
 
-    /// Sets a variable at random. If the basis is known and this leads to a contradiction, then the
-    /// variable has only finitely many values.
+    /// Sets a variable at random. If the basis is known and this leads to a contradiction, the variable has
+    /// only finitely many values.
     fn free<const K: usize>(
         &mut self,
         system: &[Poly<Residue<K>>],
@@ -195,7 +196,7 @@ impl Search<'_> {
         Err(Failure::Unlucky)
     }
 
-    /// Sets a variable to a root of a polynomial that has all its values as roots.
+    /// Sets a variable to a root of a polynomial that has all possible values of the variable as roots.
     fn finite<const K: usize>(
         &mut self,
         system: &[Poly<Residue<K>>],
@@ -214,7 +215,7 @@ impl Search<'_> {
         Err(Failure::Unlucky)
     }
 
-    /// Solves the rest after one variable is set.
+    /// Sets one variable, and solves the rest.
     fn set<const K: usize>(
         &mut self,
         system: &[Poly<Residue<K>>],

@@ -1,11 +1,11 @@
-//! Sums of sorted lists of terms, without terms of coefficient 0.
+//! Sums of sorted lists of terms; terms with coefficient 0 are dropped.
 
 use super::field::Field;
 use super::monomial::Monomial;
 use super::order::Order;
 use std::cmp::Ordering;
 
-/// The sum of an ascending list and of few terms that descend: what lies below all of them is not looked at.
+/// Adds a few descending terms to an ascending list, without visiting entries below all of them.
 pub(super) fn placed<F: Field>(
     order: Order,
     mut list: Vec<(Monomial, F)>,
@@ -30,7 +30,7 @@ pub(super) fn placed<F: Field>(
     list
 }
 
-/// The sum of an ascending list and of so many terms that ascend.
+/// Adds `count` ascending terms to an ascending list.
 pub(super) fn merged<F: Field>(
     order: Order,
     list: Vec<(Monomial, F)>,

@@ -1,5 +1,5 @@
-//! Roots of a univariate polynomial f = Σ f_k x^k in the field of its coefficients, F_p or F_p(i), by
-//! Cantor and Zassenhaus.
+//! Roots of a univariate polynomial f = Σ f_k x^k in the field of its coefficients, F_p or F_p(i), by the
+//! algorithm of Cantor and Zassenhaus.
 //!
 //! gcd(f, x^q − x) = Π (x − r) over the roots r in the field of q elements; it is split by gcd with
 //! (x + a)^{(q−1)/2} − 1 for random a, which has each root with probability ½.
@@ -7,7 +7,7 @@
 use crate::fp::Random;
 use crate::prime::Residue;
 
-/// The distinct roots of Σ f_k x^k, ascending; none for the zero polynomial.
+/// Returns the distinct roots of Σ f_k x^k, ascending; none for the zero polynomial.
 pub fn roots<const K: usize>(coefficients: &[Residue<K>], random: &mut Random) -> Vec<Residue<K>> {
     let f = monic(coefficients.to_vec());
     if f.len() < 2 {
@@ -77,7 +77,7 @@ fn subtract<const K: usize>(mut f: Vec<Residue<K>>, g: &[Residue<K>]) -> Vec<Res
     trim(f)
 }
 
-/// Quotient and remainder by a monic g.
+/// Returns quotient and remainder of a division by a monic g.
 fn divide<const K: usize>(
     mut f: Vec<Residue<K>>,
     g: &[Residue<K>],

@@ -1,9 +1,9 @@
-//! Resubstitution: a node that is a sum or product of two other nodes which are there anyway is
-//! computed from these, and what only served its old definition goes.
+//! Resubstitution: a node that is the sum or product of two other nodes which are computed anyway is
+//! computed from these, and the nodes that only its old definition needed are removed.
 //!
-//! Values modulo p decide: for every node n and every node x that does not depend on n, a node of
-//! value n − x, n + x or n / x is looked up. Sums that are only multiplied are done without where that adds
-//! nothing else. So the count can only fall.
+//! Values modulo p decide: for every node n and every node x that does not depend on n, a node of value n −
+//! x, n + x or n / x is looked up. Sums that are used only as factors are eliminated where that adds no
+//! other operation. Thus the number of operations can only decrease.
 
 mod sieve;
 mod spread;
@@ -19,13 +19,13 @@ use sieve::Sieve;
 use spread::{Spread, spreads};
 use std::cell::OnceCell;
 
-/// Larger expressions are left as they are.
+/// Largest number of varying nodes; larger expressions are left as they are.
 const LARGEST: usize = 400;
 
-/// Rebuilds the roots in `base`, a graph with the same symbols, with fewer operations where some can
-/// be saved; `None` where nothing was found.
+/// Rebuilds the roots in `base`, a graph with the same symbols, with fewer operations if some can be saved;
+/// `None` if nothing was found.
 pub fn resubstitute(graph: &Graph, roots: &[Edge], base: &Graph) -> Option<(Graph, Vec<Edge>)> {
-    // Asked before the inverses of many values are taken.
+    // This is checked before the inverses of many values are computed.
     let varying = |id: &&NodeId| !graph.is_free(**id);
     if graph.reachable(roots).iter().filter(varying).count() > LARGEST {
         return None;
@@ -52,15 +52,15 @@ struct Network<'a> {
     graph: &'a Graph,
     roots: &'a [Edge],
     definitions: Vec<Option<Node>>,
-    /// Real values, where square roots take part.
+    /// Real samples, if square roots are involved.
     shadow: Option<Shadow>,
-    /// 1 / value of every node whose value is nowhere zero.
+    /// 1 / value of every node whose value has an inverse.
     inverses: Vec<Option<Fp>>,
-    /// The nodes of each value or its negative.
+    /// Nodes by their values, up to sign.
     by_value: FxHashMap<Fp, Vec<NodeId>>,
     sieve: Sieve,
     nodes: Vec<NodeId>,
-    /// Pairs of nodes whose sum, difference or product each node is, once they have been looked for.
+    /// Pairs of nodes whose sum, difference or product each node is, computed on demand.
     pairs: Vec<OnceCell<Vec<(NodeId, NodeId)>>>,
 }
 
@@ -98,8 +98,8 @@ impl<'a> Network<'a> {
         }
     }
 
-    /// The pairs (x, y) with x + y, y − x or x y of the value of a node, up to signs. Values do not depend on
-    /// definitions, so that they are looked for once.
+    /// Returns the pairs (x, y) such that x + y, y − x or x y has the value of a node, up to signs. Values
+    /// do not depend on definitions, so the pairs are looked up only once.
     fn pairs(&self, id: NodeId) -> &[(NodeId, NodeId)] {
         self.pairs[id as usize].get_or_init(|| {
             let target = self.value(id);
@@ -124,7 +124,7 @@ impl<'a> Network<'a> {
         })
     }
 
-    /// Whether a node is a sum or product of others than those that it is made of.
+    /// Whether a node is a sum or product of nodes other than its present operands.
     fn may_be_other(&self, id: NodeId) -> bool {
         let mut children = self.children(id);
         let own = (children.next(), children.next());
@@ -139,7 +139,7 @@ impl<'a> Network<'a> {
             .map(Edge::node)
     }
 
-    /// Nodes that the roots need, children first; `leaf` and run-time constants count as given.
+    /// Returns the nodes that the roots need, children first; `leaf` and run-time constants count as given.
     fn alive(&self, leaf: Option<NodeId>) -> Vec<NodeId> {
         self.below(self.roots, leaf)
     }
@@ -165,7 +165,7 @@ impl<'a> Network<'a> {
         order
     }
 
-    /// Operations at run time of a set of nodes.
+    /// Number of run-time operations in a set of nodes.
     fn cost(&self, nodes: &[NodeId]) -> usize {
         let costs = |id: &&NodeId| {
             !self.graph.is_free(**id)
@@ -177,7 +177,7 @@ impl<'a> Network<'a> {
         nodes.iter().filter(costs).count()
     }
 
-    /// Replaces definitions until none saves an operation; whether one did.
+    /// Replaces definitions until no replacement saves an operation; returns whether one did.
     fn improve(&mut self) -> bool {
         let mut improved = false;
         loop {
@@ -204,7 +204,7 @@ impl<'a> Network<'a> {
                     return None;
                 }
                 let rest = self.alive(Some(id));
-                // The node itself is among the rest and keeps its cost.
+                // The node itself is among the rest, and keeps its cost.
                 (self.cost(&rest) < total)
                     .then(|| self.other_definition(id, &rest))
                     .flatten()
@@ -218,13 +218,14 @@ impl<'a> Network<'a> {
         }
     }
 
-    /// Does without a sum where that saves an operation; whether one was found.
+    /// Eliminates a sum where that saves an operation; returns whether one was found.
     fn spread(&mut self, spreads: &[Spread]) -> bool {
         let total = self.cost(&self.alive(None));
         spreads.iter().any(|spread| self.without(spread, total))
     }
 
-    /// Computes all terms without their sum, where that is shorter than `total` operations.
+    /// Computes all terms without their sum if that takes fewer than `total` operations; returns whether it
+    /// does.
     fn without(&mut self, spread: &Spread, total: usize) -> bool {
         let ends = spread.terms.iter().flat_map(|term| [term.rest, term.part]);
         let below = self.below(&ends.collect::<Vec<_>>(), None);
@@ -248,9 +249,9 @@ impl<'a> Network<'a> {
         better
     }
 
-    /// A sum or product of two nodes among `rest` with the value of `id`.
+    /// Finds a sum or product of two nodes among `rest` that has the value of `id`.
     fn other_definition(&self, id: NodeId, rest: &[NodeId]) -> Option<Node> {
-        // What depends on the node cannot define it; children stand first in the order.
+        // Nodes that depend on `id` cannot define it; children come first in the order.
         let mut above = vec![false; self.definitions.len()];
         above[id as usize] = true;
         for &node in rest {
@@ -265,7 +266,7 @@ impl<'a> Network<'a> {
         for (place, &node) in usable.iter().enumerate() {
             places[node as usize] = place + 1;
         }
-        // The last of those that are usable.
+        // The last usable node with a value.
         let signed = |value: Fp| -> Option<Edge> {
             let nodes = self.by_value.get(&canonical(value).0)?.iter();
             let last = nodes.max_by_key(|&&node| places[node as usize])?;

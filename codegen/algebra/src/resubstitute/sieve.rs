@@ -1,11 +1,12 @@
-//! Which values there may be among many: nearly all that are asked for are not there, as one bit of their part modulo p says.
+//! A sieve for values: most values that are looked up belong to no node, and one bit of a hash of their
+//! part modulo p rejects nearly all of these.
 
 use super::{Fp, Residue};
 
-/// So many bits, 2 KB, for the values of some hundred nodes.
+/// Number of bits of a hash: 2 KB of flags suffice for the values of some hundred nodes.
 const BITS: u32 = 14;
 
-/// A bit for each value and its negative.
+/// Flags for the hashes of values, the same for a value and its negative.
 pub(super) struct Sieve(Vec<u64>);
 
 impl Sieve {
@@ -18,14 +19,14 @@ impl Sieve {
         Sieve(words)
     }
 
-    /// Whether a value with this part may be there.
+    /// Whether a value with this part may be among the values.
     pub(super) fn passes(&self, part: Residue<0>) -> bool {
         let place = place(part);
         self.0[place / 64] >> (place % 64) & 1 == 1
     }
 }
 
-/// The bit of ±a.
+/// Hash of ±a.
 fn place(part: Residue<0>) -> usize {
     let [real, imaginary] = part
         .parts()

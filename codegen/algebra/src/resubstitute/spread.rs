@@ -1,24 +1,25 @@
-//! Sums that are only multiplied: where x (a + b) + c is wanted and x a + c is there anyway, x b added to that is as
-//! short, and a + b need not be known.
+//! Elimination of sums that are used only as factors: where x (a + b) + c is needed and x a + c is computed
+//! anyway, adding x b to the latter is as short, and a + b is not needed.
 
 use crate::fp::Fp;
 use crate::graph::{Graph, canonical};
 use crate::node::{Edge, Node, NodeId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// A sum that nothing needs any more once all terms are computed without it.
+/// A sum that is no longer needed once all these terms are computed without it.
 pub(super) struct Spread {
     pub terms: Vec<Term>,
 }
 
-/// x (a + b) + c as `rest`, x a + c, and `part`, x b.
+/// A node `whole`, x (a + b) + c, as the sum of `rest`, x a + c, and `part`, x b.
 pub(super) struct Term {
     pub whole: NodeId,
     pub rest: Edge,
     pub part: Edge,
 }
 
-/// What can be spread among the nodes that some roots need, children first; the parts are entered into the graph.
+/// Finds the sums that can be eliminated among the nodes that some roots need, children first. The parts
+/// are entered into the graph.
 pub(super) fn spreads(graph: &mut Graph, roots: &[Edge], order: &[NodeId]) -> Vec<Spread> {
     let found = Nodes::new(graph, roots, order).spreads();
     let parts = found.into_iter().map(|(moved, terms)| Spread {
@@ -34,7 +35,7 @@ pub(super) fn spreads(graph: &mut Graph, roots: &[Edge], order: &[NodeId]) -> Ve
     parts.collect()
 }
 
-/// A whole, the factor x, the sign of the product in the whole, and the rest.
+/// The whole, the factor x, whether the product is negative in the whole, and the rest.
 type Found = (NodeId, Edge, bool, Edge);
 
 struct Nodes<'a> {
@@ -66,7 +67,8 @@ impl<'a> Nodes<'a> {
         }
     }
 
-    /// What each sum that is only multiplied would leave to be multiplied, and the terms.
+    /// Returns for each sum that is used only as a factor the operand that remains to be multiplied, and
+    /// the terms.
     fn spreads(&self) -> Vec<(Edge, Vec<Found>)> {
         let sums = self.order.iter().filter(|id| !self.graph.is_free(**id));
         let each = sums.filter_map(|&sum| {
@@ -88,8 +90,8 @@ impl<'a> Nodes<'a> {
         each.collect()
     }
 
-    /// The products in which a sum is a factor, with the other factor; nothing where it serves anything else, or one of
-    /// them does.
+    /// Returns the products in which a sum is a factor, each with the other factor; `None` if the sum has
+    /// any other use, or if the sum or one of the products is a root.
     fn products(&self, sum: NodeId) -> Option<Vec<(Edge, NodeId)>> {
         let kept = |id: &NodeId| self.roots.contains(id);
         let users = self.users.get(&sum).filter(|_| !kept(&sum))?;
@@ -102,7 +104,7 @@ impl<'a> Nodes<'a> {
         factors.collect()
     }
 
-    /// Nodes that depend on a sum.
+    /// Returns the nodes that depend on a sum, including the sum.
     fn above(&self, sum: NodeId) -> FxHashSet<NodeId> {
         let mut above = FxHashSet::from_iter([sum]);
         for &id in self.order {

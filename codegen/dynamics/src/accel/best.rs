@@ -1,4 +1,4 @@
-//! Computations of ξ̇ compared: of each family of candidates the best is polished first.
+//! Comparison of candidates for ξ̇; the best of each family is polished before the final comparison.
 
 use super::saddle::Projections;
 use crate::care::Care;
@@ -8,36 +8,38 @@ use hamel_language::model::Model;
 use hamel_language::syntax::ast::Axes;
 use hamel_program::count::{Count, count};
 
-/// The chosen computation of ξ̇.
+/// A computation of ξ̇.
 #[derive(Clone, Debug)]
 pub struct Acceleration {
-    /// The graph that it lives in: the model's, with the route's nodes added.
+    /// Graph of the expressions: the model's graph with the nodes of the route added.
     pub graph: Graph,
-    /// ξ̇.
+    /// Accelerations ξ̇.
     pub xi_dot: Vec<Edge>,
-    /// Pivots that have to be positive: one for each velocity in their order, then one for each constraint that the
+    /// Pivots that must be positive: one for each velocity in their order, then one for each constraint that the
     /// model keeps.
     pub pivots: Vec<Edge>,
-    /// Whether the velocities that were eliminated are the twist of the one body, not the model's.
+    /// Whether the eliminated velocities, to which the pivots belong, are the twist of the only body instead of the
+    /// model's velocities.
     pub twist: bool,
     /// Multipliers of the constraints that the model keeps.
     pub multipliers: Vec<Edge>,
-    /// What leads back to these constraints, where there are some.
+    /// Projections onto these constraints, if there are any.
     pub projections: Option<Projections>,
-    /// The digits that rounding takes of it, in steps, as far as they count.
+    /// Digits lost to rounding, in steps, as far as they count.
     pub loss: usize,
-    /// Its operations.
+    /// Number of operations.
     pub count: Count,
-    /// Its longest chain of operations after one another: of two equal counts the flatter is faster.
+    /// Length of the longest chain of dependent operations; of two equal counts, the shallower computation is
+    /// faster.
     pub depth: usize,
-    /// What was chosen, for people.
+    /// Description of the chosen route, for people to read.
     pub route: String,
-    /// The cheapest candidate before polishing, where another one was cheaper after it.
+    /// Candidate that was cheapest before polishing, if another one was cheaper afterwards.
     pub other: Option<Box<Acceleration>>,
 }
 
 impl Acceleration {
-    /// A candidate, counted.
+    /// Creates a candidate and counts its operations.
     pub(super) fn counted(
         graph: Graph,
         xi_dot: Vec<Edge>,
@@ -61,7 +63,7 @@ impl Acceleration {
         }
     }
 
-    /// None, where no ξ̇ is wanted; in a graph of the model's symbols.
+    /// Returns an empty computation, for models whose ξ̇ is not needed, in a graph of the model's symbols.
     pub fn none(graph: Graph) -> Self {
         Acceleration {
             graph,
@@ -78,28 +80,29 @@ impl Acceleration {
         }
     }
 
-    /// Digits first, where they count, then operations, then depth.
+    /// Returns the key by which candidates are compared: loss of digits (if it counts), then operations, then
+    /// depth.
     pub(super) fn cost(&self) -> (usize, usize, usize) {
         (self.loss, self.count.weight(), self.depth)
     }
 }
 
-/// Families are polished whose best keeps as many digits as the cheapest and takes at most this part of its
-/// operations.
+/// Largest ratio of operations to the cheapest family's at which a family that loses no more digits is still
+/// polished.
 pub(crate) const NEAR: (usize, usize) = (4, 3);
 
-/// Candidates that are alike: of each family the best is polished before they are compared.
+/// Families of similar candidates; the best of each is polished before they are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
     /// Recursions over links.
     Links,
-    /// Bodies traced in these axes, in the model's velocities or in the twist of its one body.
+    /// Bodies traced in these axes, in the model's velocities or in the twist of its only body.
     Traced { twist: bool, axes: Axes },
-    /// Expanded and factored anew.
+    /// Right-hand side expanded and factored again.
     Polynomial,
 }
 
-/// The best candidates so far, one of each family.
+/// Best candidates so far, one for each family.
 pub(super) struct Best<'a> {
     care: &'a Care,
     families: Vec<(Family, Acceleration)>,
@@ -113,7 +116,7 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// Keeps a candidate that is better than what its family has.
+    /// Keeps a candidate if it is better than the best of its family.
     pub(super) fn keep(&mut self, family: Family, mut candidate: Acceleration) {
         candidate.loss = self
             .care
@@ -125,24 +128,24 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// The weight of the cheapest.
+    /// Returns the smallest operation count.
     pub(super) fn least(&self) -> usize {
         let weights = self.families.iter().map(|(_, best)| best.count.weight());
         weights.min().unwrap_or(usize::MAX)
     }
 
-    /// The best as it is.
+    /// Returns the best candidate without polishing.
     pub(super) fn cheapest(self) -> Option<Acceleration> {
         let all = self.families.into_iter().map(|(_, best)| best);
         all.min_by_key(Acceleration::cost)
     }
 
-    /// The best after resubstitution.
+    /// Returns the best candidate after resubstitution.
     pub(super) fn polished(self, model: &Model) -> Option<Acceleration> {
         let care = self.care;
         let costs = self.families.iter().map(|(_, best)| best.cost());
         let (loss, weight, depth) = costs.min()?;
-        // What is far behind before is behind afterwards; digits come before operations.
+        // A family that is far behind stays behind after polishing; digits take precedence over operations.
         let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
         let all = self.families.into_iter().map(|(_, best)| best);
         let near: Vec<Acceleration> = all.filter(|best| best.cost() <= most).collect();
@@ -158,7 +161,7 @@ impl<'a> Best<'a> {
     }
 }
 
-/// The chosen computation after resubstitution.
+/// Returns a candidate after resubstitution, or unchanged if that does not make it cheaper.
 fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
     let roots: Vec<Edge> = chosen
         .xi_dot

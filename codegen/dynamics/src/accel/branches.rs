@@ -1,51 +1,54 @@
-//! M = U D Uᵀ from the leaves of a tree to its root, by branches: what is zero in M by the tree stays zero.
+//! Factorisation M = U D Uᵀ from the leaves of a tree to its root, organised by branches; it preserves the zeros
+//! that the tree causes in M.
 //!
-//! A branch is a chain of velocities without a fork. Its velocities answer a movement w of those before it by −G w, where
-//! G = M_bb⁻¹ M_ba once what hangs on the branch is eliminated; so a force elsewhere costs one product with G, and one on the
-//! branch acts on what is before it as −Gᵀ b. After Featherstone (2008), section 6.5.
+//! A branch is a chain of velocities without a fork. If the velocities before a branch (towards the root) move by
+//! w, the branch responds with −G w, where G = M_bb⁻¹ M_ba once everything that hangs on the branch is eliminated.
+//! A force elsewhere therefore costs one product with G, and a force b on the branch acts on the velocities before
+//! it as −Gᵀ b. After Featherstone (2008), section 6.5.
 //!
-//! Where a joint has a twin s among the velocities before it, M s = M e on the branch, so G s = e: one column of G is known by
-//! the others.
+//! If a joint has a twin, a direction s of the velocities before it that moves the branch as the joint itself does,
+//! then M s = M e on the branch, so that G s = e: one column of G follows from the others.
 
 use super::solve::absorb;
 use crate::tree::twin::Twin;
 use hamel_algebra::graph::{Edge, Graph};
 
-/// The factors.
+/// Factors of M = U D Uᵀ.
 pub struct Branches {
-    /// Above the diagonal.
+    /// Entries of U above the diagonal.
     upper: Vec<Vec<Edge>>,
-    /// The pivots, D.
+    /// Pivots, the diagonal of D.
     pub pivots: Vec<Edge>,
-    /// 1 / pivot.
+    /// Inverse pivots.
     inverses: Vec<Edge>,
-    /// Each after the one that it hangs on.
+    /// Branches, each after the one that it hangs on.
     branches: Vec<Branch>,
-    /// M⁻¹ of the first branch, once what hangs on it is eliminated; empty where that is of no use.
+    /// Columns of the inverse of the first branch's block of M once everything that hangs on it is eliminated;
+    /// empty if not needed.
     first: Vec<Vec<Edge>>,
 }
 
 struct Branch {
-    /// Velocities, the first next to the root.
+    /// Velocities of the branch, from the root outwards.
     own: Vec<usize>,
-    /// Velocities before them.
+    /// Velocities before the branch, towards the root.
     before: Vec<usize>,
-    /// G, by own and before.
+    /// Matrix G; rows by `own`, columns by `before`.
     answers: Vec<Vec<Edge>>,
-    /// What is known of G.
+    /// Column of G that a twin makes known.
     known: Option<Known>,
 }
 
-/// One column of G, e − Σ sᵢ Gᵢ with e = (1, 0, …).
+/// A known column of G: e − Σ sᵢ Gᵢ with e = (1, 0, …).
 struct Known {
     /// Its place in `before`.
     at: usize,
-    /// The other places of s.
+    /// The other places of s, with their entries.
     by: Vec<(usize, Edge)>,
 }
 
 impl Branches {
-    /// Factors M; `None` where a pivot vanishes identically.
+    /// Factors M; `None` if a pivot vanishes identically.
     pub fn of(graph: &mut Graph, mass: &[Vec<Edge>], twins: &[Twin]) -> Option<Self> {
         let n = mass.len();
         let zero = graph.zero();
@@ -88,7 +91,7 @@ impl Branches {
         Some(factors)
     }
 
-    /// M⁻¹ b.
+    /// Returns M⁻¹ b.
     pub fn solve(&self, graph: &mut Graph, b: &[Edge]) -> Vec<Edge> {
         let zero = graph.zero();
         let mut b = b.to_vec();
@@ -109,7 +112,8 @@ impl Branches {
         }
         for (place, branch) in self.branches.iter().enumerate() {
             match pushed[..] {
-                // A force on one branch alone: what its known column takes of the first branch follows from the rest.
+                // If the force acts on a single branch with a known column, b at the known place follows from the
+                // rest.
                 [(known, rest)] if place == 0 && others == 0 && !self.first.is_empty() => {
                     self.free_known(graph, known, rest, &mut b);
                 }
@@ -120,7 +124,7 @@ impl Branches {
         b
     }
 
-    /// What a branch does where nothing before it moves.
+    /// Solves for a branch with the velocities before it at rest.
     fn free(&self, graph: &mut Graph, branch: &Branch, b: &mut [Edge]) {
         let own = &branch.own;
         for (place, &c) in own.iter().enumerate().rev() {
@@ -139,7 +143,8 @@ impl Branches {
         }
     }
 
-    /// The same of the first branch, where b at the known place is `rest` − Σ sᵢ bᵢ.
+    /// Solves for the first branch, with the velocities before it at rest, if b at the known place equals
+    /// `rest` − Σ sᵢ bᵢ.
     fn free_known(&self, graph: &mut Graph, known: &Known, rest: Edge, b: &mut [Edge]) {
         let own = &self.branches[0].own;
         let places: Vec<usize> = (0..own.len()).filter(|&j| j != known.at).collect();
@@ -165,7 +170,7 @@ impl Branches {
 }
 
 impl Branch {
-    /// b −= Gᵀ b before the branch.
+    /// Subtracts Gᵀ b from b at the velocities before the branch.
     fn push(&self, graph: &mut Graph, b: &mut [Edge]) {
         for place in 0..self.before.len() {
             self.push_at(graph, place, b);
@@ -182,7 +187,7 @@ impl Branch {
         b[i] = graph.sub(b[i], transmitted);
     }
 
-    /// The same where a column is known: there b becomes `rest` − Σ sᵢ bᵢ, and `rest` is returned.
+    /// Does the same as `push` for a branch with a known column: there b becomes `rest` − Σ sᵢ bᵢ. Returns `rest`.
     fn push_known(&self, graph: &mut Graph, known: &Known, b: &mut [Edge]) -> Edge {
         let at = self.before[known.at];
         let along = |graph: &mut Graph, b: &[Edge]| {
@@ -203,7 +208,7 @@ impl Branch {
         rest
     }
 
-    /// b −= G w for what moves before the branch.
+    /// Subtracts G w from b for the motion w of the velocities before the branch.
     fn follow(&self, graph: &mut Graph, b: &mut [Edge]) {
         let mut moved: Vec<Edge> = self.before.iter().map(|&i| b[i]).collect();
         if let Some(known) = &self.known {
@@ -221,7 +226,7 @@ impl Branch {
     }
 }
 
-/// The branches of a factor, with G.
+/// Splits the velocities into branches and computes G of each.
 fn branches(graph: &mut Graph, upper: &[Vec<Edge>], twins: &[Twin]) -> Vec<Branch> {
     let zero = graph.zero();
     let n = upper.len();
@@ -230,7 +235,8 @@ fn branches(graph: &mut Graph, upper: &[Vec<Edge>], twins: &[Twin]) -> Vec<Branc
     let children = |i: usize| parents.iter().filter(|parent| **parent == Some(i)).count();
     let mut found: Vec<Branch> = Vec::new();
     for c in 0..n {
-        // A chain goes on where everything before its last velocity is before this one, too.
+        // A chain continues if all velocities before this one are on the branch of its parent or before that
+        // branch.
         let goes_on = parents[c]
             .filter(|&last| children(last) == 1)
             .and_then(|last| {
@@ -243,7 +249,8 @@ fn branches(graph: &mut Graph, upper: &[Vec<Edge>], twins: &[Twin]) -> Vec<Branc
         match goes_on {
             Some(branch) => branch.own.push(c),
             None => {
-                // What is zero by chance for the first velocity of a branch may not be for others.
+                // An entry of U that happens to be zero for the first velocity of a branch may be nonzero for
+                // others, so take the whole path to the root.
                 let mut path = [path(&parents, c), before(c)].concat();
                 path.sort_unstable();
                 path.dedup();
@@ -275,7 +282,7 @@ fn branches(graph: &mut Graph, upper: &[Vec<Edge>], twins: &[Twin]) -> Vec<Branc
     found
 }
 
-/// The column of G that a twin makes known.
+/// Returns the column of G that a twin makes known.
 fn known(graph: &Graph, before: &[usize], twin: &Twin) -> Option<Known> {
     let (at, _) = twin.by.iter().rev().find(|(_, s)| *s == graph.one())?;
     let place = |i: usize| before.iter().position(|&other| other == i);
@@ -288,7 +295,7 @@ fn known(graph: &Graph, before: &[usize], twin: &Twin) -> Option<Known> {
     })
 }
 
-/// The velocities on the way from the root to one.
+/// Returns the velocities on the path from c to the root, without c.
 fn path(parents: &[Option<usize>], c: usize) -> Vec<usize> {
     let mut before = Vec::new();
     let mut at = parents[c];

@@ -1,4 +1,4 @@
-//! Of each function the cheapest of several computations.
+//! Selection of the cheapest of several computations, separately for each function.
 
 use super::LARGE;
 use super::parts::Parts;
@@ -9,22 +9,24 @@ use hamel_algebra::linear::matrix;
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 
-/// A computation of M and forces, in a graph of its own.
+/// One computation of M and the forces, in its own graph.
 #[derive(Clone, Debug)]
 pub struct Computation {
-    /// The graph.
+    /// Graph of the expressions.
     pub graph: Graph,
-    /// M and forces.
+    /// M and the forces.
     pub parts: Parts,
 }
 
-/// M, −Γ ξ ξ, −∂V, M ξ and M ξ̇ + Γ ξ ξ + ∂V.
+/// Entries of the functions M, −Γ ξ ξ, −∂V, ∂T/∂ξ and M ξ̇ + Γ ξ ξ + ∂V.
 type Functions = [Vec<Edge>; 5];
 
-/// Of each function the cheapest of these computations, each as it was traced and as what it becomes
-/// where ξ̇ is computed already; those of M ξ and M ξ̇ + Γ ξ ξ + ∂V may also be put together from the
-/// cheapest others. All are in a copy of the graph `chosen` where ξ̇ is. Loads are those of the first;
-/// `None` without any.
+/// Picks, for each function, the cheapest of several computations.
+///
+/// Each computation is considered both as traced and as it becomes in the graph `chosen`, where the expressions of
+/// ξ̇ can be shared. The momentum ∂T/∂ξ and M ξ̇ + Γ ξ ξ + ∂V may also be composed from the cheapest of the other
+/// functions. The result is in a copy of `chosen`. The loads are those of the first computation; returns `None` if
+/// there is none.
 pub fn cheapest(
     mut computations: Vec<Computation>,
     chosen: &Graph,

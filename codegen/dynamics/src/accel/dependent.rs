@@ -1,37 +1,42 @@
-//! Rows of B that depend on one another along the whole motion, as those of overconstrained mechanisms do where their loops are
-//! closed. S = B M⁻¹ Bᵀ is singular there, and S λ = r is solved by S⁺ in place of S⁻¹.
+//! Rows of B that are dependent along the whole motion, as in overconstrained mechanisms with closed loops.
+//! S = B M⁻¹ Bᵀ is singular there, and S λ = r is solved with S⁺ instead of S⁻¹.
 //!
-//! The diagonal of S is raised by a small part of itself that rounding does not hide (`Function::Raised`): R = S + E with a
-//! diagonal E. T = E R⁻¹ is small across the rows that are independent and 1 along what contradicts them. S⁻¹ is
-//! R⁻¹ (1 − T)⁻¹, and
+//! The diagonal of S is raised by a small fraction of itself that is still large compared with rounding
+//! (`Function::Raised`): R = S + E with a diagonal E. Then T = E R⁻¹ is small along the independent rows and 1
+//! along contradictions. With S⁻¹ = R⁻¹ (1 − T)⁻¹,
 //!
 //! S⁺ = R⁻¹ (1 + 3 T + 6 T²) (1 − T)²
 //!
-//! agrees with it up to the second order in T, but is 0 where T is 1: what is contradictory in r is taken away before it is
-//! divided by E.
+//! agrees with S⁻¹ up to the second order in T, but is 0 where T is 1: the contradictory part of r is removed
+//! before it is divided by E.
 //!
-//! The right side for ξ̇ is not contradictory where the loops are closed, and steps of refinement by R would serve it. But its
-//! slopes are: displacements and velocities also open the loops. With refinement the slopes of λ are as large as 1/E along what
-//! Bᵀ maps to 0, and Bᵀ leaves of them their rounding, 1e-8 of the slopes of ξ̇. With S⁺ nothing is that large.
+//! The right-hand side for ξ̇ is not contradictory as long as the loops are closed, so iterative refinement with R
+//! would do for ξ̇ itself. It does not do for its derivatives, because displacements and velocities also open the
+//! loops: with refinement, the derivatives of λ are as large as 1/E along directions that Bᵀ maps to 0, and Bᵀ
+//! leaves their rounding error, 1e-8 of the derivatives of ξ̇. With S⁺ nothing becomes that large.
 
 use super::saddle::solve_columns;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_language::model::pfaffian::{Kind, Pfaffian};
 
-/// Factors 1 − T of S⁺. In numbers, one leaves of a contradiction a part that is as large as rounding beside E; what two leave
-/// is still less than rounding after it is divided by E.
+/// Number of factors 1 − T in S⁺.
+///
+/// In floating point, one factor leaves a part of a contradiction as large as rounding relative to E; the part left
+/// by two factors is below rounding even after the division by E.
 pub(super) const CLEARED: usize = 2;
 
-/// The first coefficients of (1 − T) to the power −1 − `CLEARED`.
+/// First coefficients of the power series of (1 − T) to the power −1 − `CLEARED`.
 pub(super) const SERIES: [i64; 3] = [1, 3, 6];
 
-/// Since a single row may vanish on the way, the diagonal is raised by the same part of a share of the sum over all rows of
-/// its equation, too.
+/// Denominator of the share of the sum over all rows that is added to a row's own diagonal entry before it is
+/// raised, since a single row may vanish along the motion.
 const SHARE: i64 = 1024;
 
-/// For each row the rows whose diagonal of S raises its own: all constraints, of a row of a loop; a row of another kind by itself.
-/// `more` rows of given rates stand behind the constraints.
+/// Returns for each row the rows whose diagonal entries of S raise its own: all constraints for a row of a loop,
+/// and only the row itself otherwise.
+///
+/// `more` rows of given rates follow the constraints.
 pub fn raising(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
     let is_loop = |i: usize| constraints.get(i).is_some_and(|c| c.kind == Kind::Loop);
     let rows = 0..constraints.len() + more;
@@ -42,7 +47,7 @@ pub fn raising(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
     .collect()
 }
 
-/// Makes R of S, and gives the diagonal of E.
+/// Turns S into R = S + E in place, and returns the diagonal of E.
 pub(super) fn raise(
     graph: &mut Graph,
     schur: &mut [Vec<Edge>],
@@ -70,7 +75,7 @@ pub(super) fn raise(
     raised
 }
 
-/// S⁺ r in numbers modulo p; `factor` is what `Raised` multiplies by, 1 where S is regular.
+/// Returns S⁺ r in numbers modulo p; `factor` is the factor of `Raised`, 1 if S is regular.
 pub(super) fn multipliers_at(
     schur: &[Fp],
     raising: &[Vec<usize>],
@@ -91,7 +96,7 @@ pub(super) fn multipliers_at(
     let mut matrix = schur.to_vec();
     (0..m).for_each(|i| matrix[i * m + i] = matrix[i * m + i] + raised[i]);
     let divided = |v: Vec<Fp>| solve_columns(&matrix, m, &[v])?.pop();
-    // T v.
+    // Returns T v.
     let kept = |v: Vec<Fp>| -> Option<Vec<Fp>> {
         let divided = divided(v)?;
         Some(raised.iter().zip(divided).map(|(&e, y)| e * y).collect())

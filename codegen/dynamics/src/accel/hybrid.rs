@@ -1,18 +1,19 @@
-//! Hybrid dynamics: where the rates of some velocities are given, M ξ̇ = f − h − ∂V is solved for the others, and the rows
-//! of the first are the forces of their drives (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, 9.2).
+//! Hybrid dynamics: if the rates of some velocities are given, M ξ̇ = f − h − ∂V is solved for the others, and the
+//! rows of the given ones yield the forces of their drives (Featherstone, *Rigid Body Dynamics Algorithms*, 2008,
+//! 9.2).
 
 use super::parts::Parts;
 use hamel_algebra::graph::Edge;
 use hamel_language::model::Model;
 
-/// The velocities whose rates are not given.
+/// Returns the places of the velocities whose rates are not given.
 pub fn free_places(model: &Model) -> Vec<usize> {
     let given = |i: &usize| model.accelerated.iter().any(|(place, _)| place == i);
     (0..model.n()).filter(|i| !given(i)).collect()
 }
 
-/// M and the right-hand sides for the velocities that are free, in the traced model's graph; all of them where no rate
-/// is given.
+/// Restricts M and the right-hand sides to the free velocities, in the traced model's graph; returns them unchanged
+/// if no rate is given.
 pub fn free(mut traced: Model, parts: &Parts) -> (Model, Parts) {
     if traced.accelerated.is_empty() {
         return (traced, parts.clone());
@@ -39,7 +40,7 @@ pub fn free(mut traced: Model, parts: &Parts) -> (Model, Parts) {
     (traced, free)
 }
 
-/// ξ̇ of all velocities from that of those that are free.
+/// Returns ξ̇ of all velocities from that of the free ones.
 pub fn all_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     if model.accelerated.is_empty() {
         return free;
@@ -51,7 +52,8 @@ pub fn all_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
         .collect()
 }
 
-/// Pivots of all velocities from those that are free: 1 where the rate is given, which asks for no inertia.
+/// Returns the pivots of all velocities from those of the free ones; 1 for a velocity whose rate is given, which
+/// requires no inertia.
 pub fn pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     let mut all = vec![model.graph.one(); model.n()];
     for (place, pivot) in free_places(model).into_iter().zip(free) {
@@ -60,7 +62,7 @@ pub fn pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     all
 }
 
-/// The rows of B ξ̇ = b: those of the constraints, then one for each rate that is given.
+/// Returns the rows of B in B ξ̇ = b: those of the constraints, then one for each given rate.
 pub fn rows(model: &Model) -> Vec<Vec<Edge>> {
     let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
     let constraints = model.constraints.iter().map(|c| c.row.clone());
@@ -72,7 +74,7 @@ pub fn rows(model: &Model) -> Vec<Vec<Edge>> {
     constraints.chain(given).collect()
 }
 
-/// ξ̇ with the rates that are given as they are given.
+/// Replaces the given rates in ξ̇ by their exact expressions.
 pub fn exact(model: &Model, mut xi_dot: Vec<Edge>) -> Vec<Edge> {
     for &(place, rate) in &model.accelerated {
         xi_dot[place] = rate;

@@ -1,8 +1,8 @@
-//! ξ̇ from M ξ̇ + Γ ξ ξ + ∂V = f, KR18 (30c), by the cheapest of several routes.
+//! Solves M ξ̇ + Γ ξ ξ + ∂V = f, KR18 (30c), for ξ̇ by the cheapest of several routes.
 //!
-//! Routes differ in what they trace (bodies in some axes about some point, or the polynomials of
-//! Γ ξ ξ) and in how they solve. Every candidate is built in a graph of its own and counted
-//! exactly; the cheapest is kept.
+//! The routes differ in how they set up the equation (by tracing the bodies in some axes about some reference
+//! point, by recursion over a tree of links, or by expanding Γ ξ ξ into polynomials) and in how they solve it. Each
+//! candidate is built in its own graph and its operations are counted exactly; the cheapest one is kept.
 
 pub(super) mod best;
 pub mod branches;
@@ -31,16 +31,17 @@ use recursive::Recursion;
 use setting::Setting;
 use solve::{Plan, solve};
 
-/// Models with more velocities than this get one route and one order of elimination.
+/// Largest number of velocities for which all routes and elimination orders are tried.
 const SMALL: usize = 8;
 
-/// Trees whose M and Γ ξ ξ take fewer operations as they are traced get all routes, however long they are.
+/// Number of operations of the traced M and Γ ξ ξ below which all routes are tried, however long the tree is.
 const FEW: usize = 1000;
 
-/// Graphs with more nodes get two orders of elimination and no further plans.
+/// Largest number of graph nodes for which more than two plans (the two elimination orders) are tried.
 const LARGE: usize = 3000;
 
-/// The cheapest computation of ξ̇; M and the forces as each is cheapest, in a graph where ξ̇ is, too.
+/// Returns the cheapest computation of ξ̇, and the cheapest computations of M and of the forces, which share the
+/// graph of ξ̇.
 pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> {
     let mut best = Best::new(care);
     let given = Setting::given(model);
@@ -77,9 +78,10 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
     Some((best, computed))
 }
 
-/// M and the forces as each is cheapest, where ξ̇ is not wanted: M may be singular, and has to be where
-/// some velocity has no inertia. `None` with constraints, whose reduction inverts M, unless nothing is wanted that has to do
-/// with M.
+/// Returns the cheapest computations of M and of the forces of a model for which ξ̇ is not needed.
+///
+/// M may be singular here, and it is where some velocity has no inertia. Returns `None` for a model with
+/// constraints, because their reduction inverts M, unless no requested function needs M.
 pub fn forces(model: &Model, care: &Care) -> Option<Computation> {
     let given = Setting::given(model);
     if !model.constraints.is_empty() {
@@ -102,7 +104,8 @@ pub fn forces(model: &Model, care: &Care) -> Option<Computation> {
     cheapest(computations, &model.graph, model, care)
 }
 
-/// The recursions over links, where bodies are a tree of them.
+/// Returns the recursions over links, one for each frame placement; empty if the bodies do not form a tree of
+/// links.
 pub fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
     let placements = care.placements().iter();
     placements
@@ -110,12 +113,12 @@ pub fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
         .collect()
 }
 
-/// Whether the tree is so long that the recursions are certainly cheapest.
+/// Returns whether the tree is so long that the recursions are certainly the cheapest route.
 fn is_long(given: &Setting, recursions: &[Recursion]) -> bool {
     let Some(recursion) = recursions.first() else {
         return false;
     };
-    // What moves in a plane is short for longer.
+    // Planar mechanisms have cheap traced equations, so they count as short up to a larger number of links.
     let plain = |variant: &Variant| {
         let (traced, parts) = trace(given, *variant);
         let roots = [parts.mass.concat(), parts.inertia].concat();
@@ -126,7 +129,7 @@ fn is_long(given: &Setting, recursions: &[Recursion]) -> bool {
     model.n() > SMALL || !short()
 }
 
-/// The cheapest computation with multipliers.
+/// Returns the cheapest computation of ξ̇ and the multipliers of a model that keeps constraints.
 fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computation)> {
     let n = setting.model.n();
     let rows = hybrid::rows(&setting.model);
@@ -205,8 +208,10 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
     Some((best, Computation { graph, parts }))
 }
 
-/// Counts the candidates of a setting; what was traced, that of the best of them first, and for systems
-/// that are not small alone.
+/// Offers all candidates of a setting to `best` and returns the traced computations of M and the forces.
+///
+/// The computation that led to the cheapest candidate comes first; for models that are not small it is the only
+/// one.
 fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
     let family = |variant: &Variant| Family::Traced {
         twist: setting.back.is_some(),
@@ -312,7 +317,7 @@ fn attempt(
     })
 }
 
-/// What is traced and eliminated, in words.
+/// Describes in words what is traced and in which order velocities are eliminated.
 fn route(traced: &Model, order: &[usize], variant: &Variant) -> String {
     let axes = match variant.axes {
         Axes::Body => "body",
@@ -330,7 +335,7 @@ fn route(traced: &Model, order: &[usize], variant: &Variant) -> String {
     }
 }
 
-/// The order of elimination in words.
+/// Describes the elimination order in words.
 fn elimination(model: &Model, order: &[usize]) -> String {
     if order.windows(2).all(|pair| pair[0] < pair[1]) {
         return "velocities eliminated in their order".into();
@@ -347,7 +352,7 @@ fn elimination(model: &Model, order: &[usize]) -> String {
     format!("velocities eliminated in the order {}", names.join(", "))
 }
 
-/// Few plans, to choose what to trace.
+/// Returns the few plans that are used to choose what to trace.
 fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
     let n = parts.mass.len();
     let order: Vec<usize> = (0..n).collect();
@@ -368,7 +373,7 @@ fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
     plans
 }
 
-/// All plans worth counting for a small system.
+/// Returns all plans worth counting for a small system.
 pub(crate) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
     let n = parts.mass.len();
     if graph.len() > LARGE {
@@ -381,7 +386,8 @@ pub(crate) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
             })
             .to_vec();
     }
-    // A constant M is factored when parameters are set: its order of elimination costs nothing.
+    // A constant M is factored once, when the parameters are set, so its elimination order costs nothing at run
+    // time.
     let constant = parts
         .mass
         .iter()
@@ -397,7 +403,7 @@ pub(crate) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
     };
     orders.sort();
     orders.dedup();
-    // Bodies come with three linear velocities first; else all or nothing.
+    // The first three velocities of a body are usually the linear ones; other useful values are none and all.
     let mut aparts = if parts.groups.len() > 1 {
         vec![0, 3.min(n), n]
     } else {
@@ -424,7 +430,7 @@ pub(crate) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
     plans
 }
 
-/// Velocities with constant inertia first, others in their order.
+/// Orders velocities with a constant diagonal entry of M first, and otherwise keeps their order.
 fn constant_first(graph: &Graph, parts: &Parts) -> Vec<usize> {
     let constant = |i: &usize| graph.is_free(parts.mass[*i][*i].node());
     let (first, last): (Vec<usize>, Vec<usize>) = (0..parts.mass.len()).partition(constant);

@@ -1,7 +1,7 @@
-//! M and the right-hand side of M ξ̇ = Σ groups, with points and axes of the generator's choice.
+//! M and the right-hand side of M ξ̇ = Σ groups, traced with reference points and axes chosen by the generator.
 //!
-//! Every body contributes Jᵀ (M_b V̇_b + bias) without Γ being formed: with the acceleration a of
-//! its reference point and α of its frame at ξ̇ = 0, the force m a and the torque Θ α + ω × Θ ω.
+//! Every body contributes Jᵀ (M_b V̇_b + bias), without forming Γ: if its reference point has the acceleration a
+//! and its frame the angular acceleration α at ξ̇ = 0, the force is m a and the torque is Θ α + ω × Θ ω.
 
 use crate::calculus::{Calculus, into_frame};
 use crate::commutation::gamma;
@@ -15,29 +15,29 @@ use hamel_algebra::transplant::{graft, rebuild};
 use hamel_language::model::{Body, Model};
 use hamel_language::syntax::ast::Axes;
 
-/// The point of a body whose motion is traced.
+/// Reference point of a body whose motion is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reference {
-    /// The centre of mass: no coupling of force and torque.
+    /// Centre of mass: force and torque are not coupled.
     Com,
-    /// The origin of the frame: nothing to shift where it is at rest.
+    /// Origin of the frame: no shift terms if the origin is at rest.
     Origin,
 }
 
 impl Parts {
-    /// f − Γ ξ ξ − ∂V.
+    /// Returns the right-hand side f − Γ ξ ξ − ∂V.
     pub fn right(&self, graph: &mut Graph) -> Vec<Edge> {
         (0..self.inertia.len())
             .map(|i| graph.sum(&[self.inertia[i], self.conservative[i], self.applied[i]]))
             .collect()
     }
 
-    /// The same in another graph, as they are computed here.
+    /// Copies the expressions into another graph, keeping the way they are computed here.
     pub fn grafted(&self, from: &Graph, into: &mut Graph) -> Parts {
         self.mapped(|edges| graft(from, into, edges))
     }
 
-    /// The same in another graph, sharing what is computed there.
+    /// Rebuilds the expressions in another graph, reusing equal expressions that the graph already contains.
     pub fn shared(&self, from: &Graph, into: &mut Graph) -> Parts {
         self.mapped(|edges| rebuild(from, into, edges))
     }
@@ -59,37 +59,38 @@ impl Parts {
 /// One way to trace the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
-    /// Axes of linear motion.
+    /// Axes in which linear motion is written.
     pub axes: Axes,
     /// Reference point.
     pub reference: Reference,
-    /// Subtract Θ_kk I in ω × Θ ω, which (λ ω) × ω = 0 allows: one product and one sum less.
+    /// Index k for which Θ_kk I is subtracted in ω × Θ ω, which saves one product and one sum; allowed because (λ
+    /// ω) × ω = 0.
     pub shift: Option<usize>,
 }
 
-/// M ξ̇ = Σ groups.
+/// Terms of the equations of motion M ξ̇ = Σ groups.
 #[derive(Clone, Debug, Default)]
 pub struct Parts {
-    /// M.
+    /// Mass matrix M.
     pub mass: Vec<Vec<Edge>>,
-    /// Right-hand sides by their origin: inertia, gravity, potential, every load.
+    /// Right-hand sides by origin: inertia, gravity, potential, and each load.
     pub groups: Vec<Vec<Edge>>,
-    /// −Γ ξ ξ.
+    /// Inertial forces −Γ ξ ξ.
     pub inertia: Vec<Edge>,
-    /// −∂V, gravity included.
+    /// Conservative forces −∂V, gravity included.
     pub conservative: Vec<Edge>,
-    /// fᴱ, all applied loads.
+    /// Sum fᴱ of all applied loads.
     pub applied: Vec<Edge>,
-    /// M ξ̇ + Γ ξ ξ + ∂V, where it was traced as a whole.
+    /// Inverse dynamics M ξ̇ + Γ ξ ξ + ∂V, if it was traced as a whole.
     pub inverse_dynamics: Option<Vec<Edge>>,
-    /// ∂T/∂ξ, where it was traced by itself: M ξ, and more where ẋ has terms without ξ.
+    /// Momentum ∂T/∂ξ, if it was traced separately: M ξ, plus further terms if ẋ has terms without ξ.
     pub momentum: Option<Vec<Edge>>,
-    /// The part of T in the energy, where it is not ½ ξᵀ M ξ.
+    /// Contribution of T to the energy, if it is not ½ ξᵀ M ξ.
     pub kinetic: Option<Edge>,
 }
 
 impl Parts {
-    /// The part of T in the energy.
+    /// Returns the contribution of T to the energy.
     pub fn kinetic_of(&self, graph: &mut Graph, model: &Model, momentum: &[Edge]) -> Edge {
         if let Some(kinetic) = self.kinetic {
             return kinetic;
@@ -99,7 +100,7 @@ impl Parts {
         graph.mul(half, twice)
     }
 
-    /// ∂T/∂ξ.
+    /// Returns the momentum ∂T/∂ξ.
     pub fn momentum_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
         match &self.momentum {
             Some(momentum) => momentum.clone(),
@@ -110,7 +111,7 @@ impl Parts {
         }
     }
 
-    /// M ξ̇ + Γ ξ ξ + ∂V.
+    /// Returns the inverse dynamics M ξ̇ + Γ ξ ξ + ∂V.
     pub fn inverse_dynamics_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
         if let Some(traced) = &self.inverse_dynamics {
             return traced.clone();
@@ -125,7 +126,7 @@ impl Parts {
     }
 }
 
-/// Traces a model.
+/// Traces M and the forces of a model.
 pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Parts {
     let n = model.n();
     let zero = model.graph.zero();
@@ -212,15 +213,15 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
     }
 }
 
-/// A body with its Jacobian, bias force and weight in the chosen axes and point.
+/// Jacobian, bias force and weight of a body, in the chosen axes and about the chosen point.
 struct Traced {
     linear: Vec<Vec3>,
     angular: Vec<Vec3>,
     mass: Edge,
     inertia: Mat3,
-    /// m s where the point is the origin, else 0; body axes.
+    /// First moment m s in body axes if the reference point is the origin, else 0.
     moment: Vec3,
-    /// World axes to body axes, where linear motion is in world axes.
+    /// Rotation from body axes to world axes, if linear motion is written in world axes.
     rotation: Option<Mat3>,
     force: Vec3,
     torque: Vec3,
@@ -283,7 +284,7 @@ impl Traced {
         let mut torque = gyroscopic(graph, &inertia, omega, variant.shift);
         let spun = apply3(graph, &inertia, alpha);
         torque = add3(graph, torque, spun);
-        // Coupling through m s where the point is not the centre of mass.
+        // Coupling through the first moment m s, if the reference point is not the centre of mass.
         let tangential = cross(graph, alpha, moment);
         let inner = cross(graph, omega, moment);
         let centripetal = cross(graph, omega, inner);
@@ -301,7 +302,7 @@ impl Traced {
         let weight_torque = if at_com {
             zero
         } else {
-            // m s × Rᵀ g with the constants together: (m s g) × Rᵀ e.
+            // m s × Rᵀ g with its constant factors grouped: (m s g) × Rᵀ e.
             let pull = into_frame(graph, &frame.rotation, weight);
             cross(graph, body.com, pull)
         };
@@ -374,7 +375,7 @@ impl Traced {
     }
 }
 
-/// ω × Θ ω = ω × (Θ − λ I) ω.
+/// Returns ω × Θ ω = ω × (Θ − λ I) ω.
 fn gyroscopic(graph: &mut Graph, inertia: &Mat3, omega: Vec3, shift: Option<usize>) -> Vec3 {
     let mut inertia = *inertia;
     if let Some(k) = shift {

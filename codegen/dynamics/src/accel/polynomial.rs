@@ -1,6 +1,7 @@
-//! The polynomial route: the right-hand side of (30c) expanded into run-time monomials with
-//! constant coefficients, and factored anew. Small systems get their shortest code this way; M may
-//! be inverted into the coefficients where it is constant.
+//! Polynomial route: the right-hand side of KR18 (30c) is expanded into run-time monomials with constant
+//! coefficients, and factored again.
+//!
+//! This gives the shortest code for small systems. If M is constant, M⁻¹ can be multiplied into the coefficients.
 
 use super::parts::{Reference, Variant, parts};
 use super::solve::{Plan, solve};
@@ -18,16 +19,15 @@ use hamel_language::syntax::ast::Axes;
 use hamel_program::count::count;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most run-time terms of a system that is expanded.
+/// Largest number of run-time terms of a system that is expanded.
 const MOST_TERMS: usize = 260;
-/// Most terms where M is constant and still to be solved with: tracing the bodies has a smaller
-/// right-hand side then.
+/// Largest number of terms if M is constant but not inverted into the coefficients; for larger systems, tracing the
+/// bodies gives a smaller right-hand side.
 const MOST_CONSTANT_TERMS: usize = 40;
-/// Products and sums of terms after which the expansion is given up: what is traced stands.
+/// Number of products and sums of terms after which the expansion is abandoned in favour of the traced expressions.
 const MOST_WORK: usize = 1_000_000;
 
-/// The candidates of this route that may cost less than `most`; none where the system is too large
-/// to expand.
+/// Returns the candidates of this route that may cost less than `most`; empty if the system is too large to expand.
 pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
     let mut traced = model.clone();
     let variant = Variant {
@@ -57,16 +57,16 @@ pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
     all
 }
 
-/// Right-hand side and mass matrix as polynomials, in a graph that holds no more than the model
-/// and their coefficients.
+/// Right-hand side and mass matrix as polynomials, in a graph that contains only the model and the polynomials'
+/// coefficients.
 struct System {
     graph: Graph,
     right: Vec<Collected>,
-    /// Entries of M that vary, of the lower triangle.
+    /// Varying entries of the lower triangle of M, with their row and column.
     varying: Vec<(usize, usize, Collected)>,
-    /// M, constant entries in place.
+    /// Mass matrix M; only its constant entries are filled in.
     mass: Vec<Vec<Edge>>,
-    /// What the variables beyond the symbols stand for in `graph`.
+    /// Expressions in `graph` for the variables that are not symbols.
     opaque: BTreeMap<Var, Edge>,
     reduced: bool,
 }
@@ -113,7 +113,7 @@ impl System {
                 }
             }
         }
-        // Coefficients and opaque variables move to the small graph.
+        // Move the coefficients and the opaque variables to the small graph.
         let mut opaque = BTreeMap::new();
         for collected in right
             .iter_mut()
@@ -141,7 +141,7 @@ impl System {
         })
     }
 
-    /// ξ̇ = M⁻¹ f with the constant M⁻¹ in the coefficients.
+    /// Builds ξ̇ = M⁻¹ f with the constant M⁻¹ multiplied into the coefficients of f.
     fn inverted(&self, most: usize) -> Option<Acceleration> {
         if !self.varying.is_empty() {
             return None;
@@ -178,7 +178,7 @@ impl System {
             return None;
         }
         let xi_dot = self.factored(&mut graph, &polynomials);
-        // The pivots of the constant M still have to be positive.
+        // The pivots of the constant M must still be checked for being positive.
         let parts = Parts {
             mass: self.mass.clone(),
             groups: Vec::new(),
@@ -197,7 +197,7 @@ impl System {
         Some(self.finish(graph, xi_dot, pivots, "M⁻¹ in its coefficients"))
     }
 
-    /// M ξ̇ = f with f and M factored together.
+    /// Builds candidates that solve M ξ̇ = f, with f and the varying entries of M factored together.
     fn solved(&self, model: &Model, most: usize) -> Vec<Acceleration> {
         let n = self.mass.len();
         let mut graph = self.graph.clone();
@@ -263,9 +263,9 @@ impl System {
         }
     }
 
-    /// The polynomials as expressions with few operations.
+    /// Builds the polynomials as expressions with few operations.
     fn factored(&self, graph: &mut Graph, polynomials: &[Collected]) -> Vec<Edge> {
-        // Coefficient 0 is the number 1; the others by first use.
+        // Coefficient 0 is the number 1; the others are numbered by first use.
         let mut coefficients = vec![graph.one()];
         let terms: Vec<Vec<Term>> = polynomials
             .iter()
@@ -327,9 +327,11 @@ impl System {
     }
 }
 
-/// Operations that no factoring avoids: every coefficient but 1 takes part in a product; terms whose
-/// coefficient occurs in one polynomial alone cannot be summed anywhere else; and polynomials of
-/// degree two with such terms are independent, so each needs a product of variables of its own.
+/// Returns a lower bound on the number of operations, which no factoring can go below.
+///
+/// Every coefficient other than 1 takes part in a product. Terms whose coefficient occurs in only one polynomial
+/// cannot be summed anywhere else. Polynomials that have such terms of degree two or more are independent, so each
+/// of them needs a product of variables of its own.
 fn least(graph: &Graph, polynomials: &[Collected]) -> usize {
     let mut rows: BTreeMap<Edge, BTreeSet<usize>> = BTreeMap::new();
     for (row, collected) in polynomials.iter().enumerate() {

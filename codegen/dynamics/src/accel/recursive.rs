@@ -1,4 +1,4 @@
-//! Trees: ξ̇, M and forces by recursion over links.
+//! Recursion over a tree of links: ξ̇, M and forces.
 
 use super::best::{Acceleration, Best, Family};
 use super::branches::Branches;
@@ -20,36 +20,37 @@ use hamel_algebra::linear::{Vec3, matrix, zero3};
 use hamel_algebra::transplant::map_symbols;
 use hamel_language::model::Model;
 
-/// Trees with more links are not tried by other routes.
+/// Largest number of links of a tree for which other routes are tried as well.
 const SHORT: usize = 3;
 
-/// A model whose inertia is that of links.
+/// A model whose inertia is that of a tree of links, ready for the recursive algorithms.
 pub struct Recursion {
-    /// The model, its graph holding constants and loads: in its full frame, where the other velocities are given.
+    /// The model, with constants and loads in its graph. It is the model in the full frame if the system's other
+    /// velocities are given as functions of time.
     model: Model,
     tree: Tree,
-    /// Whether digits come before cost.
+    /// Whether numerical accuracy takes precedence over cost.
     careful: bool,
-    /// −∂V of what is not gravity.
+    /// Forces −∂V of potentials other than gravity.
     elastic: Vec<Edge>,
-    /// fᴱ.
+    /// Applied loads fᴱ.
     applied: Vec<Edge>,
-    /// How to get from the full frame to the velocities that are free.
+    /// Transformation from the full frame to the free velocities.
     free: Option<Free>,
 }
 
-/// The velocities that are free of a full frame.
+/// The free velocities of a full frame.
 struct Free {
-    /// Their graph.
+    /// Graph of the system in the free velocities.
     graph: Graph,
-    /// What the symbols of the full frame become there.
+    /// Image in that graph of each symbol of the full frame's graph.
     images: Vec<Edge>,
-    /// Their places in ξ.
+    /// Places of the free velocities in the full ξ.
     active: Vec<usize>,
 }
 
 impl Recursion {
-    /// The recursion over a model's links, where they are a tree.
+    /// Sets up the recursion over a model's links; `None` if the model is not an unconstrained tree of links.
     pub fn of(setting: &Setting, placement: Placement, care: &Care) -> Option<Self> {
         let reduced = &setting.model;
         if !reduced.constraints.is_empty() || setting.back.is_some() {
@@ -88,7 +89,9 @@ impl Recursion {
         })
     }
 
-    /// The tree with U of its links by the cheapest of some ways; from ω and α of each where digits come first.
+    /// Returns the tree that computes U = α̂ + ω̂ ω̂ of its links in the cheapest of some ways.
+    ///
+    /// If accuracy takes precedence, the tree is returned unchanged, with U computed from each link's ω and α.
     fn cheapest(&self, ways: &[Tensors], graph: &Graph, motion: Motion) -> Tree {
         match self.careful {
             true => self.tree.clone(),
@@ -96,18 +99,18 @@ impl Recursion {
         }
     }
 
-    /// Whether the tree is so long that the recursion is certainly cheapest.
+    /// Returns whether the tree is so long that the recursion is certainly the cheapest route.
     pub fn is_long(&self) -> bool {
         self.tree.links.len() > SHORT
     }
 
-    /// What acts beside gravity.
+    /// Returns the generalised forces other than gravity.
     fn load(&self, graph: &mut Graph) -> Vec<Edge> {
         let both = self.elastic.iter().zip(&self.applied);
         both.map(|(&a, &b)| graph.add(a, b)).collect()
     }
 
-    /// Places of the velocities of the state, and of those that are given by the time.
+    /// Returns the places of the state's velocities, and of those that are given functions of time.
     fn places(&self) -> (Vec<usize>, Vec<usize>) {
         let all = 0..self.model.n();
         match &self.free {
@@ -116,7 +119,7 @@ impl Recursion {
         }
     }
 
-    /// ξ̇ where the velocities of the state do not accelerate.
+    /// Returns the full ξ̇ with zero accelerations for the state's velocities.
     fn given_rates(&self) -> Vec<Edge> {
         let mut rates = vec![self.model.graph.zero(); self.model.n()];
         for i in self.places().1 {
@@ -125,14 +128,15 @@ impl Recursion {
         rates
     }
 
-    /// ξ̇ of the state from that of the velocities whose rates are not given, by places in the full frame.
+    /// Assembles ξ̇ of the state's velocities from prescribed rates and from those of the other velocities (`free`,
+    /// by place in the full frame).
     fn driven(&self, active: &[usize], free: impl Fn(usize) -> Edge) -> Vec<Edge> {
         let given = |i: usize| self.model.accelerated.iter().find(|(place, _)| *place == i);
         let rate = |&i: &usize| given(i).map_or_else(|| free(i), |(_, rate)| *rate);
         active.iter().map(rate).collect()
     }
 
-    /// Expressions of the full frame as those of the velocities that are free, with their graph.
+    /// Rewrites expressions of the full frame in the free velocities, and returns them with their graph.
     fn leave<const N: usize>(
         &self,
         graph: Graph,
@@ -146,7 +150,8 @@ impl Recursion {
         (into, lists)
     }
 
-    /// Counts articulated bodies, and M with elimination from the leaves and from the root.
+    /// Offers the recursive candidates to `best`: articulated bodies, and composite bodies with M eliminated from
+    /// the leaves and from the root.
     pub(super) fn search(&self, best: &mut Best) {
         let n = self.model.n();
         let (active, mut given) = self.places();
@@ -161,7 +166,8 @@ impl Recursion {
             .filter(|i| !given.contains(i))
             .collect();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
-        // Where the time gives velocities, other functions need ω of links more than ξ̇ gains.
+        // If time gives velocities, other functions need ω of the links; this outweighs what a cheaper U saves for
+        // ξ̇.
         let tree = match self.free {
             Some(_) => self.tree.clone(),
             None => self.cheapest(&TENSORS, &self.model.graph, (xi, &rates, gravity)),
@@ -224,7 +230,7 @@ impl Recursion {
         }
     }
 
-    /// M and forces.
+    /// Returns M and the forces.
     pub fn parts(&self) -> Computation {
         let mut graph = self.model.graph.clone();
         let n = self.model.n();
@@ -287,7 +293,7 @@ impl Recursion {
         Computation { graph, parts }
     }
 
-    /// M ξ̇ + Γ ξ ξ + ∂V − f of velocities of the full frame: the forces of their drives.
+    /// Returns M ξ̇ + Γ ξ ξ + ∂V − f for some velocities of the full frame: the forces of their drives.
     pub fn residuals(&self, velocities: &[usize]) -> (Graph, Vec<Edge>) {
         let mut graph = self.model.graph.clone();
         let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
@@ -300,7 +306,7 @@ impl Recursion {
         (graph, rows)
     }
 
-    /// ṗ of (x, ξ, u), in a graph of its own; `None` where a joint varies with x.
+    /// Returns ṗ as a function of (x, ξ, u), in its own graph; `None` if a joint varies with x.
     pub fn momentum_rate(&self) -> Option<(Graph, Vec<Edge>)> {
         if self.free.is_some() {
             return None;
@@ -318,8 +324,10 @@ impl Recursion {
         Some((graph, rate))
     }
 
-    /// The momentum of everything in a graph of its own: linear and about the origin of the world, in its
-    /// axes. The links have to be the description's: others move as these do and have other momenta.
+    /// Returns the total linear momentum and the total angular momentum about the world origin, in world axes and
+    /// in their own graph.
+    ///
+    /// The links must be those of the description: equivalent links have the same motion but different momenta.
     pub fn total_momentum(&self) -> (Graph, Vec3, Vec3) {
         let mut graph = self.model.graph.clone();
         let (linear, angular) = total(&mut graph, &self.tree, &self.model.xi);
@@ -328,7 +336,7 @@ impl Recursion {
         (graph, three(&linear), three(&angular))
     }
 
-    /// The same for a unit of each velocity alone; `None` where other velocities are given.
+    /// Returns the total momentum due to a unit of each velocity alone; `None` if other velocities are given.
     pub fn momentum_columns(&self) -> Option<(Graph, Vec<(Vec3, Vec3)>)> {
         if self.free.is_some() {
             return None;
@@ -338,8 +346,9 @@ impl Recursion {
         Some((graph, columns))
     }
 
-    /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not
-    /// the rate of one freedom, or M is singular everywhere.
+    /// Returns ξ = M⁻¹ p by the articulated-body algorithm: ξ equals the ξ̇ that the forces p alone would cause.
+    ///
+    /// Returns `None` if a velocity is not the rate of a single freedom, or if M is singular everywhere.
     pub fn velocity_from_momentum(&self) -> Option<(Graph, Solution)> {
         let mut graph = self.model.graph.clone();
         if self.free.is_some() || !self.tree.is_plain(&graph, self.model.n(), &[]) {
@@ -357,8 +366,10 @@ impl Recursion {
         Some((graph, solution))
     }
 
-    /// ∂(M ξ̇ + Γ ξ ξ + ∂V) along displacements and velocities at constant ξ̇, in a graph of its own: n rows of 2 n.
-    /// `None` where a joint varies with x.
+    /// Returns the derivatives of M ξ̇ + Γ ξ ξ + ∂V along displacements and velocities at constant ξ̇, in their own
+    /// graph: n rows of 2 n entries.
+    ///
+    /// Returns `None` if a joint varies with x.
     pub fn inverse_slopes(&self) -> Option<(Graph, Vec<Vec<Edge>>)> {
         if self.free.is_some() {
             return None;
@@ -378,8 +389,10 @@ impl Recursion {
         Some((graph, (0..self.model.n()).map(row).collect()))
     }
 
-    /// ξ̇ with its slopes, from one factorisation of M: δξ̇ = M⁻¹ δ(f − M ξ̇ − Γ ξ ξ − ∂V) with ξ̇ held. `None` where a
-    /// joint varies with x, or M is singular everywhere.
+    /// Returns ξ̇ and its derivatives from one factorisation of M: δξ̇ = M⁻¹ δ(f − M ξ̇ − Γ ξ ξ − ∂V) with ξ̇ held
+    /// constant.
+    ///
+    /// Returns `None` if a joint varies with x, or if M is singular everywhere.
     pub fn rates_and_slopes(&self) -> Option<RatesAndSlopes> {
         let model = &self.model;
         let n = model.n();
@@ -404,12 +417,13 @@ impl Recursion {
         let found = slopes(&mut graph, tree, proper, &xi_dot, gravity)?;
         let mut changes = self.changes(&load, &mut graph, &found);
         if let Some(uniform) = &free {
-            // The velocities that are left out act by what they add to ξ̇ alone.
+            // The velocities left out of the recursion affect the derivatives only through their contribution to ξ̇
+            // and the load.
             for &i in &uniform.common {
                 changes[n + i] = self.along(&graph, n + i).all(&mut graph, &load);
             }
         }
-        // The inputs first: much of the others' work is theirs.
+        // Solve for the input columns first: the other columns can reuse much of their work.
         let mut columns: Vec<Vec<Edge>> = (changes[2 * n..].iter())
             .map(|column| branches.solve(&mut graph, column))
             .collect();
@@ -436,7 +450,7 @@ impl Recursion {
         })
     }
 
-    /// The derivation along a displacement, a velocity or an input, by their order.
+    /// Returns the derivation along the j-th direction: displacements, then velocities, then inputs.
     fn along(&self, graph: &Graph, j: usize) -> Derivation {
         let model = &self.model;
         let one = graph.one();
@@ -452,7 +466,8 @@ impl Recursion {
         }
     }
 
-    /// ∂(load − M ξ̇ − Γ ξ ξ) with what weighs along displacements, velocities and inputs, ξ̇ held: 2 n + m columns.
+    /// Returns the derivatives of load − M ξ̇ − Γ ξ ξ, gravity included, along displacements, velocities and inputs
+    /// at constant ξ̇: 2 n + m columns.
     fn changes(&self, load: &[Edge], graph: &mut Graph, found: &Slopes) -> Vec<Vec<Edge>> {
         let n = self.model.n();
         let columns = (0..2 * n + self.model.u.len()).map(|j| {
@@ -472,14 +487,14 @@ impl Recursion {
     }
 }
 
-/// ξ̇ with its slopes.
+/// ξ̇ and its derivatives.
 pub struct RatesAndSlopes {
-    /// The graph of all.
+    /// Graph of all expressions.
     pub graph: Graph,
-    /// ξ̇.
+    /// Accelerations ξ̇.
     pub xi_dot: Vec<Edge>,
-    /// Pivots that have to be positive, one for each velocity.
+    /// Pivots that must be positive, one per velocity.
     pub pivots: Vec<Edge>,
-    /// n rows of 2 n + m.
+    /// Derivatives of ξ̇ along displacements, velocities and inputs: n rows of 2 n + m entries.
     pub rows: Vec<Vec<Edge>>,
 }

@@ -1,4 +1,4 @@
-//! ξ̇ and the multipliers λ of M ξ̇ = f − h + Bᵀ λ, B ξ̇ = b, by M = L D Lᵀ and the Schur complement
+//! Solution ξ̇ and multipliers λ of M ξ̇ = f − h + Bᵀ λ, B ξ̇ = b, by M = L D Lᵀ and the Schur complement
 //! S = B M⁻¹ Bᵀ, both unrolled.
 
 use super::dependent::{CLEARED, SERIES, multipliers_at, raise, raising};
@@ -9,17 +9,19 @@ use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::lane::Lane;
 use hamel_language::model::Model;
 
-/// The solution.
+/// Solution of the constrained equations of motion.
 #[derive(Clone, Debug)]
 pub struct Saddle {
-    /// ξ̇.
+    /// Accelerations ξ̇.
     pub xi_dot: Vec<Edge>,
-    /// λ, one for each row of B.
+    /// Multipliers λ, one for each row of B.
     pub multipliers: Vec<Edge>,
 }
 
-/// The right side of B ξ̇ = … with s = B ξ + b: −Ḃ ξ − ḃ, and with it what makes a violation decay like exp(−λ t), −λ s,
-/// or −2 λ s − λ² φ where s is the rate of an equation φ = 0 of coordinates.
+/// Returns the right-hand side of B ξ̇ = …, for constraints with the rate s = B ξ + b.
+///
+/// It is −Ḃ ξ − ḃ, plus the terms of a stabilised constraint that make a violation decay like exp(−λ t): −λ s, or
+/// −2 λ s − λ² φ if s is the rate of an equation φ = 0 between coordinates.
 pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     let constraints = model.constraints.clone();
     constraints
@@ -42,20 +44,20 @@ pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
         .collect()
 }
 
-/// M and S = B M⁻¹ Bᵀ, factored.
+/// Factors of M and of S = B M⁻¹ Bᵀ.
 #[derive(Clone, Debug)]
 pub struct Factored {
     order: Vec<usize>,
     mass: Factors,
-    /// L⁻¹ Bᵀ by columns, and the same divided by D.
+    /// Columns of L⁻¹ Bᵀ, and (in `scaled`) the same divided by D.
     bonds: Vec<Vec<Edge>>,
     scaled: Vec<Vec<Edge>>,
     inner: Factors,
-    /// The diagonal that S was raised by before it was factored, where it is singular.
+    /// Diagonal that was added to S before it was factored, if S is singular; else empty.
     raised: Vec<Edge>,
 }
 
-/// Factors with an order of elimination of M; `None` where a pivot vanishes identically.
+/// Factors M, in a given elimination order, and S; `None` if a pivot vanishes identically.
 pub fn factored(
     graph: &mut Graph,
     parts: &Parts,
@@ -98,8 +100,9 @@ pub fn factored(
 }
 
 impl Factored {
-    /// Pivots of M in order of velocities, then of S in order of rows; a pivot of S vanishes where
-    /// the rows of B become dependent, at a singular configuration.
+    /// Returns the pivots of M in the order of velocities, then those of S in the order of rows.
+    ///
+    /// A pivot of S vanishes where the rows of B become dependent, at a singular configuration.
     pub fn pivots(&self) -> Vec<Edge> {
         let mut pivots = self.mass.pivots.clone();
         for (&i, &pivot) in self.order.iter().zip(&self.mass.pivots) {
@@ -109,7 +112,7 @@ impl Factored {
         pivots
     }
 
-    /// ξ̇ and λ of M ξ̇ = f + Bᵀ λ, B ξ̇ = right.
+    /// Solves M ξ̇ = f + Bᵀ λ, B ξ̇ = right for ξ̇ and λ.
     pub fn solve(&self, graph: &mut Graph, force: &[Edge], right: &[Edge]) -> Saddle {
         let mut force: Vec<Edge> = self.order.iter().map(|&i| force[i]).collect();
         forward(graph, &self.mass, &mut force);
@@ -141,7 +144,7 @@ impl Factored {
         }
     }
 
-    /// S⁻¹ r, or S⁺ r where S is singular.
+    /// Returns S⁻¹ r, or S⁺ r if S is singular.
     fn multipliers(&self, graph: &mut Graph, wanted: Vec<Edge>) -> Vec<Edge> {
         if self.raised.is_empty() {
             return self.divided(graph, wanted);
@@ -167,7 +170,7 @@ impl Factored {
         solution
     }
 
-    /// What L D Lᵀ of S, or of what it was raised to, makes of a right side.
+    /// Solves with the factors L D Lᵀ of S, or of the matrix with the raised diagonal.
     fn divided(&self, graph: &mut Graph, mut right: Vec<Edge>) -> Vec<Edge> {
         forward(graph, &self.inner, &mut right);
         for (entry, &inverse) in right.iter_mut().zip(&self.inner.inverses) {
@@ -178,8 +181,10 @@ impl Factored {
     }
 }
 
-/// λ of M ξ̇ = f + Bᵀ λ where ξ̇ was solved for with w BᵀB added to M and w Bᵀ b to f: λ' − w (B ξ̇ − b). The last part vanishes
-/// where the rows do not contradict one another.
+/// Returns λ of M ξ̇ = f + Bᵀ λ from a solution with w BᵀB added to M and w Bᵀ b added to f.
+///
+/// With the multipliers λ' of that solution, λ = λ' − w (B ξ̇ − b). The correction vanishes if the rows do not
+/// contradict one another.
 pub fn plain(
     graph: &mut Graph,
     weight: Edge,
@@ -196,17 +201,17 @@ pub fn plain(
     .collect()
 }
 
-/// What leads back to the constraints.
+/// Projections onto the constraints.
 #[derive(Clone, Debug)]
 pub struct Projections {
-    /// −M⁻¹ Bᵀ S⁻¹ φ(x), with what has a given rate held: the step along A that closes the loops to first order, and that
-    /// nonholonomic constraints allow.
+    /// Position step −M⁻¹ Bᵀ S⁻¹ φ(x), with the velocities of given rates held: the step along A that closes the
+    /// loops to first order and satisfies the nonholonomic constraints.
     pub position: Vec<Edge>,
-    /// ξ − M⁻¹ Bᵀ S⁻¹ B ξ: the velocities nearest in kinetic energy that satisfy B ξ = 0.
+    /// Projected velocities ξ − M⁻¹ Bᵀ S⁻¹ B ξ: the nearest in kinetic energy that satisfy B ξ = 0.
     pub velocity: Vec<Edge>,
 }
 
-/// The projections of a model; its constraints are those that are kept.
+/// Returns the projections of a model onto the constraints that it keeps.
 pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Projections {
     let rest = vec![graph.zero(); model.n()];
     let held = vec![graph.zero(); model.accelerated.len()];
@@ -220,7 +225,7 @@ pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Pro
         .chain(held)
         .collect();
     let mut change = factored.solve(graph, &rest, &speeds).xi_dot;
-    // Exactly held, also where S is raised.
+    // Velocities with given rates are held exactly, even if S is raised.
     for &(place, _) in &model.accelerated {
         (position[place], change[place]) = (graph.zero(), graph.zero());
     }
@@ -233,7 +238,7 @@ pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Pro
     Projections { position, velocity }
 }
 
-/// L D Lᵀ.
+/// Factors of a matrix L D Lᵀ.
 #[derive(Clone, Debug)]
 struct Factors {
     lower: Vec<Vec<Edge>>,
@@ -270,7 +275,7 @@ fn factor(graph: &mut Graph, a: &mut [Vec<Edge>]) -> Option<Factors> {
     })
 }
 
-/// L⁻¹ v.
+/// Replaces v by L⁻¹ v.
 fn forward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     for c in 0..v.len() {
         for r in c + 1..v.len() {
@@ -280,7 +285,7 @@ fn forward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     }
 }
 
-/// L⁻ᵀ v.
+/// Replaces v by L⁻ᵀ v.
 fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     for c in (0..v.len()).rev() {
         for r in c + 1..v.len() {
@@ -290,18 +295,20 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     }
 }
 
-/// ξ̇ and λ in numbers modulo p.
+/// Solution ξ̇ and λ in numbers modulo p.
 pub struct Solved {
-    /// ξ̇.
+    /// Accelerations ξ̇.
     pub xi_dot: Vec<Fp>,
-    /// λ of the constraints, then of velocities whose rates are given.
+    /// Multipliers λ of the constraints, then of velocities whose rates are given.
     pub multipliers: Vec<Fp>,
 }
 
-/// ξ̇ and λ in numbers modulo p, by plain elimination: what the emitted code has to agree with. The parts are M, the forces, B by
-/// rows, and the right side of B ξ̇; then come velocities whose rates are given. Of the lane is what `Raised` multiplies by
-/// where the system is overconstrained. Where M is raised by w BᵀB, w Bᵀ b is added to forces that `balance` it, as in ξ̇; steps
-/// back to constraints have no forces.
+/// Solves for ξ̇ and λ in numbers modulo p by plain elimination; the emitted code must agree with the result.
+///
+/// The arguments are M, the forces, B by rows and the right-hand side of B ξ̇, then the velocities whose rates are
+/// given. The lane supplies the factor of `Raised`, if the system is overconstrained. If M is raised by w BᵀB, then
+/// `balance` tells whether to add w Bᵀ b to the forces: this is right for ξ̇, but not for steps back to the
+/// constraints, which have no forces.
 pub fn solve_at(
     model: &Model,
     [mass, force, rows, right]: [&[Fp]; 4],
@@ -370,7 +377,7 @@ pub fn solve_at(
     })
 }
 
-/// A⁻¹ b for several b.
+/// Returns A⁻¹ b for several b; `None` if A is singular.
 pub(super) fn solve_columns(a: &[Fp], n: usize, columns: &[Vec<Fp>]) -> Option<Vec<Vec<Fp>>> {
     let mut rows: Vec<Vec<Fp>> = (0..n)
         .map(|i| {

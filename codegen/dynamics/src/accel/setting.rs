@@ -1,7 +1,7 @@
-//! The velocity coordinates in which ξ̇ is computed: the user's, or a body's own twist.
+//! Velocity coordinates in which ξ̇ is computed: the user's, or the body's own twist.
 //!
-//! Where one body's twist η = B ξ has as many entries as ξ and B is orthogonal on X (a body with
-//! world velocities), M is constant in η, and ξ̇ = Bᵀ η̇ + (dBᵀ/dt) η.
+//! If the twist η = B ξ of the only body has as many entries as ξ and B is orthogonal on X (for example, a body
+//! whose velocities are given in world axes), then M is constant in η, and ξ̇ = Bᵀ η̇ + (dBᵀ/dt) η.
 
 use crate::calculus::{Calculus, into_frame};
 use hamel_algebra::derivation::Derivation;
@@ -9,28 +9,28 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::linear::{multiply, transpose};
 use hamel_language::model::Model;
 
-/// A model with the velocity coordinates that are used inside.
+/// A model together with the velocity coordinates used internally.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// The model; A and the generalised forces are those of the inner velocities.
+    /// The model; its A and generalised forces belong to the internal velocities.
     pub model: Model,
-    /// ∂ᵢ along the inner frame, and d/dt at constant inner velocities.
+    /// Derivatives ∂ᵢ along the internal frame, and d/dt at constant internal velocities.
     pub calculus: Calculus,
-    /// How to get back to ξ̇, where the inner velocities are not ξ.
+    /// Transformation back to ξ̇, if the internal velocities differ from ξ.
     pub back: Option<Back>,
 }
 
-/// ξ̇ = Bᵀ η̇ + drift.
+/// Transformation ξ̇ = Bᵀ η̇ + drift from internal accelerations η̇.
 #[derive(Clone, Debug)]
 pub struct Back {
-    /// B, n rows of n.
+    /// Orthogonal matrix B, n rows of n entries.
     pub b: Vec<Vec<Edge>>,
-    /// (dBᵀ/dt) η.
+    /// Drift term (dBᵀ/dt) η.
     pub drift: Vec<Edge>,
 }
 
 impl Setting {
-    /// The user's velocities.
+    /// Uses the user's velocities.
     pub fn given(model: &Model) -> Self {
         Setting {
             model: model.clone(),
@@ -39,8 +39,10 @@ impl Setting {
         }
     }
 
-    /// The twist of the only body, in its axes; `None` where that is no orthogonal change of
-    /// velocities, or none at all.
+    /// Uses the twist of the only body, in the body's axes.
+    ///
+    /// Returns `None` unless the whole kinetic energy is that of a single body and B is square, orthogonal and not
+    /// the identity.
     pub fn twist(model: &Model) -> Option<Self> {
         let [body] = model.bodies.as_slice() else {
             return None;
@@ -79,7 +81,7 @@ impl Setting {
             return None;
         }
         let eta: Vec<Edge> = b.iter().map(|row| graph.dot(row, &model.xi)).collect();
-        // Along the motion B changes with x alone.
+        // B depends on x alone, so its rate along the motion is ∂B/∂x ẋ.
         let mut along = Derivation::new(
             model
                 .x
@@ -107,7 +109,7 @@ impl Setting {
         })
     }
 
-    /// ξ̇ from η̇.
+    /// Transforms η̇ back to ξ̇.
     pub fn leave(&self, graph: &mut hamel_algebra::graph::Graph, eta_dot: Vec<Edge>) -> Vec<Edge> {
         let Some(back) = &self.back else {
             return eta_dot;

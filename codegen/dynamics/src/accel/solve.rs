@@ -1,35 +1,41 @@
-//! ξ̇ = M⁻¹ Σ groups by M = L D Lᵀ, unrolled and sparse, with what is constant done once.
+//! Solution ξ̇ = M⁻¹ Σ groups by M = L D Lᵀ, unrolled and sparse, with constant parts computed only once.
 
 use super::parts::Parts;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::solve_symmetric;
 
-/// One way to solve.
+/// One way to solve M ξ̇ = Σ groups.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// Order of elimination.
+    /// Order in which velocities are eliminated.
     pub order: Vec<usize>,
-    /// The first so many columns are eliminated from each group alone, so that what cancels in a
-    /// group (a force at the centre of mass has no torque there) cancels before it is summed.
+    /// Number of leading columns that are eliminated from each group separately.
+    ///
+    /// Terms that cancel within a group (a force at the centre of mass has no torque about it) then cancel before
+    /// the groups are summed.
     pub apart: usize,
-    /// Scale the remaining right-hand side by the first remaining pivot, where that is constant:
-    /// the factor goes into constants that are there anyway.
+    /// Whether to divide the remaining right-hand side by the first remaining pivot, if that is constant: the
+    /// factor is absorbed into constants that the right-hand side contains anyway.
     pub scale: bool,
-    /// Multiply the remaining right-hand side by the inverse of what remains of M, where that is
-    /// constant: as many operations as substitution where it is full, but fewer after one another.
+    /// Whether to multiply the remaining right-hand side by the inverse of the remaining block of M, if that block
+    /// is constant.
+    ///
+    /// For a full block this takes as many operations as substitution, but the chain of dependent operations is
+    /// shorter.
     pub inverse: bool,
 }
 
-/// ξ̇ and the pivots that have to be positive.
+/// Solution ξ̇ with the pivots that must be positive.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    /// ξ̇.
+    /// Accelerations ξ̇.
     pub xi_dot: Vec<Edge>,
-    /// Pivots of D, one for each velocity in their order, whatever the order of elimination; 1 where a rate is given.
+    /// Pivots of D, one per velocity, in the order of the velocities whatever the elimination order; 1 for a
+    /// velocity whose rate is given.
     pub pivots: Vec<Edge>,
 }
 
-/// Solves; `None` where a pivot vanishes identically.
+/// Solves M ξ̇ = Σ groups; `None` if a pivot vanishes identically.
 pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> {
     let n = plan.order.len();
     let zero = graph.zero();
@@ -46,7 +52,7 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
     if groups.is_empty() {
         groups.push(vec![zero; n]);
     }
-    // Factorise: l[r][c] below the diagonal, d on it, and how to divide by d.
+    // Factorise M: l[r][c] below the diagonal, d on the diagonal, and the inverses of d that are worth computing.
     let mut l = vec![vec![zero; n]; n];
     let mut pivots = Vec::with_capacity(n);
     let mut inverses: Vec<Option<Edge>> = Vec::with_capacity(n);
@@ -80,7 +86,7 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
         inverses.push(inverse);
     }
     let mut w = vec![zero; n];
-    // Group by group.
+    // Eliminate the leading columns group by group.
     for c in 0..plan.apart {
         for group in &mut groups {
             let y = group[c];
@@ -123,7 +129,7 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
     Some(solution)
 }
 
-/// S⁻¹ b for a constant S; scaled, the entry [1,1] of the inverse goes into constants of b.
+/// Returns S⁻¹ b for a constant S; with `scale`, the entry `[1,1]` of the inverse is absorbed into constants of b.
 fn multiply_inverse(
     graph: &mut Graph,
     s: &[Vec<Edge>],
@@ -153,7 +159,7 @@ fn multiply_inverse(
     Some(inverse.iter().map(|row| graph.dot(row, &b)).collect())
 }
 
-/// Forward, diagonal and backward substitution in the columns from `plan.apart` on.
+/// Performs forward, diagonal and backward substitution in the columns from `plan.apart` on.
 fn substitute(
     graph: &mut Graph,
     plan: &Plan,
@@ -203,7 +209,7 @@ fn divide(graph: &mut Graph, a: Edge, pivot: Edge, inverse: Option<Edge>) -> Opt
     }
 }
 
-/// factor · edge, the factor put into constants of the expression where there are some.
+/// Returns factor · edge, with the factor absorbed into constants of the expression if possible.
 pub fn absorb(graph: &mut Graph, edge: Edge, factor: Edge) -> Edge {
     if !graph.is_free(factor.node()) || !absorbs(graph, edge, 0) {
         return graph.mul(factor, edge);
@@ -227,12 +233,13 @@ pub fn absorb(graph: &mut Graph, edge: Edge, factor: Edge) -> Edge {
     result.signed(negative)
 }
 
-/// Whether a constant factor costs nothing in an expression: every term has a constant to take it.
+/// Returns whether a constant factor can be absorbed by an expression at no cost: every term has a constant to take
+/// it.
 fn absorbs(graph: &Graph, edge: Edge, depth: usize) -> bool {
     if graph.is_free(edge.node()) {
         return true;
     }
-    // Deep sums would be copied as a whole.
+    // Absorbing a factor into a deep sum would copy the whole sum.
     if depth > 12 {
         return false;
     }

@@ -1,8 +1,8 @@
-//! Other velocity coordinates for the same motion, and what ξ̇ costs in them.
+//! Alternative velocity coordinates for the same motion, and the cost of ξ̇ in them.
 //!
-//! With ξ = B(x) ξ', where B = Y A' for the A' of closed-form rates, the description in ξ' has
-//! A' = A B, f' = Bᵀ f, and all else as it was. Rotations turn in body or world axes, points move in
-//! world axes or in those of a body, and chains of angles turn absolutely or relative to one another.
+//! With ξ = B(x) ξ', where B = Y A' for the A' of closed-form rates, the description in ξ' has A' = A B and f' = Bᵀ
+//! f; everything else is unchanged. Rotations turn in body or world axes, points move in world axes or in those of
+//! a body, and chains of angles use absolute or relative rates.
 
 mod rates;
 
@@ -18,27 +18,32 @@ use hamel_language::syntax::ast::CoordKind;
 use hamel_program::count::{Count, count};
 use rates::RateDraft;
 
-/// More combinations than this are not tried.
+/// Largest number of combinations that are tried.
 const MOST: usize = 24;
 
 /// One choice of velocity coordinates.
 #[derive(Clone, Debug)]
 pub struct Choice {
-    /// The choice in words.
+    /// Description of the choice in words.
     pub label: String,
-    /// The statements that make it.
+    /// Statements of the description that make this choice.
     pub statements: Vec<String>,
-    /// Whether the description has these velocities already, up to their order.
+    /// Whether the description already has these velocities, up to their order.
     pub as_written: bool,
     /// Operations of ξ̇.
     pub accel: Count,
     /// Operations of ẋ.
     pub rate: Count,
-    /// The description in these velocities.
+    /// Model in these velocities.
     pub model: Model,
 }
 
-/// The choices that exist, cheapest first; the error says why there are none.
+/// Returns the possible choices, cheapest first.
+///
+/// # Errors
+///
+/// Explains why the model has no alternative velocities, or that its mass matrix is singular for every
+/// configuration.
 pub fn advise(model: &Model) -> Result<Vec<Choice>, String> {
     if !model.points.constraints.is_empty() {
         return Err(
@@ -73,35 +78,35 @@ pub fn advise(model: &Model) -> Result<Vec<Choice>, String> {
     Ok(choices)
 }
 
-/// Something that moves, with the ways it can.
+/// A moving part and the ways in which its velocity can be described.
 struct Part {
     moves: Move,
     options: Vec<Way>,
 }
 
-/// What moves.
+/// Kind of moving part.
 #[derive(Clone)]
 enum Move {
-    /// A rotation, by its coordinate.
+    /// Rotation, by its coordinate.
     Rotation(usize),
-    /// A point, by its coordinate.
+    /// Point, by its coordinate.
     Point(usize),
-    /// Angles, by their coordinates.
+    /// Chain of angles, by their coordinates.
     Chain(Vec<usize>),
-    /// Anything else.
+    /// Anything else, by its coordinate.
     Plain(usize),
 }
 
-/// How it moves.
+/// Choice of velocity coordinates for a part.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
-    /// In the axes of the world; each coordinate by itself.
+    /// World axes, or each coordinate's own rate.
     World,
-    /// In the axes of the rotation of this coordinate.
+    /// Axes of the rotation with this coordinate.
     Body(usize),
-    /// q̇ᵢ = uᵢ − uᵢ₋₁: relative angles by absolute rates.
+    /// Differences q̇ᵢ = uᵢ − uᵢ₋₁: relative angles with absolute rates.
     Differences,
-    /// q̇ᵢ = u₁ + … + uᵢ: absolute angles by relative rates.
+    /// Sums q̇ᵢ = u₁ + … + uᵢ: absolute angles with relative rates.
     Sums,
 }
 
@@ -163,7 +168,7 @@ fn parts(model: &Model) -> Vec<Part> {
     all
 }
 
-/// Whether a number stands in the argument of a sine or cosine.
+/// Returns whether a coordinate occurs in the argument of a sine or cosine.
 fn is_angle(model: &Model, coordinate: &Coordinate) -> bool {
     let graph = &model.graph;
     let symbol = model.x.get(coordinate.offset).map(|edge| edge.node());
@@ -176,7 +181,7 @@ fn is_angle(model: &Model, coordinate: &Coordinate) -> bool {
     })
 }
 
-/// All combinations of ways, the first ways first.
+/// Returns all combinations of ways, up to `MOST`; combinations of the first ways come first.
 fn combinations(parts: &[Part]) -> Vec<Vec<(Move, Way)>> {
     let mut all: Vec<Vec<(Move, Way)>> = vec![Vec::new()];
     for part in parts {
@@ -220,7 +225,7 @@ impl Choice {
     }
 }
 
-/// The description in other velocities.
+/// Rewrites the model in other velocities and counts its operations.
 fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, String> {
     let mut own = model.clone();
     let rows = kinematics::left_inverse(&mut own)
@@ -232,7 +237,7 @@ fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, Strin
     let (lines, label) = (rates.statements(), rates.label.join(", "));
     let rate = rates.rate;
     let graph = &mut own.graph;
-    // A' and B = Y A'.
+    // Compute A' and B = Y A'.
     let mut by: Vec<Derivation> = own
         .xi
         .iter()
@@ -266,7 +271,7 @@ fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, Strin
         .zip(&old)
         .filter_map(|(xi, &value)| Some((graph.as_symbol(*xi)?, value)))
         .collect();
-    // All that ξ stands in.
+    // Substitute ξ wherever it occurs.
     own.kinetic = substitute(graph, &[own.kinetic], &set)[0];
     let force = substitute(graph, &own.generalized, &set);
     own.generalized = transpose(&b)

@@ -1,4 +1,4 @@
-//! Rates in closed form, as edges and as statements.
+//! Closed-form rates, as edges and as statements.
 
 use super::{Move, Way};
 use hamel_algebra::graph::{Edge, Graph};
@@ -8,22 +8,22 @@ use hamel_language::model::rotations::{hat, quaternion_matrix};
 use hamel_language::model::{Coordinate, Model};
 use hamel_language::syntax::ast::CoordKind;
 
-/// ẋ = A' ξ' as it is put together.
+/// ẋ = A' ξ' under construction.
 pub struct RateDraft<'a> {
     model: &'a Model,
     graph: &'a mut Graph,
     /// ẋ so far.
     pub rate: Vec<Edge>,
-    /// Velocities in use.
+    /// Number of velocities used so far.
     used: usize,
     names: Names,
     /// The `rate` statements.
     statements: Vec<String>,
-    /// The choice in words.
+    /// Description of the choice in words.
     pub label: Vec<String>,
 }
 
-/// Names for velocities: v, w, u, numbered where there are several.
+/// Names for velocities: v, w, u, numbered from the second one of a letter on.
 #[derive(Default)]
 struct Names {
     declared: Vec<String>,
@@ -31,7 +31,7 @@ struct Names {
 }
 
 impl Names {
-    /// A name that the model does not use for anything but velocities.
+    /// Returns a new name that the model uses for nothing other than velocities.
     fn new_name(&mut self, model: &Model, letter: usize, shape: &str) -> String {
         let base = ["v", "w", "u"][letter];
         let taken = |name: &str| {
@@ -57,7 +57,7 @@ impl Names {
 }
 
 impl<'a> RateDraft<'a> {
-    /// No rates yet; `graph` has grown from the model's.
+    /// Creates a draft without rates; `graph` is an extension of the model's graph.
     pub fn new(model: &'a Model, graph: &'a mut Graph) -> Self {
         RateDraft {
             model,
@@ -70,7 +70,7 @@ impl<'a> RateDraft<'a> {
         }
     }
 
-    /// All statements, the declaration of the velocities first.
+    /// Returns all statements, beginning with the declaration of the velocities.
     pub fn statements(&self) -> Vec<String> {
         let declared = format!("velocity {};", self.names.declared.join(", "));
         std::iter::once(declared)
@@ -78,7 +78,7 @@ impl<'a> RateDraft<'a> {
             .collect()
     }
 
-    /// Lets something move in a way.
+    /// Adds the rate of a part for one choice of velocity coordinates.
     pub fn take(&mut self, moves: &Move, way: Way) {
         match moves {
             Move::Rotation(index) => self.rotation(*index, way),
@@ -94,7 +94,7 @@ impl<'a> RateDraft<'a> {
         self.model.xi[first..self.used].to_vec()
     }
 
-    /// The rotation matrix of a coordinate.
+    /// Returns the rotation matrix of a coordinate.
     fn matrix(&mut self, index: usize) -> Mat3 {
         let coordinate = &self.model.coordinates[index];
         let x = &self.model.x[rotation_offset(coordinate)..];
@@ -104,7 +104,7 @@ impl<'a> RateDraft<'a> {
         }
     }
 
-    /// Ṙ = R ω̂ or ω̂ R; q̇ = ½ q ∘ (0, ω) or ½ (0, ω) ∘ q.
+    /// Adds the rate of a rotation: Ṙ = R ω̂ or ω̂ R; for quaternions q̇ = ½ q ∘ (0, ω) or ½ (0, ω) ∘ q.
     fn rotation(&mut self, index: usize, way: Way) {
         let coordinate = &self.model.coordinates[index];
         let w = self.velocities(3);
@@ -139,7 +139,7 @@ impl<'a> RateDraft<'a> {
         self.rate[first..first + rate.len()].copy_from_slice(&rate);
     }
 
-    /// The vector parts of q ∘ (0, ω) and (0, ω) ∘ q differ in the sign of q × ω.
+    /// Returns q̇; the vector parts of q ∘ (0, ω) and (0, ω) ∘ q differ in the sign of q × ω.
     fn quaternion_rate(&mut self, q: &[Edge], w: [Edge; 3], world: bool) -> Vec<Edge> {
         let graph = &mut *self.graph;
         let half = graph.ratio(1, 2);
@@ -245,7 +245,7 @@ impl<'a> RateDraft<'a> {
     }
 }
 
-/// Where the rotation of a coordinate starts in x.
+/// Returns the offset of a coordinate's rotation in x.
 fn rotation_offset(coordinate: &Coordinate) -> usize {
     match coordinate.kind {
         CoordKind::SE3 => coordinate.offset + 3,

@@ -1,7 +1,9 @@
-//! Poses with what is known from the start: of two expressions with one value a graph keeps the first.
+//! Models whose graph already contains useful expressions: of two expressions with the same value, a graph keeps
+//! the first.
 //!
-//! Sums of angles about parallel axes: with R(a) R(b) = R(a + b) a pose behind such joints takes one rotation. And the ways
-//! from frames to the last one, which the columns of its Jacobian need, are parts of its position.
+//! One kind are sines and cosines of sums of angles about parallel axes: with R(a) R(b) = R(a + b), a pose behind
+//! joints with parallel axes takes a single rotation. The other kind are the vectors from frames of a chain to the
+//! last one, which the columns of its Jacobian need and which are parts of its position.
 
 use super::{by_velocities, chain, relative};
 use crate::calculus::Calculus;
@@ -10,29 +12,32 @@ use hamel_algebra::linear::{Mat3, Vec3, add3, apply3, identity3, multiply3, tran
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 
-/// How poses along a chain are multiplied where sums of angles are known.
+/// Order in which poses along a chain are multiplied, once sums of angles are known.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Order {
-    /// As the description does, from the world outwards.
+    /// As in the description, from the world outwards.
     Given,
-    /// R₀ (R₁ R₂), what turns about parallel axes first.
+    /// As R₀ (R₁ R₂): frames that turn about parallel axes are combined first.
     Outwards,
-    /// The same from the frame towards the world.
+    /// Like `Outwards`, but from the frame towards the world.
     Inwards,
-    /// The ways to the frame, from the frame towards the world.
+    /// Only the vectors to the frame, from the frame towards the world.
     Ways,
 }
 
-/// What turns about parallel axes one after the other, before a frame.
+/// Runs of consecutive joints with parallel axes on the chain to a frame.
 struct Runs {
-    /// Signs and coordinates of the joints.
+    /// Signs and coordinates of the joints of each run.
     joints: Vec<Vec<(bool, usize)>>,
-    /// The frames that begin a run, or another motion.
+    /// Frames that begin a run or another kind of rotation.
     begins: Vec<usize>,
 }
 
-/// The model in graphs in which the sines and cosines of sums of angles about parallel axes, where there are such before
-/// the frame, or the ways to the frame are known from the start, so that all that is equal to them is they.
+/// Returns the model in several graphs that contain useful expressions from the start, so that every expression
+/// equal to one of them becomes the same node.
+///
+/// These expressions are the sines and cosines of sums of angles about parallel axes, if the chain to the frame has
+/// such axes, or the vectors to the frame.
 pub fn with_known(model: &Model, index: usize) -> Vec<Model> {
     let runs = runs(model, index);
     let orders: &[Order] = match runs.joints.is_empty() {
@@ -45,7 +50,7 @@ pub fn with_known(model: &Model, index: usize) -> Vec<Model> {
         .collect()
 }
 
-/// The runs of joints with parallel axes.
+/// Finds the runs of joints with parallel axes.
 fn runs(model: &Model, index: usize) -> Runs {
     let mut graph = model.graph.clone();
     let mut calculus = Calculus::new(model);
@@ -95,7 +100,7 @@ fn runs(model: &Model, index: usize) -> Runs {
     }
 }
 
-/// The model in such a graph.
+/// Returns the model in a graph with known expressions.
 fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
     let mut known = model.graph.fresh();
     let symbols = model.graph.symbols().iter().enumerate();
@@ -166,10 +171,10 @@ fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
     model.transplanted(known, rebuild)
 }
 
-/// Axes by columns, origin.
+/// Rotation matrix (axes as columns) and origin.
 type Pose = (Mat3, Vec3);
 
-/// The pose of what is placed on a frame.
+/// Returns the pose `on` of something placed on a frame, in the axes in which the frame's pose is given.
 fn placed(graph: &mut Graph, frame: &Pose, on: &Pose) -> Pose {
     let moved = apply3(graph, &frame.0, on.1);
     (

@@ -1,14 +1,15 @@
-//! The kinematics of frames that `generate jacobian f;` asks for: pose (R, p), twist (v, ω) = J ξ + j, J, and
-//! J̇ ξ + j̇, the rate of the twist at ξ̇ = 0. Components are in world axes, (ṗ, ω), or in those of the frame itself,
-//! (Rᵀ ṗ, Rᵀ ω). j is there only where the time moves the frame.
+//! Kinematics of the frames requested by `generate jacobian f;`: pose (R, p), twist (v, ω) = J ξ + j, J, and
+//! J̇ ξ + j̇, the rate of the twist at ξ̇ = 0. Components are in world axes, (ṗ, ω), or in those of the frame
+//! itself, (Rᵀ ṗ, Rᵀ ω). The term j occurs only if the frame's motion depends on time explicitly.
 //!
-//! Three routes: from the definitions, with Ṙ and ṗ along ẋ = A ξ; outwards along the frames that f is placed on,
+//! There are three routes: from the definitions, with Ṙ and ṗ along ẋ = A ξ; and outwards along the frames that f
+//! is placed on, either in world axes or in each frame's own axes, by
 //!
-//! ω = ω₀ + R₀ w, v = v₀ + ω₀ × (p − p₀) + R₀ q̇, where f₀ is the frame before, q the place of f in it, and w the
-//! angular velocity of f against it,
+//! ω = ω₀ + R₀ w, v = v₀ + ω₀ × (p − p₀) + R₀ q̇,
 //!
-//! in world axes or each in its own. The columns of J are those of the joints, (R₀ q̇ₖ + wₖ × (p_f − p), wₖ). What
-//! moves with none of the frames does not take part.
+//! where f₀ is the previous frame, q the position of f in it, and w the angular velocity of f relative to it. The
+//! columns of J are those of the joints, (R₀ q̇ₖ + wₖ × (p_f − p), wₖ). Velocities that move none of these frames
+//! have zero columns.
 
 mod known;
 
@@ -27,11 +28,11 @@ use hamel_language::model::{Frame, Model};
 use hamel_program::{Argument, Function, Shape};
 use known::with_known;
 
-/// A linear and an angular part: velocities, their rates, or a column of J.
+/// Linear and angular part of a velocity, of its rate, or of a column of J.
 pub(crate) type Twist = (Vec3, Vec3);
 
 impl Builder<'_> {
-    /// The functions of the frames that are asked for.
+    /// Adds the functions of the requested frames.
     pub(crate) fn frames(&mut self) {
         let model = self.model;
         for jacobian in &model.asked.jacobians {
@@ -62,7 +63,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The cheapest of all routes, after resubstitution where that finds something.
+    /// Returns the cheapest of all routes, after resubstitution if that saves operations.
     fn frame(
         &mut self,
         sources: &[&Model],
@@ -81,25 +82,27 @@ impl Builder<'_> {
     }
 }
 
-/// Where the levers of a Jacobian's columns are written in the axes of their joints, beginning with the frame at a
-/// place of the chain: at so many places at most.
+/// Approximate largest number of borders that are tried for a route: places of the chain from which on the levers
+/// of a Jacobian's columns are written in the axes of their joints.
 const MOST_BORDERS: usize = 8;
 
-/// How a frame's kinematics is computed.
+/// Way to compute the kinematics of a frame.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Route {
     /// By the rates of its pose.
     Defined,
-    /// Along the frames before it, world axes; levers of J in the axes of the joints from a place of the chain on.
+    /// Outwards along the chain of frames, in world axes; levers of J are in the axes of the joints from this place
+    /// of the chain on.
     World(usize),
-    /// The same with all levers in axes of joints, up to a place of the chain in those before the joint has turned.
+    /// Like `World`, with all levers in axes of the joints: before this place of the chain, in the axes before the
+    /// joint has turned.
     Before(usize),
-    /// The same as in the world, each in its own axes.
+    /// Outwards along the chain, each frame in its own axes; levers of J as in `World`.
     Own(usize),
 }
 
 impl Route {
-    /// All that a function may be computed by, for a chain of so many frames.
+    /// Returns all routes by which a function of a frame with a chain of this length can be computed.
     fn all(length: usize, of: FrameFunction) -> Vec<Route> {
         let step = length.div_ceil(MOST_BORDERS).max(1);
         let borders: Vec<usize> = match of {
@@ -118,7 +121,7 @@ impl Route {
             .collect()
     }
 
-    /// The entries of a function, by rows.
+    /// Returns the entries of a function, row by row.
     fn entries(
         self,
         model: &Model,
@@ -196,7 +199,7 @@ pub(crate) fn flat((linear, angular): Twist) -> Vec<Edge> {
     [linear, angular].concat()
 }
 
-/// The entries of a matrix of these columns, by rows.
+/// Returns the entries of the matrix with these columns, row by row.
 pub(crate) fn by_rows(columns: impl Iterator<Item = Twist>) -> Vec<Edge> {
     let columns: Vec<Vec<Edge>> = columns.map(flat).collect();
     (0..6)
@@ -218,7 +221,7 @@ fn back(graph: &mut Graph, rotation: &Mat3, (linear, angular): Twist) -> Twist {
     )
 }
 
-/// d/dt at ξ̇ = 0.
+/// Returns the time derivative of a twist at ξ̇ = 0.
 pub(crate) fn change(
     graph: &mut Graph,
     calculus: &mut Calculus,
@@ -230,7 +233,7 @@ pub(crate) fn change(
     )
 }
 
-/// The slopes of a twist by each ξⁱ.
+/// Returns the derivatives of a twist by each ξⁱ.
 pub(crate) fn by_velocities(
     model: &Model,
     graph: &mut Graph,
@@ -245,7 +248,7 @@ pub(crate) fn by_velocities(
     model.xi.iter().map(column).collect()
 }
 
-/// (ṗ, ω) with ω̂ = Ṙ Rᵀ, or (Rᵀ ṗ, Rᵀ ω).
+/// Returns the twist by definition: (ṗ, ω) with ω̂ = Ṙ Rᵀ, or (Rᵀ ṗ, Rᵀ ω).
 fn defined(graph: &mut Graph, calculus: &mut Calculus, frame: &Frame, own: bool) -> Twist {
     let speed = calculus.rate3(graph, frame.position);
     let spin = calculus.spin(graph, &frame.rotation);
@@ -255,7 +258,7 @@ fn defined(graph: &mut Graph, calculus: &mut Calculus, frame: &Frame, own: bool)
     }
 }
 
-/// The frames that one is placed on, the first of them on the world, and itself.
+/// Returns the chain of frames on which a frame is placed, from the world outwards, and the frame itself.
 fn chain(model: &Model, index: usize) -> Vec<usize> {
     let parents = std::iter::successors(Some(index), |&at| model.frames[at].parent);
     let mut chain: Vec<usize> = parents.collect();
@@ -263,7 +266,7 @@ fn chain(model: &Model, index: usize) -> Vec<usize> {
     chain
 }
 
-/// How a frame moves against the one before: (q̇ in axes of that one, w in its own).
+/// Returns the velocity of a frame relative to the previous one: (q̇ in axes of the previous frame, w in its own).
 fn relative(graph: &mut Graph, calculus: &mut Calculus, frame: &Frame) -> Twist {
     let (rotation, place) = &frame.relative;
     (
@@ -272,7 +275,7 @@ fn relative(graph: &mut Graph, calculus: &mut Calculus, frame: &Frame) -> Twist 
     )
 }
 
-/// Twist and its rate at ξ̇ = 0, world axes: ω̇ = ω̇₀ + ω₀ × R₀ w + R₀ ẇ and
+/// Returns the twist and its rate at ξ̇ = 0 in world axes: ω̇ = ω̇₀ + ω₀ × R₀ w + R₀ ẇ and
 /// v̇ = v̇₀ + ω̇₀ × r + ω₀ × (ω₀ × r + 2 R₀ q̇) + R₀ q̈, with r = p − p₀.
 fn outwards_in_world(
     model: &Model,
@@ -305,7 +308,7 @@ fn outwards_in_world(
         let own_rate = apply3(graph, &frame.rotation, turn_rate);
         let (v, w) = twist;
         let (a, alpha) = rates;
-        // Of what turns with the frame before, and slides along it.
+        // Contribution of the rotation with the previous frame and of the motion relative to it.
         let lever = cross(graph, w, arm);
         let moved = add3(graph, lever, slide);
         let inner = add3(graph, moved, slide);
@@ -322,7 +325,7 @@ fn outwards_in_world(
     (twist, rates)
 }
 
-/// Twist (Rᵀ ṗ, Rᵀ ω) and the rate of its components at ξ̇ = 0, each frame in its own axes.
+/// Returns the twist (Rᵀ ṗ, Rᵀ ω) and the rate of its components at ξ̇ = 0, working in each frame's own axes.
 fn outwards_in_frames(
     model: &Model,
     graph: &mut Graph,
@@ -338,7 +341,7 @@ fn outwards_in_frames(
         let (slide_rate, turn_rate) = change(graph, calculus, (slide, turn));
         let (v, w) = twist;
         let (a, alpha) = rates;
-        // In axes of the frame before: v + ω × q + q̇, and the rates of these components.
+        // In the axes of the previous frame: v + ω × q + q̇, and the rates of these components.
         let lever = cross(graph, w, *place);
         let moved = add3(graph, v, lever);
         let moved = add3(graph, moved, slide);
@@ -362,8 +365,8 @@ fn outwards_in_frames(
     (twist, rates)
 }
 
-/// The way from each frame of a chain to the last, in its own axes and in those of the frame before, from a place of the
-/// chain on.
+/// Returns the vector from each frame of a chain to the last one, in its own axes and in those of the previous
+/// frame, for the frames from place `border` on.
 fn levers(model: &Model, graph: &mut Graph, chain: &[usize], border: usize) -> Vec<[Vec3; 2]> {
     let mut lever = zero3(graph);
     let mut levers = vec![[lever; 2]; chain.len()];
@@ -376,8 +379,10 @@ fn levers(model: &Model, graph: &mut Graph, chain: &[usize], border: usize) -> V
     levers
 }
 
-/// What a joint adds to the columns of J: its freedoms' velocities (q̇, w), of the frame before and of its own, with the
-/// axes of both where the columns are written.
+/// Adds a joint's contribution to the columns of J.
+///
+/// The arguments are the velocities (q̇, w) of its freedoms, in axes of the previous frame and of its own, and the
+/// orientation of both frames in the axes in which the columns are written.
 fn add_joint(
     graph: &mut Graph,
     columns: &mut [Twist],
@@ -405,17 +410,17 @@ fn add_joint(
     }
 }
 
-/// The way from a joint's frame to the frame of a Jacobian.
+/// Vector from a joint's frame to the frame whose Jacobian is computed.
 enum Arm<'a> {
-    /// In the axes that columns are written in.
+    /// In the axes in which columns are written.
     Placed(Vec3),
     /// In the axes of the joint's frame.
     Own(Vec3),
-    /// In the axes of the frame before, against which it is turned like this.
+    /// In the axes of the previous frame, with the rotation of the joint's frame relative to it.
     Before(&'a Mat3, Vec3),
 }
 
-/// The columns of J, world axes.
+/// Returns the columns of J in world axes.
 fn columns_in_world(
     model: &Model,
     graph: &mut Graph,
@@ -449,7 +454,7 @@ fn columns_in_world(
     columns
 }
 
-/// The columns of J in axes of the frame: inwards from it.
+/// Returns the columns of J in axes of the frame, computed from the frame inwards.
 fn columns_in_frame(
     model: &Model,
     graph: &mut Graph,
@@ -459,7 +464,7 @@ fn columns_in_frame(
     let mut columns = vec![(zero3(graph), zero3(graph)); model.n()];
     let chain = chain(model, index);
     let levers = levers(model, graph, &chain, border);
-    // Axes of the frame that is looked at, and the way from its origin to that of f, both in axes of f.
+    // Axes of the current frame, and the vector from its origin to that of f, both in axes of f.
     let (mut axes, mut way) = (identity3(graph), zero3(graph));
     for (place, &at) in chain.iter().enumerate().rev() {
         let frame = &model.frames[at];

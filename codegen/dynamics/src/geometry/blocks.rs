@@ -1,19 +1,19 @@
-//! What falls apart: indices that a table connects, and the ones that it does not.
+//! Independent blocks of velocity indices: connected components of the indices that nonzero entries of γ or M link.
 
 use hamel_algebra::graph::{Edge, Graph};
 
-/// How an entry of M depends on x.
+/// Dependence of an entry of M on x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entry {
     /// 0 everywhere.
     Zero,
     /// The same at every x.
     Constant,
-    /// It changes with x.
+    /// Changes with x.
     Varying,
 }
 
-/// The connected components of 0..n under some links, in order of their first members.
+/// Returns the connected components of 0..n under some links, in the order of their first members.
 pub fn components(n: usize, links: impl IntoIterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
     let mut label: Vec<usize> = (0..n).collect();
     for (a, b) in links {
@@ -30,7 +30,7 @@ pub fn components(n: usize, links: impl IntoIterator<Item = (usize, usize)>) -> 
         .collect()
 }
 
-/// The blocks of γ: i, j, k belong together where γᵢⱼᵏ ≠ 0. The ∂ᵢ of different blocks commute.
+/// Returns the blocks of γ: i, j, k belong together if γᵢⱼᵏ ≠ 0. The ∂ᵢ of different blocks commute.
 pub fn commuting_blocks(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<usize>> {
     let n = gamma.len();
     let zero = graph.zero().node();
@@ -47,7 +47,7 @@ pub fn commuting_blocks(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<usiz
     components(n, links)
 }
 
-/// The blocks of M: i, j belong together where M_ij ≠ 0.
+/// Returns the blocks of M: i, j belong together if M_ij ≠ 0.
 pub fn inertia_blocks(pattern: &[Vec<Entry>]) -> Vec<Vec<usize>> {
     let n = pattern.len();
     let all = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));

@@ -1,21 +1,21 @@
-//! A Lie algebra over Q by its structure constants, [eᵢ, eⱼ] = cᵢⱼᵏ eₖ, and what does not depend on
-//! the basis: derived algebra, centre, Killing form.
+//! A Lie algebra over Q with its structure constants, `[eᵢ, eⱼ]` = cᵢⱼᵏ eₖ, and its basis-independent properties:
+//! derived algebra, centre, Killing form.
 
 use hamel_algebra::echelon::{Echelon, signature};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
-/// A vector of coordinates.
+/// Vector of coordinates with respect to the basis.
 pub type Vector = Vec<BigRational>;
 
-/// Structure constants `c[i][j][k]` = cᵢⱼᵏ.
+/// Lie algebra given by structure constants `c[i][j][k]` = cᵢⱼᵏ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LieAlgebra {
     constants: Vec<Vec<Vector>>,
 }
 
 impl LieAlgebra {
-    /// The algebra of antisymmetric constants that satisfy Jacobi's identity; `None` for others.
+    /// Creates the algebra with antisymmetric constants that satisfy Jacobi's identity; `None` for other constants.
     pub fn new(constants: Vec<Vec<Vector>>) -> Option<Self> {
         let algebra = LieAlgebra { constants };
         let n = algebra.dimension();
@@ -40,7 +40,7 @@ impl LieAlgebra {
         Some(algebra)
     }
 
-    /// Its dimension.
+    /// Returns the dimension.
     pub fn dimension(&self) -> usize {
         self.constants.len()
     }
@@ -51,7 +51,7 @@ impl LieAlgebra {
         unit
     }
 
-    /// [a, b].
+    /// Returns the bracket `[a, b]`.
     pub fn bracket(&self, a: &[BigRational], b: &[BigRational]) -> Vector {
         let n = self.dimension();
         let mut result = vec![BigRational::zero(); n];
@@ -66,7 +66,7 @@ impl LieAlgebra {
         result
     }
 
-    /// A basis of the span of [a, b] over a ∈ `left`, b ∈ `right`.
+    /// Returns a basis of the span of `[a, b]` over a ∈ `left`, b ∈ `right`.
     pub fn brackets(&self, left: &[Vector], right: &[Vector]) -> Vec<Vector> {
         let all = left
             .iter()
@@ -74,23 +74,23 @@ impl LieAlgebra {
         Echelon::new(all.collect()).rows
     }
 
-    /// The basis vectors.
+    /// Returns the basis vectors.
     pub fn basis(&self) -> Vec<Vector> {
         (0..self.dimension()).map(|i| self.unit(i)).collect()
     }
 
-    /// A basis of the derived algebra [L, L].
+    /// Returns a basis of the derived algebra `[L, L]`.
     pub fn derived(&self) -> Vec<Vector> {
         let basis = self.basis();
         self.brackets(&basis, &basis)
     }
 
-    /// Whether [a, b] = 0 for all a, b of a subspace.
+    /// Returns whether `[a, b]` = 0 for all a, b of a subspace.
     pub fn is_abelian_on(&self, subspace: &[Vector]) -> bool {
         self.brackets(subspace, subspace).is_empty()
     }
 
-    /// A basis of the centre {z : [z, eⱼ] = 0 for all j}.
+    /// Returns a basis of the centre {z : `[z, eⱼ]` = 0 for all j}.
     pub fn centre(&self) -> Vec<Vector> {
         let n = self.dimension();
         let mut rows = Vec::new();
@@ -102,7 +102,7 @@ impl LieAlgebra {
         Echelon::new(rows).null_space(n)
     }
 
-    /// The matrix of ad z = [z, ·], `m[k][j]`.
+    /// Returns the matrix of ad z = `[z, ·]`, `m[k][j]`.
     pub fn adjoint(&self, z: &[BigRational]) -> Vec<Vector> {
         let columns: Vec<Vector> = self.basis().iter().map(|e| self.bracket(z, e)).collect();
         (0..self.dimension())
@@ -110,7 +110,7 @@ impl LieAlgebra {
             .collect()
     }
 
-    /// Killing's form K(eᵢ, eⱼ) = tr(ad eᵢ ad eⱼ) = cᵢₛᵗ cⱼₜˢ.
+    /// Returns Killing's form K(eᵢ, eⱼ) = tr(ad eᵢ ad eⱼ) = cᵢₛᵗ cⱼₜˢ.
     pub fn killing(&self) -> Vec<Vector> {
         let n = self.dimension();
         let c = &self.constants;
@@ -131,12 +131,12 @@ impl LieAlgebra {
             .collect()
     }
 
-    /// Numbers of positive and negative squares of Killing's form.
+    /// Returns the numbers of positive and negative squares of Killing's form.
     pub fn killing_signature(&self) -> (usize, usize) {
         signature(&self.killing())
     }
 
-    /// The dimensions of L, [L, L], [[L, L], [L, L]] … until they repeat.
+    /// Returns the dimensions of L, `[L, L]`, `[[L, L], [L, L]]` … until they repeat.
     pub fn derived_series(&self) -> Vec<usize> {
         let mut space = self.basis();
         let mut dimensions = vec![space.len()];
@@ -150,8 +150,10 @@ impl LieAlgebra {
         }
     }
 
-    /// L = I ⊕ Rᵏ with I without an abelian summand: I, and k. The summand is what of the centre
-    /// lies outside [L, L]; any subspace that contains [L, L] is an ideal.
+    /// Splits L = I ⊕ Rᵏ so that I has no abelian summand; returns I and k.
+    ///
+    /// The summand is spanned by vectors of the centre that are independent modulo `[L, L]`. Any subspace that
+    /// contains `[L, L]` is an ideal.
     pub fn without_abelian_summand(&self) -> Option<(LieAlgebra, usize)> {
         let derived = self.derived();
         let independent = |known: &[Vector], vector: &Vector| {
@@ -159,7 +161,7 @@ impl LieAlgebra {
             rows.push(vector.clone());
             Echelon::new(rows).rank() > known.len()
         };
-        // [L, L], then the summand A of the centre, then what is left of L.
+        // Extend [L, L] by the summand from the centre, then by what is left of L.
         let mut spanned = derived.clone();
         let mut summand = 0;
         for vector in self.centre() {
@@ -178,7 +180,7 @@ impl LieAlgebra {
         Some((self.restricted(&ideal)?, summand))
     }
 
-    /// The subalgebra of a basis; `None` where brackets leave its span.
+    /// Returns the subalgebra with a given basis; `None` if brackets leave its span.
     pub fn restricted(&self, basis: &[Vector]) -> Option<LieAlgebra> {
         let coordinates = |vector: &Vector| {
             let rows = (0..self.dimension()).map(|k| {

@@ -1,5 +1,5 @@
-//! What the symbols say about the geometry of a system: integrable velocity coordinates, the Lie
-//! algebra of the frame, the pattern of M, symmetries.
+//! Geometric properties of a system: integrable velocity coordinates, the Lie algebra of the frame, the pattern of
+//! M, symmetries.
 //!
 //! | file | object |
 //! |---|---|
@@ -32,55 +32,55 @@ use recognise::{Name, abelian, recognise};
 use side::{Side, is_constant};
 use symmetry::Symmetry;
 
-/// A velocity coordinate.
+/// A velocity coordinate and its properties.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Velocity {
-    /// Its name.
+    /// Name of the velocity.
     pub name: String,
-    /// γᵢⱼᵏ = 0 for all i, j: it is the rate of something, at least locally.
+    /// Whether γᵢⱼᵏ = 0 for all i, j, so that the velocity is the rate of a function, at least locally.
     pub integrable: bool,
-    /// What it is the rate of, where that was found.
+    /// Function whose rate the velocity is, as text, if one was found.
     pub potential: Option<String>,
-    /// Symmetries along its direction.
+    /// Symmetries along the direction of the velocity.
     pub symmetry: Symmetry,
 }
 
-/// A block of velocity coordinates that do not commute with one another.
+/// Block of velocity coordinates that do not commute with one another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block {
     /// Indices of its velocities.
     pub members: Vec<usize>,
     /// Whether its γ are the same at every x.
     pub constant: bool,
-    /// Its Lie algebra; `None` where γ depends on x, or is no rational function of parameters.
+    /// Name of its Lie algebra; `None` if γ depends on x, or is not a rational function of parameters.
     pub algebra: Option<Name>,
-    /// Whether γ depends on parameters, whose default values were taken.
+    /// Whether γ depends on parameters, so that their default values were used.
     pub at_defaults: bool,
-    /// Body or world axes.
+    /// Left-invariant (body axes) or right-invariant (world axes), if that is known.
     pub side: Option<Side>,
 }
 
-/// What was found.
+/// Results of inspecting a model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Inspection {
     /// The velocity coordinates, in order.
     pub velocities: Vec<Velocity>,
-    /// The blocks of γ that are not zero.
+    /// Blocks of γ that are not zero.
     pub blocks: Vec<Block>,
     /// Velocities that commute with all others.
     pub commuting: Vec<usize>,
-    /// x = q, ξ = q̇: A = I, so that Γ are the Christoffel symbols of M.
+    /// Whether x = q and ξ = q̇, that is, A = I, so that Γ are the Christoffel symbols of M.
     pub coordinate_rates: bool,
-    /// Whether there is M: else nothing is said of it, and of symmetries that of V alone.
+    /// Whether the model has inertia; otherwise nothing is reported on M, and only symmetries of V are.
     pub has_inertia: bool,
-    /// How every entry of M depends on x.
+    /// Dependence of every entry of M on x.
     pub pattern: Vec<Vec<Entry>>,
-    /// The blocks of M.
+    /// Blocks of M.
     pub inertia_blocks: Vec<Vec<usize>>,
 }
 
 impl Inspection {
-    /// Inspects a model; `None` where AᵀA is singular, which the model's checks exclude.
+    /// Inspects a model; `None` if AᵀA is singular, which the model's checks exclude.
     pub fn new(model: &Model) -> Option<Self> {
         let mut geometry = Geometry::new(model)?;
         let n = geometry.model.n();
@@ -124,14 +124,14 @@ impl Inspection {
         })
     }
 
-    /// Whether no entry of M depends on x.
+    /// Returns whether no entry of M depends on x.
     pub fn constant_mass(&self) -> bool {
         let mut entries = self.pattern.iter().flatten();
         entries.all(|&entry| entry != Entry::Varying)
     }
 
-    /// The Lie algebra of the whole frame, `se(3) ⊕ R`; `None` where some γ depends on x, or a block
-    /// has no name.
+    /// Returns the name of the Lie algebra of the whole frame, such as `se(3) ⊕ R`; `None` if some γ depends on x,
+    /// or if a block has no name.
     pub fn algebra(&self) -> Option<String> {
         let mut parts = Vec::new();
         for block in &self.blocks {
@@ -146,7 +146,7 @@ impl Inspection {
         Some(parts.join(" ⊕ "))
     }
 
-    /// The side of all blocks together: on which side the inertia is invariant where M is constant.
+    /// Returns the side that all blocks have in common; if M is constant, the inertia is invariant on this side.
     pub fn side(&self) -> Option<Side> {
         let first = self.blocks.first()?.side?;
         self.blocks
@@ -155,7 +155,7 @@ impl Inspection {
             .then_some(first)
     }
 
-    /// The names of some velocities, with commas.
+    /// Returns the names of some velocities, separated by commas.
     pub fn list(&self, members: &[usize]) -> String {
         let names = members.iter().filter_map(|&i| self.velocities.get(i));
         let names: Vec<&str> = names.map(|velocity| velocity.name.as_str()).collect();
@@ -172,7 +172,7 @@ fn names(model: &Model) -> Vec<String> {
     model.xi.iter().filter_map(name).collect()
 }
 
-/// The Lie algebra of a block of γ.
+/// Inspects a block of γ: its Lie algebra and its side.
 fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
     let mut entries: Vec<Edge> = members
         .iter()
@@ -211,8 +211,8 @@ fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
     }
 }
 
-/// Exact numbers of expressions at the parameters' default values; `None` where they are written
-/// with more than parameters and the four operations.
+/// Returns exact values of expressions at the parameters' default values; `None` if they contain more than
+/// parameters and the four arithmetic operations.
 fn numbers(model: &Model, edges: &[Edge]) -> Option<Vec<BigRational>> {
     let graph = &model.graph;
     let mut values = vec![BigRational::zero(); graph.len()];
@@ -243,7 +243,7 @@ fn numbers(model: &Model, edges: &[Edge]) -> Option<Vec<BigRational>> {
     Some(edges.iter().map(|&edge| read(&values, edge)).collect())
 }
 
-/// A = I.
+/// Returns whether A = I.
 fn rates_of_coordinates(model: &Model) -> bool {
     let graph: &Graph = &model.graph;
     model.nu() == model.n()

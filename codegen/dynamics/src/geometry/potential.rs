@@ -1,10 +1,10 @@
-//! A function whose rate a velocity coordinate is: ∂ᵢf = δᵢᵏ for all i, so that ξᵏ = df/dt.
+//! Search for a function f whose rate is a given velocity coordinate: ∂ᵢf = δᵢᵏ for all i, so that ξᵏ = df/dt.
 //!
-//! Such an f exists locally where γᵢⱼᵏ = 0 for all i, j (KR18 section 2.5). It is sought among the
-//! combinations Σ c_a f_a with rational c_a of coordinates, angles of circles, expressions that the
-//! user named, monomials of degree two and three, sines, logarithms and angles of pairs; and of all
-//! these times or over a scalar parameter. The c_a are found at fresh points of X modulo p; the
-//! result is confirmed where expressions that are equal on X are one node.
+//! Such an f exists locally if γᵢⱼᵏ = 0 for all i, j (KR18 section 2.5). It is sought among the combinations Σ c_a
+//! f_a with rational c_a of coordinates, angles of circles, named expressions of the user, monomials of degree two
+//! and three, sines, cosines, logarithms and angles atan2 of pairs; and of all these multiplied or divided by a
+//! scalar parameter. The c_a are determined at random points of X modulo p; the result is confirmed symbolically in
+//! the graph, where expressions that are equal on X are one node.
 
 use super::Geometry;
 use hamel_algebra::echelon::solution;
@@ -17,28 +17,28 @@ use hamel_language::model::value::Value;
 use hamel_language::model::{Model, class};
 use hamel_language::syntax::ast::CoordKind;
 
-/// Plain coordinates beyond this number get no monomials and functions of their own.
+/// Largest number of plain coordinates for which monomials and functions of them are tried.
 const MOST_PLAIN: usize = 6;
-/// Candidates beyond this number are not tried.
+/// Largest number of candidates.
 const MOST_CANDIDATES: usize = 150;
-/// Numerators and denominators of coefficients have at most this many bits.
+/// Largest number of bits of the numerators and denominators of coefficients.
 const BITS: u32 = 16;
 
-/// f_a: how it reads, and its value.
+/// A candidate f_a, as text and as an expression.
 #[derive(Clone, Debug)]
 struct Candidate {
     text: String,
     value: Edge,
 }
 
-/// For every ξᵏ of `wanted` a function whose rate it is, as text, where one was found.
+/// Returns, for every ξᵏ of `wanted`, a function whose rate it is, as text, or `None` if none was found.
 pub fn potentials(geometry: &mut Geometry, wanted: &[usize]) -> Vec<Option<String>> {
     if wanted.is_empty() {
         return Vec::new();
     }
     let candidates = candidates(&mut geometry.model);
     let n = geometry.model.n();
-    // slopes[a][i] = ∂ᵢf_a; functions that never change are no candidates.
+    // slopes[a][i] = ∂ᵢf_a; functions whose derivatives all vanish are left out.
     let zero = geometry.model.graph.zero();
     let (mut kept, mut slopes) = (Vec::new(), Vec::new());
     for candidate in candidates {
@@ -74,7 +74,7 @@ pub fn potentials(geometry: &mut Geometry, wanted: &[usize]) -> Vec<Option<Strin
         .collect()
 }
 
-/// Values of all slopes at enough fresh points of X: `[point][a][i]`.
+/// Evaluates all slopes at sufficiently many random points of X: `[point][a][i]`.
 fn samples(model: &Model, slopes: &[Vec<Edge>], n: usize) -> Vec<Vec<Vec<Fp>>> {
     let points = slopes.len() / n.max(1) + 4;
     let roots = slopes.concat();
@@ -93,7 +93,7 @@ fn samples(model: &Model, slopes: &[Vec<Edge>], n: usize) -> Vec<Vec<Vec<Fp>>> {
     samples
 }
 
-/// Whether Σ c_a ∂ᵢf_a = δᵢᵏ on X.
+/// Returns whether Σ c_a ∂ᵢf_a = δᵢᵏ on X.
 fn confirmed(
     graph: &mut Graph,
     slopes: &[Vec<Edge>],
@@ -132,7 +132,7 @@ fn sum(candidates: &[Candidate], terms: &[(usize, (i64, i64))]) -> String {
     text
 }
 
-/// What is tried, the simplest first.
+/// Returns the functions to try, the simplest first.
 fn candidates(model: &mut Model) -> Vec<Candidate> {
     let (mut first, plain) = coordinates(model);
     let moving = |edge: Edge, graph: &Graph| {
@@ -188,7 +188,7 @@ fn candidates(model: &mut Model) -> Vec<Candidate> {
     first
 }
 
-/// Coordinates and angles of circles; and the plain coordinates among them.
+/// Returns the coordinates and the angles of circles; separately, the plain coordinates among them.
 fn coordinates(model: &mut Model) -> (Vec<Candidate>, Vec<Candidate>) {
     let (mut simple, mut entries, mut plain) = (Vec::new(), Vec::new(), Vec::new());
     for coordinate in &model.coordinates {
@@ -222,7 +222,7 @@ fn coordinates(model: &mut Model) -> (Vec<Candidate>, Vec<Candidate>) {
     (simple, plain)
 }
 
-/// Monomials of degree two and three, sines, logarithms, and angles of pairs.
+/// Returns monomials of degree two and three, sines, cosines, logarithms, and angles of pairs.
 fn functions(graph: &mut Graph, plain: &[Candidate]) -> Vec<Candidate> {
     let mut found = Vec::new();
     let power = |a: &str, b: &str| match a == b {
@@ -250,7 +250,7 @@ fn functions(graph: &mut Graph, plain: &[Candidate]) -> Vec<Candidate> {
                 Node::Mul(x, y) => [x, y],
                 _ => continue,
             };
-            // Each product once: the third factor does not stand before the other two.
+            // Each product once: the third factor must not come after the other two in order.
             let place = |edge: Edge| plain.iter().position(|p| p.value == edge);
             if factors.iter().any(|&f| place(f).is_none_or(|p| p < i)) {
                 continue;
@@ -275,9 +275,9 @@ fn functions(graph: &mut Graph, plain: &[Candidate]) -> Vec<Candidate> {
     found
 }
 
-/// Whether ξᵏ is integrable: γᵢⱼᵏ = 0 for all i, j (KR18 section 2.5).
+/// Returns whether ξᵏ is integrable: γᵢⱼᵏ = 0 for all i, j (KR18 section 2.5).
 pub fn is_integrable(geometry: &Geometry, k: usize) -> bool {
-    // Of either sign: a negated zero is zero.
+    // Compare nodes, because a zero of either sign is zero.
     let zero = geometry.model.graph.zero().node();
     let mut rows = geometry.gamma.iter().flatten();
     rows.all(|row| row[k].node() == zero)

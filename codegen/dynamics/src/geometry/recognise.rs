@@ -1,4 +1,4 @@
-//! Which Lie algebra structure constants belong to, up to a linear change of basis over R.
+//! Recognition of the Lie algebra of given structure constants, up to a linear change of basis over R.
 //!
 //! | algebra | is recognised by |
 //! |---|---|
@@ -11,37 +11,36 @@
 //! | Heisenberg's h(2m + 1) | \[L, L\] of dimension 1, equal to the centre |
 //! | aff(R) | dimension 2, not abelian |
 //!
-//! In dimension 9 and below a negative definite form means so(3) sums, su(3) in dimension 8 apart:
-//! 6 = 3 + 3, 9 = 3 + 3 + 3. A perfect algebra with Levi part so(3) and an abelian radical of
-//! dimension 3 is se(3), because the only nontrivial real representation of so(3) in dimension 3
-//! without a fixed vector is the rotation of vectors.
+//! In dimensions up to 9, an algebra with a negative definite form is a sum of copies of so(3), except for su(3) in
+//! dimension 8: 6 = 3 + 3, 9 = 3 + 3 + 3. A perfect algebra with Levi part so(3) and an abelian radical of
+//! dimension 3 is se(3), because the only nontrivial real representation of so(3) in dimension 3 without a fixed
+//! vector is the rotation of vectors.
 
 use super::lie_algebra::LieAlgebra;
 use hamel_algebra::echelon::Echelon;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-/// An algebra by its name, or by what is known of it.
+/// Name of a Lie algebra, or its invariants if it is none of the known ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Name {
     /// Direct sum of these, in reading order; Rᵏ last.
     Sum(Vec<String>),
-    /// None of the known ones: its dimension, derived series, dimension of the centre, and
-    /// signature of Killing's form.
+    /// None of the known ones.
     Unnamed {
-        /// dim L.
+        /// Dimension dim L.
         dimension: usize,
-        /// dim L, dim \[L, L\] …
+        /// Derived series dim L, dim \[L, L\] …
         derived: Vec<usize>,
-        /// dim of the centre.
+        /// Dimension of the centre.
         centre: usize,
-        /// Positive and negative squares.
+        /// Numbers of positive and negative squares of Killing's form.
         killing: (usize, usize),
     },
 }
 
 impl Name {
-    /// `so(3) ⊕ R^3`
+    /// Returns the name as text, such as `so(3) ⊕ R^3`.
     pub fn text(&self) -> String {
         match self {
             Name::Sum(parts) => parts.join(" ⊕ "),
@@ -61,7 +60,7 @@ impl Name {
     }
 }
 
-/// `R^3`, `R`.
+/// Returns the name of an abelian algebra: `R`, or `R^3` in dimension 3.
 pub fn abelian(dimension: usize) -> String {
     match dimension {
         1 => "R".into(),
@@ -93,7 +92,7 @@ pub fn recognise(algebra: &LieAlgebra) -> Name {
     Name::Sum(parts)
 }
 
-/// The names of an algebra without abelian summand.
+/// Returns the names of the summands of an algebra without abelian summand; `None` if it is not a known one.
 fn indecomposable(algebra: &LieAlgebra) -> Option<Vec<String>> {
     let n = algebra.dimension();
     let (derived, centre) = (algebra.derived(), algebra.centre());
@@ -126,7 +125,8 @@ fn indecomposable(algebra: &LieAlgebra) -> Option<Vec<String>> {
     }
 }
 
-/// Trace and determinant on \[L, L\] (dimension 2 of 3, abelian) of ad z, z any vector outside.
+/// Returns trace and determinant, on \[L, L\] (abelian, dimension 2 of 3), of ad z for any vector z outside.
+///
 /// As ad z maps into \[L, L\], they are the trace of ad z and the sum of its principal 2×2 minors.
 fn turning(algebra: &LieAlgebra) -> Option<(BigRational, BigRational)> {
     let derived = algebra.derived();

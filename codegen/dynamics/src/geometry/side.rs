@@ -1,5 +1,5 @@
-//! Left- or right-invariant: whether the ∂ᵢ of a block of γ move a frame with constant body twists or
-//! with constant twists in world axes.
+//! Left- or right-invariance: whether the ∂ᵢ of a block of γ move a frame with constant twists in body axes or in
+//! world axes.
 
 use super::super::calculus::Calculus;
 use super::Geometry;
@@ -8,17 +8,17 @@ use hamel_algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, z
 use hamel_language::model::Model;
 use hamel_language::syntax::ast::CoordKind;
 
-/// How vector fields move a frame.
+/// Invariance of the vector fields that move a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Rᵀ∂ᵢp and Rᵀ∂ᵢR are constant: velocities in body axes, γ are the structure constants.
+    /// Rᵀ∂ᵢp and Rᵀ∂ᵢR are constant: velocities are in body axes, and γ are the structure constants.
     Left,
-    /// (∂ᵢR)Rᵀ and ∂ᵢp − ωᵢ × p are constant: velocities in world axes, γ have the opposite sign.
+    /// (∂ᵢR)Rᵀ and ∂ᵢp − ωᵢ × p are constant: velocities are in world axes, and γ have the opposite sign.
     Right,
 }
 
 impl Side {
-    /// `left-invariant (body)`
+    /// Returns the side as text, such as `left-invariant (body)`.
     pub fn text(self) -> &'static str {
         match self {
             Side::Left => "left-invariant (body)",
@@ -27,9 +27,11 @@ impl Side {
     }
 }
 
-/// The side of a block of velocities, by the first frame that they turn; `None` where they turn
-/// none, or one that shows neither. Where no velocity of the block moves the frame's origin (a
-/// product of rotations and translations) the rotation alone tells.
+/// Returns the side of a block of velocities, from the first frame turned by them that is moved with constant
+/// twists on exactly one side; `None` if there is no such frame.
+///
+/// If no velocity of the block moves the frame's origin (a product of rotations and translations), the rotation
+/// alone decides.
 pub fn side(geometry: &mut Geometry, block: &[usize]) -> Option<Side> {
     let zero = geometry.model.graph.zero().node();
     let vanishes = |edges: &[Edge]| edges.iter().all(|edge| edge.node() == zero);
@@ -67,7 +69,7 @@ pub fn side(geometry: &mut Geometry, block: &[usize]) -> Option<Side> {
     None
 }
 
-/// The poses of all frames, and of coordinates that are rotations or poses themselves.
+/// Returns the poses of all frames, and of coordinates that are rotations or poses themselves.
 fn poses(model: &Model) -> Vec<(Mat3, Vec3)> {
     let frames = model.frames.iter();
     let mut poses: Vec<(Mat3, Vec3)> = frames
@@ -93,7 +95,7 @@ fn are_constant(graph: &mut Graph, calculus: &mut Calculus, edges: &[Edge]) -> b
     edges.iter().all(|&edge| is_constant(graph, calculus, edge))
 }
 
-/// Whether all ∂ᵢ of an expression are 0.
+/// Returns whether all ∂ᵢ of an expression are 0.
 pub fn is_constant(graph: &mut Graph, calculus: &mut Calculus, edge: Edge) -> bool {
     let zero = graph.zero().node();
     (0..calculus.n()).all(|i| calculus.along(graph, i, edge).node() == zero)

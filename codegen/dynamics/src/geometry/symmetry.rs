@@ -1,32 +1,32 @@
 //! Symmetries of the kinetic energy and of the potential, direction by direction.
 //!
-//! Along ∂ᵢ the metric changes by (L_{∂ᵢ} M)_jk = ∂ᵢM_jk − γᵢⱼˢ M_sk − γᵢₖˢ M_sj. Where that is 0, the
-//! flow of ∂ᵢ keeps T, and by Noether's theorem dpᵢ/dt = fᵢ − ∂ᵢV with p = M ξ.
+//! Along ∂ᵢ the metric changes by (L_{∂ᵢ} M)_jk = ∂ᵢM_jk − γᵢⱼˢ M_sk − γᵢₖˢ M_sj. If that is 0, the flow of ∂ᵢ
+//! preserves T, and by Noether's theorem dpᵢ/dt = fᵢ − ∂ᵢV with p = M ξ.
 
 use super::Geometry;
 use hamel_algebra::graph::Edge;
 
-/// What is known of the direction ∂ᵢ.
+/// Symmetries along a direction ∂ᵢ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symmetry {
-    /// ∂ᵢM_jk = 0 for all j, k: the entries of M do not change along ∂ᵢ.
+    /// Whether ∂ᵢM_jk = 0 for all j, k: the entries of M do not change along ∂ᵢ.
     pub mass_constant: bool,
-    /// L_{∂ᵢ} M = 0: the flow of ∂ᵢ keeps T.
+    /// Whether L_{∂ᵢ} M = 0: the flow of ∂ᵢ preserves T.
     pub keeps_kinetic: bool,
-    /// ∂ᵢV = 0.
+    /// Whether ∂ᵢV = 0.
     pub keeps_potential: bool,
-    /// fᵢ = 0 for all applied loads.
+    /// Whether fᵢ = 0 for all applied loads and the model has no constraints.
     pub unloaded: bool,
 }
 
 impl Symmetry {
-    /// Whether pᵢ is conserved.
+    /// Returns whether pᵢ is conserved.
     pub fn conserves_momentum(&self) -> bool {
         self.keeps_kinetic && self.keeps_potential && self.unloaded
     }
 }
 
-/// The symmetries of all directions; `applied`: the generalised forces of the loads.
+/// Returns the symmetries of all directions; `applied` are the generalised forces of the loads.
 pub fn symmetries(geometry: &mut Geometry, applied: &[Edge]) -> Vec<Symmetry> {
     let n = geometry.model.n();
     let zero = geometry.model.graph.zero().node();

@@ -1,4 +1,4 @@
-//! Carries a model over to a graph without the velocities that were solved for.
+//! Transfer of a model to a graph without the velocities that were solved for.
 
 use super::Section;
 use super::kinetic::{drift, kinetic_terms, lifted};
@@ -11,13 +11,13 @@ use hamel_language::model::value::Value;
 use hamel_language::model::{Group, KineticTerms, Model, class};
 use hamel_language::syntax::ast::ShapeKind;
 
-/// Carries a model over to a graph without the velocities that were solved for.
+/// Transfers a model to a graph without the velocities that were solved for.
 pub struct Carrier {
     full: Model,
     graph: Graph,
-    /// What every symbol of the full model's graph becomes.
+    /// Image of each symbol of the full model's graph.
     pub images: Vec<Edge>,
-    /// The same in the graph with unconstrained points.
+    /// Graph with unconstrained points.
     free: Graph,
     free_images: Vec<Edge>,
     active: Vec<usize>,
@@ -64,7 +64,7 @@ impl Carrier {
         )
     }
 
-    /// The model in ξₐ, with some rows of constraints kept.
+    /// Returns the model in ξₐ, with the given rows of constraints kept.
     pub fn model(
         mut self,
         kept_rows: &[(Vec<Edge>, Edge)],
@@ -88,7 +88,7 @@ impl Carrier {
         for (velocity, _) in &mut model.accelerated {
             *velocity = self.active.iter().position(|i| i == velocity).unwrap_or(0);
         }
-        // What is derived anew, or of no use in ξₐ.
+        // Clear what is derived again below or is of no use in ξₐ.
         model.a = Vec::new();
         model.observed = Vec::new();
         model.armature = vec![full.graph.zero(); model.xi.len()];
@@ -144,7 +144,8 @@ impl Carrier {
         model
     }
 
-    /// What a claim sets, by the places of symbols in the new graph; symbols that are gone are not set.
+    /// Renumbers the symbols that a claim sets to their places in the new graph, and removes those that no longer
+    /// exist.
     fn renumber(&self, set: &mut Vec<(usize, Edge)>, graph: &Graph) {
         set.retain_mut(|(symbol, _)| {
             let node = self.images[*symbol].node();
@@ -153,7 +154,7 @@ impl Carrier {
         });
     }
 
-    /// Cᵀ f of the generalised forces that the user wrote.
+    /// Returns Cᵀ f for the generalised forces written by the user.
     fn generalized(&self, model: &mut Model, xi: &[Edge]) -> Vec<Edge> {
         let graph = &mut model.graph;
         let rows = model.xi.iter().map(|active| {
@@ -164,7 +165,7 @@ impl Carrier {
         rows.collect()
     }
 
-    /// The velocities that are left; of a velocity of which a part is left, that part.
+    /// Returns the remaining velocities; if only a part of a vector velocity remains, its entries become scalars.
     fn groups(&self) -> Vec<Group> {
         let mut groups = Vec::new();
         let offset = |i: usize| self.active.iter().position(|&a| a == i).unwrap_or(0);
@@ -191,7 +192,8 @@ impl Carrier {
     }
 }
 
-/// A graph without the symbols of velocities that were solved for, and what all symbols become.
+/// Creates a graph without the symbols of velocities that were solved for, and returns it with the images of all
+/// symbols.
 fn restricted(
     full: &Model,
     from: &Graph,
@@ -225,13 +227,13 @@ fn restricted(
         reals.push(from.reals(index));
     }
     graph.set_reals(reals);
-    // Prescribed coordinates are what they are prescribed to be.
+    // Replace prescribed coordinates by their prescribed values.
     let given: Vec<Edge> = full.prescribed.iter().map(|(_, edge)| *edge).collect();
     let made = map_symbols(&full.graph, &mut graph, &given, &images);
     for ((place, _), edge) in full.prescribed.iter().zip(made) {
         images[full.points.first + place] = edge;
     }
-    // What was solved for is written in symbols that stay.
+    // Express velocities that were solved for in the remaining symbols.
     let expressions: Vec<Edge> = solved.iter().map(|(_, edge)| *edge).collect();
     let made = map_symbols(&full.graph, &mut graph, &expressions, &images);
     for ((index, _), edge) in solved.into_iter().zip(made) {

@@ -1,4 +1,5 @@
-//! What ξ = C ξₐ + c contributes to the equations of motion: Ċ ξₐ + ċ, and a kinetic energy that the user wrote.
+//! Contributions of ξ = C ξₐ + c to the equations of motion: the drift Ċ ξₐ + ċ, and the terms of a kinetic energy
+//! written by the user.
 
 use super::Section;
 use crate::calculus::Calculus;
@@ -8,7 +9,7 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{multiply, transpose};
 use hamel_language::model::{KineticTerms, Model};
 
-/// ξ = C ξₐ + c.
+/// Returns ξ = C ξₐ + c.
 pub fn lifted(graph: &mut Graph, xi_active: &[Edge], section: &Section) -> Vec<Edge> {
     let rows = section.complement.iter().zip(&section.shift);
     rows.map(|(row, &shift)| {
@@ -18,7 +19,7 @@ pub fn lifted(graph: &mut Graph, xi_active: &[Edge], section: &Section) -> Vec<E
     .collect()
 }
 
-/// Ċ ξₐ + ċ along ẋ = A (C ξₐ + c).
+/// Returns Ċ ξₐ + ċ along ẋ = A (C ξₐ + c).
 pub fn drift(full: &mut Model, xi_active: &[Edge], section: &Section) -> Vec<Edge> {
     let graph = &mut full.graph;
     let xi = lifted(graph, xi_active, section);
@@ -27,8 +28,10 @@ pub fn drift(full: &mut Model, xi_active: &[Edge], section: &Section) -> Vec<Edg
     xi.iter().map(|&xi| along.of(graph, xi)).collect()
 }
 
-/// Cᵀ K C and Cᵀ (h + K (Ċ ξₐ + ċ)) of the kinetic energy that the user wrote, with Hamel's h before the
-/// constraints are put in; still in terms of ξ. The model learns what that energy has beyond its part of the whole energy.
+/// Returns Cᵀ K C and Cᵀ (h + K (Ċ ξₐ + ċ)) of the kinetic energy written by the user, with Hamel's h derived
+/// before the constraints are inserted; the expressions are still in terms of ξ.
+///
+/// Also stores in the model the difference between that kinetic energy and its contribution to the total energy.
 pub fn kinetic_terms(
     full: &mut Model,
     xi_active: &[Edge],

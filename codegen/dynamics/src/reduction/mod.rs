@@ -1,11 +1,13 @@
-//! The velocities that constraints B(x, t) ξ = 0 and the time leave: ξ = C ξₐ + c, and the model in ξₐ. Without time
-//! c = 0; with it c is what ξ⁰ = 1 puts in, so that a row B ξ = b ξ⁰ becomes affine.
+//! Elimination of velocities by constraints B(x, t) ξ = 0 and by time: ξ = C ξₐ + c with the active velocities ξₐ,
+//! and the model in ξₐ.
 //!
-//! A row is solved for a velocity whose factor is constant at run time, so that nothing is divided
-//! by what may vanish on X; rows without such a factor are kept and get multipliers. So do loops that are not straight,
-//! since a velocity that was solved for lets its coordinate drift away from the loop. With C the
-//! equations of motion are Cᵀ (M ξ̇ + Γ ξ ξ + ∂V − f) = 0: for an inactive velocity of an adapted
-//! frame these are the active rows of KR18 (30).
+//! Without explicit time c = 0. With it, c results from inserting ξ⁰ = 1, so that a row B ξ = b ξ⁰ becomes affine.
+//!
+//! A row is solved for a velocity whose coefficient is constant at run time, so that nothing is divided by an
+//! expression that may vanish on X. Rows without such a coefficient are kept and get multipliers. Loops with
+//! varying coefficients are kept too, because integrating a velocity that was solved for would let its coordinate
+//! drift away from the loop. With C the equations of motion are Cᵀ (M ξ̇ + Γ ξ ξ + ∂V − f) = 0; for an inactive
+//! velocity of an adapted frame these are the active rows of KR18 (30).
 
 mod carrier;
 mod kinetic;
@@ -28,42 +30,49 @@ pub use rows::{independent, unit};
 use rows::{keep, start_numbers};
 use std::sync::Arc;
 
-/// A factor is no pivot where another one of its row, or of its velocity in other rows, is so many times larger at the start:
-/// a solution by it would lose twice as many digits as that ratio has. A row without pivots gets a multiplier.
+/// Largest ratio at the start of another coefficient of the same row, or of the same velocity in other rows, to a
+/// coefficient that is used as a pivot.
+///
+/// A solution by a smaller pivot would lose twice as many digits as that ratio has. A row without pivots gets a
+/// multiplier.
 const LONGEST: f64 = 30.0;
 
-/// ξ = C ξₐ + c, in the graph of the full model.
+/// Affine map ξ = C ξₐ + c, in the graph of the full model.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// C, n rows of as many entries as ξₐ has.
+    /// Matrix C, n rows of as many entries as ξₐ has.
     pub complement: Vec<Vec<Edge>>,
-    /// c, n entries.
+    /// Vector c, n entries.
     pub shift: Vec<Edge>,
 }
 
-/// The active velocities, and the model in them.
+/// Active velocities, and the model in them.
 #[derive(Clone, Debug)]
 pub struct Reduction {
-    /// The model in ξₐ; its constraints are the rows that are kept.
+    /// Model in ξₐ; its constraints are the rows that are kept.
     pub model: Model,
     /// Places of ξₐ in ξ.
     pub active: Vec<usize>,
-    /// Rows that were solved, and the velocities that they give.
+    /// Rows that were solved, each with the velocity that it determines.
     pub solved: Vec<(usize, usize)>,
     /// Rows that are kept, by their places among the constraints.
     pub kept: Vec<usize>,
     /// Rows that follow from the others everywhere and are left out, by their places among the constraints.
     pub dropped: Vec<usize>,
-    /// ξ = C ξₐ + c, in the graph below.
+    /// Affine map ξ = C ξₐ + c, in `graph`.
     pub section: Section,
-    /// The graph of the full model, with C and c.
+    /// Graph of the full model, with C and c.
     pub graph: Graph,
-    /// What every symbol of the full model becomes, in the graph of the reduced one.
+    /// Image of each symbol of the full model, in the graph of the reduced model.
     pub images: Vec<Edge>,
 }
 
-/// Solves the constraints of a model as far as constant factors allow.
-/// `None` where there are none.
+/// Solves the constraints of a model as far as constant coefficients allow; `None` if the model has no constraints.
+///
+/// # Errors
+///
+/// A diagnostic if rows contradict one another, are redundant and cannot be left out, cannot be solved as the
+/// description demands, or leave no motion.
 pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     if !model.is_constrained() {
         return Ok(None);
@@ -83,7 +92,8 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     accelerated(&full, &rows, &kept, &active)?;
     let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
     let driven = model.constraints.iter().any(drives);
-    // Where drives leave nothing to move by itself, the equations of motion give the forces that they need.
+    // If drives leave nothing that moves freely, the equations of motion still give the forces that the drives
+    // need.
     if active.len() < rank || active.len() == rank && !driven {
         let span = model.constraints.last().map_or(model.span, |c| c.span);
         return Err(Diagnostic::new(
@@ -130,7 +140,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         })
         .collect();
     let graph = full.graph.clone();
-    // Whether ξ is ξₐ and what is given ahead, nothing else.
+    // Whether every velocity is either active or a given function of time.
     let given = kept.is_empty()
         && model.clock.is_some()
         && (0..n).all(|i| active.contains(&i) || complement[i].iter().all(|&entry| entry == zero));
@@ -158,10 +168,10 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     }))
 }
 
-/// B in echelon form by constant pivots.
+/// Matrix B in echelon form, by constant pivots.
 struct Echelon {
     rows: Vec<Vec<Edge>>,
-    /// The pivots: (row, velocity).
+    /// Pivots (row, velocity).
     solved: Vec<(usize, usize)>,
     /// Rows of which nothing is left.
     dropped: Vec<usize>,
@@ -188,7 +198,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     let mut at_start: Vec<Vec<f64>> = rows.iter().map(|row| sizes(graph, row)).collect();
     let kept: Vec<bool> = constraints.iter().map(|c| returns(graph, c)).collect();
     loop {
-        // The largest entry of each column in the rows that are left.
+        // Largest entry of each column in the rows that are still to be solved.
         let open = (0..rows.len()).filter(|i| solved.iter().all(|&(row, _)| row != *i));
         let tallest = open.fold(vec![0.0_f64; model.xi.len()], |most, i| {
             let pairs = most.iter().zip(&at_start[i]);
@@ -199,7 +209,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
             if kept[i] || solved.iter().any(|&(row, _)| row == i) {
                 continue;
             }
-            // The two largest entries of the row: beside a single one, nothing is lost.
+            // The two largest entries of the row; if there is only one, no digits are lost.
             let moving = at_start[i].iter().enumerate();
             let moving = moving.filter(|&(k, _)| !is_time(k));
             let [top, second] =
@@ -208,7 +218,8 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
                     size if size > second.1 => [top, (k, size)],
                     _ => [top, second],
                 });
-            // A rate that is prescribed is no result of the constraints, where they can give another velocity or a multiplier.
+            // Do not solve for a velocity with a prescribed rate, unless it is the only one in its row: the row can
+            // determine another velocity or get a multiplier.
             let alone = (0..rows[i].len())
                 .filter(|&j| rows[i][j] != zero && !is_time(j))
                 .count()
@@ -278,15 +289,17 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     })
 }
 
-/// Whether runs are led back to a constraint, which takes its multiplier: to those that are stabilised, and to loops that are
-/// not straight. A straight one, such as the ratio of gears, has constant factors; every method keeps to it by itself.
+/// Returns whether integration must be led back to a constraint, so that it needs its multiplier.
+///
+/// This holds for stabilised constraints, and for loops with varying coefficients. A loop with constant
+/// coefficients, such as a gear ratio, is preserved by every integration method.
 fn returns(graph: &Graph, constraint: &Pfaffian) -> bool {
     let bent = |entry: &Edge| !graph.is_free(entry.node());
     constraint.stabilized.is_some()
         || constraint.kind == Kind::Loop && constraint.row.iter().any(bent)
 }
 
-/// A row that could be solved for velocities that the user wants to stay, and for no others.
+/// Returns an error if a row could be solved only for velocities that the user declared as independent.
 fn impossible(
     model: &Model,
     graph: &Graph,
@@ -310,7 +323,7 @@ fn impossible(
     Err(error.note(constraint.span, "this constraint"))
 }
 
-/// The name of an entry of ξ.
+/// Returns the name of an entry of ξ.
 fn entry_name(model: &Model, place: usize) -> String {
     let node = model.xi[place].node();
     let mut symbols = model.graph.symbols().iter();
@@ -319,7 +332,7 @@ fn entry_name(model: &Model, place: usize) -> String {
         .map_or(String::new(), |s| s.name.clone())
 }
 
-/// Velocities whose rates are given have to stay, and to be free at the start of what is kept.
+/// Checks that velocities with given rates are active, and that the kept rows leave them free at the start.
 fn accelerated(
     full: &Model,
     rows: &[Vec<Edge>],

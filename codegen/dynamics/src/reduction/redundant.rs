@@ -1,9 +1,9 @@
-//! What is said of rows that follow from the others, and of rows that contradict them.
+//! Diagnostics about rows that follow from the others, and about rows that contradict them.
 
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::pfaffian::{Kind, Pfaffian};
 
-/// The error of a row that follows from the others, where it cannot be left out.
+/// Returns the error for a row that follows from the others and cannot be left out.
 pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
     let error = Diagnostic::new(
         constraints[row].span,
@@ -16,7 +16,7 @@ pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic
     }
 }
 
-/// The error of a row that asks for another velocity than the others leave.
+/// Returns the error for a row that demands a different velocity from the one that the others leave.
 pub fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
     let message = "this row contradicts the others: it asks for another velocity than they leave";
     let error = Diagnostic::new(constraints[row].span, message).help("remove one of them");
@@ -26,7 +26,7 @@ pub fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
     }
 }
 
-/// A warning for every equation of which rows were dropped, in the order of the text.
+/// Returns a warning for every equation of which rows were dropped, in the order of `dropped`.
 pub fn warnings(constraints: &[Pfaffian], dropped: &[usize]) -> Vec<Diagnostic> {
     let mut equations: Vec<Vec<&Pfaffian>> = Vec::new();
     for row in dropped.iter().filter_map(|&place| constraints.get(place)) {
@@ -47,7 +47,7 @@ pub fn warnings(constraints: &[Pfaffian], dropped: &[usize]) -> Vec<Diagnostic> 
     warnings.collect()
 }
 
-/// The warning about rows of one equation.
+/// Returns the warning about dropped rows of one equation.
 fn following(first: &Pfaffian, rows: &[&Pfaffian]) -> Diagnostic {
     let what = match first.kind {
         Kind::Inactive => "inactive velocity",

@@ -1,4 +1,4 @@
-//! Which rows that were not solved are kept: all but those that say nothing new.
+//! Selection of the rows to keep among those that were not solved: all rows that add information.
 
 use super::redundant::{contradicting, redundant};
 use hamel_algebra::fp::{Fp, Random};
@@ -8,20 +8,27 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 use hamel_language::model::pfaffian::Kind;
 
-/// Rows whose part across those before is smaller than this, relative to the largest, are redundant.
+/// Size, relative to the largest row, below which the part of a row orthogonal to the previous rows makes it
+/// redundant.
 const REDUNDANT: f64 = 1e-8;
 
-/// How far beside the start rows are compared, in the units of the coordinates.
+/// Distance from the start, in the units of the coordinates, at which rows are compared.
 const BESIDE: f64 = 1.0 / 1024.0;
 
-/// The first row comes next that is at most so many times smaller than the largest.
+/// Largest ratio of the largest remaining row to the first one that may come next.
 const ENOUGH: f64 = 8.0;
 
-/// The rows to keep, and how many of them are independent at the start, the largest first. A loop may
-/// have rows that depend on others where it is closed (an overconstrained mechanism); a nonholonomic
-/// constraint may not. Rows that depend on others wherever the tree is say nothing new and are dropped, as long as what they are
-/// multiples of does not vanish where the loop is closed: of cos u du = 0 and sin u du = 0 the first one counts where u is
-/// zero.
+/// Returns the rows to keep and the number of them that are independent at the start; adds redundant rows to
+/// `dropped`.
+///
+/// A loop may have rows that depend on others where it is closed (an overconstrained mechanism); a nonholonomic
+/// constraint may not. Rows that depend on others at every configuration of the tree add no information and are
+/// dropped, provided that the rows of which they are multiples do not vanish where the loop is closed: of cos u
+/// du = 0 and sin u du = 0, the first one must be kept if u is zero there.
+///
+/// # Errors
+///
+/// A diagnostic if a row contradicts the others, or is redundant and cannot be dropped.
 pub fn keep(
     model: &Model,
     rows: &[Vec<Edge>],
@@ -29,7 +36,7 @@ pub fn keep(
     dropped: &mut Vec<usize>,
 ) -> Result<(Vec<usize>, usize), Diagnostic> {
     let time = model.clock.map(|clock| clock.xi);
-    // The entries of a row but that of ξ⁰.
+    // Returns the entries of a row except that of ξ⁰.
     let moving = |row: &[Edge]| -> Vec<Edge> {
         let entries = row.iter().enumerate();
         let entries = entries.filter(|(j, _)| Some(*j) != time);
@@ -90,9 +97,11 @@ pub fn keep(
     }
 }
 
-/// An order of the rows behind the first `given` ones: the next has about as much across those before it as any, close to
-/// the start, where loops are not quite closed. So what all the others are multiples of is not what vanishes on the loop.
-/// Each row is measured by its size far from there.
+/// Returns an order of the rows after the first `given` ones in which large rows come first.
+///
+/// Each next row has a part orthogonal to the previous ones about as large as any other's, at a configuration close
+/// to the start, where loops are not quite closed. The rows of which the others are multiples are then not rows
+/// that vanish on the loop. Each row is scaled by its size far from there.
 fn large_ones_first(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usize> {
     let mut random = Random::new(1);
     let mut coordinate = || (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
@@ -141,7 +150,7 @@ fn large_ones_first(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usiz
     order.into_iter().map(|row| row - given).collect()
 }
 
-/// Takes the part along one row out of all rows.
+/// Removes from all rows their component along one row.
 fn project(rows: &mut [Vec<f64>], row: usize) {
     let size = norm(&rows[row]);
     if size > 0.0 && size.is_finite() {
@@ -158,7 +167,7 @@ fn norm(row: &[f64]) -> f64 {
     row.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// Rows that are independent in numbers, the largest first: as many as there are.
+/// Returns the rows that are numerically independent, as many as there are; the largest come first.
 pub fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
     let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
     let mut independent = Vec::new();
@@ -177,7 +186,7 @@ pub fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
     }
 }
 
-/// A row over its length; a row of zeros as it is.
+/// Returns a row divided by its length; a row of zeros is returned unchanged.
 pub fn unit(row: &[f64]) -> Vec<f64> {
     let length = norm(row);
     let divided = row.iter().map(|v| v / length);
@@ -188,7 +197,7 @@ pub fn unit(row: &[f64]) -> Vec<f64> {
     }
 }
 
-/// The numbers of all symbols at the start.
+/// Returns the values of all symbols at the start.
 pub fn start_numbers(model: &Model) -> Vec<f64> {
     let (m, n) = (model.u.len(), model.n());
     let zeros = vec![0.0; n];

@@ -1,9 +1,10 @@
-//! Relations between the parameters of a link and those of the link before, with exact coefficients.
+//! Relations between the parameters of a link and those of its parent link, with exact coefficients.
 //!
-//! An inertia δ of a link that has no effect on the force of its joint is to the link before the same inertia at rest
-//! there: δ transferred in any configuration of the joint, here that in which all coordinates are zero or the identity.
-//! So lengths and mount angles come in as the description has them. On a hinge such δ are masses on its axis; those of
-//! other joints, and of links that move together, are found at random states.
+//! An inertia δ of a link that has no effect on the force of the link's joint acts on the parent like the same
+//! inertia at rest there: δ transferred at any configuration of the joint. Here it is transferred at the
+//! configuration in which all coordinates are zero or the identity, so that lengths and mounting angles enter as
+//! the description has them. On a hinge, such δ are masses on its axis; those of other joints, and of links that
+//! move together, are found at random states.
 
 use super::parameters::{Link, of_standard, standard_of};
 use super::samples::Samples;
@@ -22,19 +23,19 @@ use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
 use rustc_hash::FxHashMap;
 
-/// Numerators and denominators of coefficients that are recognised by their values.
+/// Largest number of bits of numerators and denominators of coefficients that are recognised by their values.
 const BITS: u32 = 29;
 
-/// Σ v_k Y_k = 0: the factors that are not 0.
+/// Relation Σ v_k Y_k = 0: its nonzero coefficients, with the places of their parameters.
 pub type Relation = Vec<(usize, Edge)>;
 
-/// Exact constants by their values modulo p.
+/// Exact constants, by their values modulo p.
 pub struct Known {
     by_value: FxHashMap<Fp, Edge>,
 }
 
 impl Known {
-    /// The entries of poses in the configuration of zeros, their products and quotients.
+    /// Collects the entries of poses with all coordinates zero or the identity, their products and their quotients.
     pub fn new(model: &mut Model, samples: &Samples) -> Self {
         let poses: Vec<(Mat3, Vec3)> = model.frames.iter().map(|frame| frame.relative).collect();
         let entries: Vec<Edge> = poses
@@ -72,7 +73,8 @@ impl Known {
         Known { by_value }
     }
 
-    /// The exact constant of a value.
+    /// Returns the exact constant with a given value: a small fraction or a known constant; `None` if it is
+    /// neither.
     pub fn exact(&self, graph: &mut Graph, value: Fp) -> Option<Edge> {
         match value.to_small_rational(BITS) {
             Some((n, d)) => Some(graph.ratio(n, d)),
@@ -80,7 +82,7 @@ impl Known {
         }
     }
 
-    /// The same for all entries of a vector.
+    /// Returns the exact constants of all entries of a vector; `None` if one of them has none.
     pub fn all(&self, graph: &mut Graph, values: &[Fp]) -> Option<Vec<Edge>> {
         values
             .iter()
@@ -89,7 +91,8 @@ impl Known {
     }
 }
 
-/// The relations within each link, between each link and the one before, and the same of links that move together.
+/// Returns the relations within each link, between each link and its parent, and within groups of links that move
+/// together.
 pub fn candidates(
     model: &mut Model,
     samples: &Samples,
@@ -100,7 +103,7 @@ pub fn candidates(
     let mut groups: Vec<(Vec<usize>, Option<usize>)> = Vec::new();
     for (index, link) in links.iter().enumerate() {
         groups.push((vec![index], None));
-        // A link that stands in the world may be placed by expressions that follow another one.
+        // The frame of a link on the world may be placed by expressions that follow another link.
         let parents = link.parent.map_or(0..index, |parent| parent..parent + 1);
         groups.extend(parents.map(|parent| (vec![index], Some(parent))));
     }
@@ -132,8 +135,8 @@ pub fn candidates(
     relations
 }
 
-/// Masses on the axis a of a hinge through the frame's origin, which do not move against the link before: m, h = a and
-/// ∫ r rᵀ dm = a aᵀ, whatever numbers a has.
+/// Returns masses on the axis a of a hinge through the frame's origin, which do not move relative to the parent
+/// link: m, h = a and ∫ r rᵀ dm = a aᵀ, for any entries of a.
 fn along_axis(graph: &mut Graph, numbers: &[f64], link: &TreeLink, frame: &Link) -> Vec<Mass> {
     let Some(axis) = hinge(graph, link, frame) else {
         return Vec::new();
@@ -150,7 +153,8 @@ fn along_axis(graph: &mut Graph, numbers: &[f64], link: &TreeLink, frame: &Link)
     ]
 }
 
-/// A first moment of a slider along the axis of a hinge before it: where that axis stands still, no force feels it.
+/// Returns the first moment of a slider along the axis of a hinge before it; if that axis does not move, no force
+/// depends on this moment.
 fn along_earlier_axis(
     model: &mut Model,
     numbers: &[f64],
@@ -180,7 +184,7 @@ fn along_earlier_axis(
     })
 }
 
-/// The axis of a hinge through the origin of its frame, in the axes of the frame; `None` for other joints.
+/// Returns the axis of a hinge through the origin of its frame, in the axes of the frame; `None` for other joints.
 fn hinge(graph: &mut Graph, link: &TreeLink, frame: &Link) -> Option<Vec3> {
     let [freedom] = link.freedoms.as_slice() else {
         return None;
@@ -189,7 +193,7 @@ fn hinge(graph: &mut Graph, link: &TreeLink, frame: &Link) -> Option<Vec3> {
     turns.then(|| apply_transposed(graph, &frame.axes, freedom.angular))
 }
 
-/// A direction whose largest entry is 1.
+/// Scales a direction so that its largest entry is 1.
 fn scaled(graph: &mut Graph, numbers: &[f64], axis: Vec3) -> Option<Vec3> {
     let mut symbols = numbers.to_vec();
     symbols.resize(graph.symbols().len(), f64::NAN);
@@ -199,7 +203,8 @@ fn scaled(graph: &mut Graph, numbers: &[f64], axis: Vec3) -> Option<Vec3> {
     Some([x?, y?, z?])
 }
 
-/// Links whose joints have a velocity in common, alone and with the link that all of them hang on.
+/// Returns the groups of links whose joints have a velocity in common, alone and with the one link that all of them
+/// hang on.
 fn together(tree: &Tree) -> Vec<(Vec<usize>, Option<usize>)> {
     let rates = |index: usize| {
         let freedoms = tree.links[index].freedoms.iter();
@@ -228,7 +233,7 @@ fn together(tree: &Tree) -> Vec<(Vec<usize>, Option<usize>)> {
     groups
 }
 
-/// The relations among the parameters of a group of links and, where one is given, of a link before them.
+/// Returns the relations among the parameters of a group of links and, if given, of a link before them.
 fn among(
     model: &mut Model,
     samples: &Samples,
@@ -251,7 +256,8 @@ fn among(
     relations
 }
 
-/// That inertias of links, ten numbers each, are the same at rest in the link before, where one is given.
+/// Returns the relation that inertias of links, ten numbers each, are equivalent to the same inertias at rest in an
+/// earlier link, if one is given; otherwise, that they have no effect.
 fn moved(
     model: &mut Model,
     links: &[Link],
@@ -279,7 +285,7 @@ fn moved(
     relation
 }
 
-/// A relation: the factors that are not 0, each with its parameter.
+/// Returns a relation: the nonzero coefficients, each with its parameter.
 pub fn joined(graph: &Graph, parameters: &[usize], factors: &[Edge]) -> Relation {
     let pairs = parameters.iter().copied().zip(factors.iter().copied());
     pairs
@@ -287,7 +293,7 @@ pub fn joined(graph: &Graph, parameters: &[usize], factors: &[Edge]) -> Relation
         .collect()
 }
 
-/// Whether a relation holds at the samples.
+/// Returns whether a relation holds at the samples.
 pub fn holds(graph: &Graph, samples: &Samples, relation: &Relation) -> bool {
     let factors: Vec<Edge> = relation.iter().map(|&(_, factor)| factor).collect();
     let Some(values) = samples.constants(graph, &factors) else {
@@ -297,7 +303,7 @@ pub fn holds(graph: &Graph, samples: &Samples, relation: &Relation) -> bool {
     samples.vanishes(&parameters.zip(values).collect::<Vec<_>>())
 }
 
-/// The pose of a frame in another one, where all coordinates are zero or the identity.
+/// Returns the pose of a frame in another one, with all coordinates zero or the identity.
 fn pose_at_zero(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
     let (turn, shift) = relative(model, frame, on);
     let entries: Vec<Edge> = turn.iter().flatten().chain(&shift).copied().collect();
@@ -306,7 +312,7 @@ fn pose_at_zero(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
     (turn, std::array::from_fn(|i| entries[9 + i]))
 }
 
-/// The pose of a frame in one that it hangs on, or else that of two frames in the world.
+/// Returns the pose of a frame in one that it hangs on, or else from the poses of both frames in the world.
 fn relative(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
     let (mut turn, mut shift) = model.frames[frame].relative;
     let mut at = model.frames[frame].parent;
@@ -327,7 +333,7 @@ fn relative(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
     (turn, apply_transposed(graph, &outer, away))
 }
 
-/// Expressions in the configuration in which all coordinates are zero or the identity.
+/// Returns expressions at the configuration in which all coordinates are zero or the identity.
 fn at_zero(model: &mut Model, edges: &[Edge]) -> Vec<Edge> {
     let graph = &mut model.graph;
     let (zero, one) = (graph.zero(), graph.one());

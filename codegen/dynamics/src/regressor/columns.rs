@@ -1,6 +1,8 @@
-//! The columns of Y for the inertia of links: the generalised forces of the wrenches that a unit of each parameter needs. A
-//! wrench (force f, torque t) has the generalised force S_ω·t + S_v·f at a joint with the column S = (S_ω, S_v); where the
-//! joint turns about a point c that others turn about, too, this is S_ω·(t − c × f).
+//! Columns of Y for the inertia of links: the generalised forces of the wrenches that a unit of each parameter
+//! needs.
+//!
+//! A wrench (force f, torque t) has the generalised force S_ω·t + S_v·f at a joint with the column S = (S_ω, S_v).
+//! If the joint and neighbouring joints turn about a common point c, this is S_ω·(t − c × f).
 
 use super::parameters::Link;
 use super::wrenches::{AXES, Axes, Motions};
@@ -12,19 +14,21 @@ use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 use hamel_program::count::count;
 
-/// How the generalised force Sᵀ f of a wrench f at the joints before is computed.
+/// Way to compute the generalised forces Sᵀ f of a wrench f at the joint of its link and at all joints before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Route {
-    /// f is transformed from link to link.
+    /// The wrench f is transformed from link to link.
     Wrenches,
-    /// The same for wrenches with a force; for pure torques, which are those of second moments, columns S of all joints before are
-    /// transformed to the link.
+    /// As `Wrenches` for wrenches with a force; for pure torques, which are those of second moments, the columns S
+    /// of all joints are transformed to the link.
     Mixed,
-    /// Columns S are transformed for all wrenches.
+    /// The columns S are transformed for all wrenches.
     Twists {
-        /// As angular velocities alone where axes meet: there f acts by its torque about the point.
+        /// Whether joints whose axes meet are treated as angular velocities alone, on which f acts by its torque
+        /// about the common point.
         meeting: bool,
-        /// To the link before, and f to its origin: where both share axes this is a shift.
+        /// Whether the columns are transformed only to the parent link, and f to the parent's origin; if both links
+        /// share axes, this is a shift.
         carried: bool,
     },
 }
@@ -33,7 +37,7 @@ const fn twists(meeting: bool, carried: bool) -> Route {
     Route::Twists { meeting, carried }
 }
 
-/// All of them.
+/// All routes.
 const ROUTES: [Route; 6] = [
     Route::Wrenches,
     Route::Mixed,
@@ -43,7 +47,7 @@ const ROUTES: [Route; 6] = [
     twists(true, true),
 ];
 
-/// Routes of which the cheapest is taken for link after link: without points of meeting, and with them.
+/// Sets of routes from which the cheapest is chosen link by link: without common points of axes, and with them.
 const TRIED_TOGETHER: [&[Route]; 2] = [
     &[
         Route::Wrenches,
@@ -54,10 +58,10 @@ const TRIED_TOGETHER: [&[Route]; 2] = [
     &[Route::Wrenches, twists(true, false)],
 ];
 
-/// How many changes of single routes are tried at most.
+/// Largest number of changes of single routes that are tried.
 const MOST_CHANGES: usize = 60;
 
-/// The columns of all links, ten of each, of second moments in the place of Θ on its diagonal.
+/// Returns the columns of all links, ten for each, with second moments in place of the diagonal of Θ.
 pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
     let motions = Motions::new(model, tree, Axes::Own);
     let all: Vec<usize> = (0..10).collect();
@@ -67,7 +71,8 @@ pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>
         .collect()
 }
 
-/// The same, those that are kept at the least cost: in the cheapest axes, and by the cheapest routes of each link.
+/// Returns the columns as `inertial` does, with the kept ones at the least cost: in the cheapest axes, and by the
+/// cheapest route for each link.
 pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) -> Vec<Vec<Edge>> {
     let kept: Vec<Vec<usize>> = (0..links.len())
         .map(|index| {
@@ -84,7 +89,8 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
     let Some(way) = search.best() else {
         return Vec::new();
     };
-    // Those that are kept come first: what is equal is computed as they need it.
+    // Compute the kept columns first: expressions that they have in common with others are then computed in the way
+    // they need.
     let motions = Motions::new(model, tree, way.axes);
     let mut columns: Vec<Option<Vec<Edge>>> = vec![None; 10 * links.len()];
     for first in [true, false] {
@@ -101,16 +107,16 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
     columns.into_iter().flatten().collect()
 }
 
-/// The search for the cheapest way.
+/// Search for the cheapest way to compute the kept columns.
 struct Search<'a> {
     model: &'a Model,
     tree: &'a Tree,
     links: &'a [Link],
-    /// Which parameters of each link are kept.
+    /// Kept parameters of each link.
     kept: &'a [Vec<usize>],
 }
 
-/// The axes of all links and the route of each, with what they cost.
+/// Axes of all links and the route of each, with their cost.
 struct Way {
     cost: usize,
     axes: Axes,
@@ -118,8 +124,8 @@ struct Way {
 }
 
 impl Search<'_> {
-    /// The best way: link by link, after those before it; then with other routes of single links, since what is transformed
-    /// serves several of them.
+    /// Returns the cheapest way: first chosen link by link, then improved by changing the routes of single links,
+    /// since transformed quantities serve several links.
     fn best(&self) -> Option<Way> {
         let ways = AXES.iter().flat_map(|&axes| {
             let mut tried = self.model.clone();
@@ -181,7 +187,7 @@ impl Search<'_> {
         of_link(graph, motions, link, &self.kept[index], route).concat()
     }
 
-    /// The cheapest of some routes for each link after the other.
+    /// Picks the cheapest of some routes for one link after the other.
     fn one_by_one(
         &self,
         graph: &Graph,
@@ -205,7 +211,7 @@ impl Search<'_> {
     }
 }
 
-/// The columns of some parameters of a link.
+/// Returns the columns of some parameters of a link.
 fn of_link(
     graph: &mut Graph,
     motions: &Motions,
@@ -241,20 +247,20 @@ fn of_link(
     own.iter().map(|&k| of(wrenches[k])).collect()
 }
 
-/// The links from the root to one of them.
+/// Links from the root to a given one.
 struct Path {
     links: Vec<usize>,
-    /// For each of them, once they have been looked for, the point in which the axes of its joint meet those of joints around it, if there is one: the
-    /// place of a link that it is fixed to, and the point in the axes of that link.
+    /// Common point, if any, of the axes of each link's joint and of neighbouring joints: the place on the path of
+    /// a link to which the point is fixed, and the point in that link's axes. Filled in by `find_meetings`.
     meeting: Vec<Option<(usize, Vec3)>>,
 }
 
-/// Where the axes of one joint or of several in turn meet, in the axes of the last one's link.
+/// Common point of the axes of one joint or several consecutive ones, in the axes of the last one's link.
 #[derive(Clone, Copy)]
 enum Meeting {
-    /// Anywhere on this axis through the origin.
+    /// Any point of this axis through the origin.
     On(Vec3),
-    /// Here.
+    /// This point.
     At(Vec3),
 }
 
@@ -267,8 +273,10 @@ impl Path {
         Path { links, meeting }
     }
 
-    /// Finds where axes meet. Nothing of how the points are found stays in the graph: equal expressions are computed as the
-    /// first one says.
+    /// Finds the points where axes meet.
+    ///
+    /// The search uses a copy of the graph, because a graph computes equal expressions in the way of the first one;
+    /// only the points themselves are added to the graph.
     fn find_meetings(&mut self, graph: &mut Graph, tree: &Tree) {
         let mut found = graph.clone();
         let mut first = 0;
@@ -287,14 +295,15 @@ impl Path {
         }
     }
 
-    /// The generalised force of a wrench on the last link by the power of the twists of all joints before.
+    /// Returns the generalised forces of a wrench on the last link, from its power on the twists of all joints of
+    /// the path.
     fn by_twists(&self, graph: &mut Graph, tree: &Tree, wrench: Wrench) -> Vec<Edge> {
         let zero = zero3(graph);
         let mut forces = vec![graph.zero(); tree.armature.len()];
         for (place, &index) in self.links.iter().enumerate() {
             let meeting = self.meeting[place].filter(|_| wrench.force != zero);
             let wrench = match meeting {
-                // About the point: torque − s × force.
+                // Torque about the point: torque − s × force.
                 Some((at, point)) => {
                     let mut s = point;
                     for &after in &self.links[at + 1..] {
@@ -329,7 +338,8 @@ impl Path {
 }
 
 impl Meeting {
-    /// Of one joint: its axes have to go through the origin of its link.
+    /// Returns the common point of a single joint's axes, which must pass through the origin of its link; `None` if
+    /// they do not.
     fn alone(graph: &Graph, link: &TreeLink) -> Option<Self> {
         let zero = zero3(graph);
         if link.freedoms.iter().any(|freedom| freedom.linear != zero) {
@@ -342,7 +352,7 @@ impl Meeting {
         }
     }
 
-    /// With the axes of the joint that follows; `None` where they miss this point at some configuration.
+    /// Adds the axes of the next joint; `None` if they miss the common point at some configuration.
     fn joined(self, graph: &mut Graph, link: &TreeLink) -> Option<Self> {
         let zero = zero3(graph);
         let position = link.position;
@@ -357,7 +367,7 @@ impl Meeting {
                 (cross(graph, axis, from) == zero).then_some(point)
             }
             (Meeting::On(axis), Meeting::On(other)) => {
-                // λ axis = position + μ other, crossed with the other axis.
+                // Solve λ axis = position + μ other by taking the cross product with `other`.
                 let other = link.to_parent_axes(graph, other);
                 let normal = cross(graph, axis, other);
                 let distance = cross(graph, position, other);
@@ -373,7 +383,7 @@ impl Meeting {
     }
 }
 
-/// The generalised force of a wrench on a link, transformed from link to link.
+/// Returns the generalised forces of a wrench on a link by transforming the wrench from link to link.
 fn by_wrenches(graph: &mut Graph, tree: &Tree, link: usize, wrench: Wrench) -> Vec<Edge> {
     let mut forces = vec![graph.zero(); tree.armature.len()];
     let (mut at, mut wrench) = (Some(link), wrench);

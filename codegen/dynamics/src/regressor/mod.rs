@@ -1,26 +1,28 @@
-//! The force that a motion needs as a linear function of inertial parameters, F = Y(x, ξ, ξ̇) π, and the base
-//! parameters β, with F = Y_b β and the columns of Y_b independent (Gautier and Khalil 1990; Khalil and Dombre,
+//! Generalised force of inverse dynamics as a linear function of inertial parameters, F = Y(x, ξ, ξ̇) π, and the
+//! base parameters β, with F = Y_b β and independent columns of Y_b (Gautier and Khalil 1990; Khalil and Dombre,
 //! *Modeling, Identification and Control of Robots*, chapter 9).
 //!
 //! | file | owns |
 //! |---|---|
 //! | `parameters` | the standard parameters: ten of each link, and those of joints; their names and values |
-//! | `wrenches` | what a unit of each parameter needs, in axes of the generator's choice |
-//! | `columns` | the columns of Y: what these wrenches are at the joints |
-//! | `samples` | Y at random states, modulo p, where what is constant at run time has one value |
-//! | `candidates` | relations that hold between a link and the one before, with exact coefficients |
-//! | `relations` | elimination; what remains to be found; the base parameters |
+//! | `wrenches` | wrenches of unit parameters, in axes chosen by the generator |
+//! | `columns` | the columns of Y: the generalised forces of these wrenches at the joints |
+//! | `samples` | Y at random states, modulo p, with one value for everything that is constant at run time |
+//! | `candidates` | relations between a link and its parent, with exact coefficients |
+//! | `relations` | elimination; remaining relations; the base parameters |
 //!
-//! A link is all that moves rigidly together; its parameters are those in the frame that its joint carries. They are
-//! put in order: links from the root on, of each Θ, then m s, then m; armatures, dampers and springs at the end.
-//! Relations are found between these, and solved between the moments of each link: m, h, products of inertia and the second
-//! moments Σ_xx, Σ_yy and Σ_zz, Σ = tr(Θ)/2 I − Θ, about the frame's origin or another point of the joint's axis. A moment whose column is a
-//! combination of those of earlier ones is regrouped with them, all others are kept: a column of Σ_xx takes three operations at a
-//! joint where one of Θ_xx takes five.
+//! A link is everything that moves rigidly together; its parameters are given in the frame that its joint carries.
+//! They are ordered by link, from the root outwards: Θ, then m s, then m; armatures, dampers and springs come last.
+//! Relations are found between these standard parameters, but solved in terms of the moments of each link: m, h,
+//! the products of inertia and the second moments Σ_xx, Σ_yy and Σ_zz, Σ = tr(Θ)/2 I − Θ, about the frame's origin
+//! or another point of the joint's axis. A moment whose column is a combination of those of earlier ones is
+//! regrouped with them, and all others are kept. Moments are used because a column of Σ_xx takes three operations
+//! at a joint where one of Θ_xx takes five.
 //!
 //! Rank and relations are found at random states in two fields of 2⁶² elements each, at one random value of every
 //! run-time parameter. A relation is accepted only with exact coefficients, numbers or expressions in run-time
-//! parameters, with which it holds there; if fewer are found than the rank asks for, nothing is returned.
+//! parameters, with which it holds there; if fewer relations are found than the rank requires, an error is
+//! returned.
 
 mod candidates;
 mod columns;
@@ -39,46 +41,47 @@ use hamel_language::model::Model;
 use hamel_program::count::count;
 use samples::Samples;
 
-/// A base parameter β = Σ k π over standard parameters.
+/// Base parameter β = Σ k π, a combination of standard parameters.
 #[derive(Clone, Debug)]
 pub struct Base {
-    /// What it is called: as the standard parameter that it is, those apart that are regrouped with it, or as a second moment
-    /// Σ_xx = (Θ_yy + Θ_zz − Θ_xx) / 2.
+    /// Name: that of the standard parameter that it equals, apart from parameters of other links regrouped with it,
+    /// or that of a second moment Σ_xx = (Θ_yy + Θ_zz − Θ_xx) / 2.
     pub name: String,
-    /// What it is.
+    /// Kind of parameter.
     pub kind: Kind,
-    /// Its terms: places of standard parameters with their factors, those of its own link or joint first.
+    /// Terms: places of standard parameters with their coefficients, those of its own link or joint first.
     pub terms: Vec<(usize, Edge)>,
-    /// Its column of Y.
+    /// Column of Y.
     pub column: Vec<Edge>,
 }
 
-/// F = Y π and what follows from it.
+/// Regressor F = Y π with its base parameters.
 #[derive(Clone, Debug)]
 pub struct Regressor {
-    /// The model, its graph holding all expressions below.
+    /// Model, with a graph that holds all expressions below.
     pub model: Model,
-    /// Names of the frames that stand for links, in the order of the links that have mass.
+    /// Names of the frames that represent links, in the order of the links with mass.
     pub links: Vec<String>,
-    /// The standard parameters.
+    /// Standard parameters.
     pub standard: Vec<Standard>,
-    /// The column of every standard parameter.
+    /// Column of Y of every standard parameter.
     pub columns: Vec<Vec<Edge>>,
-    /// The base parameters, in the order of the parameters that are kept.
+    /// Base parameters, in the order of the parameters that are kept.
     pub base: Vec<Base>,
     /// Standard parameters that have no effect on the force.
     pub idle: Vec<usize>,
-    /// What acts besides and is no linear function of these parameters.
+    /// Other forces in the model that are not linear functions of these parameters.
     pub besides: Vec<&'static str>,
-    /// The force of potentials that are no part of it, ∂ᵢV.
+    /// Force of the potentials that are not part of the regressor, ∂ᵢV.
     pub other_potentials: Vec<Edge>,
 }
 
-/// Derives the base parameters of a model: about the origins of its frames, or about origins that are moved along hinges
-/// where Y is cheaper then.
+/// Derives the base parameters of a model, about the origins of its frames or about origins moved along hinges,
+/// whichever makes Y cheaper.
 ///
 /// # Errors
-/// Why a model has none, or why their relations could not be found.
+///
+/// Explains why the model has none, or why their relations could not be found.
 pub fn regressor(model: &Model) -> Result<Regressor, String> {
     refused(model)?;
     let described = about(model, false)?;
@@ -92,7 +95,7 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
     })
 }
 
-/// The base parameters about the origins of frames, or about origins that are moved.
+/// Derives the base parameters about the origins of frames, or about origins that are moved along hinges.
 fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
@@ -105,7 +108,8 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
         .flat_map(|link| link.standard.clone())
         .collect();
     let joints = parameters::of_joints(&mut model, &mut calculus);
-    // What is emitted is derived apart: equal expressions of one graph are computed in one way.
+    // Emitted expressions are derived in a separate graph, because a graph computes equal expressions only in the
+    // way of the first one.
     let mut derived = model.clone();
     let moments = columns::inertial(&mut model, &tree, &links);
     let mut columns = parameters::standard_columns(&mut model.graph, &links, &moments);
@@ -126,7 +130,7 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
         .collect();
     moments.extend(of_joints.clone());
     columns.extend(of_joints);
-    // Links without mass take part in the relations, and have no parameters.
+    // Links without mass take part in the relations, but have no parameters.
     let present: Vec<usize> = (0..standard.len())
         .filter(|&k| standard[k].present)
         .collect();
@@ -165,7 +169,7 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
     })
 }
 
-/// What has no regressor here.
+/// Returns an error if the model is of a kind that has no regressor here.
 fn refused(model: &Model) -> Result<(), String> {
     let no = |why: &str| Err(why.to_string());
     if model.clock.is_some() || !model.prescribed.is_empty() || !model.accelerated.is_empty() {

@@ -1,5 +1,6 @@
-//! The standard parameters: of every link Θ (kg m²) about its frame's origin, m s (kg m) and m (kg), of joints their armatures,
-//! dampers and springs; and the moments of a link about its origin that they are.
+//! Standard parameters: for every link Θ (kg m²) about its frame's origin, m s (kg m) and m (kg); for joints their
+//! armatures, dampers and springs. Also the moments of a link about its origin, in terms of which they are
+//! expressed.
 
 use super::candidates::Relation;
 use crate::calculus::Calculus;
@@ -12,7 +13,7 @@ use hamel_algebra::linear::{Mat3, transpose3, zero3};
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
 
-/// The ten parameters of a link, in their order.
+/// Names of the ten parameters of a link, in their order.
 pub const PLACES: [&str; 10] = [
     "Theta_xx", "Theta_xy", "Theta_xz", "Theta_yy", "Theta_yz", "Theta_zz", "h_x", "h_y", "h_z",
     "m",
@@ -21,12 +22,12 @@ pub const PLACES: [&str; 10] = [
 /// Rows and columns of the entries of Θ in this order.
 pub const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-/// What a parameter is.
+/// Kind of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Of a link: Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h = m s, m, by their places in this order.
+    /// Parameter of a link, by its place in the order Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h = m s, m.
     Inertia(usize),
-    /// J of a joint.
+    /// Armature inertia J of a joint.
     Armature,
     /// Coefficient of a damper.
     Damping,
@@ -37,18 +38,19 @@ pub enum Kind {
 /// A standard parameter.
 #[derive(Clone, Debug)]
 pub struct Standard {
-    /// What it is.
+    /// Kind of parameter.
     pub kind: Kind,
-    /// The frame of the link, or the velocity or coordinate that it belongs to.
+    /// Name of the frame of the link, or of the velocity or coordinate, that the parameter belongs to.
     pub of: String,
-    /// Its value in the description.
+    /// Value in the description.
     pub value: Edge,
-    /// Whether it is there: links without mass have parameters for the sake of relations alone.
+    /// Whether the parameter exists in the model; links without mass have parameters only for the sake of
+    /// relations.
     pub present: bool,
 }
 
 impl Standard {
-    /// Its name in the text.
+    /// Returns the name of the parameter in text.
     pub fn name(&self) -> String {
         let own = match self.kind {
             Kind::Inertia(place) => PLACES[place],
@@ -60,26 +62,26 @@ impl Standard {
     }
 }
 
-/// A link with the frame that stands for it.
+/// A link with the frame that represents it.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// The frame's name.
+    /// Name of the frame.
     pub name: String,
-    /// The frame's index in the model.
+    /// Index of the frame in the model.
     pub frame: usize,
-    /// The frame's axes in those of the link.
+    /// Axes of the frame in those of the link.
     pub axes: Mat3,
-    /// The link before.
+    /// Parent link.
     pub parent: Option<usize>,
-    /// Whether it has mass.
+    /// Whether the link has mass.
     pub present: bool,
-    /// Its parameters.
+    /// Standard parameters of the link.
     pub standard: Vec<Standard>,
-    /// The moments of a unit of each of its parameters.
+    /// Moments about the link's origin of a unit of each parameter.
     moments: Vec<Vec<Edge>>,
 }
 
-/// The links of a tree.
+/// Returns the links of a tree with their standard parameters.
 pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> {
     let pairs = tree.links.iter().zip(carriers);
     pairs
@@ -119,7 +121,7 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
         .collect()
 }
 
-/// The inertia of ten standard parameters.
+/// Returns the inertia with these ten standard parameters.
 pub fn of_standard(graph: &mut Graph, ten: &[Edge]) -> Mass {
     let mut second: Mat3 = [zero3(graph); 3];
     let trace = graph.sum(&DIAGONAL.map(|k| ten[k]));
@@ -140,7 +142,7 @@ pub fn of_standard(graph: &mut Graph, ten: &[Edge]) -> Mass {
     }
 }
 
-/// The ten standard parameters of an inertia.
+/// Returns the ten standard parameters of an inertia.
 pub fn standard_of(graph: &mut Graph, mass: &Mass) -> Vec<Edge> {
     let theta = mass.inertia(graph);
     let mut ten = ENTRIES.map(|(i, j)| theta[i][j]).to_vec();
@@ -149,13 +151,13 @@ pub fn standard_of(graph: &mut Graph, mass: &Mass) -> Vec<Edge> {
     ten
 }
 
-/// The places of the diagonal among the ten parameters.
+/// Places of the diagonal of Θ among the ten parameters.
 pub const DIAGONAL: [usize; 3] = [0, 3, 5];
 
-/// Names of second moments, which stand at the places of the diagonal.
+/// Names of the second moments, which take the places of the diagonal.
 pub const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
 
-/// The ten moments of an inertia: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
+/// Returns the ten moments of an inertia: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
 fn moments_of(mass: &Mass) -> Vec<Edge> {
     let second = ENTRIES.map(|(i, j)| {
         let entry = mass.second[i][j];
@@ -167,7 +169,8 @@ fn moments_of(mass: &Mass) -> Vec<Edge> {
     ten
 }
 
-/// Columns of the standard parameters from those of moments: what a unit of a parameter needs is what its moments need.
+/// Returns the columns of the standard parameters from those of the moments: the force that a parameter needs is
+/// the sum of those of its moments.
 pub fn standard_columns(
     graph: &mut Graph,
     links: &[Link],
@@ -188,7 +191,7 @@ pub fn standard_columns(
         .collect()
 }
 
-/// A relation between the columns of standard parameters as one between those of moments.
+/// Rewrites a relation between columns of standard parameters as one between columns of moments.
 pub fn between_moments(graph: &mut Graph, links: &[Link], relation: &Relation) -> Relation {
     let zero = graph.zero();
     let mut factors = vec![zero; 10 * links.len()];
@@ -209,7 +212,8 @@ pub fn between_moments(graph: &mut Graph, links: &[Link], relation: &Relation) -
     all
 }
 
-/// A sum over moments as one over the standard parameters, those of the link or joint of the parameter that is kept first.
+/// Rewrites a sum over moments as one over standard parameters; those of the kept parameter's own link or joint
+/// come first.
 pub fn standard_terms(
     graph: &mut Graph,
     links: &[Link],
@@ -244,7 +248,8 @@ pub fn standard_terms(
     all
 }
 
-/// What a base parameter is called: as the one standard parameter of its link in it, or else as what is kept.
+/// Returns the name of a base parameter: that of the single standard parameter of its link in it, or else that of
+/// the kept moment.
 pub fn name(graph: &Graph, standard: &[Standard], kept: usize, terms: &[(usize, Edge)]) -> String {
     let Kind::Inertia(place) = standard[kept].kind else {
         return standard[kept].name();
@@ -261,17 +266,17 @@ pub fn name(graph: &Graph, standard: &[Standard], kept: usize, terms: &[(usize, 
     }
 }
 
-/// Parameters of joints with their columns, and what is no parameter.
+/// Parameters of joints with their columns, and forces that have no such parameters.
 pub struct OfJoints {
-    /// The parameters, each with its column.
+    /// Parameters, each with its column of Y.
     pub parameters: Vec<(Standard, Vec<Edge>)>,
-    /// What else acts.
+    /// Descriptions of other forces that act.
     pub besides: Vec<&'static str>,
-    /// ∂ᵢ of all potentials but those of gravity and of these springs.
+    /// Derivatives ∂ᵢ of all potentials other than gravity and these springs.
     pub other_potentials: Vec<Edge>,
 }
 
-/// Armatures, dampers and springs.
+/// Collects armatures, dampers and springs.
 pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
     let n = model.n();
     let zero = model.graph.zero();
@@ -348,7 +353,7 @@ pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
     }
 }
 
-/// The name of a symbol.
+/// Returns the name of a symbol; `None` for other expressions.
 fn named(model: &Model, edge: Edge) -> Option<String> {
     match model.graph.node(edge.node()) {
         Node::Symbol(index) => Some(model.graph.symbols()[index as usize].name.clone()),

@@ -1,4 +1,4 @@
-//! Elimination with exact factors, and the base parameters that it leaves.
+//! Elimination with exact coefficients, and the resulting base parameters.
 
 use super::candidates::{Known, Relation, candidates, holds, joined};
 use super::parameters::{Link, between_moments};
@@ -9,17 +9,20 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::numeric::evaluate;
 use hamel_language::model::Model;
 
-/// The least factor that a parameter is solved for, as a part of the largest one of its kind: β has no factors that are much
-/// larger, however little an axis is tilted. First moments, second moments and masses are of different kinds.
+/// Smallest coefficient of a parameter that is solved for, relative to the largest one of its kind in the relation.
+///
+/// This keeps the coefficients in β from becoming large when an axis is slightly tilted. First moments, second
+/// moments and masses are of different kinds.
 const LEAST: f64 = 0.1;
 
-/// What each of the ten parameters of a link is: of second order, of first order, a mass.
+/// Order of the moment that each of the ten parameters of a link is: 2, 1, or 0 for the mass.
 const KINDS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
 
-/// A base parameter: the place of the moment that is kept, and all terms, its own with the factor 1 first.
+/// Base parameter: place of the moment that is kept, and all terms; its own, with coefficient 1, comes first.
 pub type Found = (usize, Vec<(usize, Edge)>);
 
-/// Finds all relations between standard parameters, and solves them as relations between moments, of which some are kept.
+/// Finds all relations between standard parameters, and solves them as relations between moments, some of which are
+/// kept.
 pub fn find(
     model: &mut Model,
     samples: &Samples,
@@ -30,7 +33,8 @@ pub fn find(
     let massless = |k: usize| links.get(k / 10).is_some_and(|link| !link.present);
     let present: Vec<usize> = (0..total).filter(|&k| !massless(k)).collect();
     let rank = Echelon::new(samples.of(&present)).rank();
-    // Links without mass give nothing away: their parameters are eliminated first; the last ones after them.
+    // Eliminate the parameters of links without mass first, since nothing is lost with them; then the others, the
+    // last one first.
     let mut order: Vec<usize> = (0..total).filter(|&k| massless(k)).collect();
     let nothing = order.len();
     order.extend(present.iter().rev());
@@ -90,11 +94,13 @@ pub fn find(
     Ok(base.collect())
 }
 
-/// A factor, and its value with the parameters of the description.
+/// Coefficient, and its value with the default parameters of the description.
 type Factor = (Edge, f64);
 
-/// Reduces relations: each of the result has the factor 1 at its pivot, where all others have 0. Columns are taken in
-/// the order given, where factors are not small; what is solved for the first `nothing` of them is left out.
+/// Reduces relations so that each has the coefficient 1 at its pivot, where all others have 0.
+///
+/// Columns are taken in the given order, except that small coefficients come last. Relations solved for one of the
+/// first `nothing` columns are left out of the result.
 fn solve(
     graph: &mut Graph,
     numbers: &[f64],
@@ -118,14 +124,14 @@ fn solve(
         })
         .collect();
     let mut pivots: Vec<usize> = Vec::new();
-    // What has only small factors comes last.
+    // Columns that have only small coefficients come last.
     for least in [LEAST, 0.0] {
         for &column in order {
             if pivots.contains(&column) {
                 continue;
             }
             let done = pivots.len();
-            // The pivot 1 first, then the shortest row.
+            // Prefer the pivot ±1, then the shortest row.
             let cost = |row: &Vec<Factor>| {
                 let plain = row[column].0.abs() == one;
                 let length = row.iter().filter(|(entry, _)| *entry != zero).count();
@@ -175,8 +181,8 @@ fn solve(
         .collect()
 }
 
-/// Whether the factor of a column is small beside another one of the same kind and link; what joints have beside links, such as
-/// an armature, is of a kind of its own.
+/// Returns whether the coefficient of a column is small compared with another one of the same kind and link;
+/// parameters of joints, such as an armature, are each of a kind of their own.
 fn is_small(row: &[Factor], column: usize, links: usize, least: f64) -> bool {
     if column >= 10 * links {
         return false;

@@ -1,5 +1,5 @@
-//! The columns of Y at random states modulo p. What is constant at run time has the same value at all of them: symbols
-//! of parameters one random value each, functions of constants those of one lane.
+//! Columns of Y at random states modulo p. Everything that is constant at run time has the same value at all
+//! states: symbols of parameters have one random value each, and functions of constants have those of one lane.
 
 use hamel_algebra::echelon::Echelon;
 use hamel_algebra::fp::{Fp, Random};
@@ -9,25 +9,25 @@ use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 use hamel_language::model::{Model, class};
 
-/// Values of constants that are tried until all have one.
+/// Number of random choices of the constants that are tried until all expressions have a value.
 const TRIES: u64 = 12;
-/// States that are tried for one that has values.
+/// Number of states that are tried for the first one at which all columns have values.
 const STATES: u64 = 40;
-/// States beyond those that the rank needs.
+/// Number of states beyond those needed for the rank.
 const SPARE: usize = 10;
-/// Fewest states: one joint alone has to tell the parameters of two links apart.
+/// Smallest number of states; a single joint must be able to distinguish the parameters of two links.
 const FEWEST: usize = 40;
 
-/// Y at random states, the rows of all of them.
+/// Values of Y at random states, with the rows of all states.
 pub struct Samples {
-    /// Rows, with an entry for every column.
+    /// Rows, with an entry for every column of Y.
     pub rows: Vec<Vec<Fp>>,
-    /// A point at which what is constant has the same values.
+    /// A sampled state, with the same values of everything that is constant at run time.
     lane: Lane,
 }
 
 impl Samples {
-    /// Evaluates columns; `None` where there are too few states with values.
+    /// Evaluates columns; `None` if too few states have values.
     pub fn new(model: &Model, columns: &[Vec<Edge>]) -> Option<Self> {
         let tape = Tape::new(&model.graph, &columns.concat())?;
         (1..=TRIES).find_map(|seed| Samples::at(model, &tape, columns.len(), seed))
@@ -51,19 +51,19 @@ impl Samples {
                 }
                 continue;
             };
-            // Values stand by columns, n of each.
+            // Values are ordered by columns, n for each.
             rows.extend((0..n).map(|i| (0..columns).map(|k| values[k * n + i]).collect()));
             last = Some(lane);
         }
         Some(Samples { rows, lane: last? })
     }
 
-    /// The values of what is constant at run time; `None` where something has none.
+    /// Returns the values of expressions that are constant at run time; `None` if one has no value.
     pub fn constants(&self, graph: &Graph, edges: &[Edge]) -> Option<Vec<Fp>> {
         evaluate_at(graph, edges, &mut self.lane.clone())
     }
 
-    /// The columns of these parameters alone, without rows of zeros.
+    /// Returns the columns of these parameters alone, without rows of zeros.
     pub fn of(&self, columns: &[usize]) -> Vec<Vec<Fp>> {
         let rows = self.rows.iter();
         let rows = rows.map(|row| columns.iter().map(|&k| row[k]).collect::<Vec<Fp>>());
@@ -71,12 +71,12 @@ impl Samples {
             .collect()
     }
 
-    /// A basis of the relations Σ v_k Y_k = 0 between these columns, in which the last columns lead.
+    /// Returns a basis of the relations Σ v_k Y_k = 0 between these columns, in which the last columns lead.
     pub fn relations(&self, columns: &[usize]) -> Vec<Vec<Fp>> {
         Echelon::new(self.of(columns)).null_space(columns.len())
     }
 
-    /// Whether Σ v_k Y_k = 0 at all states.
+    /// Returns whether Σ v_k Y_k = 0 at all states.
     pub fn vanishes(&self, terms: &[(usize, Fp)]) -> bool {
         self.rows.iter().all(|row| {
             let sum = terms.iter().fold(Fp::ZERO, |sum, &(k, v)| sum + v * row[k]);
@@ -85,7 +85,7 @@ impl Samples {
     }
 }
 
-/// A random state at the constants of a seed.
+/// Returns a random state with the constants of a seed.
 fn lane(model: &Model, seed: u64, state: u64) -> Option<Lane> {
     let random = &mut Random::new(seed.wrapping_mul(0x6a09_e667) ^ (state << 32));
     let mut values = model.points.choose(random)?;

@@ -1,10 +1,11 @@
-//! What a unit of each moment of a link needs: a wrench (N, N m) about the link's origin, which is that of the frame that its joint
-//! carries or another point of the joint's axis.
+//! Wrenches (N, N m) that a unit of each moment of a link needs, about the link's origin: the origin of the frame
+//! that its joint carries, or another point of the joint's axis.
 //!
-//! With U = α̂ + ω̂ ω̂ and the acceleration a of the origin, less gravity, a mass at the origin needs the force a; a first moment
-//! along e the force U e and the torque e × a; a second moment ∫ r rᵀ dm = e eᵀ the torque e × U e; and e fᵀ + f eᵀ the torque
-//! e × U f + f × U e. These are vectors in whatever axes U and e are written in at an instant: those of the frame, or those
-//! that the link has before it turns, where U is the one of the link before and a few terms of the joint's rate.
+//! Let U = α̂ + ω̂ ω̂ and let a be the acceleration of the origin minus gravity. A mass at the origin needs the
+//! force a; a first moment along e needs the force U e and the torque e × a; a second moment ∫ r rᵀ dm = e eᵀ needs
+//! the torque e × U e; and e fᵀ + f eᵀ needs the torque e × U f + f × U e. These vectors may be written in any axes
+//! in which U and e are given: those of the link's frame, or those that the link has before it turns. In the
+//! latter, U is that of the previous link plus a few terms of the joint's rate.
 
 use super::parameters::{ENTRIES, Link};
 use crate::tree::Tree;
@@ -16,31 +17,32 @@ use hamel_algebra::linear::{
 };
 use hamel_language::model::Model;
 
-/// Axes in which wrenches are computed, and how U is.
+/// Axes in which wrenches are computed, and the way to compute U.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// Those of each link, columns of U carried from link to link.
+    /// Axes of each link; columns of U are carried from link to link.
     Own,
-    /// Those that parallel hinges share, and the last link of a chain with the one before; U in the same way.
+    /// Axes shared by parallel hinges, and by the last link of a chain with the previous one; columns of U are
+    /// carried as in `Own`.
     Shared,
-    /// The same, all of U by steps from link to link in them.
+    /// Axes as in `Shared`; all of U is computed step by step from link to link.
     Stepwise,
 }
 
-/// All of them.
+/// All choices of axes.
 pub const AXES: [Axes; 3] = [Axes::Own, Axes::Shared, Axes::Stepwise];
 
-/// The motion of all links in some axes.
+/// Motion of all links in some axes.
 pub struct Motions {
-    /// The links in these axes.
+    /// Links in these axes.
     pub tree: Tree,
-    /// The turn of a link's own axes in these, where they differ.
+    /// Rotation of a link's own axes relative to these, if they differ.
     lags: Vec<Option<Turn>>,
     motions: Vec<LinkMotion>,
 }
 
 impl Motions {
-    /// The motion of the model's links.
+    /// Computes the motion of the model's links.
     pub(super) fn new(model: &mut Model, tree: &Tree, axes: Axes) -> Self {
         let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
         let graph = &mut model.graph;
@@ -60,7 +62,7 @@ impl Motions {
         }
     }
 
-    /// The wrenches of a link's ten parameters, in the axes of the tree.
+    /// Returns the wrenches of a link's ten parameters, in the axes of the tree.
     pub(super) fn wrenches(&self, graph: &mut Graph, index: usize, link: &Link) -> Vec<Wrench> {
         let motion = &self.motions[index];
         match &self.lags[index] {
@@ -70,7 +72,8 @@ impl Motions {
     }
 }
 
-/// In the axes of the frame; its axes in those of the link are given.
+/// Computes wrenches in the axes of the frame, which are given in those of the link, and returns them in the axes
+/// of the link.
 fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrench> {
     let a = apply_transposed(graph, axes, motion.a);
     let is_kept = |entry: &Edge| *entry == graph.zero() || entry.abs() == graph.one();
@@ -91,7 +94,7 @@ fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrenc
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         torques[i][i][j] = -u[k][i];
         torques[i][i][k] = u[j][i];
-        // Of j and k: along i, U_kk − U_jj.
+        // Of the product j, k: the component along i is U_kk − U_jj.
         torques[j][k][i] = differences[i];
         torques[j][k][j] = u[i][j];
         torques[j][k][k] = -u[i][k];
@@ -107,8 +110,10 @@ fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrenc
     turned.collect()
 }
 
-/// In axes against which the link is turned about the third one. The torque along that one is computed in the link's own
-/// axes, where it takes less: U_xx + U_yy and U_yx − U_xy are the same in both.
+/// Computes wrenches in shared axes, relative to which the link is turned about the third axis.
+///
+/// The torque along this axis is computed in the link's own axes, where it takes fewer operations: U_xx + U_yy and
+/// U_yx − U_xy are the same in both.
 fn in_shared_axes(graph: &mut Graph, motion: &LinkMotion, lag: &Turn, axes: &Mat3) -> Vec<Wrench> {
     let LinkMotion { u, a, .. } = motion;
     let own = transpose3(axes);
@@ -143,7 +148,8 @@ fn in_shared_axes(graph: &mut Graph, motion: &LinkMotion, lag: &Turn, axes: &Mat
     assembled(graph, &torques, &forces, &units, *a)
 }
 
-/// The wrenches in the order of the parameters, by the torques of second moments and the forces of first ones.
+/// Returns the wrenches in the order of the parameters, from the torques of second moments and the forces of first
+/// moments.
 fn assembled(
     graph: &mut Graph,
     torques: &[[Vec3; 3]; 3],
@@ -154,7 +160,7 @@ fn assembled(
     let zero = zero3(graph);
     let second = ENTRIES.iter().map(|&(i, j)| Wrench {
         force: zero,
-        // Products of inertia are second moments with the other sign.
+        // Products of inertia are second moments with the opposite sign.
         torque: if i == j {
             torques[i][i]
         } else {

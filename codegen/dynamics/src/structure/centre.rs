@@ -1,10 +1,13 @@
-//! The shift of plain coordinates to centres of mass: y = r + R s, in general y = r + ⟨G, R⟩ with a
-//! constant G for every plain coordinate and every rotation, and y = x + a c + b s for circles.
+//! Shift of plain coordinates to centres of mass.
 //!
-//! With the inertia [D, D K; Kᵀ D, ·] of plain rates and turning rates, ẏ = ẋ + K ω is what removes the
-//! coupling. K ω has to be the rate of ⟨G, R⟩ along the rotation, Kᵢ = Σₐ (Gₐⱼ Rₐₖ − Gₐₖ Rₐⱼ) for
-//! i, j, k cyclic. G is read off at the twelve rotations of the tetrahedron, over which products of
-//! entries of R average to δ/3; that it gives K back is seen by the inertia that is left.
+//! The shifted coordinates are y = r + R s; in general y = r + ⟨G, R⟩ with a constant G for every
+//! plain coordinate and every rotation, and y = x + a c + b s for circles.
+//!
+//! If the inertia of the plain and the turning rates is [D, D K; Kᵀ D, ·], then ẏ = ẋ + K ω removes
+//! the coupling. K ω has to be the rate of ⟨G, R⟩ along the rotation, Kᵢ = Σₐ (Gₐⱼ Rₐₖ − Gₐₖ Rₐⱼ)
+//! for i, j, k cyclic. G is determined from the twelve rotations of the tetrahedron, over which
+//! products of entries of R average to δ/3; whether it reproduces K is checked by means of the
+//! remaining inertia.
 
 use super::constant::resting;
 use super::rates::Part;
@@ -16,17 +19,20 @@ use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
 use hamel_language::model::rotations::quaternion_matrix;
 
-/// The shift, and its rate.
+/// Shift of the coordinates and its rate.
 #[derive(Clone, Debug)]
 pub struct Shift {
-    /// y − x, ν entries.
+    /// Offset y − x, ν entries.
     pub offset: Vec<Edge>,
-    /// ẏ − ẋ per unit of each rate, n rows of n: rows of plain coordinates, columns of turning ones.
+    /// Rate offset ẏ − ẋ per unit of each rate, n × n: rows of plain coordinates, columns of
+    /// turning ones.
     pub rate: Vec<Vec<Edge>>,
 }
 
-/// The shift that K asks for, `coupling[f][c]` for plain rate f and turning rate c; `None` in a row
-/// where K is zero.
+/// Computes the shift for K, where `coupling[f][c]` is the entry for plain rate f and turning rate
+/// c.
+///
+/// There is no offset where a row of K is zero.
 pub fn shift(
     model: &Model,
     graph: &mut Graph,
@@ -64,7 +70,7 @@ pub fn shift(
     shift
 }
 
-/// ⟨G, R⟩ and its rates for one row of K; `None` for plain coordinates.
+/// Returns ⟨G, R⟩ and its rates for one row of K; `None` for plain coordinates.
 fn offset(
     model: &Model,
     graph: &mut Graph,
@@ -74,7 +80,7 @@ fn offset(
 ) -> Option<(Edge, Vec<Edge>)> {
     let x = part.entries(&model.x).to_vec();
     let rest = resting(model, graph, parts, 0);
-    // K where the part has these numbers and all other coordinates rest.
+    // K where the part has the given numbers and all other coordinates are at rest.
     let at = |graph: &mut Graph, numbers: &[(i64, i64)]| -> Vec<Edge> {
         let mut set = rest.clone();
         for (&entry, &(p, q)) in x.iter().zip(numbers) {
@@ -144,7 +150,7 @@ fn offset(
     }
 }
 
-/// R of a rotor's coordinates.
+/// Returns the rotation matrix R of a rotor's coordinates.
 pub fn matrix_of(graph: &mut Graph, part: &Part, x: &[Edge]) -> Option<Mat3> {
     match part.block {
         Block::Quaternion => Some(quaternion_matrix(graph, x.try_into().ok()?)),

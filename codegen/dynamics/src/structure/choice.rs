@@ -1,18 +1,18 @@
-//! The method that fits a system, with the reason in one sentence.
+//! Choice of the integration method for a system, with the reason in one sentence.
 
 use hamel_program::structure::{Inertia, Reason, RotorForm, Structure, Symmetry};
 use std::fmt;
 
-/// A run of more steps than this is long: errors that grow with time then matter more than the cost
-/// of a step.
+/// Number of steps above which a run is long: errors that grow with time then matter more than the
+/// cost of a step.
 pub const LONG: u64 = 100_000;
 
-/// A choice.
+/// Chosen method with its reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
-    /// The method by its name on the command line.
+    /// Name of the method on the command line.
     pub method: &'static str,
-    /// Why.
+    /// Reason for the choice.
     pub reason: &'static str,
 }
 
@@ -22,11 +22,11 @@ impl fmt::Display for Choice {
     }
 }
 
-/// The method for a run of so many steps, where that is known.
+/// Chooses the method for a run of `steps` steps, if their number is known.
 ///
-/// What is measured at an error of 1e-9 decides: eleven kicks of order 6 beat six of order 4, and
-/// elliptic functions in every drift cost more than the twelve stages of order 8 where torques have to be
-/// followed.
+/// The criterion is the measured cost at an error of 1e-9: eleven kicks of order 6 beat six of
+/// order 4, and elliptic functions in every drift cost more than the twelve stages of order 8 where
+/// torques have to be followed.
 pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
     let long = steps.is_some_and(|steps| steps > LONG);
     let (method, reason) = match &structure.split {

@@ -1,4 +1,4 @@
-//! Expressions that have the same value everywhere, written without what they do not depend on.
+//! Rewriting of expressions without the symbols on which their values do not depend.
 
 use super::rates::Part;
 use super::variation::Variation;
@@ -7,10 +7,11 @@ use hamel_algebra::transplant::substitute;
 use hamel_language::model::Model;
 use hamel_language::model::layout::identity;
 
-/// A symbol, by its number, and what stands in its place.
+/// Pairs of a symbol's number and the expression that replaces it.
 pub type Substitution = Vec<(usize, Edge)>;
 
-/// Numbers for all coordinates: no rotation, angle 0, and this number for plain ones.
+/// Returns numbers for all coordinates: no rotation, angle 0, and the number `plain` for plain
+/// ones.
 pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> Substitution {
     let mut set = Substitution::new();
     for part in parts {
@@ -24,8 +25,10 @@ pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> 
     set
 }
 
-/// The expressions, those that change with no coordinate and no velocity written without them.
-/// What cannot be written so stays as it is.
+/// Rewrites expressions that depend on no coordinate or velocity such that they contain none of
+/// them.
+///
+/// Expressions that cannot be written in this way remain as they are.
 pub fn settle(
     model: &Model,
     graph: &mut Graph,
@@ -41,7 +44,8 @@ pub fn settle(
     let changes = variation.changes(graph, edges, &moved);
     let zero = graph.zero();
     let mut settled = edges.to_vec();
-    // What changes is left alone: with numbers in the place of symbols its own would grow without bound.
+    // Expressions that do change are left alone: with numbers in place of symbols, their own
+    // expressions would grow without bound.
     let places: Vec<usize> = (0..edges.len())
         .filter(|&index| !changes[index] && !graph.is_free(edges[index].node()))
         .collect();

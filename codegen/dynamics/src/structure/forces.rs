@@ -1,4 +1,4 @@
-//! What makes forces depend on velocities, by the statements of the description.
+//! Search for the statements of a description that make forces depend on velocities.
 
 use super::variation::Variation;
 use hamel_algebra::graph::{Edge, Graph};
@@ -6,8 +6,8 @@ use hamel_language::model::{Model, Wrench, class};
 use hamel_program::structure::Reason;
 use std::collections::BTreeSet;
 
-/// The statements that make the generalised force depend on velocities; none where it does not, as a
-/// whole.
+/// Returns the statements that make the generalised force depend on velocities; empty if the total
+/// force does not.
 pub fn damped(
     full: &Model,
     model: &Model,

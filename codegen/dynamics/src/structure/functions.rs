@@ -1,8 +1,9 @@
-//! The functions of a system that splits, as the trait `Split` of the runtime has them.
+//! Functions of a system that splits, as the trait `Split` of the runtime declares them.
 //!
-//! With η = T B ξ the rates of the shifted coordinates, the momenta are ẏ and θ̇ as they are, and
-//! P = J ω for rotors. The generalised force in the rates η is T⁻ᵀ Nᵀ f: the torque of a rotor about
-//! its centre of mass or fixed point, and for all else a force that D⁻¹ makes an acceleration.
+//! Let η = T B ξ be the rates of the shifted coordinates. The momenta are ẏ and θ̇ themselves, and
+//! P = J ω for rotors. The generalised force in the rates η is T⁻ᵀ Nᵀ f: for a rotor the torque
+//! about its centre of mass or fixed point, and for everything else a force that D⁻¹ turns into an
+//! acceleration.
 
 use super::centre::matrix_of;
 use super::constant::settle;
@@ -22,27 +23,27 @@ use hamel_program::FunctionId;
 use hamel_program::count::count;
 use hamel_program::structure::{Inertia, RotorForm, Symmetry};
 
-/// The functions, in a graph of their own.
+/// Functions of a system that splits, in a graph of their own.
 pub struct Functions {
     graph: Graph,
-    /// y of x; `None` where they are the same.
+    /// Shifted coordinates y(x); `None` if y = x.
     centre: Option<Vec<Edge>>,
     uncentre: Option<Vec<Edge>>,
     momenta: Vec<Edge>,
-    /// The momenta once more, each in a graph of its own.
+    /// Alternative computations of the momenta, each in a graph of its own.
     turned: Vec<(Graph, Vec<Edge>)>,
     velocities: Vec<Edge>,
     kick: Vec<Edge>,
-    /// J₁, J₂, J₃ or J by rows, for one rotor after the other.
+    /// J₁, J₂, J₃ or J by rows, for each rotor in turn.
     inertia: Vec<Edge>,
-    /// What has to be positive for J and D to be inertias.
+    /// Pivots that have to be positive for J and D to be inertias.
     pivots: Vec<Edge>,
-    /// The forms of the rotors.
+    /// Forms of the rotors' inertias.
     pub rotors: Vec<RotorForm>,
 }
 
 impl Functions {
-    /// Builds the functions; `None` where an inertia is singular for all parameters.
+    /// Builds the functions; `None` if an inertia is singular for all parameters.
     pub(super) fn new(
         setting: &Setting,
         mut graph: Graph,
@@ -69,7 +70,7 @@ impl Functions {
         let mut pivots = Vec::new();
         let turning: Vec<_> = setting.parts.iter().filter(|part| part.turns()).collect();
 
-        // η = w + K w, first by vectors, then by one matrix: whichever costs less.
+        // η = w + K w, computed by vectors and by one matrix; the cheaper of the two is used.
         let matrix = |graph: &mut Graph, sign: bool| -> Vec<Vec<Edge>> {
             let mut rows = unit(n);
             for (row, rate) in rows.iter_mut().zip(&shift.rate) {
@@ -169,12 +170,12 @@ impl Functions {
         })
     }
 
-    /// Whether no force acts.
+    /// Returns whether no force acts.
     pub fn is_free(&self) -> bool {
         self.kick.iter().all(|&edge| edge == self.graph.zero())
     }
 
-    /// The value of a function; none where it is not needed.
+    /// Returns the outputs of a function; `None` if it is not needed.
     fn value(&self, id: FunctionId) -> Option<&Vec<Edge>> {
         match id {
             FunctionId::Centre => self.centre.as_ref(),
@@ -187,8 +188,10 @@ impl Functions {
         }
     }
 
-    /// Adds the functions to a program, each as it is cheapest here or in `others`, which were found from
-    /// other computations of M and the forces; returns the pivots that have to be positive.
+    /// Adds the functions to a program, and returns the pivots that have to be positive.
+    ///
+    /// Each function is the cheapest of the variants here and in `others`, which were found from
+    /// other computations of M and the forces.
     pub fn add(&self, others: &[Functions], builder: &mut Builder) -> Vec<Edge> {
         for &id in FunctionId::ALL {
             let Some(outputs) = self.value(id) else {
@@ -213,8 +216,10 @@ impl Functions {
     }
 }
 
-/// The momenta where rates of points are taken in the axes of a rotor, ẏ = R (Rᵀ ẏ): of a point of a body Rᵀ ẏ is
-/// v + ω × s. One candidate for every rotor, in a graph where ẏ is not computed yet; η = `rows` ξ, in `from`.
+/// Returns the momenta with the rates of points computed in the axes of a rotor, ẏ = R (Rᵀ ẏ).
+///
+/// For a point of a body, Rᵀ ẏ is v + ω × s. There is one candidate for every rotor, in a graph in
+/// which ẏ has not been computed yet; η = `rows` ξ, where `rows` are in the graph `from`.
 fn in_body_axes(
     from: &Graph,
     before: &Graph,
@@ -268,7 +273,7 @@ fn in_body_axes(
     candidates
 }
 
-/// Of two ways to write the same, the one with fewer operations.
+/// Returns the cheaper of two equivalent computations.
 fn cheaper(graph: &Graph, a: Vec<Edge>, b: Vec<Edge>) -> Vec<Edge> {
     if count(graph, &b).weight() < count(graph, &a).weight() {
         b
@@ -277,7 +282,7 @@ fn cheaper(graph: &Graph, a: Vec<Edge>, b: Vec<Edge>) -> Vec<Edge> {
     }
 }
 
-/// The pivots of a symmetric matrix.
+/// Returns the pivots of a symmetric matrix.
 fn leading(graph: &mut Graph, rows: &[Vec<Edge>]) -> Vec<Edge> {
     let n = rows.len();
     let mut rows = rows.to_vec();
@@ -295,7 +300,7 @@ fn leading(graph: &mut Graph, rows: &[Vec<Edge>]) -> Vec<Edge> {
     (0..n).map(|k| rows[k][k]).collect()
 }
 
-/// What is known of an inertia whatever the parameters are.
+/// Returns the form that an inertia has for all values of the parameters.
 fn form(graph: &Graph, j: &Mat3) -> Inertia {
     let zero = graph.zero();
     let diagonal = (0..3).all(|a| (0..3).all(|b| a == b || j[a][b] == zero));

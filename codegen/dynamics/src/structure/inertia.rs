@@ -1,5 +1,5 @@
-//! What is left of inertia when plain coordinates are shifted to centres of mass: one constant matrix
-//! for each rotor, one for plain and circular coordinates together.
+//! Inertia that remains when plain coordinates are shifted to centres of mass: one constant matrix
+//! for each rotor, and one for plain and circular coordinates together.
 
 use super::centre::{Shift, shift};
 use super::constant::settle;
@@ -11,21 +11,24 @@ use hamel_algebra::linear::{Mat3, matrix, multiply, solve_symmetric, transpose};
 use hamel_language::model::layout::Block;
 use hamel_program::structure::Reason;
 
-/// A system whose inertia falls apart.
+/// System whose inertia splits into constant blocks.
 pub struct Separated {
-    /// w = B ξ, ξ = N w.
+    /// Maps w = B ξ and ξ = N w.
     pub rates: RateMaps,
-    /// y − x and its rate.
+    /// Offset y − x and its rate.
     pub shift: Shift,
-    /// J of every rotor, in order.
+    /// Inertia matrix J of every rotor, in order.
     pub rotors: Vec<Mat3>,
-    /// Places among the rates of plain and circular coordinates.
+    /// Indices of the rates of plain and circular coordinates.
     pub uniform: Vec<usize>,
-    /// Their inertia.
+    /// Inertia of these rates.
     pub block: Vec<Vec<Edge>>,
 }
 
-/// Separates, or says what stands in the way.
+/// Splits the inertia.
+///
+/// # Errors
+/// Returns the reasons why it does not split.
 pub fn separate(
     setting: &Setting,
     graph: &mut Graph,
@@ -66,14 +69,14 @@ pub fn separate(
         return Err(depends(graph, &inertia.concat()));
     }
     let of_plain = settle(model, graph, parts, variation, &of_plain);
-    // K = D⁻¹ M, rows of plain rates.
+    // K = D⁻¹ M, with the rows of the plain rates.
     let right: Vec<Vec<Edge>> = plain.iter().map(|&f| inertia[f].clone()).collect();
     let of_plain: Vec<Vec<Edge>> = matrix(&of_plain, plain.len());
     let Some(coupling) = solve_symmetric(graph, &of_plain, &right) else {
         return Err(depends(graph, &inertia.concat()));
     };
     let shift = shift(model, graph, parts, &plain, &coupling);
-    // T⁻¹ = I − K, as K leads from turning rates to plain ones.
+    // T⁻¹ = I − K, since K maps turning rates to plain ones.
     let mut back: Vec<Vec<Edge>> = shift
         .rate
         .iter()
@@ -129,7 +132,7 @@ pub fn separate(
     })
 }
 
-/// Rotors that are not on their own.
+/// Returns each rotor that the remaining inertia couples to other coordinates, together with these.
 fn coupled(parts: &[Part], linked: impl Fn(usize, usize) -> bool) -> Vec<Reason> {
     let mut found = Vec::new();
     for (place, rotor) in parts.iter().enumerate().filter(|(_, part)| part.turns()) {

@@ -1,20 +1,23 @@
-//! What a system is made of, as far as methods of integration ask: whether it splits into torque-free
-//! rotors, uniform motions and kicks, in whatever coordinates and velocities it was described.
+//! Structure of a system, as it matters to integration methods.
 //!
-//! | file | owns |
+//! The question is whether a system splits into torque-free rotors, uniform motions and kicks, in
+//! whatever coordinates and velocities it was described.
+//!
+//! | file | contents |
 //! |---|---|
-//! | `variation` | on what expressions depend, modulo p |
-//! | `rates` | the rates of the coordinates, w = B ξ, ξ = N w |
-//! | `constant` | constant expressions, written without coordinates |
-//! | `centre`, `tetrahedron` | the shift to centres of mass |
-//! | `inertia` | what is left of inertia after it: rotors, and one constant block |
-//! | `forces` | what makes forces depend on velocities |
+//! | `variation` | dependence of expressions on symbols, modulo p |
+//! | `rates` | rates of the coordinates, w = B ξ, ξ = N w |
+//! | `constant` | rewriting constant expressions without coordinates |
+//! | `centre`, `tetrahedron` | shift to centres of mass |
+//! | `inertia` | inertia that remains after the shift: rotors, and one constant block |
+//! | `forces` | causes of velocity-dependent forces |
 //! | `functions` | centre, momenta, velocities, kicks as functions |
-//! | `choice` | the method that fits |
+//! | `choice` | choice of the integration method |
 //!
-//! M_c = Nᵀ M N is the inertia in the rates w. A system splits where, after the shift of plain
-//! coordinates that removes their coupling with turning ones, it is constant and falls apart in one
-//! block for each rotor and one for all else, and where forces do not depend on velocities.
+//! M_c = Nᵀ M N is the inertia in the rates w. A system splits if, after the shift of plain
+//! coordinates that removes their coupling with turning ones, this inertia is constant and consists
+//! of one block for each rotor and one for everything else, and if forces do not depend on
+//! velocities.
 
 mod centre;
 pub mod choice;
@@ -38,16 +41,18 @@ use rates::{Part, parts};
 use setting::Setting;
 use variation::Variation;
 
-/// What was found, and the functions of a system that splits.
+/// Result of the analysis, with the functions of a system that splits.
 pub struct Found {
-    /// The verdicts.
+    /// Structure of the system.
     pub structure: Structure,
-    /// What the methods for such systems call.
+    /// Functions that the splitting methods call; `None` if the system does not split.
     pub(super) functions: Option<Functions>,
 }
 
-/// Analyses a model; `model` is `full` in the velocities that its constraints leave, `traced` its M
-/// and forces, in `graph`.
+/// Analyses the structure of a model.
+///
+/// `model` is `full` in the velocities that its constraints leave free; `traced` are its M and
+/// forces, in `graph`.
 pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Found {
     let mut graph = graph.clone();
     let blocks = parts(model);
@@ -120,8 +125,10 @@ pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Fo
     }
 }
 
-/// The coordinates that M depends on. Coordinates that a description ties to one another are not
-/// moved one by one: there an entry depends on those that it is written in.
+/// Returns the names of the coordinates on which M depends.
+///
+/// Coordinates that a description ties to one another cannot be moved one by one; in that case, an
+/// entry counts as dependent on those in which it is written.
 fn dependence(
     model: &Model,
     graph: &Graph,
@@ -147,7 +154,8 @@ fn dependence(
     }
 }
 
-/// The constraints on velocities, in words, or states of first order, or the time.
+/// Describes the constraints on velocities, if there are any, or else states of first order or the
+/// time.
 fn constrained(full: &Model) -> Option<Reason> {
     let count = |kind: Kind| {
         let rows = full.constraints.iter();

@@ -1,5 +1,7 @@
-//! The rates w of the coordinates: w = B(x) ξ per block, ẋ of plain coordinates, θ̇ of circles, the body
-//! angular velocity of quaternions and rotations; ξ = N(x) w.
+//! Rates w of the coordinates: w = B(x) ξ and ξ = N(x) w.
+//!
+//! Block by block, w is ẋ for plain coordinates, θ̇ for circles, and the body angular velocity for
+//! quaternions and rotations.
 
 use super::variation::Variation;
 use crate::kinematics::{chart_rates, left_inverse};
@@ -10,38 +12,38 @@ use hamel_language::model::Model;
 use hamel_language::model::charts::all_tangents;
 use hamel_language::model::layout::{Block, blocks};
 
-/// A block of x with its place in x and among the rates, and the name of its coordinate.
+/// Block of x, with its position in x and among the rates, and the name of its coordinate.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// Its kind.
+    /// Kind of the block.
     pub block: Block,
-    /// As the language writes it: `R`, `X.p`.
+    /// Name as the language writes it: `R`, `X.p`.
     pub name: String,
-    /// Place of its first entry in x.
+    /// Index of its first entry in x.
     pub first: usize,
-    /// Place of its first rate.
+    /// Index of its first rate.
     pub rate: usize,
 }
 
 impl Part {
-    /// Places of its rates.
+    /// Returns the indices of its rates.
     pub fn rates(&self) -> std::ops::Range<usize> {
         self.rate..self.rate + self.block.dimension()
     }
 
-    /// Its entries.
+    /// Returns its entries of x.
     pub fn entries<'a>(&self, x: &'a [Edge]) -> &'a [Edge] {
         x.get(self.first..self.first + self.block.len())
             .unwrap_or_default()
     }
 
-    /// Whether it is a rotor's attitude.
+    /// Returns whether it is the attitude of a rotor.
     pub fn turns(&self) -> bool {
         matches!(self.block, Block::Quaternion | Block::Rotation)
     }
 }
 
-/// The blocks of x in their order.
+/// Returns the blocks of x in order.
 pub fn parts(model: &Model) -> Vec<Part> {
     let mut parts = Vec::new();
     let (mut first, mut rate) = (0, 0);
@@ -66,7 +68,7 @@ pub fn parts(model: &Model) -> Vec<Part> {
     parts
 }
 
-/// B and N.
+/// Matrices B and N between velocities and rates.
 pub struct RateMaps {
     /// w = B ξ.
     pub of_velocities: Vec<Vec<Edge>>,
@@ -74,8 +76,9 @@ pub struct RateMaps {
     pub to_velocities: Vec<Vec<Edge>>,
 }
 
-/// B and N of a model with as many velocities as its blocks have rates, in another graph with its
-/// symbols.
+/// Computes B and N in `graph`, another graph with the model's symbols.
+///
+/// The model must have as many velocities as its blocks have rates.
 pub fn rates(model: &Model, graph: &mut Graph) -> Option<RateMaps> {
     let mut own = model.clone();
     let y = left_inverse(&mut own)?;
@@ -97,11 +100,12 @@ pub fn rates(model: &Model, graph: &mut Graph) -> Option<RateMaps> {
     })
 }
 
-/// Whether det B is the same everywhere: d ln det B = tr (N dB) vanishes along all rates.
+/// Returns whether det B is constant, that is, whether d ln det B = tr (N dB) vanishes along all
+/// rates.
 pub fn measure_alike(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool {
     let zero = graph.zero();
     let tangents = all_tangents(graph, &model.blocks, &model.x, |_| true);
-    // Entries that depend on coordinates: of large frames they are few.
+    // Entries that depend on coordinates; in large matrices they are few.
     let mut varying = Vec::new();
     for (i, row) in rates.of_velocities.iter().enumerate() {
         for (j, &entry) in row.iter().enumerate() {
@@ -124,7 +128,7 @@ pub fn measure_alike(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool
     })
 }
 
-/// The names of the parts with which some of the expressions change.
+/// Returns the names of the parts with which at least one of the expressions changes.
 pub fn dependence(
     variation: &Variation,
     graph: &Graph,

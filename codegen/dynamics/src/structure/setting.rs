@@ -1,10 +1,10 @@
-//! What the analyses of structure look at.
+//! Inputs of the structure analyses.
 
 use super::rates::Part;
 use super::variation::Variation;
 use hamel_language::model::Model;
 
-/// A model with its blocks and a point from which symbols are moved.
+/// Model with its blocks, and the point from which symbols are varied.
 pub struct Setting<'a> {
     pub model: &'a Model,
     pub parts: &'a [Part],

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-/// The rotations of the tetrahedron as unit quaternions, twice.
+/// Returns the rotations of the tetrahedron as unit quaternions multiplied by two.
 pub fn tetrahedron() -> Vec<[i64; 4]> {
     let mut twice: Vec<[i64; 4]> = (0..4)
         .map(|axis| std::array::from_fn(|i| if i == axis { 2 } else { 0 }))
@@ -15,7 +15,8 @@ pub fn tetrahedron() -> Vec<[i64; 4]> {
     twice
 }
 
-/// The rotation matrix of half of a quaternion, which for those above has entries 0, 1, −1.
+/// Returns the rotation matrix of a quaternion divided by two; for those above, its entries are 0,
+/// 1 and −1.
 pub fn matrix([w, x, y, z]: [i64; 4]) -> [[i64; 3]; 3] {
     let rows = [
         [

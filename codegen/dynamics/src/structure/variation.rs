@@ -1,5 +1,8 @@
-//! On which symbols expressions depend: they are evaluated modulo p with some symbols moved and all
-//! others held. That an expression depends on none of them errs as node identity does.
+//! Numerical test of the symbols on which expressions depend.
+//!
+//! The expressions are evaluated modulo p with some symbols varied and all others held fixed. A
+//! result that an expression depends on none of the varied symbols is wrong with the same
+//! probability as node identity.
 
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph};
@@ -8,19 +11,20 @@ use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 use hamel_language::model::Model;
 
-/// Points tried where square roots have no value.
+/// Number of points to try, since square roots have no value at some.
 const TRIES: u64 = 400;
-/// Two points from one another.
+/// Seed of the first point.
 const SEED: u64 = 0x5711;
 
-/// A point of X from which symbols are moved.
+/// Point of X from which symbols are varied.
 pub struct Variation<'a> {
     model: &'a Model,
     here: Lane,
 }
 
 impl<'a> Variation<'a> {
-    /// Starts at a point at which all of the expressions have a value.
+    /// Finds a point at which all of the expressions have a value; `None` if no tried one has that
+    /// property.
     pub fn new(model: &'a Model, graph: &Graph, edges: &[Edge]) -> Option<Self> {
         (0..TRIES).find_map(|seed| {
             let here = model.points.lane(SEED + seed)?;
@@ -29,7 +33,7 @@ impl<'a> Variation<'a> {
         })
     }
 
-    /// Prepares to ask on what expressions depend; `None` where they have no value here.
+    /// Prepares dependence tests for expressions; `None` if they have no value at the point.
     pub fn of(&'a self, graph: &'a Graph, edges: &[Edge]) -> Option<Dependence<'a>> {
         let tape = Tape::new(graph, edges)?;
         Some(Dependence {
@@ -40,8 +44,8 @@ impl<'a> Variation<'a> {
         })
     }
 
-    /// For each expression whether it changes with the symbols that `moved` are; where no second point
-    /// was found, it is said to.
+    /// Returns for each expression whether it changes with the symbols `moved`; true if no second
+    /// point was found.
     pub fn changes(&self, graph: &Graph, edges: &[Edge], moved: &[Edge]) -> Vec<bool> {
         match self.of(graph, edges) {
             Some(dependence) => dependence.changes(moved),
@@ -50,7 +54,7 @@ impl<'a> Variation<'a> {
     }
 }
 
-/// Expressions with their values at the point from which symbols are moved.
+/// Expressions with their values at the point from which symbols are varied.
 pub struct Dependence<'a> {
     variation: &'a Variation<'a>,
     graph: &'a Graph,
@@ -59,8 +63,8 @@ pub struct Dependence<'a> {
 }
 
 impl Dependence<'_> {
-    /// For each expression whether it changes with the symbols that `moved` are; where no second point
-    /// was found, it is said to.
+    /// Returns for each expression whether it changes with the symbols `moved`; true if no second
+    /// point was found.
     pub fn changes(&self, moved: &[Edge]) -> Vec<bool> {
         let places = self.graph.symbol_places(moved);
         let there = (0..TRIES).find_map(|seed| {

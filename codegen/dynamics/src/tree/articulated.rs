@@ -1,8 +1,9 @@
-//! Forward dynamics by articulated bodies (Featherstone 1983): linear in the number of links.
+//! Forward dynamics by the articulated-body algorithm (Featherstone 1983), linear in the number of
+//! links.
 //!
-//! The articulated inertia of a link and all that moves freely beyond it, [[J, H], [Hᵀ, M]], is reduced by
-//! the joint's own freedom and transformed to the link before. Forces at ξ̇ = 0 come from the recursion of
-//! inverse dynamics, so that only accelerations due to ξ̇ are propagated here.
+//! The articulated inertia of a link and its descendants, [[J, H], [Hᵀ, M]], is reduced by the
+//! freedoms of the link's own joint and transformed to the parent link. The forces at ξ̇ = 0 come
+//! from recursive inverse dynamics, so that only the accelerations due to ξ̇ are propagated here.
 
 use super::inverse::{Wrench, to_parent};
 use super::mass::Mass;
@@ -12,7 +13,7 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, identity3, scale3, zero3};
 use hamel_language::model::rotations::hat;
 
-/// Torque = J α + H a, force = Hᵀ α + M a.
+/// Articulated inertia: torque = J α + H a, force = Hᵀ α + M a.
 #[derive(Clone, Copy, Debug)]
 struct Inertia {
     j: Mat3,
@@ -20,19 +21,23 @@ struct Inertia {
     m: Mat3,
 }
 
-/// How a freedom was eliminated.
+/// Quantities from the elimination of one freedom.
 struct Pivot {
-    /// The wrench of one unit of its acceleration, over the pivot.
+    /// Wrench that a unit acceleration of the freedom requires, divided by the pivot.
     share: Wrench,
     /// 1 / pivot.
     inverse: Edge,
-    /// The joint's force less that of the bias wrench.
+    /// Joint force minus the generalised force of the bias wrench.
     residual: Edge,
 }
 
-/// ξ̇ for forces that the joints have to bring up (load − bias at ξ̇ = 0 less the links' wrenches);
-/// `None` where a pivot vanishes identically. Every velocity has to be the rate of one freedom, but for those that
-/// are given ahead: their accelerations are in the wrenches, and they yield to no force (Featherstone 2008, 9.2).
+/// Computes ξ̇ by the articulated-body algorithm.
+///
+/// `wrenches` are the wrenches that the links require at ξ̇ = 0 (apart from prescribed
+/// accelerations); `load` are all other generalised forces. Returns `None` if a pivot vanishes
+/// identically. Every velocity has to be the rate of exactly one freedom, except for the prescribed
+/// velocities `given`: their accelerations are contained in `wrenches`, and they do not yield to
+/// forces (Featherstone 2008, 9.2).
 pub fn forward(
     graph: &mut Graph,
     tree: &Tree,
@@ -139,7 +144,7 @@ impl Inertia {
         Wrench { force, torque }
     }
 
-    /// Less the part that the freedom yields.
+    /// Subtracts the part of the inertia to which the freedom yields.
     fn reduce(&mut self, graph: &mut Graph, response: &Wrench, share: &Wrench) {
         for i in 0..3 {
             for k in 0..3 {
@@ -157,8 +162,9 @@ impl Inertia {
         }
     }
 
-    /// About the origin and in the axes of the link before: H' = H + p̂ M,
-    /// J' = J + p̂ Hᵀ − H' p̂.
+    /// Transforms the inertia to the origin and the axes of the parent link.
+    ///
+    /// H' = H + p̂ M, J' = J + p̂ Hᵀ − H' p̂.
     fn to_parent(self, graph: &mut Graph, link: &Link) -> Self {
         let mut turned = self;
         for turn in link.turns.iter().rev() {
@@ -177,7 +183,7 @@ impl Inertia {
             }
         }
         let mut j = turned.j;
-        // Column k of p̂ Hᵀ is p × (row k of H); column k of −H' p̂ᵀ… is row-wise −(H' p̂).
+        // (p̂ Hᵀ)ᵢₖ = (p × row k of H)ᵢ and (−H' p̂)ᵢₖ = (p × row i of H')ₖ.
         for i in 0..3 {
             for k in 0..=i {
                 let left = cross(graph, p, turned.h[k])[i];

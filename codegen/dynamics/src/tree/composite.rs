@@ -1,5 +1,7 @@
-//! M by composite bodies: each freedom moves all that hangs on its joint as one body, whose wrench
-//! acts on the joints before (Walker and Orin 1982).
+//! Mass matrix M by the composite-rigid-body algorithm (Walker and Orin 1982).
+//!
+//! Each freedom moves the whole subtree of its joint as one body; the wrench that this takes acts
+//! on the joints of all ancestors.
 
 use super::Tree;
 use super::inverse::{Wrench, to_parent};
@@ -8,22 +10,29 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::resubstitute::resubstitute;
 use hamel_program::count::count;
 
-/// Whether inertias about hinges, which turns about these leave alone, are entered into the graph apart.
+/// How inertias about hinges are computed.
+///
+/// A rotation about the hinge leaves them unchanged, so they may be computed separately from the
+/// second moments and be known to the graph beforehand (`Apart`), or from the rotated second
+/// moments (`OfS`).
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Polar {
     Apart,
     OfS,
 }
 
-/// A matrix in the graph that it was built in.
+/// A matrix together with the graph that it was built in.
 type Way = (Graph, Vec<Vec<Edge>>);
 
-/// M, n rows of n, by the fewest operations before resubstitution: what M⁻¹ begins with.
+/// Returns M, n × n, by the variant with the fewest operations before resubstitution.
+///
+/// This is the starting point for computing M⁻¹.
 pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     shortest(graph, mass_matrices(graph, tree, n))
 }
 
-/// M by the fewest operations, for those who want M itself.
+/// Returns M by the variant with the fewest operations, resubstituted ones included, for use as M
+/// itself.
 pub fn mass_matrix_alone(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     let mut ways = mass_matrices(graph, tree, n);
     let polished = |(way, matrix): &Way| {
@@ -46,13 +55,17 @@ fn shortest(graph: &mut Graph, mut ways: Vec<Way>) -> Vec<Vec<Edge>> {
     matrix
 }
 
-/// M by the same inertias as slopes of forces are.
+/// Returns M from second moments alone, the inertias from which the slopes of forces are computed,
+/// too.
 pub fn by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     by_composites(graph, tree, n, Polar::OfS)
 }
 
-/// M from second moments alone and, where hinges are parallel, from inertias about them: each in a copy of the graph,
-/// since a value that is known already is not computed anew in another way.
+/// Returns M from second moments alone and, if there are parallel hinges, also from inertias about
+/// them.
+///
+/// Each variant is built in its own copy of the graph, since a graph that already knows a value
+/// does not compute it again in another way.
 pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<Way> {
     let mut links = tree.links.iter();
     let parallel = links.any(|link| link.turns.is_empty() || tree.parallel(graph, link).is_some());
@@ -68,7 +81,7 @@ pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<Way> {
     ways.iter().map(by).collect()
 }
 
-/// For each link the inertia of it and of all that hangs on it, about its origin.
+/// Returns the composite inertia of each link and its descendants about the origin of the link.
 fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
     if way == Polar::Apart {
         tree.know_polars(graph);
@@ -79,7 +92,8 @@ fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
             let mut turned = composite[index];
             for turn in link.turns.iter().rev() {
                 if way == Polar::Apart {
-                    // What a turn about the third axis leaves alone is known before it.
+                    // Enter the polar moment, which a rotation about the third axis does not
+                    // change, before it.
                     turned.polar(graph);
                 }
                 turned = turned.turned(graph, turn);
@@ -99,7 +113,7 @@ fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
     composite
 }
 
-/// M by the wrenches of composite bodies.
+/// Computes M from the wrenches of the composite bodies.
 fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: Polar) -> Vec<Vec<Edge>> {
     let composite = composites(graph, tree, way);
     let mut matrix = vec![vec![graph.zero(); n]; n];

@@ -1,4 +1,5 @@
-//! Links and joints from frames: what a frame's pose in its parent depends on makes the joint.
+//! Derivation of links and joints from frames: the joint follows from the coordinates on which the
+//! frame's pose in its parent depends.
 
 use super::mass::Mass;
 use super::revolute::{Hinge, hinge};
@@ -11,41 +12,42 @@ use hamel_algebra::linear::{
 };
 use hamel_language::model::Model;
 
-/// A link whose frame may still be moved.
+/// A link whose frame can still be moved.
 #[derive(Clone, Debug)]
 pub struct Draft {
-    /// The link before.
+    /// Index of the parent link.
     pub parent: Option<usize>,
-    /// Constant axes of the joint in those of the link before.
+    /// Constant axes of the joint in those of the parent link.
     pub base: Mat3,
-    /// The origin in axes of the link before.
+    /// Origin of the link in the axes of its parent.
     pub position: Vec3,
-    /// How the link moves.
+    /// Motion of the link relative to its parent.
     pub motion: JointMotion,
-    /// Its inertia.
+    /// Inertia of the link.
     pub mass: Mass,
 }
 
-/// How a link moves against the one before.
+/// Motion of a link relative to its parent.
 #[derive(Clone, Debug)]
 pub enum JointMotion {
-    /// It turns about the third axis of its frame.
+    /// Revolute joint about the third axis of the link's frame.
     Hinge {
-        /// Cosine and sine of the angle as the description has them.
+        /// Cosine and sine of the joint angle as in the description.
         angle: (Edge, Edge),
-        /// Cosine and sine of the constant angle that is added.
+        /// Cosine and sine of a constant offset that is added to the joint angle.
         phase: (Edge, Edge),
-        /// The plane rotations that `base` is the product of, but for one about the third axis.
+        /// Plane rotations whose product is `base`, up to a rotation about the third axis.
         turns: Vec<Turn>,
-        /// The rate.
+        /// Rate of the joint angle, Σ k ξⁱ, as pairs (i, k).
         rate: Vec<(usize, Edge)>,
     },
-    /// Any other joint: its rotation after `base`, freedoms, their velocity product.
+    /// Any other joint: its rotation after `base`, its freedoms and their velocity-product
+    /// acceleration.
     Other(Option<Mat3>, Vec<Freedom>, (Vec3, Vec3)),
 }
 
 impl Draft {
-    /// The link itself.
+    /// Converts the draft to a link.
     pub fn finish(self, graph: &mut Graph) -> Link {
         let zero = zero3(graph);
         let (turns, freedoms, velocity_product) = match self.motion {
@@ -98,13 +100,13 @@ impl Draft {
     }
 }
 
-/// Whether a matrix only exchanges axes.
+/// Returns whether a rotation matrix only permutes axes and changes their signs.
 fn is_permutation(graph: &Graph, matrix: &Mat3) -> bool {
     let plain = |edge: &Edge| *edge == graph.zero() || edge.abs() == graph.one();
     matrix.iter().flatten().all(plain)
 }
 
-/// Where a frame of the description is: its link, and its constant pose in the link's frame.
+/// Pose of a frame of the description: its link, and its constant pose in the link's frame.
 #[derive(Clone, Copy)]
 struct Place {
     link: Option<usize>,
@@ -112,25 +114,28 @@ struct Place {
     position: Vec3,
 }
 
-/// The links of a model.
+/// Derives the links of a model; `None` as for [`draft_with_carriers`].
 pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
     Some(draft_with_carriers(model, calculus)?.0)
 }
 
-/// The frame that a joint carries.
+/// Frame of the description that a joint carries.
 #[derive(Clone, Copy, Debug)]
 pub struct Carrier {
-    /// Its index in the model.
+    /// Index of the frame in the model.
     pub frame: usize,
-    /// Its axes in those of the link.
+    /// Axes of the frame in those of the link.
     pub axes: Mat3,
-    /// The origin of the link, in this frame.
+    /// Origin of the link in this frame.
     pub origin: Vec3,
-    /// The inertia of the link about the origin of this frame, in axes of the link.
+    /// Inertia of the link about the origin of this frame, in the axes of the link.
     pub mass: Mass,
 }
 
-/// The links of a model, and the frame that each of them was made from.
+/// Derives the links of a model, and the frame from which each of them was made.
+///
+/// Returns `None` if the model has neither bodies nor particles, has other kinetic energy than
+/// theirs and that of armatures, or has a particle that is not fixed to a frame.
 pub fn draft_with_carriers(
     model: &mut Model,
     calculus: &mut Calculus,
@@ -200,7 +205,7 @@ pub fn draft_with_carriers(
     Some((links, carriers))
 }
 
-/// Whether there is kinetic energy beside that of bodies, particles and armatures.
+/// Returns whether there is kinetic energy in addition to that of bodies, particles and armatures.
 pub fn has_more_inertia(model: &mut Model) -> bool {
     let graph = &mut model.graph;
     let half = graph.ratio(1, 2);
@@ -215,7 +220,7 @@ pub fn has_more_inertia(model: &mut Model) -> bool {
     rest != graph.zero()
 }
 
-/// A frame that a point is fixed to, and its place there.
+/// Finds a frame to which a point is fixed, and its position in that frame.
 fn carrier(model: &mut Model, point: Vec3) -> Option<(usize, Vec3)> {
     let frames = model.frames.clone();
     frames.iter().enumerate().find_map(|(index, frame)| {
@@ -227,7 +232,7 @@ fn carrier(model: &mut Model, point: Vec3) -> Option<(usize, Vec3)> {
     })
 }
 
-/// Adds what is fixed to a frame to the link that the frame is part of.
+/// Adds a mass that is fixed to a frame to the link of the frame.
 fn load(graph: &mut Graph, links: &mut [Draft], place: &Place, mass: &Mass) {
     let Some(link) = place.link.and_then(|link| links.get_mut(link)) else {
         return;
@@ -238,8 +243,10 @@ fn load(graph: &mut Graph, links: &mut [Draft], place: &Place, mass: &Mass) {
     link.mass = link.mass.plus(graph, &mass);
 }
 
-/// The joint of a relative pose: its motion, its constant base in axes of the link before (where
-/// the frame it hangs on has the axes `on`), and the axes of the frame in those of the new link.
+/// Derives the joint of a relative pose.
+///
+/// Returns its motion, its constant base in the axes of the parent link (in which the parent frame
+/// has the axes `on`), and the axes of the frame in those of the new link.
 fn joint(
     model: &mut Model,
     calculus: &mut Calculus,
@@ -278,7 +285,7 @@ fn joint(
     let graph = &mut model.graph;
     let identity = identity3(graph);
     let sliding = turn.iter().all(|row| free3(graph, row));
-    // What only slides keeps the axes of the link before.
+    // A link that only translates keeps the axes of its parent link.
     let (base, rotation, frame) = if sliding {
         (identity, None, multiply3(graph, on, turn))
     } else {
@@ -287,7 +294,8 @@ fn joint(
     let mut velocity_product = (zero, zero);
     let mut freedoms = Vec::new();
     for (i, angular, linear) in moving {
-        // Into the axes of the link: those of the frame, or of the link before where it slides.
+        // Transforms to the axes of the link: those of the frame, or of the parent link if it only
+        // translates.
         let into = |graph: &mut Graph, v: Vec3| apply3(graph, &frame, v);
         for (sum, column) in [
             (&mut velocity_product.0, angular),
@@ -314,7 +322,7 @@ fn joint(
     ))
 }
 
-/// For every velocity that moves a frame in its parent the columns vee(Eᵀ ∂ᵢE) and Eᵀ ∂ᵢp.
+/// Returns (i, vee(Eᵀ ∂ᵢE), Eᵀ ∂ᵢp) for every velocity ξⁱ that moves the frame in its parent.
 fn columns(
     model: &mut Model,
     calculus: &mut Calculus,

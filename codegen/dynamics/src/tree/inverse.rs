@@ -1,9 +1,11 @@
-//! Inverse dynamics by recursion: velocities and accelerations outwards, forces inwards
-//! (Luh, Walker and Paul 1980), with U = α̂ + ω̂ ω̂ and second moments S:
-//! force m a + U h, torque vee(U S − (U S)ᵀ) + h × a about the origin of each link.
+//! Recursive inverse dynamics (Luh, Walker and Paul 1980): velocities and accelerations from the
+//! root outwards, forces inwards.
 //!
-//! Behind a hinge about an axis e the column U e is that of the link before, since ê e = 0. With it, ω and α·e the rest of U takes
-//! fewer operations than with ω and α.
+//! With U = α̂ + ω̂ ω̂, mass m, first moment h and second moment S, a link needs, about its origin,
+//! force m a + U h, torque vee(U S − (U S)ᵀ) + h × a.
+//!
+//! For a hinge about an axis e the column U e equals that of the parent link, since ê e = 0. Given
+//! U e, ω and α·e, the rest of U takes fewer operations than from ω and α.
 
 use super::mass::Mass;
 use super::{Link, Tree};
@@ -13,7 +15,7 @@ use hamel_algebra::linear::{
 };
 use hamel_program::count::count;
 
-/// Force and torque about the origin of a link, in its axes.
+/// Wrench: force and torque about the origin of a link, in its axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Wrench {
     /// Force (N).
@@ -23,7 +25,7 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// Both together.
+    /// Returns the sum of two wrenches.
     pub fn plus(&self, graph: &mut Graph, other: &Wrench) -> Self {
         Wrench {
             force: add3(graph, self.force, other.force),
@@ -31,7 +33,7 @@ impl Wrench {
         }
     }
 
-    /// k times the wrench.
+    /// Returns k times the wrench.
     pub fn scaled(&self, graph: &mut Graph, k: Edge) -> Self {
         Wrench {
             torque: scale3(graph, k, self.torque),
@@ -40,27 +42,27 @@ impl Wrench {
     }
 }
 
-/// A link's motion in its axes.
+/// Motion of a link in its own axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkMotion {
     /// Angular velocity.
     pub(crate) omega: Vec3,
     /// Angular acceleration.
     pub(crate) alpha: Vec3,
-    /// Acceleration of the origin, less gravity.
+    /// Acceleration of the origin minus gravity.
     pub(crate) a: Vec3,
-    /// α̂ + ω̂ ω̂.
+    /// U = α̂ + ω̂ ω̂.
     pub(crate) u: Mat3,
     /// U_zz − U_yy, U_xx − U_zz and U_yy − U_xx.
     differences: Vec3,
-    /// Its motion if its joint were locked, ω, α and a: that of the link before.
+    /// The link's ω, α and a if its joint were locked, that is, if it moved with its parent.
     pub(crate) from_parent: [Vec3; 3],
-    /// Its joint's own angular velocity and velocity.
+    /// Angular velocity and velocity relative to the parent.
     pub(crate) relative: (Vec3, Vec3),
 }
 
 impl LinkMotion {
-    /// U_jj − U_kk of two axes.
+    /// Returns U_jj − U_kk for two different axes j, k.
     pub(crate) fn difference(&self, j: usize, k: usize) -> Edge {
         let difference = self.differences[3 - j - k];
         if (j + 1) % 3 == k {
@@ -71,8 +73,10 @@ impl LinkMotion {
     }
 }
 
-/// What the motion of every link needs, at rates ξ (the model's, or zero) and ξ̇ and under gravity (world
-/// axes).
+/// Returns the wrench that the motion of each link requires.
+///
+/// `xi` are the velocities ξ (those of the model, or zero), `xi_dot` their derivatives, and
+/// `gravity` is given in world axes.
 pub fn wrenches(
     graph: &mut Graph,
     tree: &Tree,
@@ -87,27 +91,31 @@ pub fn wrenches(
         .collect()
 }
 
-/// How U = α̂ + ω̂ ω̂ is computed.
+/// How U = α̂ + ω̂ ω̂ of the links is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tensors {
     /// From ω and α of each link.
     Each,
-    /// Behind a hinge about an axis of the link before, with the column along it from there.
+    /// If the hinge is along a coordinate axis of the link and of its parent, the column of U along
+    /// it is taken from the parent.
     Carried,
-    /// All of it from the link before where only signs and order of the axes change between them, and its column elsewhere.
+    /// U is updated from that of the parent link if their axes differ only in sign and order;
+    /// otherwise as `Carried`.
     Chained,
 }
 
-/// All of them, the plainest first.
+/// All variants, the simplest first.
 pub(crate) const TENSORS: [Tensors; 3] = [Tensors::Each, Tensors::Carried, Tensors::Chained];
-/// Those by which α of every link is there, too.
+/// Variants that compute α of every link, too.
 pub(crate) const WITH_ALPHA: [Tensors; 2] = [Tensors::Each, Tensors::Carried];
 
-/// ξ, ξ̇ and gravity.
+/// Velocities ξ, their derivatives ξ̇ and gravity.
 pub(crate) type Motion<'a> = (&'a [Edge], &'a [Edge], Vec3);
 
 impl Tree {
-    /// The tree with U of its links computed as M ξ̇ + Γ ξ ξ + ∂V of a motion costs least in a graph.
+    /// Returns the tree with the variant for U by which M ξ̇ + Γ ξ ξ + ∂V of a motion is cheapest.
+    ///
+    /// The cost is that of adding these forces to (a copy of) the graph.
     pub(crate) fn cheapest(&self, ways: &[Tensors], graph: &Graph, motion: Motion) -> Tree {
         let with = |&tensors: &Tensors| Tree {
             tensors,
@@ -124,7 +132,7 @@ impl Tree {
     }
 }
 
-/// The motion of every link.
+/// Computes the motion of every link.
 pub(crate) fn motions(
     graph: &mut Graph,
     tree: &Tree,
@@ -142,10 +150,10 @@ pub(crate) fn motions(
         from_parent: [zero; 3],
         relative: (zero, zero),
     };
-    // At rest U is α̂.
+    // At rest, U = α̂.
     let rest = xi.iter().all(|&rate| rate == graph.zero());
     let tensors = if rest { Tensors::Each } else { tree.tensors };
-    // The links behind which α is needed.
+    // Links whose α is needed by a child.
     let mut passing = vec![false; tree.links.len()];
     for link in &tree.links {
         let is_chained = tensors == Tensors::Chained && kept_axes(graph, link).is_some();
@@ -171,7 +179,7 @@ fn outward(
 ) -> LinkMotion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
-    // The velocity product is that of the model's ξ: at rest there is none.
+    // The velocity-product acceleration holds for the model's ξ; at rest it is zero.
     let rest = xi.iter().all(|&rate| rate == graph.zero());
     let mut change = if rest {
         (zero, zero)
@@ -242,12 +250,12 @@ fn outward(
     }
 }
 
-/// How a link turns: α and U, computed in one way.
+/// Rotational motion of a link: α and U.
 pub(crate) struct Turning {
     alpha: Vec3,
     /// α̂ + ω̂ ω̂ = α̂ + ω ωᵀ − |ω|² I.
     pub(crate) u: Mat3,
-    /// Of its diagonal, as in the motion of a link.
+    /// Differences of the diagonal entries of U, as in [`LinkMotion`].
     pub(crate) differences: Vec3,
 }
 
@@ -284,7 +292,8 @@ impl Turning {
     }
 }
 
-/// The axes of the link before in those of a link on a hinge about its third one, where only signs and order are others.
+/// Returns the axes of the parent in those of a link on a hinge about its third axis, if the two
+/// differ only in sign and order.
 fn kept_axes(graph: &mut Graph, link: &Link) -> Option<Mat3> {
     let (zero, one) = (graph.zero(), graph.one());
     let [freedom] = link.freedoms.as_slice() else {
@@ -298,8 +307,10 @@ fn kept_axes(graph: &mut Graph, link: &Link) -> Option<Mat3> {
     axes.iter().flatten().all(is_kept).then_some(axes)
 }
 
-/// U of a link on a hinge from U₀ of the link before: U₀ + θ̈ ẑ + 2 θ̇ ω̂₀ ẑ + θ̇² ẑ ẑ, whose third column is that of U₀,
-/// with ω₀ in the axes of this link; `None` for other joints, and where the axes in between are turned.
+/// Computes U of a link on a hinge from U₀ of its parent: U₀ + θ̈ ẑ + 2 θ̇ ω̂₀ ẑ + θ̇² ẑ ẑ.
+///
+/// Here ω₀ is in the axes of this link, and the third column is that of U₀. Returns `None` for
+/// other joints, and if the axes of link and parent do not just differ in sign and order.
 fn chained(
     graph: &mut Graph,
     link: &Link,
@@ -330,8 +341,10 @@ fn chained(
     Some(u)
 }
 
-/// α and U of a link on a hinge about its axis h, which is an axis of the link before, too, by U h, ω and α·h; `None` for others.
-/// Whether a link behind needs α decides what is cheaper.
+/// Computes α and U of a link from U h, ω and α·h, where h is the axis of its hinge.
+///
+/// Returns `None` unless the joint is a hinge whose axis is a coordinate axis of both the link and
+/// its parent. `passes` says whether a child needs α, which decides what is cheaper.
 fn carried(
     graph: &mut Graph,
     link: &Link,
@@ -360,7 +373,7 @@ fn carried(
     for k in 0..3 {
         u[k][h] = column[k];
     }
-    // The row: U_hk + U_kh = 2 ω_h ω_k.
+    // Row h: U_hk + U_kh = 2 ω_h ω_k.
     if !passes {
         let twice = graph.add(omega[h], omega[h]);
         for k in [j, l] {
@@ -379,13 +392,14 @@ fn carried(
     let product = graph.mul(omega[j], omega[l]);
     u[j][l] = graph.sub(product, alpha[h]);
     u[l][j] = graph.add(product, alpha[h]);
-    // The diagonal: U_hh is known, and U_jj − U_hh = ω_j² − ω_h².
+    // Diagonal: U_hh is known, and U_jj − U_hh = ω_j² − ω_h².
     let (hh, jj) = (graph.mul(omega[h], omega[h]), graph.mul(omega[j], omega[j]));
     let mut differences = zero;
     differences[l] = graph.sub(jj, hh);
     u[j][j] = graph.add(u[h][h], differences[l]);
     u[l][l] = -graph.add(hh, jj);
-    // Behind a first hinge U_hh is the square of its rate, which nothing else may need.
+    // After the first hinge of a chain, U_hh is the square of that hinge's rate, which may be
+    // needed nowhere else.
     let is_plane = before.omega.iter().filter(|w| **w == graph.zero()).count() == 2;
     (differences[h], differences[j]) = if is_plane {
         let ll = graph.mul(omega[l], omega[l]);
@@ -424,12 +438,14 @@ pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wre
     }
 }
 
-/// The generalised force of wrenches on links: Σ over what hangs on each joint.
+/// Returns the generalised force of wrenches on links: at each joint, that of the sum over its
+/// subtree.
 pub fn collect(graph: &mut Graph, tree: &Tree, wrenches: &[Wrench], n: usize) -> Vec<Edge> {
     collect_with(graph, tree, wrenches, n, |_, _, total| *total)
 }
 
-/// The same of what becomes of the wrench on all that hangs on a joint, before it acts on the joint.
+/// As [`collect`], with a function that maps the wrench on a joint's subtree to the one that acts
+/// on the joint.
 pub(super) fn collect_with(
     graph: &mut Graph,
     tree: &Tree,
@@ -451,7 +467,7 @@ pub(super) fn collect_with(
     forces
 }
 
-/// A wrench on a link as one on the link before, about the origin and in the axes of that one.
+/// Transforms a wrench on a link to its parent, about the origin and in the axes of the parent.
 pub fn to_parent(graph: &mut Graph, link: &Link, wrench: &Wrench) -> Wrench {
     let force = link.to_parent_axes(graph, wrench.force);
     let torque = link.to_parent_axes(graph, wrench.torque);
@@ -462,7 +478,7 @@ pub fn to_parent(graph: &mut Graph, link: &Link, wrench: &Wrench) -> Wrench {
     }
 }
 
-/// M ξ̇ + Γ ξ ξ + ∂V of gravity.
+/// Returns the inverse dynamics M ξ̇ + Γ ξ ξ + ∂V, where V is the potential of gravity.
 pub fn inverse(
     graph: &mut Graph,
     tree: &Tree,

@@ -1,5 +1,6 @@
-//! Mass, first and second moments of a link about the origin of its frame: m, h = ∫ r dm and
-//! S = ∫ r rᵀ dm; Θ = tr(S) I − S.
+//! Mass, first moment and second moment of a link about the origin of its frame.
+//!
+//! m, h = ∫ r dm and S = ∫ r rᵀ dm, from which the inertia matrix is Θ = tr(S) I − S.
 
 use super::Link;
 use super::turn::Turn;
@@ -7,7 +8,7 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, scale3, zero3};
 use hamel_language::model::Body;
 
-/// m, h and S.
+/// Inertia of a link as mass m, first moment h and second moment S.
 #[derive(Clone, Copy, Debug)]
 pub struct Mass {
     /// Mass (kg).
@@ -19,7 +20,7 @@ pub struct Mass {
 }
 
 impl Mass {
-    /// No mass.
+    /// Returns the inertia of a massless link.
     pub fn none(graph: &Graph) -> Self {
         Mass {
             mass: graph.zero(),
@@ -28,7 +29,7 @@ impl Mass {
         }
     }
 
-    /// That of a particle at the origin.
+    /// Returns the inertia of a particle at the origin.
     pub fn point(graph: &Graph, mass: Edge) -> Self {
         Mass {
             mass,
@@ -36,7 +37,8 @@ impl Mass {
         }
     }
 
-    /// That of a body, in its frame: S = ½ tr(Θ) I − Θ about the centre of mass, and shifted.
+    /// Returns the inertia of a body in its frame: S = ½ tr(Θ) I − Θ about the centre of mass,
+    /// shifted to the origin.
     pub fn of(graph: &mut Graph, body: &Body) -> Self {
         let theta = &body.inertia_com;
         let trace = graph.sum(&[theta[0][0], theta[1][1], theta[2][2]]);
@@ -59,7 +61,8 @@ impl Mass {
         central.shifted(graph, body.com)
     }
 
-    /// About another origin, where a point at r comes to r + `by`:
+    /// Returns the inertia about another origin, where a point at r has the position r + `by`.
+    ///
     /// h' = h + m by, S' = S + by hᵀ + h' byᵀ.
     pub fn shifted(&self, graph: &mut Graph, by: Vec3) -> Self {
         let far = scale3(graph, self.mass, by);
@@ -79,7 +82,7 @@ impl Mass {
         }
     }
 
-    /// In turned axes, where a point at r comes to R r.
+    /// Returns the inertia in rotated axes, where a point at r has the position R r.
     pub fn turned(&self, graph: &mut Graph, turn: &Turn) -> Self {
         Mass {
             mass: self.mass,
@@ -88,14 +91,14 @@ impl Mass {
         }
     }
 
-    /// That of a link as one of the link before.
+    /// Returns the inertia of a link about the origin and in the axes of its parent.
     pub fn to_parent(&self, graph: &mut Graph, link: &Link) -> Self {
         let turns = link.turns.iter().rev();
         let turned = turns.fold(*self, |mass, turn| mass.turned(graph, turn));
         turned.shifted(graph, link.position)
     }
 
-    /// Both together.
+    /// Returns the inertia of two bodies that are fixed to each other.
     pub fn plus(&self, graph: &mut Graph, other: &Mass) -> Self {
         Mass {
             mass: graph.add(self.mass, other.mass),
@@ -107,8 +110,8 @@ impl Mass {
         }
     }
 
-    /// Force and torque about the origin for a spatial acceleration without velocity:
-    /// m a + α × h and Θ α + h × a.
+    /// Returns the force m a + α × h and the torque Θ α + h × a about the origin for a spatial
+    /// acceleration at zero velocity.
     pub fn wrench(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> (Vec3, Vec3) {
         let push = scale3(graph, self.mass, a);
         let tangential = cross(graph, alpha, self.first);
@@ -117,12 +120,12 @@ impl Mass {
         (add3(graph, push, tangential), add3(graph, spin, lever))
     }
 
-    /// Θ_zz = S_xx + S_yy.
+    /// Returns the polar moment Θ_zz = S_xx + S_yy.
     pub fn polar(&self, graph: &mut Graph) -> Edge {
         graph.add(self.second[0][0], self.second[1][1])
     }
 
-    /// Θ = tr(S) I − S.
+    /// Returns the inertia matrix Θ = tr(S) I − S.
     pub fn inertia(&self, graph: &mut Graph) -> Mat3 {
         let s = &self.second;
         std::array::from_fn(|i| {
@@ -136,7 +139,7 @@ impl Mass {
         })
     }
 
-    /// Θ α = tr(S) α − S α.
+    /// Returns Θ α = tr(S) α − S α.
     pub fn spun(&self, graph: &mut Graph, alpha: Vec3) -> Vec3 {
         let s = &self.second;
         std::array::from_fn(|i| {

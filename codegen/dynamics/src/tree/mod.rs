@@ -1,9 +1,11 @@
-//! Trees of links: inverse dynamics, M and forward dynamics by recursion.
+//! Kinematic trees: inverse dynamics, mass matrix M and forward dynamics by recursion.
 //!
-//! Links are what moves rigidly together; their frames are the generator's choice, whatever frames
-//! the description has. A link's inertia is kept as m, h, S, and the part of it on which the
-//! joint's motion has no effect is moved to the link before. Sources: Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapters
-//! 5-7; Khalil and Kleinfinger (1987) for customised recursions and base inertial parameters.
+//! A link comprises everything that moves rigidly together. The generator chooses the frames of the
+//! links itself, independently of the frames in the description. The inertia of a link is stored as
+//! mass m, first moment h and second moment S; the part of it that does not affect the motion of
+//! the joint is moved to the parent link. Sources: Featherstone, *Rigid Body Dynamics Algorithms*
+//! (2008), chapters 5-7; Khalil and Kleinfinger (1987) for customised recursions and base inertial
+//! parameters.
 
 pub mod articulated;
 pub mod composite;
@@ -29,30 +31,32 @@ use inverse::{Tensors, Wrench};
 use mass::Mass;
 use turn::Turn;
 
-/// One column of a joint's motion subspace S: the twist of a link relative to the one before, per unit of its rate.
+/// One column of a joint's motion subspace S.
+///
+/// This is the twist of a link relative to its parent, per unit of the column's rate.
 #[derive(Clone, Debug)]
 pub struct Freedom {
-    /// Angular velocity, axes of the link.
+    /// Angular velocity in the axes of the link.
     pub angular: Vec3,
-    /// Velocity of the link's origin, axes of the link.
+    /// Velocity of the link's origin in the axes of the link.
     pub linear: Vec3,
-    /// Its rate is Σ k ξⁱ, k constant: pairs (i, k).
+    /// Rate of this column, Σ k ξⁱ with constant k, as pairs (i, k).
     pub rate: Vec<(usize, Edge)>,
 }
 
 impl Freedom {
-    /// Whether its rate is known ahead.
+    /// Returns whether the rate is prescribed, that is, consists of the velocities in `given` only.
     pub fn is_given(&self, given: &[usize]) -> bool {
         self.rate.iter().all(|(i, _)| given.contains(i))
     }
 
-    /// Σ k vⁱ.
+    /// Returns the rate Σ k vⁱ for the velocities v.
     pub fn rate_of(&self, graph: &mut Graph, v: &[Edge]) -> Edge {
         let terms: Vec<Edge> = self.rate.iter().map(|&(i, k)| graph.mul(k, v[i])).collect();
         graph.sum(&terms)
     }
 
-    /// Sᵀ f, the generalised force of a wrench on the link: its power at a unit of the rate.
+    /// Returns Sᵀ f, the generalised force of a wrench on the link (its power at unit rate).
     pub fn force_of(&self, graph: &mut Graph, wrench: &Wrench) -> Edge {
         let (angular, linear) = (
             graph.dot(&self.angular, &wrench.torque),
@@ -61,7 +65,8 @@ impl Freedom {
         graph.add(angular, linear)
     }
 
-    /// Adds this force to those of the velocities that make its rate.
+    /// Adds this generalised force to the entries of `forces` for the velocities that make up the
+    /// rate.
     pub fn add_force(&self, graph: &mut Graph, wrench: &Wrench, forces: &mut [Edge]) {
         let force = self.force_of(graph, wrench);
         for &(i, k) in &self.rate {
@@ -71,34 +76,35 @@ impl Freedom {
     }
 }
 
-/// A link: what moves against the link before by a joint.
+/// A link, which moves relative to its parent by a joint.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// The link before, which has a smaller index; the world where absent.
+    /// Index of the parent link, which is smaller than that of the link; `None` for the world.
     pub parent: Option<usize>,
-    /// The axes of this link in those of the one before: the product of these turns.
+    /// Factors of the rotation matrix whose columns are the axes of this link in those of its
+    /// parent.
     pub turns: Vec<Turn>,
-    /// The origin of this link, axes of the one before.
+    /// Origin of this link relative to its parent's, in the axes of the parent.
     pub position: Vec3,
-    /// The freedoms of its joint.
+    /// Columns of the motion subspace of its joint.
     pub freedoms: Vec<Freedom>,
-    /// The velocity-product acceleration of the joint, Ṡ times its rates: angular, linear.
+    /// Velocity-product acceleration of the joint, Ṡ times its rates: (angular, linear).
     pub velocity_product: (Vec3, Vec3),
-    /// Its inertia about its origin.
+    /// Inertia about the origin of the link.
     pub mass: Mass,
-    /// The same in the axes that it would have alone, where it shares those of other links.
+    /// The same inertia in the link's own axes, where the link uses axes shared with other links.
     pub unshared: Mass,
 }
 
 impl Link {
-    /// Adds the generalised forces of a wrench on the link at its joint.
+    /// Adds the generalised forces that a wrench on the link exerts at its joint.
     pub fn add_forces(&self, graph: &mut Graph, wrench: &Wrench, forces: &mut [Edge]) {
         for freedom in &self.freedoms {
             freedom.add_force(graph, wrench, forces);
         }
     }
 
-    /// A vector in the axes of the link before.
+    /// Transforms a vector from the axes of the link to those of its parent.
     pub fn to_parent_axes(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         self.turns
             .iter()
@@ -106,7 +112,7 @@ impl Link {
             .fold(v, |v, turn| turn.rotate(graph, v))
     }
 
-    /// A vector of the link before in the axes of this one.
+    /// Transforms a vector from the axes of the parent to those of the link.
     pub fn from_parent_axes(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         self.turns
             .iter()
@@ -114,31 +120,34 @@ impl Link {
     }
 }
 
-/// The links, each after the one that it hangs on.
+/// A kinematic tree, in which each link follows its parent.
 #[derive(Clone, Debug)]
 pub struct Tree {
     /// The links.
     pub links: Vec<Link>,
-    /// Armatures: J of the force J ξ̇ⁱ that a velocity needs besides.
+    /// Armatures (rotor inertias) J, one for each velocity, which add J ξ̇ⁱ to its generalised
+    /// force.
     pub armature: Vec<Edge>,
-    /// How U of its links is computed.
+    /// How U = α̂ + ω̂ ω̂ of the links is computed.
     pub tensors: Tensors,
 }
 
-/// Where the frames of links are put.
+/// Where the frames of the links are placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
-    /// Where the recursions are cheapest, inertias regrouped.
+    /// Where the recursions are cheapest, with regrouped inertias.
     Chosen,
-    /// The same, in axes that parallel hinges share.
+    /// As `Chosen`, but with axes shared by parallel hinges.
     Parallel,
-    /// Where the description has them, inertias with the links that they are of.
+    /// Where the description has them, each inertia staying with its own link.
     Described,
 }
 
 impl Tree {
-    /// The tree of a model; `None` where not all of its inertia is that of armatures, and of bodies and
-    /// particles that are fixed to frames.
+    /// Builds the tree of a model.
+    ///
+    /// Returns `None` unless all of its inertia is that of armatures and of bodies and particles
+    /// that are fixed to frames.
     pub fn of(model: &mut Model, calculus: &mut Calculus, placement: Placement) -> Option<Tree> {
         let mut draft = draft::draft(model, calculus)?;
         let safe = safe::Safe::of(model, &draft);
@@ -161,8 +170,10 @@ impl Tree {
         })
     }
 
-    /// The tree with the frames of the description, their origins moved along the hinges if that is asked for, and for each
-    /// link the frame that its joint carries; `None` as above.
+    /// Builds the tree with the frames of the description, and returns for each link the frame that
+    /// its joint carries.
+    ///
+    /// If `moved`, the origins are shifted along the hinges. Returns `None` as [`Tree::of`] does.
     pub fn with_frames(
         model: &mut Model,
         calculus: &mut Calculus,
@@ -189,15 +200,18 @@ impl Tree {
         Some((tree, carriers))
     }
 
-    /// Enters the inertias of all links about their hinges into a graph. Turns to shared axes leave them alone: what is known
-    /// without them is not computed from turned entries.
+    /// Computes the inertias of all links about their hinges in the graph.
+    ///
+    /// Rotations to shared axes do not change them. Once the graph knows their values, it does not
+    /// compute them again from rotated entries.
     pub fn know_polars(&self, graph: &mut Graph) {
         for link in &self.links {
             link.unshared.polar(graph);
         }
     }
 
-    /// Whether every ξⁱ is the rate of one freedom of its own, but for those that are given ahead.
+    /// Returns whether the rate of each freedom is a velocity ξⁱ of its own, unless it is
+    /// prescribed.
     pub fn is_plain(&self, graph: &Graph, n: usize, given: &[usize]) -> bool {
         let mut seen = vec![false; n];
         self.links.iter().flat_map(|link| &link.freedoms).all(|freedom| {

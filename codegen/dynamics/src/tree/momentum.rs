@@ -1,10 +1,10 @@
-//! Momenta by recursion: that of everything, and ∂ᵢT − γᵢⱼᵏ ξʲ pₖ, which turns p = M ξ where no force acts,
-//! KR18 (30a).
+//! Momenta by recursion: the total momentum, and the force ∂ᵢT − γᵢⱼᵏ ξʲ pₖ, which changes p = M ξ
+//! even if no force acts, KR18 (30a).
 //!
-//! pᵢ = Sᵢ · h, with the freedom's twist Sᵢ and the momentum h = (k about the link's origin, l) of all that
-//! hangs on its joint. Forces change h; what is left of ṗᵢ is Ṡᵢ · h with Ṡᵢ = V × Sᵢ, where V = (ω, v) is the
-//! twist of the link and Sᵢ is constant in its axes. As a wrench on the link that is
-//! (torque k × ω + l × v, force l × ω).
+//! pᵢ = Sᵢ · h, with the freedom's twist Sᵢ and the momentum h = (k about the link's origin, l) of
+//! the subtree of its joint. Forces change h; the remaining part of ṗᵢ is Ṡᵢ · h with Ṡᵢ = V × Sᵢ,
+//! where V = (ω, v) is the twist of the link and Sᵢ is constant in its axes. As a wrench on the
+//! link this is (torque k × ω + l × v, force l × ω).
 
 use super::Tree;
 use super::inverse::{LinkMotion, Wrench, collect_with, motions, to_parent, wrench};
@@ -12,9 +12,9 @@ use super::mass::Mass;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, add3, cross, zero3};
 
-/// The momentum of each link about its origin, in its axes, and the twists of the links.
+/// Returns the momentum of each link about its origin, in its axes, and the twists of the links.
 fn momenta(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec<Wrench>, Vec<LinkMotion>) {
-    // As accelerations from rest the rates give twists, and the wrenches that go with them are momenta.
+    // Used as accelerations from rest, the velocities yield twists, and the wrenches yield momenta.
     let (none, still) = (zero3(graph), vec![graph.zero(); xi.len()]);
     let twists = motions(graph, tree, &still, xi, none);
     let links = tree.links.iter().zip(&twists);
@@ -22,7 +22,8 @@ fn momenta(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec<Wrench>, Vec<Lin
     (momenta.collect(), twists)
 }
 
-/// The momentum of everything, linear and about the origin of the world, in its axes.
+/// Returns the total linear momentum, and the angular momentum about the origin of the world, in
+/// world axes.
 pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
     let (mut momenta, _) = momenta(graph, tree, xi);
     let none = zero3(graph);
@@ -41,8 +42,11 @@ pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
     (total.force, total.torque)
 }
 
-/// The momentum of everything for a unit of each velocity alone, linear and about the origin of the world, in its
-/// axes: that of what hangs on the joint, as one body.
+/// Returns the total momentum for a unit of each single velocity: the columns of the momentum
+/// matrix.
+///
+/// Each column is (linear, angular about the origin of the world) in world axes, and is the
+/// momentum of the subtree of the joint, moving as one body.
 pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
     let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
@@ -70,9 +74,11 @@ pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
     columns
 }
 
-/// The part of ṗ that is quadratic in ξ; `None` where a freedom's twist varies in the axes of its link.
+/// Returns the part of ṗ that is quadratic in ξ; `None` if a freedom's twist varies in the axes of
+/// its link.
 pub fn quadratic_rate(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
-    // Twists may vary without any drift: those of angular velocities in axes of the world do.
+    // The velocity product may vanish although the twists vary: angular velocities in world axes
+    // are an example.
     let mut freedoms = tree.links.iter().flat_map(|link| &link.freedoms);
     let varies = |entry: &Edge| !graph.is_free(entry.node());
     if freedoms.any(|freedom| freedom.angular.iter().chain(&freedom.linear).any(varies)) {

@@ -1,16 +1,18 @@
-//! Axes that parallel hinges share.
+//! Common axes for links with parallel hinges.
 //!
-//! The equations of the recursions hold between vectors and tensors, in whatever axes these have at an instant. Links whose hinges
-//! are parallel take the axes of the first of them before it turns: then nothing has to be turned between them, and only
-//! what a link itself weighs is turned, by the sum of the angles. So does the last link of a chain, whose inertia is all
-//! that there is to turn.
+//! The equations of the recursions hold between vectors and tensors, whatever axes they are
+//! expressed in at an instant. Links whose hinges are parallel use the axes that the first of them
+//! has before it rotates: then no vector has to be rotated between them, and only the inertia of
+//! each link is rotated, by the sum of the joint angles. The last link of a chain does the same,
+//! since its inertia is the only thing to rotate.
 
 use super::turn::Turn;
 use super::{Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 
 impl Tree {
-    /// The same links, in shared axes, and for each the turn of its own axes in those, where it has given them up.
+    /// Returns the same links in shared axes, and for each link that has given up its own axes
+    /// their rotation relative to the shared ones.
     pub fn sharing_axes(&self, graph: &mut Graph) -> (Tree, Vec<Option<Turn>>) {
         let shares = self.shares(graph);
         let mut lags: Vec<Option<Plane>> = Vec::with_capacity(self.links.len());
@@ -53,8 +55,8 @@ impl Tree {
         (tree, lags.iter().map(|lag| lag.map(Plane::turn)).collect())
     }
 
-    /// Which links give up axes of their own: those whose hinge is parallel to the one before or to one behind, and the
-    /// last of each chain.
+    /// Returns for each link whether it gives up its own axes: if its hinge is parallel to that of
+    /// its parent or a child, or if it is the last of a chain.
     fn shares(&self, graph: &Graph) -> Vec<bool> {
         let mut shares: Vec<bool> = (0..self.links.len())
             .map(|i| !self.links.iter().any(|link| link.parent == Some(i)))
@@ -68,7 +70,7 @@ impl Tree {
         shares
     }
 
-    /// The link before, where its hinge and that of this link are parallel.
+    /// Returns the parent of a link if the hinges of both are parallel.
     pub(super) fn parallel(&self, graph: &Graph, link: &Link) -> Option<usize> {
         let parent = link.parent?;
         hinge(graph, &self.links[parent])?;
@@ -80,7 +82,7 @@ impl Tree {
     }
 }
 
-/// The turns before a hinge's own, and its angle.
+/// Returns the rotations that precede the one of a hinge itself, and the angle of the hinge.
 fn hinge<'a>(graph: &Graph, link: &'a Link) -> Option<(&'a [Turn], Plane)> {
     let (zero, one) = (graph.zero(), graph.one());
     let [freedom] = &link.freedoms[..] else {
@@ -93,7 +95,7 @@ fn hinge<'a>(graph: &Graph, link: &'a Link) -> Option<(&'a [Turn], Plane)> {
     Some((fixed, Plane::of(last)?))
 }
 
-/// Whether the third axis stays.
+/// Returns whether a rotation keeps the third axis.
 fn is_level(graph: &Graph, turn: &Turn) -> bool {
     match *turn {
         Turn::About { axis: 2, .. } => true,
@@ -102,7 +104,7 @@ fn is_level(graph: &Graph, turn: &Turn) -> bool {
     }
 }
 
-/// An angle about the third axis.
+/// Rotation about the third axis.
 #[derive(Clone, Copy)]
 struct Plane {
     cos: Edge,

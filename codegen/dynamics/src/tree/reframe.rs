@@ -1,11 +1,13 @@
-//! Frames of hinged links after Denavit and Hartenberg: the third axis along the hinge, the first
-//! along the common normal to the hinge of the next link, so that two plane rotations and two
-//! distances lead from link to link.
+//! Frames of links on hinges after Denavit and Hartenberg.
 //!
-//! The foot of the common normal of two axes at a tilt α is p·z / sin² α along the axis, and rounding at
-//! a distance d costs (d / L)² units where the description has the size L. So an origin is moved only as
-//! far as `safe` allows, and a direction is taken only where its numbers keep their digits; axes that are
-//! almost parallel are placed as parallel ones are, and their tilt is turned by Rx(a) Ry(b).
+//! The third axis is along the hinge and the first one along the common normal to the hinge of the
+//! next link, so that two plane rotations and two distances lead from link to link.
+//!
+//! If α is the angle between two axes, the foot of their common normal is at p·z / sin² α along the
+//! axis. Rounding at a distance d costs (d / L)² units of roundoff if L is the size of the
+//! description. Therefore an origin is moved only as far as `safe` allows, and a direction is used
+//! only if its numbers keep their digits; axes that are almost parallel are treated as parallel
+//! ones, and the small tilt between them is a rotation Rx(a) Ry(b).
 
 use super::draft::{Draft, JointMotion};
 use super::safe::Safe;
@@ -13,7 +15,7 @@ use super::turn::Turn;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::linear::{Vec3, add3, scale3};
 
-/// Moves and turns the frames of all hinged links.
+/// Moves and rotates the frames of all links on hinges.
 pub fn reframe(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
     let weights = weights(links);
     for i in 0..=links.len() {
@@ -41,17 +43,17 @@ pub fn reframe(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
     }
 }
 
-/// Leaves the frames where they are: hinges turn about third axes, and nothing else is chosen.
+/// Keeps the frames of the description, except that hinges rotate about third axes.
 pub fn keep(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
     for link in links.iter_mut().filter(|link| is_hinge(link)) {
         factor(graph, link, safe);
     }
 }
 
-/// The same, with origins moved along their hinges as above; how far, for each link.
+/// As [`keep`], but with origins moved along their hinges; returns for each link how far.
 pub fn slide_all(graph: &mut Graph, links: &mut [Draft], safe: &Safe) -> Vec<Edge> {
     let mut distances = vec![graph.zero(); links.len()];
-    // Each after the link before, on whose frame its own position depends.
+    // In order from the root, since the position of a link depends on the frame of its parent.
     for j in 0..links.len() {
         if !is_hinge(&links[j]) {
             continue;
@@ -70,7 +72,7 @@ fn is_hinge(link: &Draft) -> bool {
     matches!(link.motion, JointMotion::Hinge { .. })
 }
 
-/// The number of links that hang on each, itself included.
+/// Returns for each link the number of links in its subtree, including the link itself.
 fn weights(links: &[Draft]) -> Vec<usize> {
     let mut weights = vec![1; links.len()];
     for j in (0..links.len()).rev() {
@@ -81,18 +83,19 @@ fn weights(links: &[Draft]) -> Vec<usize> {
     weights
 }
 
-/// The axis of a link's hinge in axes of the link before.
+/// Returns the hinge axis of a link in the axes of its parent.
 fn axis(link: &Draft) -> Vec3 {
     std::array::from_fn(|row| link.base[row][2])
 }
 
-/// Numbers, not parameters: what is decided by them holds for all parameters.
+/// Returns whether all entries are numbers, not parameters, so that decisions based on them hold
+/// for all parameters.
 fn numeric(graph: &Graph, edges: &[Edge]) -> bool {
     edges.iter().all(|edge| graph.class(edge.node()) == 0)
 }
 
-/// How far along its hinge the origin of a link is best moved: to the foot of the common normal
-/// with the hinge before, or to where a coordinate vanishes.
+/// Returns by how much the origin of a link is best moved along its hinge: to the foot of the
+/// common normal with the hinge of the parent, or to where a coordinate vanishes.
 fn foot(graph: &mut Graph, link: &Draft, hinged: bool, safe: &Safe) -> Option<Edge> {
     let (z, p) = (axis(link), link.position);
     let zero = graph.zero();
@@ -113,12 +116,14 @@ fn foot(graph: &mut Graph, link: &Draft, hinged: bool, safe: &Safe) -> Option<Ed
     if safe.is_near(graph, distance) {
         return Some(distance);
     }
-    // Almost parallel: to the height of the hinge before, as for parallel axes.
+    // The hinges are almost parallel: move to the height of the parent's origin, as for parallel
+    // axes.
     let level = -graph.div(p[2], z[2])?;
     safe.is_near(graph, level).then_some(level)
 }
 
-/// Cosine and sine of the angle by which a link's axes are best turned about its hinge.
+/// Returns cosine and sine of the angle by which the axes of a link are best rotated about its
+/// hinge.
 fn normal(
     graph: &mut Graph,
     links: &[Draft],
@@ -151,7 +156,7 @@ fn normal(
     None
 }
 
-/// (x, y) / √(x² + y²); `None` where that is no turn at all.
+/// Returns (x, y) / √(x² + y²); `None` if this is no rotation at all.
 fn direction(graph: &mut Graph, x: Edge, y: Edge) -> Option<(Edge, Edge)> {
     let zero = graph.zero();
     if y.abs() == zero {
@@ -179,7 +184,7 @@ fn slide(graph: &mut Graph, links: &mut [Draft], j: usize, distance: Edge) {
     }
 }
 
-/// Turns the axes of a link about its hinge.
+/// Rotates the axes of a link about its hinge.
 fn spin(graph: &mut Graph, links: &mut [Draft], i: usize, (c, s): (Edge, Edge)) {
     let back = Turn::About {
         axis: 2,
@@ -204,7 +209,7 @@ fn turn_base(graph: &mut Graph, link: &mut Draft, turn: &Turn) {
     }
 }
 
-/// Adds a constant to the angle of a link's hinge.
+/// Adds a constant to the angle of a link's hinge, given by its cosine and sine.
 fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
     if let JointMotion::Hinge { phase, .. } = &mut link.motion {
         let (cc, ss) = (graph.mul(phase.0, c), graph.mul(phase.1, s));
@@ -213,8 +218,10 @@ fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
     }
 }
 
-/// base = Rz(β) Rx(α) Rz(γ), or Rx(a) Ry(b) Rz(γ) where a small tilt hides β: the first two are kept, the
-/// last goes into the angle.
+/// Factors base = Rz(β) Rx(α) Rz(γ), or Rx(a) Ry(b) Rz(γ) if the tilt is too small for β to be
+/// accurate.
+///
+/// The first two factors are stored as turns, the last is added to the joint angle.
 fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
     let Some(first) = tilt(graph, axis(link), safe) else {
         return;
@@ -234,8 +241,9 @@ fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
     }
 }
 
-/// Two plane rotations that take the third axis to z = (x, y, w):
-/// Rz(β) Rx(α) with (sin β, −cos β) = (x, y) / sin α, or Rx(a) Ry(b) with sin b = x and
+/// Returns two plane rotations that take the third axis to z = (x, y, w).
+///
+/// They are Rz(β) Rx(α) with (sin β, −cos β) = (x, y) / sin α, or Rx(a) Ry(b) with sin b = x and
 /// (−sin a, cos a) = (y, w) / cos b.
 fn tilt(graph: &mut Graph, z: Vec3, safe: &Safe) -> Option<[Turn; 2]> {
     let zero = graph.zero();
@@ -259,7 +267,7 @@ fn tilt(graph: &mut Graph, z: Vec3, safe: &Safe) -> Option<[Turn; 2]> {
     Some([about(0, c, s), about(1, length, x)])
 }
 
-/// √(x² + y²); the number whose square that is, where there is one.
+/// Returns √(x² + y²), which is a number if the sum is the square of one.
 fn hypotenuse(graph: &mut Graph, x: Edge, y: Edge) -> Edge {
     let (a, b) = (graph.mul(x, x), graph.mul(y, y));
     let square = graph.add(a, b);

@@ -1,8 +1,9 @@
-//! Base inertial parameters: what a joint cannot feel of a link's inertia is given to the link
-//! before (Gautier and Khalil 1990; Khalil and Kleinfinger 1987).
+//! Base inertial parameters: the part of a link's inertia that its joint cannot feel is moved to
+//! the parent link (Gautier and Khalil 1990; Khalil and Kleinfinger 1987).
 //!
-//! About a hinge along z the parts m, h_z and S_zz are those of masses on the axis, at rest in the
-//! link before. A slider does not turn, so that S goes as a whole; a ball joint leaves m.
+//! For a hinge along z, the parts m, h_z and S_zz are those of masses on the axis, at rest in the
+//! parent link. A prismatic joint does not rotate its link, so that all of S is moved; a ball joint
+//! passes on m.
 
 use super::draft::{Draft, JointMotion};
 use super::mass::Mass;
@@ -10,7 +11,7 @@ use super::turn::Turn;
 use hamel_algebra::graph::Graph;
 use hamel_algebra::linear::zero3;
 
-/// Regroups from the last link to the first.
+/// Regroups the inertias of all links, from the last to the first.
 pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
     for j in (0..links.len()).rev() {
         let zero = graph.zero();
@@ -42,7 +43,8 @@ pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
         let varies = links[j].position.iter().any(|p| !graph.is_free(p.node()));
         let turns = match &links[j].motion {
             JointMotion::Hinge { turns, .. } => turns.clone(),
-            // What slides keeps the axes that the link before had, before those were turned.
+            // A link that only translates keeps the axes that its parent had before those were
+            // rotated.
             JointMotion::Other(..) => vec![Turn::By(links[j].base)],
         };
         links[j].mass = left;
@@ -50,7 +52,8 @@ pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
             for turn in turns.iter().rev() {
                 moved = moved.turned(graph, turn);
             }
-            // What slides has given no mass away.
+            // A position varies only for prismatic joints; these pass on S alone, which needs no
+            // shift.
             if !varies {
                 moved = moved.shifted(graph, links[j].position);
             }

@@ -1,23 +1,26 @@
-//! Whether a rotation is one about a constant axis, and what the cosine and sine of its angle are.
+//! Detection of rotations about a constant axis, with the cosine and sine of their angle.
 
 use hamel_algebra::graph::{Edge, Function, Graph, Node};
 use hamel_algebra::linear::{Mat3, Vec3, apply3, cross, scale3, sub3, transpose3};
 use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
 
-/// E = base · Rz(angle) · axesᵀ.
+/// A rotation about a constant axis, E = base · Rz(angle) · axesᵀ.
 pub struct Hinge {
-    /// Constant axes before the turn.
+    /// Constant axes before the rotation by the angle.
     pub base: Mat3,
-    /// Axes of the link in those of the frame that it moves.
+    /// Axes of the link in those of the frame that the hinge moves.
     pub axes: Mat3,
-    /// Cosine and sine.
+    /// Cosine and sine of the angle.
     pub angle: (Edge, Edge),
-    /// Its rate Σ k ξⁱ.
+    /// Rate of the angle, Σ k ξⁱ, as pairs (i, k).
     pub rate: Vec<(usize, Edge)>,
 }
 
-/// The hinge that a rotation with these constant columns of angular velocity is.
+/// Returns a rotation as a hinge, if it is one.
+///
+/// `columns` are (i, angular velocity, velocity) per unit of each ξⁱ; the angular velocities have
+/// to be constant.
 pub fn hinge(model: &mut Model, turn: &Mat3, columns: &[(usize, Vec3, Vec3)]) -> Option<Hinge> {
     let pairs = angles(model, turn);
     let graph = &mut model.graph;
@@ -40,7 +43,7 @@ pub fn hinge(model: &mut Model, turn: &Mat3, columns: &[(usize, Vec3, Vec3)]) ->
     if !axis.iter().all(|entry| graph.is_free(entry.node())) {
         return None;
     }
-    // Turned back, the second axis of the plane follows the first.
+    // Rotated back by the angle, the first axis has to be constant; the second one follows from it.
     let along = cross(graph, axis, across);
     for (cos, sin) in pairs {
         let (c, s) = (scale3(graph, cos, across), scale3(graph, sin, along));
@@ -58,7 +61,8 @@ pub fn hinge(model: &mut Model, turn: &Mat3, columns: &[(usize, Vec3, Vec3)]) ->
     None
 }
 
-/// An orthonormal frame, by columns, whose third axis is a constant vector's direction.
+/// Returns an orthonormal frame, by columns, whose third axis has the direction of a constant
+/// vector.
 pub fn axes(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
     let zero = graph.zero();
     let [third, first] = match std::array::from_fn::<bool, 3, _>(|i| v[i] != zero) {
@@ -77,7 +81,8 @@ pub fn axes(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
         }
         place => {
             let third = normalized(graph, v)?;
-            // Across the plane of two entries that are not zero.
+            // The first axis is perpendicular to the third, in the plane of two of its non-zero
+            // entries.
             let (i, j) = if place[0] && place[1] {
                 (0, 1)
             } else if place[1] {
@@ -96,7 +101,7 @@ pub fn axes(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
     Some(transpose3(&[clean(first), clean(second), clean(third)]))
 }
 
-/// Whether a constant is a negative number.
+/// Returns whether a constant is a negative number.
 fn sign(graph: &Graph, edge: Edge) -> bool {
     use num_traits::Signed;
     graph
@@ -104,7 +109,7 @@ fn sign(graph: &Graph, edge: Edge) -> bool {
         .is_some_and(|number| number.is_negative())
 }
 
-/// v / |v|.
+/// Returns v / |v|.
 pub fn normalized(graph: &mut Graph, v: Vec3) -> Option<Vec3> {
     let square = graph.dot(&v, &v);
     let length = graph.apply(Function::Sqrt, square);
@@ -112,7 +117,7 @@ pub fn normalized(graph: &mut Graph, v: Vec3) -> Option<Vec3> {
     Some(scale3(graph, scale, v))
 }
 
-/// Cosine and sine, in both senses, of the angles that a rotation is written in.
+/// Returns (cos, sin) and (cos, −sin) of all angles that a rotation matrix is written in.
 fn angles(model: &mut Model, turn: &Mat3) -> Vec<(Edge, Edge)> {
     let graph = &mut model.graph;
     let nodes = graph.reachable(&turn.concat());

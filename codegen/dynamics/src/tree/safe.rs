@@ -1,28 +1,31 @@
-//! Which shifts of origins and which directions of axes keep the digits of the numbers in them.
+//! Limits on moving origins and choosing axes, within which the resulting numbers keep their
+//! digits.
 
 use super::draft::Draft;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::rounding::{UNIT, bounded};
 use hamel_language::model::Model;
 
-/// An origin is moved at most so many times the size of the description: rounding then costs less than
-/// its square, 64 units.
+/// Largest shift of an origin in multiples of the size of the description.
+///
+/// Rounding then costs less than the square of this, 64 units of roundoff.
 const REACH: f64 = 8.0;
-/// A direction is known where rounding turns it by less than so many units.
+/// Largest accepted rounding error of a direction, in units of roundoff.
 const BLUR: f64 = 256.0;
 
-/// The size of a description, and what its symbols stand for.
+/// Size of a description and values of its symbols, by which rounding errors are bounded.
 #[derive(Clone, Debug)]
 pub struct Safe {
     /// Default values of parameters.
     numbers: Vec<f64>,
-    /// The greatest distance between an origin and the one before or a centre of mass (m); where in the
-    /// world the first links stand does not count.
+    /// Largest distance between an origin and that of the parent link or a centre of mass (m).
+    ///
+    /// The positions of the first links in the world do not count.
     size: f64,
 }
 
 impl Safe {
-    /// That of the links of a model.
+    /// Determines the size for the links of a model.
     pub fn of(model: &Model, links: &[Draft]) -> Self {
         let mut safe = Safe {
             numbers: model.numbers(&model.defaults, &[], &[], &[], &[]),
@@ -41,7 +44,7 @@ impl Safe {
         safe
     }
 
-    /// The norm of what is constant; NaN for what varies.
+    /// Returns the norm of constant entries; NaN if one of them varies.
     fn length(&self, graph: &Graph, entries: &[Edge]) -> f64 {
         if entries.iter().any(|entry| !graph.is_free(entry.node())) {
             return f64::NAN;
@@ -53,12 +56,12 @@ impl Safe {
             .sqrt()
     }
 
-    /// Whether an origin may be moved by a distance.
+    /// Returns whether an origin may be moved by a distance.
     pub fn is_near(&self, graph: &Graph, distance: Edge) -> bool {
         self.length(graph, &[distance]) <= REACH * self.size
     }
 
-    /// Whether rounding leaves the direction of a vector what it is.
+    /// Returns whether the direction of a vector is accurate in spite of rounding.
     pub fn has_direction(&self, graph: &Graph, vector: &[Edge]) -> bool {
         let entries = bounded(graph, vector, &self.numbers);
         let norm = |pick: fn(f64, f64) -> f64| {
@@ -69,8 +72,9 @@ impl Safe {
         length > 0.0 && error <= BLUR * UNIT * length
     }
 
-    /// Whether rounding leaves a cosine and a sine what they are: their root may be known by another
-    /// expression, in which digits cancel.
+    /// Returns whether a cosine and a sine are accurate in spite of rounding.
+    ///
+    /// Their square root may be known by another expression, in which digits cancel.
     pub fn is_sharp(&self, graph: &Graph, turn: &[Edge]) -> bool {
         let entries = bounded(graph, turn, &self.numbers);
         entries.iter().all(|entry| entry.error <= BLUR * UNIT)

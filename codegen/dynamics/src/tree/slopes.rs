@@ -1,10 +1,13 @@
-//! ∂ of inverse dynamics along displacements h and velocities, by composite bodies.
+//! Derivatives of inverse dynamics along displacements h and velocities, by composite bodies.
 //!
-//! A link whose motion varies by (δω, δα, δa), inner joints going on as they do, passes on the
-//! torque Θ δα + h × δa + B δω and the force δα × h + m δa + C δω about its origin: Θ, h, m are those of
-//! all that hangs on it, and B and C follow from them, as of one body, and from how it moves inside, P and D below.
-//! Forces of a joint are covectors on such variations, transformed towards the root as wrenches are.
-//! After Carpentier and Mansard (2018) and Singh, Russell and Wensing (2022), in axes of links.
+//! Let the motion of a link vary by (δω, δα, δa), while the joints of its descendants move as
+//! before. Its subtree then requires the additional torque Θ δα + h × δa + B δω and the additional
+//! force
+//! δα × h + m δa + C δω about the origin of the link.
+//! Θ, h and m are those of the subtree. B and C follow from them as for a single body, and from the
+//! motion within the subtree (P and D below). Joint forces are covectors on such variations, which
+//! are transformed towards the root as wrenches are. After Carpentier and Mansard (2018) and Singh,
+//! Russell and Wensing (2022), in axes of links.
 
 use super::inverse::{LinkMotion, Wrench, motions, to_parent, wrench};
 use super::mass::Mass;
@@ -12,23 +15,25 @@ use super::{Freedom, Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, scale3, zero3};
 
-/// ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ needs.
+/// Derivatives ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ requires.
 pub struct Slopes {
-    /// Columns: displacements.
+    /// ∂f/∂h; columns belong to displacements.
     pub displacement: Vec<Vec<Edge>>,
-    /// Columns: velocities.
+    /// ∂f/∂ξ; columns belong to velocities.
     pub velocity: Vec<Vec<Edge>>,
 }
 
-/// How all that hangs on a joint moves against its link: 2 ∫ v dm and 2 ∫ r vᵀ dm, v the velocity that the link sees.
-/// By a variation δω the acceleration of every point varies by 2 δω × v.
+/// Motion of a subtree relative to its link: P = 2 ∫ v dm and D = 2 ∫ r vᵀ dm, where v is the
+/// velocity relative to the link.
+///
+/// A variation δω changes the acceleration of every point by 2 δω × v.
 #[derive(Clone, Copy)]
 struct RelativeMomentum {
     first: Vec3,
     second: Mat3,
 }
 
-/// A variation of a link's motion.
+/// Variation (δω, δα, δa) of a link's motion, or a covector on such variations.
 #[derive(Clone, Copy)]
 struct Variation {
     omega: Vec3,
@@ -36,7 +41,8 @@ struct Variation {
     a: Vec3,
 }
 
-/// The slopes; `None` where a joint's freedoms vary with x or are not plain velocities.
+/// Computes the derivatives; `None` if a joint's freedoms vary with x or their rates are not plain
+/// velocities.
 pub fn slopes(
     graph: &mut Graph,
     tree: &Tree,
@@ -77,7 +83,7 @@ pub fn slopes(
         displacement: vec![vec![graph.zero(); n]; n],
         velocity: vec![vec![graph.zero(); n]; n],
     };
-    // Variations of a joint's own link, by displacement and by velocity.
+    // Variations of a joint's own link with its displacements and with its velocities.
     let varied: Vec<Vec<(Variation, Variation)>> = tree
         .links
         .iter()
@@ -96,7 +102,7 @@ pub fn slopes(
         };
         for (place, freedom) in link.freedoms.iter().enumerate() {
             let (i, _) = *freedom.rate.first()?;
-            // The force of this joint, by variations of its link and of those before.
+            // Force of this joint as a covector on variations of its link and of its ancestors.
             let mut covector = composite.force(graph, freedom);
             let mut here = index;
             loop {
@@ -115,7 +121,7 @@ pub fn slopes(
                     covector.to_parent(graph, &tree.links[here], motions[here].relative, before);
                 here = parent;
             }
-            // The wrench that a variation of this joint passes on to those before.
+            // Wrench that a variation of this joint passes on to its ancestors.
             let (by_place, by_rate) = varied[index][place];
             let mut wrenches = [by_place, by_rate].map(|v| composite.wrench(graph, &v));
             let total = totals[index];
@@ -135,7 +141,7 @@ pub fn slopes(
     Some(slopes)
 }
 
-/// The wrench turns and moves along with the joint: e × f, e × n + l × f.
+/// Adds the change of the wrench that rotates and moves along with the joint: e × f, e × n + l × f.
 fn follow(graph: &mut Graph, change: &Wrench, freedom: &Freedom, total: &Wrench) -> Wrench {
     let force = cross(graph, freedom.angular, total.force);
     let torque = cross(graph, freedom.angular, total.torque);
@@ -147,12 +153,13 @@ fn follow(graph: &mut Graph, change: &Wrench, freedom: &Freedom, total: &Wrench)
     change.plus(graph, &turned)
 }
 
-/// What the link before does, as seen from a link that is displaced.
+/// Variation of a link's motion with a displacement of its joint: the motion of the parent link as
+/// seen from the displaced link.
 fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
     let [omega, alpha, a] = motion.from_parent.map(|v| cross(graph, v, freedom.angular));
     let gyro = cross(graph, omega, motion.relative.0);
     let alpha = add3(graph, alpha, gyro);
-    // Its origin moves by l in the field of accelerations of the link before.
+    // The origin moves by l in the acceleration field of the parent link.
     let [before, turning, _] = motion.from_parent;
     let tangential = cross(graph, turning, freedom.linear);
     let inner = cross(graph, before, freedom.linear);
@@ -165,7 +172,7 @@ fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Varia
     Variation { omega, alpha, a }
 }
 
-/// A faster joint.
+/// Variation of a link's motion with the velocity of its joint.
 fn faster(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
     let before = motion.from_parent[0];
     let twice = add3(graph, before, motion.omega);
@@ -181,7 +188,7 @@ fn faster(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variatio
 }
 
 impl Variation {
-    /// The pairing of a covector with a variation.
+    /// Returns the pairing of a covector (`self`) with a variation.
     fn on(&self, graph: &mut Graph, variation: &Variation) -> Edge {
         let terms = [
             graph.dot(&self.omega, &variation.omega),
@@ -191,7 +198,7 @@ impl Variation {
         graph.sum(&terms)
     }
 
-    /// A covector on variations of the link before.
+    /// Transforms a covector to variations of the parent link's motion.
     fn to_parent(
         self,
         graph: &mut Graph,
@@ -218,7 +225,7 @@ impl Variation {
     }
 }
 
-/// K of a · (δω × (ω × p) + ω × (δω × p)) = δω · K a: p ωᵀ − 2 ω pᵀ + (p·ω) I.
+/// Returns K = p ωᵀ − 2 ω pᵀ + (p·ω) I, for which a · (δω × (ω × p) + ω × (δω × p)) = δω · K a.
 fn centripetal(graph: &mut Graph, omega: Vec3, p: Vec3) -> Mat3 {
     std::array::from_fn(|i| {
         std::array::from_fn(|k| {
@@ -234,7 +241,7 @@ fn centripetal(graph: &mut Graph, omega: Vec3, p: Vec3) -> Mat3 {
     })
 }
 
-/// All that hangs on a joint, as one body but for what relative_momenta in it.
+/// Subtree of a joint as one rigid body, in addition to the motion of its links relative to it.
 struct Composite {
     mass: Mass,
     relative_momentum: RelativeMomentum,
@@ -242,7 +249,7 @@ struct Composite {
 }
 
 impl Composite {
-    /// The force of a joint, as a covector on variations of its link.
+    /// Returns the force of a joint as a covector on variations of its link.
     fn force(&self, graph: &mut Graph, freedom: &Freedom) -> Variation {
         let (e, l, omega) = (freedom.angular, freedom.linear, self.omega);
         let (force, torque) = self.mass.wrench(graph, e, l);
@@ -268,7 +275,7 @@ impl Composite {
         }
     }
 
-    /// The wrench that answers a variation.
+    /// Returns the wrench that a variation requires.
     fn wrench(&self, graph: &mut Graph, by: &Variation) -> Wrench {
         let (mass, omega) = (&self.mass, self.omega);
         let (force, torque) = mass.wrench(graph, by.alpha, by.a);
@@ -295,7 +302,7 @@ impl Composite {
     }
 }
 
-/// a (b·c) + (a·b) c − 2 b (a·c).
+/// Returns a (b·c) + (a·b) c − 2 b (a·c).
 fn centripetal_force(graph: &mut Graph, a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
     let (bc, ab, ac) = (graph.dot(&b, &c), graph.dot(&a, &b), graph.dot(&a, &c));
     let twice = -graph.add(ac, ac);
@@ -324,7 +331,7 @@ impl RelativeMomentum {
         }
     }
 
-    /// tr D v − D v, or the same of Dᵀ.
+    /// Returns (tr D) v − D v, or the same with Dᵀ.
     fn turned(
         &self,
         graph: &mut Graph,
@@ -339,7 +346,8 @@ impl RelativeMomentum {
         apply(graph, &rest, v).map(|entry| -entry)
     }
 
-    /// Relative to the link before, against which the link itself moves, too.
+    /// Transforms to the motion relative to the parent, which includes the motion of the link
+    /// itself.
     fn to_parent(self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
         let (spin, speed) = motion.relative;
         let (spin, speed) = (add3(graph, spin, spin), add3(graph, speed, speed));

@@ -1,4 +1,4 @@
-//! Rotations as products of plane ones: what is zero or one in them costs nothing.
+//! Rotations as products of plane rotations, in which entries that are zero or one cost nothing.
 
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, apply_transposed, apply3, multiply3, transpose3};
@@ -6,13 +6,13 @@ use hamel_algebra::linear::{Mat3, Vec3, apply_transposed, apply3, multiply3, tra
 /// One factor of a rotation.
 #[derive(Clone, Copy, Debug)]
 pub enum Turn {
-    /// About the axis `axis` (0, 1, 2) by the angle with this cosine and sine.
+    /// Rotation about the axis `axis` (0, 1, 2) by the angle with this cosine and sine.
     About {
-        /// Which axis.
+        /// Index of the axis.
         axis: usize,
-        /// Its cosine.
+        /// Cosine of the angle.
         cos: Edge,
-        /// Its sine.
+        /// Sine of the angle.
         sin: Edge,
     },
     /// Any rotation matrix.
@@ -20,7 +20,7 @@ pub enum Turn {
 }
 
 impl Turn {
-    /// R v.
+    /// Returns R v.
     pub fn rotate(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
             Turn::By(ref matrix) => apply3(graph, matrix, v),
@@ -28,7 +28,7 @@ impl Turn {
         }
     }
 
-    /// Rᵀ v.
+    /// Returns Rᵀ v.
     pub fn rotate_back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
             Turn::By(ref matrix) => apply_transposed(graph, matrix, v),
@@ -36,8 +36,10 @@ impl Turn {
         }
     }
 
-    /// R S Rᵀ of a symmetric matrix: in the plane, with t = (a − d) sin + 2 b cos, a − sin t,
-    /// d + sin t and cos t − b.
+    /// Returns R S Rᵀ for a symmetric matrix S.
+    ///
+    /// With t = (a − d) sin + 2 b cos, the block `[[a, b], [b, d]]` of S in the plane of rotation
+    /// becomes a − sin t, d + sin t and cos t − b.
     pub fn symmetric(&self, graph: &mut Graph, s: &Mat3) -> Mat3 {
         match *self {
             Turn::By(ref matrix) => {
@@ -72,7 +74,7 @@ impl Turn {
         }
     }
 
-    /// R H Rᵀ of any matrix.
+    /// Returns R H Rᵀ for any matrix H.
     pub fn general(&self, graph: &mut Graph, h: &Mat3) -> Mat3 {
         match *self {
             Turn::By(ref matrix) => {
@@ -104,7 +106,7 @@ impl Turn {
     }
 }
 
-/// (c a − s b, s a + c b).
+/// Returns (c a − s b, s a + c b).
 fn pair(graph: &mut Graph, cos: Edge, sin: Edge, (a, b): (Edge, Edge)) -> (Edge, Edge) {
     let (ca, sb) = (graph.mul(cos, a), graph.mul(sin, b));
     let (sa, cb) = (graph.mul(sin, a), graph.mul(cos, b));

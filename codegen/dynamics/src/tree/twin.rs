@@ -1,24 +1,26 @@
-//! Motions of a link that hinges on it could make as well.
+//! Motions of a first link that have the same effect as a joint on it.
 //!
-//! All that hangs on a hinge moves in the same way whether the hinge turns or the link before turns about the hinge's axis.
-//! With the velocities s of that turn, M s = M e on the velocities of what hangs there, e the hinge's own, where that has no
-//! armature.
+//! Everything that hangs on a hinge moves in the same way whether the hinge turns or its parent
+//! link turns about the axis of the hinge. If s are the velocities of that turn and e is the unit
+//! vector of the hinge's own velocity, then M s and M e agree in the rows of the velocities of the
+//! hinge's subtree, provided that the hinge has no armature.
 
 use super::uniform::{along, unit};
 use super::{Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, cross, zero3};
 
-/// A turn or a slide, as velocities of the first link.
+/// The motion of a joint, expressed by velocities of the first link.
 pub struct Twin {
-    /// The velocity of the joint.
+    /// Index of the joint's velocity.
     pub of: usize,
-    /// The velocities of the first link, and how fast they are.
+    /// Velocities of the first link and their values per unit of the joint's velocity.
     pub by: Vec<(usize, Edge)>,
 }
 
 impl Tree {
-    /// The twins of all joints on first links, where those move freely enough.
+    /// Returns the twins of all joints on first links, for which the first link has the freedoms
+    /// needed.
     pub fn twins(&self, graph: &mut Graph) -> Vec<Twin> {
         let links = self.links.iter();
         links.filter_map(|link| self.twin(graph, link)).collect()
@@ -35,7 +37,7 @@ impl Tree {
         let &[(of, factor)] = freedom.rate.as_slice() else {
             return None;
         };
-        // An armature moves with the joint's own velocity alone.
+        // An armature is moved by the joint's own velocity alone.
         if factor != graph.one() || self.armature[of] != graph.zero() {
             return None;
         }
@@ -63,7 +65,7 @@ impl Tree {
                 by.push((i, rate));
             }
         }
-        // What is left the first link cannot do.
+        // A remainder is motion for which the first link has no freedom.
         let whole = turns.iter().chain(&slides).all(|&rest| rest == zero);
         whole.then_some(Twin { of, by })
     }

@@ -1,26 +1,28 @@
-//! What free links do not feel: a velocity and an acceleration that everything has in common.
+//! Common velocity and acceleration of all links, which a free tree does not feel.
 //!
-//! Where nothing holds the first links of a tree, their velocities v need no force by themselves, and what weighs is an
-//! acceleration of all links alike. So with the proper acceleration ξ̇ + ω × v − Rᵀ g in the place of v̇ the equations of motion
-//! have neither v nor g in them.
+//! If nothing holds the first links of a tree, their velocities v require no force by themselves,
+//! and gravity is an acceleration that all links share. With the proper acceleration
+//! ξ̇ + ω × v − Rᵀ g
+//! in place of v̇, the equations of motion therefore contain neither v nor g.
 
 use super::inverse::motions;
 use super::{Freedom, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, zero3};
 
-/// The motion that everything has in common.
+/// Motion that all links have in common.
 pub struct Uniform {
-    /// ξ without the velocities of the first links.
+    /// ξ with zeros in place of the velocities of the first links.
     pub xi: Vec<Edge>,
-    /// What ξ̇ is more than the proper acceleration, −ω × v + Rᵀ g.
+    /// Difference between ξ̇ and the proper acceleration, −ω × v + Rᵀ g.
     pub rates: Vec<Edge>,
-    /// Whose velocities are left out.
+    /// Indices of the velocities that are left out.
     pub common: Vec<usize>,
 }
 
 impl Tree {
-    /// What its links have in common; `None` where a first link is held, or its velocity is not plain.
+    /// Returns the common motion of all links; `None` if a first link is held, or its velocity is
+    /// not plain.
     pub fn uniform(&self, graph: &mut Graph, xi: &[Edge], gravity: Vec3) -> Option<Uniform> {
         let zero = graph.zero();
         let still = vec![zero; xi.len()];
@@ -61,12 +63,12 @@ impl Tree {
     }
 }
 
-/// The axis of the link that a freedom moves it along without turning it.
+/// Returns the axis of the link along which a freedom translates it without rotation.
 pub fn along(graph: &Graph, freedom: &Freedom) -> Option<usize> {
     unit(graph, freedom.linear).filter(|_| freedom.angular == zero3(graph))
 }
 
-/// The axis that a vector is the unit vector of.
+/// Returns the axis of which a vector is the unit vector.
 pub fn unit(graph: &Graph, v: Vec3) -> Option<usize> {
     let (zero, one) = (graph.zero(), graph.one());
     (0..3).find(|&k| (0..3).all(|i| v[i] == if i == k { one } else { zero }))

@@ -1,4 +1,4 @@
-//! The statements of a function in C: one after the other, or in parts that are functions of their own.
+//! Function bodies in C: a plain sequence of statements, or calls of parts that are functions of their own.
 
 use super::language::{C, Origins};
 use super::nearest::nearest;
@@ -13,20 +13,20 @@ use hamel_program::statements::Body;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 
-/// Instructions are short where they read within so many bytes before and behind what a pointer points to.
+/// Distance from a pointer in bytes, before and behind it, within which accesses have short instructions.
 const NEAR: usize = 128;
 
-/// Lines set in.
+/// Indents all lines of a text.
 pub fn indented(text: &str) -> String {
     let lines = text.lines();
     lines.map(|line| format!("    {line}\n")).collect()
 }
 
-/// The statements of a function that is not in parts.
+/// Prints the body of a function that is not split into parts.
 pub fn whole(texts: &Texts, drawing: &Drawing) -> String {
     let mut printer = drawing.printer();
     let mut text = String::new();
-    // Pivots are looked at last: gcc keeps fewer values in memory where no function ends in its middle.
+    // Pivots are checked last: gcc keeps fewer values in memory if a function has no return in its middle.
     let (values, checks): (Vec<_>, Vec<_>) =
         (drawing.body.statements.iter().cloned()).partition(|statement| statement.is_let());
     let body = Body {
@@ -46,7 +46,7 @@ pub fn whole(texts: &Texts, drawing: &Drawing) -> String {
     )
 }
 
-/// What returns the results, or writes those of some places.
+/// Prints the statements that return the result, or that write the results whose indices satisfy `of`.
 fn results(
     texts: &Texts,
     printer: &mut Printer,
@@ -90,7 +90,8 @@ fn results(
     results
 }
 
-/// A body with what it begins with; it may pass the system on.
+/// Prepends to a body the declarations that it needs, and marks unused arguments. `passes` tells whether the body
+/// passes the system on to parts.
 fn around(texts: &Texts, used: &Used, spec: &Spec, passes: bool, all: &str) -> String {
     let number = returns_number(spec.shape, spec.fallible);
     let mut unused = Vec::new();
@@ -110,7 +111,7 @@ fn around(texts: &Texts, used: &Used, spec: &Spec, passes: bool, all: &str) -> S
     format!("{}{unused}{all}", bind_kept(texts, used))
 }
 
-/// The name of the kept constants, where it is used.
+/// Binds the array of kept constants to `k`, if it is used.
 fn bind_kept(texts: &Texts, used: &Used) -> String {
     match used.kept {
         true => format!("const {} *const k = system->k;\n", texts.names.real()),
@@ -118,7 +119,7 @@ fn bind_kept(texts: &Texts, used: &Used) -> String {
     }
 }
 
-/// The parts of a function in short parts, each a function, and the statements of the one that calls them.
+/// Prints the parts of a function, each a function of its own, and the body of the function that calls them.
 pub fn split(texts: &Texts, drawing: &Drawing) -> (String, String) {
     let names = &texts.names;
     let (status, done) = (names.own("status"), names.done());
@@ -170,11 +171,11 @@ pub fn split(texts: &Texts, drawing: &Drawing) -> (String, String) {
     (parts, around(texts, &main.used, drawing.spec, passes, &all))
 }
 
-/// The results that parts write.
+/// Results that are written by parts.
 struct InParts {
-    /// Their places, by the value.
+    /// Indices of the results that have a value, by its node.
     places: FxHashMap<NodeId, Vec<usize>>,
-    /// All these places.
+    /// All these indices.
     written: BTreeSet<usize>,
 }
 
@@ -192,21 +193,21 @@ impl InParts {
     }
 }
 
-/// The statements of a part.
+/// A part as printed.
 struct Printed {
     text: String,
     used: Used,
     origins: Origins,
 }
 
-/// What a part is given, and takes.
+/// Arguments of a part's call, and its parameters.
 struct Passed {
     given: Vec<String>,
     taken: Vec<String>,
 }
 
 impl Printed {
-    /// A part that is given its arrays from where most of what it reads and writes is near.
+    /// Prints a part. Its arrays are passed as pointers to the places near which it reads and writes most.
     fn new(texts: &Texts, drawing: &Drawing, part: &Part, results: &InParts) -> Self {
         let first = Printed::from(texts, drawing, part, results, Origins::default());
         let near = NEAR / texts.precision.bytes();

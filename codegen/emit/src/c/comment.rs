@@ -1,18 +1,18 @@
-//! Comments of C, whatever stands in them.
+//! Comments in C, safe for any text.
 
 use crate::docs::spelled;
 
-/// Lines as a comment of documentation, set in.
+/// Prints lines as a documentation comment, indented.
 pub fn documentation(lines: &[String], indent: usize) -> String {
     block("/**", lines, indent)
 }
 
-/// Lines as a comment.
+/// Prints lines as a plain comment.
 pub fn plain(lines: &[String]) -> String {
     block("/*", lines, 0)
 }
 
-/// One line of documentation, set in.
+/// Prints one line as a documentation comment, indented.
 pub fn line(text: &str, indent: usize) -> String {
     format!("{:indent$}/** {} */\n", "", tame(text))
 }
@@ -32,7 +32,7 @@ fn block(start: &str, lines: &[String], indent: usize) -> String {
     text
 }
 
-/// A line without what begins or ends a comment, trigraphs, and what is no text.
+/// Breaks up character pairs that begin or end a comment or form trigraphs, and removes control characters.
 fn tame(line: &str) -> String {
     let line = line.trim_end().trim_start_matches(' ');
     let line: String = line.chars().filter(|c| !c.is_control()).collect();

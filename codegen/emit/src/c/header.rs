@@ -1,4 +1,4 @@
-//! `name.h`: sizes, places of entries by name, types, and prototypes with what they evaluate.
+//! The header `name.h`: sizes, indices of entries by name, types, and documented prototypes.
 
 use super::{Texts, comment, returns_number};
 use crate::function::Spec;
@@ -10,7 +10,7 @@ use hamel_program::{Cause, Program};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// The header without the comment that says where it comes from.
+/// Returns the header, without the comment that says how it was generated.
 pub fn text(texts: &Texts) -> String {
     let capitals = &texts.names.capitals;
     let mut declared = String::new();
@@ -35,7 +35,7 @@ pub fn text(texts: &Texts) -> String {
     )
 }
 
-/// What the system is, and how to call what follows.
+/// Prints the documentation of the system and of how to call its functions.
 fn about(texts: &Texts) -> String {
     let (program, names) = (texts.program(), &texts.names);
     let mut lines = program.docs.clone();
@@ -65,7 +65,7 @@ fn opening(capitals: &str) -> String {
     )
 }
 
-/// The sizes of all arrays, and the place of every name in them.
+/// Prints the sizes of all arrays, and the index of each named entry.
 fn sizes(texts: &Texts) -> String {
     let program = texts.program();
     let capitals = &texts.names.capitals;
@@ -93,7 +93,7 @@ fn sizes(texts: &Texts) -> String {
         let what = format!("{} In `{array}`, {}.", docs, entries(shape));
         entry(&mut text, comment::line(&what, 4), name, offset);
     }
-    // C99 allows a comma at the end, C++ before 2011 does not.
+    // C99 allows a trailing comma here, but C++ before 2011 does not.
     if let Some(end) = text.rfind(",\n") {
         text.truncate(end);
     }
@@ -109,7 +109,7 @@ fn entries(shape: ShapeKind) -> String {
     }
 }
 
-/// The limits of joints as macros; no function uses them.
+/// Prints the joint limits as macros; no function uses them.
 fn limit_macros(texts: &Texts) -> String {
     let capitals = &texts.names.capitals;
     let mut text = String::new();
@@ -130,7 +130,7 @@ fn limit_macros(texts: &Texts) -> String {
     text
 }
 
-/// Numbers, status, parameters, and the system.
+/// Prints the types of numbers, status, parameters and system.
 fn types(texts: &Texts) -> String {
     let (program, names) = (texts.program(), &texts.names);
     let real = names.real();
@@ -175,7 +175,7 @@ fn types(texts: &Texts) -> String {
     text + &format!("}} {system};\n\n")
 }
 
-/// All that a function can return.
+/// Prints the status codes, with all reasons for which a function can fail.
 fn status(texts: &Texts) -> String {
     let names = &texts.names;
     let program = texts.program();
@@ -208,7 +208,7 @@ fn status(texts: &Texts) -> String {
     text + &format!("\n}} {};\n\n", names.own("status"))
 }
 
-/// What can be missing in any function, or when parameters are set.
+/// Returns the causes of failure of all functions, including `set_parameters`.
 fn causes(program: &Program) -> BTreeSet<Cause> {
     let functions = program.functions.iter().filter(|f| f.fallible);
     let guards = functions.flat_map(|function| &function.guards);
@@ -216,7 +216,7 @@ fn causes(program: &Program) -> BTreeSet<Cause> {
     guards.map(|&guard| program.cause(guard)).collect()
 }
 
-/// The functions that are not those of the description.
+/// Prints the prototypes that every header has, in addition to the functions of the description.
 fn setting(texts: &Texts) -> String {
     let names = &texts.names;
     let [default, set, start] = prototypes(texts);
@@ -226,7 +226,7 @@ fn setting(texts: &Texts) -> String {
     )
 }
 
-/// `default_parameters`, `set_parameters` and `start`.
+/// Returns the prototypes of `default_parameters`, `set_parameters` and `start`.
 pub fn prototypes(texts: &Texts) -> [String; 3] {
     let names = &texts.names;
     let restrict = format!("{}_RESTRICT", names.capitals);
@@ -248,7 +248,7 @@ pub fn prototypes(texts: &Texts) -> [String; 3] {
     ]
 }
 
-/// A function without its body.
+/// Returns the prototype of a function.
 pub fn prototype(texts: &Texts, spec: &Spec, name: &str) -> String {
     let names = &texts.names;
     let real = names.real();

@@ -1,10 +1,10 @@
-//! What generated C defines for itself before its functions, each where it is called: the functions that
-//! `<math.h>` does not have, with the values that the Rust runtime gives them.
+//! Definitions at the top of a generated source, each only if it is used: functions that `<math.h>` does not have,
+//! with the same values as in the Rust runtime.
 
 use super::language::Precision;
 use super::names::Identifiers;
 
-/// a b + c as the machine does it best, undefined again by [`END`].
+/// Macro for a b + c, fused if the machine has an instruction for it; undefined again by [`END`].
 const FUSED: &str = "\
 /* a b + c: rounded once where the machine has an instruction for it, twice elsewhere. */
 #if @FAST
@@ -14,12 +14,12 @@ const FUSED: &str = "\
 #endif
 ";
 
-/// Zeros that results are copied from, several at once: gcc writes zeros that are assigned one by one.
+/// Name of an array of zeros, from which several results are copied at once: gcc assigns them one by one otherwise.
 pub const ZEROS: &str = "zeros";
-/// The most of them: compilers make a loop of more, or call a function.
+/// Length of the array of zeros: for more, compilers emit a loop or a call.
 pub const MOST_ZEROS: usize = 4;
 
-/// What compilers are told of parts of long functions, undefined again by [`END`].
+/// Macro with compiler attributes of the parts of long functions; undefined again by [`END`].
 const PART: &str = "\
 /* A part of a long function. It stays by itself: what is short is read in short time. Its arrays are given to it from where
    most of what it reads is near, before and behind, which makes instructions shorter. */
@@ -30,7 +30,7 @@ const PART: &str = "\
 #endif
 ";
 
-/// What is of numbers; `@FAST` tells whether `fma` is one instruction, which compilers say in different ways.
+/// Substitutions for `double`. `@FAST` tells whether `fma` is one instruction; compilers report this in different ways.
 const DOUBLE: &[(&str, &str)] = &[
     (
         "@FAST",
@@ -60,7 +60,7 @@ const FLOAT: &[(&str, &str)] = &[
     ("@LEAST", "FLT_MIN"),
 ];
 
-/// What compilers are told of sine and cosine, undefined again by [`END`].
+/// Macros with compiler attributes of sine and cosine; undefined again by [`END`].
 const HINTS: &str = "\
 /* What follows is worth its room in every place, or hardly ever runs. */
 #if defined(__GNUC__) && !defined(__OPTIMIZE_SIZE__)
@@ -72,15 +72,15 @@ const HINTS: &str = "\
 #endif
 ";
 
-/// What follows the functions, where they need it.
+/// Text after the functions that undefines the macros, as far as they are used.
 const END: [&str; 3] = [
     "#undef FUSED\n",
     "#undef INLINE\n#undef RARE\n",
     "#undef PART\n",
 ];
 
-/// Name and text of the others; `@_` stands for the prefix, `@REAL` for the type of numbers, `@F` for what literals and
-/// functions of `<math.h>` end in. Those further up are called by those further down.
+/// Names and texts of the helper functions. `@_` is replaced by the prefix, `@REAL` by the type of numbers, and `@F` by
+/// the suffix of literals and `<math.h>` functions. A helper may call those before it.
 const HELPERS: &[(&str, &str)] = &[
     (
         "sign",
@@ -140,7 +140,7 @@ static inline @REAL @_raised(@REAL a)
     ),
 ];
 
-/// Sine and cosine of `float`.
+/// Sine and cosine for `float`.
 const TURN_FLOAT: &str = "\
 /* Sine and cosine of an angle, rad. */
 static inline void @_sin_cos(float angle, float *sine, float *cosine)
@@ -150,7 +150,7 @@ static inline void @_sin_cos(float angle, float *sine, float *cosine)
 }
 ";
 
-/// Sine and cosine of `double`, as `runtime/src/trig.rs` has them.
+/// Sine and cosine for `double`, with the same algorithm as `runtime/src/trig.rs`.
 const TURN_DOUBLE: &str = "\
 /*
  * Sine and cosine of an angle, rad, from one reduction and without a call, which nothing else would overlap.
@@ -211,7 +211,7 @@ INLINE void @_sin_cos(double angle, double *sine, double *cosine)
 }
 ";
 
-/// Where one of the two is not read.
+/// Functions for the cases where only the sine or only the cosine is used.
 const HALVES: &[(&str, &str)] = &[
     (
         "sin",
@@ -239,7 +239,7 @@ static inline @REAL @_cos(@REAL angle)
     ),
 ];
 
-/// What stands before functions with this text, and behind them.
+/// Returns the text before and the text after these functions.
 pub fn around(functions: &str, names: &Identifiers, precision: Precision) -> [String; 2] {
     let called = |text: &str, name: &str| text.contains(&format!("{}(", names.own(name)));
     let spelled = |text: &str| {

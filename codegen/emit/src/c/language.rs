@@ -1,4 +1,4 @@
-//! How C spells statements and numbers.
+//! The C syntax of statements and numbers.
 
 use super::names::Identifiers;
 use super::returns_number;
@@ -10,7 +10,7 @@ use num_traits::ToPrimitive;
 use std::fmt;
 use std::str::FromStr;
 
-/// The numbers of generated C.
+/// Floating-point type of generated C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
     /// `double`
@@ -21,7 +21,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// The type.
+    /// Name of the type.
     pub fn name(self) -> &'static str {
         match self {
             Precision::Double => "double",
@@ -29,7 +29,7 @@ impl Precision {
         }
     }
 
-    /// Bytes of a number.
+    /// Size of a number in bytes.
     pub(super) fn bytes(self) -> usize {
         match self {
             Precision::Double => 8,
@@ -37,7 +37,7 @@ impl Precision {
         }
     }
 
-    /// What literals and functions of `<math.h>` end in.
+    /// Suffix of literals and of `<math.h>` functions.
     pub(super) fn suffix(self) -> &'static str {
         match self {
             Precision::Double => "",
@@ -45,7 +45,7 @@ impl Precision {
         }
     }
 
-    /// The shortest literal that reads as this number.
+    /// Returns the shortest literal that parses to this number.
     pub fn literal(self, value: f64) -> String {
         let (digits, infinity) = match self {
             Precision::Double => (format!("{value:?}"), "HUGE_VAL"),
@@ -83,27 +83,27 @@ impl FromStr for Precision {
     }
 }
 
-/// C, with the names of one program.
+/// The language C, with the names of one program.
 pub struct C<'a> {
-    /// Its names.
+    /// Names of the program.
     pub names: &'a Identifiers,
-    /// Its numbers.
+    /// Floating-point type.
     pub precision: Precision,
-    /// What places of arrays are counted from.
+    /// Origins from which array indices are counted.
     pub origins: Origins,
 }
 
-/// The places that arrays are given to a part from.
+/// Origins of the arrays that are passed to a part: the index of the entry to which the pointer points.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Origins {
-    /// Of values that cross parts.
+    /// Origin of the slots.
     pub slots: usize,
-    /// Of results.
+    /// Origin of the results.
     pub out: usize,
 }
 
 impl Origins {
-    /// Of an array.
+    /// Returns the origin of an array.
     pub fn of(self, array: Array) -> usize {
         match array {
             Array::Slots => self.slots,
@@ -190,7 +190,7 @@ impl Language for C<'_> {
             Function::Inverse => self.names.own("inverse_of_length"),
             Function::Raised => self.names.own("raised"),
             Function::Abs => format!("fabs{suffix}"),
-            // Names of the others are those of C.
+            // The others have the same names as in C.
             _ => format!("{}{suffix}", function.name()),
         };
         format!("{name}({})", operand.signed())

@@ -1,19 +1,20 @@
-//! The program that Rust is emitted from, as C99: a header with documented prototypes, and a source.
+//! A program as C99, with the same computations as in Rust: a header with documented prototypes, and a source file.
 //!
 //! | file | owns |
 //! |---|---|
 //! | `names` | identifiers |
-//! | `words` | words that C and C++ want for themselves |
+//! | `words` | words reserved by C and C++ |
 //! | `language` | statements, numbers, `double` or `float` |
-//! | `nearest` | from where arrays are given to parts |
+//! | `nearest` | the origins from which parts address arrays |
+//! | `body` | bodies of functions, with their parts |
 //! | `helpers` | functions that `<math.h>` does not have |
 //! | `comment` | comments |
-//! | `header` | `name.h`: sizes, places by name, types, prototypes |
+//! | `header` | `name.h`: sizes, indices by name, types, prototypes |
 //! | `source` | `name.c`: functions |
 //!
-//! Both are C++17 as well. Nothing is allocated, nothing is kept between calls, and no function calls itself; what a
-//! function reads and writes are its arguments, numbers in arrays as in Rust, matrices by rows. Statements, their
-//! order, and names are those of Rust.
+//! Both files are valid C++17, too. Nothing is allocated, nothing is kept between calls, and there is no recursion.
+//! Functions read and write only their arguments: arrays of numbers as in Rust, matrices by rows. Statements, their
+//! order, and names are the same as in Rust.
 
 mod body;
 mod comment;
@@ -33,16 +34,16 @@ use language::C;
 pub use language::Precision;
 use names::Identifiers;
 
-/// What the generated text says about itself, and of which numbers it is.
+/// Options of the C generator: contents of the file headers, and the floating-point type.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Hash of the description.
+    /// Hash of the description, quoted in the file headers.
     pub source_hash: u64,
-    /// The command that generates the files again.
+    /// Command that regenerates the files, quoted in the file headers; none if empty.
     pub command: String,
-    /// The name of the header, by which the source includes it.
+    /// Name of the header file, as included by the source.
     pub header: String,
-    /// Of which numbers it is.
+    /// Floating-point type of the generated code.
     pub precision: Precision,
 }
 
@@ -53,11 +54,11 @@ pub struct Files {
     pub header: String,
     /// `name.c`
     pub source: String,
-    /// `name.c` without the line that includes the header: the header and this, one behind the other, are a source.
+    /// `name.c` without the `#include` of the header: the header followed by this text is a complete source file.
     pub rest: String,
 }
 
-/// All that the texts are made from.
+/// Everything that is needed to print the files.
 struct Texts<'a> {
     emitter: Emitter<'a>,
     names: Identifiers,
@@ -68,7 +69,7 @@ impl<'a> Texts<'a> {
     fn new(program: &'a Program, precision: Precision) -> Self {
         let (identifiers, names) = Identifiers::of(program);
         let words = identifiers.words();
-        // Compilers of C take functions of any length; in parts are those that are faster so.
+        // C compilers take functions of any length, so that only functions that run faster that way are split.
         let emitter = Emitter::with(program, usize::MAX, names, words, documentation);
         Texts {
             emitter,
@@ -81,7 +82,7 @@ impl<'a> Texts<'a> {
         self.emitter.program
     }
 
-    /// The functions that are called while the system moves, with their names.
+    /// Returns the functions that are called while the system moves, with their names.
     fn functions(&self) -> impl Iterator<Item = (Spec<'a>, &str)> {
         let functions = self.program().functions.iter().enumerate();
         let specs = functions.map(|(index, function)| self.emitter.function(index, function));
@@ -89,7 +90,7 @@ impl<'a> Texts<'a> {
     }
 }
 
-/// The header and the source of a program.
+/// Returns the header and the source of a program.
 pub fn files(program: &Program, options: &Options) -> Files {
     let texts = Texts::new(program, options.precision);
     let mut origin = vec![
@@ -113,7 +114,7 @@ pub fn files(program: &Program, options: &Options) -> Files {
     }
 }
 
-/// The headers of C: with the folder of another one of that name among those that are searched, nobody finds them.
+/// Standard headers of C, without `.h`. A file with such a name would hide the standard one if its folder is searched.
 const HEADERS: &[&str] = &[
     "assert",
     "complex",
@@ -148,17 +149,17 @@ const HEADERS: &[&str] = &[
     "wctype",
 ];
 
-/// Whether a file of this name before `.h` can be included, and is in nobody's way.
+/// Whether `stem` with `.h` is a usable header name: it can be included, and does not hide a standard header.
 pub fn includable(stem: &str) -> bool {
     let strange = |letter: char| letter.is_control() || matches!(letter, '"' | '\\' | '?');
-    // Some systems do not tell `Math.h` from `math.h`.
+    // Some file systems do not distinguish `Math.h` from `math.h`.
     let known = HEADERS
         .iter()
         .any(|header| header.eq_ignore_ascii_case(stem));
     !stem.is_empty() && !stem.contains(strange) && !known
 }
 
-/// What the functions of a program are called by which a linker knows them.
+/// Returns the linker symbols of a program's functions.
 #[cfg(feature = "files")]
 pub fn functions(program: &Program) -> Vec<String> {
     let (names, _) = Identifiers::of(program);
@@ -166,7 +167,7 @@ pub fn functions(program: &Program) -> Vec<String> {
     own.into_iter().chain(names.functions).collect()
 }
 
-/// The documentation of a function in C: what it evaluates, its cost, arguments and result.
+/// Returns the C documentation of a function: what it evaluates, its cost, arguments and result.
 fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = docs::described(program, function, nodes);
     let result = docs::result(function.shape);
@@ -192,7 +193,7 @@ fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Ve
     lines
 }
 
-/// Whether a function returns its value; others write it to `out`.
+/// Whether a function returns its result; others write it to `out`.
 fn returns_number(shape: hamel_program::Shape, fallible: bool) -> bool {
     shape == hamel_program::Shape::Scalar && !fallible
 }

@@ -1,20 +1,20 @@
 //! Identifiers of generated C.
 //!
-//! | what | pattern |
+//! | identifier | pattern |
 //! |---|---|
 //! | functions | prefix + name as in Rust: `free_body_accel` |
 //! | types | prefix + `_real`, `_parameters`, `_system`, `_status` |
 //! | macros, constants | the same in capitals: `FREE_BODY_RESTRICT`, `FREE_BODY_X_R`, `FREE_BODY_STATUS_OK` |
 //! | fields of parameters, temporaries | as in Rust |
 //!
-//! The prefix is the name of the system in snake case. A word that C, C++, their headers or Rust want for
-//! themselves gets `_`, whether it would do harm in its place or not: so a name depends on nothing but itself.
+//! The prefix is the name of the system in snake case. A word that is reserved by C, C++, their headers or Rust always
+//! gets `_`, even where it would be legal: so a name depends on nothing but itself.
 
 use super::words::legal;
 use crate::names::{Names, Unique, Words, snake};
 use hamel_program::{Cause, Program};
 
-/// Local names that a function may use besides those of its values.
+/// Local names that a function may use in addition to the names of its values.
 const LOCALS: &[&str] = &[
     "x",
     "xi",
@@ -30,7 +30,7 @@ const LOCALS: &[&str] = &[
     "status",
 ];
 
-/// What the generated text calls its own types and functions, after the prefix.
+/// Names of the generated types and helper functions, without the prefix.
 const OWN: &[&str] = &[
     "real",
     "parameters",
@@ -52,9 +52,9 @@ const OWN: &[&str] = &[
 
 /// The identifiers of a program.
 pub struct Identifiers {
-    /// In front of all others.
+    /// Prefix of all other identifiers.
     pub prefix: String,
-    /// The same in capitals.
+    /// The prefix in capitals.
     pub capitals: String,
     /// The functions with their prefix, in order.
     pub functions: Vec<String>,
@@ -63,11 +63,11 @@ pub struct Identifiers {
 }
 
 impl Identifiers {
-    /// Those of a program, and its names as in Rust.
+    /// Returns the identifiers of a program, and its names in Rust.
     pub fn of(program: &Program) -> (Self, Names) {
         let names = Names::beside(program, OWN);
         let prefix = snake(&program.name).trim_end_matches('_').to_string();
-        // In C++ a member cannot be called as a type that its struct mentions.
+        // In C++ a member cannot have the name of a type that its struct mentions.
         let own: Vec<String> = OWN.iter().map(|name| format!("{prefix}_{name}")).collect();
         let mut members = Unique::new(&own.iter().map(String::as_str).collect::<Vec<_>>());
         let identifiers = Identifiers {
@@ -83,17 +83,17 @@ impl Identifiers {
         (identifiers, names)
     }
 
-    /// One of the generated text's own types or functions.
+    /// Returns the identifier of a generated type or helper function.
     pub fn own(&self, name: &str) -> String {
         format!("{}_{name}", self.prefix)
     }
 
-    /// The type of numbers.
+    /// Returns the name of the type of numbers.
     pub fn real(&self) -> String {
         self.own("real")
     }
 
-    /// The words that values of a function cannot be called.
+    /// Returns the words that cannot be names of values in a function.
     pub fn words(&self) -> Words {
         let own: Vec<String> = OWN.iter().map(|name| self.own(name)).collect();
         let own = own.iter().map(String::as_str);
@@ -104,7 +104,7 @@ impl Identifiers {
         }
     }
 
-    /// The name of a status.
+    /// Returns the status code for a cause of failure.
     pub fn status(&self, cause: Cause) -> String {
         let capitals = &self.capitals;
         match cause {
@@ -115,7 +115,7 @@ impl Identifiers {
         }
     }
 
-    /// The status of a function that has a value.
+    /// Returns the status code for success.
     pub fn done(&self) -> String {
         format!("{}_STATUS_OK", self.capitals)
     }

@@ -1,11 +1,12 @@
-//! From where an array is given to a part, so that most of its places are near.
+//! Picks the origin from which a part addresses an array, so that most entries that it uses are near.
 
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeMap;
 
-/// From where in an array most of these places are near, so many before or behind: 0 where no other is better.
+/// Returns the origin in an array from which most of `places` are within `near` entries before or behind. Returns 0
+/// if no other origin is better.
 pub fn nearest(places: impl Iterator<Item = usize>, near: usize, length: usize) -> usize {
     let mut count: BTreeMap<usize, usize> = BTreeMap::new();
     for place in places {

@@ -1,4 +1,4 @@
-//! `name.c`: what the header declares.
+//! The source file `name.c`: definitions of the functions that the header declares.
 
 use super::body::{self, indented};
 use super::header::{prototype, prototypes};
@@ -8,7 +8,7 @@ use crate::function::statements;
 use crate::parameters;
 use hamel_language::syntax::ast::ShapeKind;
 
-/// The source without its header.
+/// Returns the source file without the comment and the `#include` at its top.
 pub fn text(texts: &Texts) -> String {
     let names = &texts.names;
     let [default, set, start] = prototypes(texts);
@@ -60,12 +60,12 @@ fn language<'a>(texts: &'a Texts) -> C<'a> {
     }
 }
 
-/// The parameters, whose names stand behind `owner`.
+/// Returns all parameters as expressions; `owner` is the prefix of the field names.
 fn expressions(texts: &Texts, owner: &str) -> Vec<String> {
     parameters::expressions(texts.program(), &texts.names.fields, owner)
 }
 
-/// `parameters->m = 1.3;` and so on.
+/// Prints the body of `default_parameters`: `parameters->m = 1.3;` and so on.
 fn defaults(texts: &Texts) -> String {
     let program = texts.program();
     let groups = program.params.iter().zip(&texts.names.fields);
@@ -78,7 +78,7 @@ fn defaults(texts: &Texts) -> String {
             text.push_str(&format!("parameters->{field}{index} = {value};\n"));
         };
         match group.shape {
-            // All entries, so that nobody reads what was not written.
+            // Sets all entries, so that no entry is uninitialized when it is read.
             ShapeKind::Symmetric(n) => {
                 let upper = |i: usize, j: usize| i * n - i * (i + 1) / 2 + j;
                 for i in 0..n {
@@ -103,7 +103,7 @@ fn defaults(texts: &Texts) -> String {
     text
 }
 
-/// The function that computes what depends on parameters alone; nothing where there is nothing.
+/// Prints the function that computes everything that depends on parameters alone; empty if there is nothing.
 fn constants(texts: &Texts) -> String {
     if texts.emitter.kept.is_empty() {
         return String::new();
@@ -137,7 +137,7 @@ fn constants(texts: &Texts) -> String {
     )
 }
 
-/// Computes constants apart, and keeps them where all pivots are positive.
+/// Prints the body of `set_parameters`: computes the constants in a copy, and keeps it if all pivots are positive.
 fn setting(texts: &Texts) -> String {
     let emitter = &texts.emitter;
     let names = &texts.names;
@@ -159,7 +159,7 @@ fn setting(texts: &Texts) -> String {
     text + &format!("*system = next;\nreturn {};\n", names.done())
 }
 
-/// x and ξ at the start.
+/// Prints the body of `start`: the initial x and ξ.
 fn beginning(texts: &Texts) -> String {
     let program = texts.program();
     let mut text = String::new();

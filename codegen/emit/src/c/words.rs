@@ -1,4 +1,4 @@
-//! Words that C, C++ and their headers want for themselves.
+//! Words reserved by C, C++ and their headers.
 
 #[cfg(test)]
 mod tests;
@@ -6,8 +6,8 @@ mod tests;
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
-/// Keywords of C up to C23 and of C++ up to C++20 beyond those of Rust, names of the headers that generated text
-/// includes, and what common systems define as macros; in lines of words.
+/// Keywords of C up to C23 and of C++ up to C++20 that are not keywords of Rust, names from the headers that generated
+/// text includes, and macros of common systems; each line has several words.
 const RESERVED: &[&str] = &[
     // Keywords.
     "alignas alignof and and_eq asm auto bitand bitor bool case catch char char16_t char32_t",
@@ -27,17 +27,17 @@ const RESERVED: &[&str] = &[
     "math_errhandling modf nan nearbyint nextafter nexttoward pow pow10 remainder remquo rint",
     "round scalb scalbln scalbn signbit signgam significand sin sincos sinh sinpi sqrt tan",
     "tanh tgamma trunc y0 y1 yn",
-    // Other headers, and macros of theirs and of systems.
+    // Other headers, and macros that they or the systems define.
     "errno far huge i386 interface linux memcpy near small stderr stdin stdout unix",
 ];
 
-/// The same, to look names up.
+/// The words of [`RESERVED`] as a set.
 static WORDS: LazyLock<HashSet<&str>> =
     LazyLock::new(|| RESERVED.iter().flat_map(|line| line.split(' ')).collect());
 
-/// Another name in the place of a reserved one.
+/// Appends `_` to a reserved name.
 pub fn legal(name: String) -> String {
-    // `sinf` beside `sin`.
+    // The `float` variants are reserved as well: `sinf` along with `sin`.
     let of_float = |name: &str| name.strip_suffix('f').is_some_and(|f| WORDS.contains(f));
     match WORDS.contains(name.as_str()) || of_float(&name) {
         true => format!("{name}_"),

@@ -1,4 +1,4 @@
-//! The first walk: statements are copied for every round and part, and what they declare is noted.
+//! First pass of the expansion: copies statements for every round and part, and records what they declare.
 
 use super::names::{Context, Kind, World};
 use crate::diagnostics::Diagnostic;
@@ -8,17 +8,17 @@ use crate::syntax::joint_endings;
 use crate::syntax::path::{Step, steps};
 use std::rc::Rc;
 
-/// The most statements and rounds of a description.
+/// Largest number of statements and rounds of a description.
 const MOST_STATEMENTS: usize = 10_000;
 
-/// The most rounds of one counter.
+/// Largest number of rounds of one counter.
 const MOST_ROUNDS: i64 = 1_000;
 
-/// With more errors than this, no more statements are copied.
+/// Copying stops after more errors than this.
 const MOST_ERRORS: usize = 200;
 
 impl<'a> World<'a> {
-    /// Copies statements as often as they stand here.
+    /// Copies the statements of a list, expands parts and repetitions in it, and records its constants.
     pub fn statements(&mut self, items: &'a [Item], context: &Context) {
         for item in items {
             if let ItemKind::Const(list) = &item.kind {
@@ -37,7 +37,7 @@ impl<'a> World<'a> {
             }
             match &item.kind {
                 ItemKind::Component(_) => {}
-                // Reported before, if it was not read.
+                // An include that was not read has been reported before.
                 ItemKind::Include(..) => {}
                 ItemKind::Repeat(repeat) => self.repeat(repeat, item.span, context),
                 ItemKind::Part(part) => self.part(part, item.span, context),
@@ -46,7 +46,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Counts one more; whether there is room for it.
+    /// Counts one more statement or round. Returns whether there is room for it.
     pub fn grows(&mut self, span: Span) -> bool {
         self.size += 1;
         if self.size == MOST_STATEMENTS {
@@ -58,7 +58,7 @@ impl<'a> World<'a> {
         self.size < MOST_STATEMENTS && self.report.len() < MOST_ERRORS
     }
 
-    /// The values of a counter.
+    /// Evaluates the first and the last value of a counter.
     pub fn range(&mut self, counter: &Counter, context: &Context) -> Option<(i64, i64)> {
         let by = context.by;
         if context.counter(&counter.name.name).is_some() {
@@ -93,7 +93,7 @@ impl<'a> World<'a> {
         Some((first, last))
     }
 
-    /// A context in which a counter has a value.
+    /// Returns a context in which a counter has a value.
     pub fn counted(&self, context: &Context, counter: &Counter, value: i64) -> Context {
         let mut counters = (*context.counters).clone();
         counters.push((counter.name.name.clone(), value));
@@ -155,14 +155,14 @@ impl<'a> World<'a> {
         self.pending.push((item, context.clone()));
     }
 
-    /// Whether a name is that of a parameter of the component around.
+    /// Returns whether a name is that of a parameter of the enclosing component.
     pub fn is_parameter(&self, name: &Ident, context: &Context) -> bool {
         self.scopes[context.scope]
             .bindings
             .contains_key(name.name.as_str())
     }
 
-    /// Frames that stand after `on` alone are declared there: `frame known on new = P`.
+    /// Declares frames that appear only after `on`, as in `frame known on new = P`.
     pub fn frames_after_on(&mut self) {
         for inside in [false, true] {
             let mut pending = std::mem::take(&mut self.pending);
@@ -186,7 +186,7 @@ impl<'a> World<'a> {
     }
 }
 
-/// Moves all places of a copy.
+/// Visitor that moves all places of a copy by an offset.
 struct Later(usize);
 
 impl Visit for Later {
@@ -212,18 +212,18 @@ impl Visit for Later {
     }
 }
 
-/// Moves all places of an expression.
+/// Moves all places of an expression by an offset.
 pub fn moved(expr: &mut Expr, by: usize) {
     if by > 0 {
         places(expr, &mut |span| *span = span.later(by));
     }
 }
 
-/// Notes what a statement declares.
+/// Visitor that registers what a statement declares.
 struct Declare<'w, 'a> {
     world: &'w mut World<'a>,
     context: &'w Context,
-    /// Whether all names can be declared.
+    /// Whether all names could be declared.
     sound: bool,
 }
 

@@ -1,13 +1,14 @@
-//! Components, parts and repetition, written out as the statements that they stand for.
+//! Expansion of components, parts and repetition into plain statements.
 //!
-//! `for i in 1..n { … }` becomes its statements n times, `part left = Leg(hip);` the statements of the component `Leg`
-//! with names of their own: `left.knee` is called `left_knee` then, `link[3]` is `link_3`, `leg[3].knee` is
-//! `leg_3_knee`, and the velocity `j[2]_dot` of a joint `j[2]` is `j_2_dot`. A name depends on nothing but itself, so
-//! that it stays when something else is added; two that would be one are refused.
+//! `for i in 1..n { … }` becomes n copies of its statements. `part left = Leg(hip);` becomes the statements of the
+//! component `Leg`, with names of their own: `left.knee` becomes `left_knee`, `link[3]` becomes `link_3`, `leg[3].knee`
+//! becomes `leg_3_knee`, and the velocity `j[2]_dot` of a joint `j[2]` becomes `j_2_dot`. A plain name depends only on
+//! the name as written, so it stays the same when something else is added. Two names that would become the same plain
+//! name are refused.
 //!
-//! First all statements are copied (`copies`), and what they declare is noted; then names in them are
-//! replaced (`replace`). Nothing after this stage knows of components: places of copies are regions of their own, and
-//! [`Origins`](crate::syntax::ast::Origins) says of each which statement made it.
+//! The first pass copies all statements (`copies`) and records what they declare; the second pass replaces the names in
+//! them (`replace`). Later stages know nothing of components. Each copy has a region of places of its own, and
+//! [`Origins`](crate::syntax::ast::Origins) records which statement made it.
 
 mod copies;
 mod names;
@@ -20,21 +21,21 @@ use crate::syntax::ast::{Item, ItemKind, System};
 use names::{Context, World};
 use std::collections::BTreeSet;
 
-/// A description without components, parts and repetition.
+/// A description after expansion, without components, parts and repetition.
 pub struct Written {
-    /// The description, which knows where its statements come from.
+    /// The description. It records where its statements come from.
     pub system: System,
-    /// Names that ranges and indices mention.
+    /// Names used in ranges and indices.
     pub used: BTreeSet<String>,
-    /// What is declared and never used.
+    /// Warnings about unused components and parameters.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Writes out what stands for other statements; all independent errors are reported together.
+/// Expands all statements that stand for others. All independent errors are reported together.
 pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
     let unread: Vec<Diagnostic> = system.items.iter().filter_map(unread).collect();
     if !unread.is_empty() {
-        // What is missing there is no further error.
+        // Errors caused by the missing statements would be spurious, so these are reported alone.
         return Err(unread);
     }
     let mut world = World::new(system);
@@ -70,7 +71,7 @@ pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
     })
 }
 
-/// The error for a file that was not read.
+/// Returns the error for an `include` whose file was not read.
 fn unread(item: &Item) -> Option<Diagnostic> {
     let ItemKind::Include(name, span) = &item.kind else {
         return None;

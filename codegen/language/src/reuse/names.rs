@@ -1,4 +1,4 @@
-//! What the statements of a description declare: names, arrays of them, and parts with names of their own.
+//! Names declared by the statements of a description: plain names, arrays, and parts with names of their own.
 
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{Component, Expr, Ident, Item, Origins, Span, System};
@@ -8,116 +8,116 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-/// Where a statement stands: in which part, and what the counters around it are.
+/// Context of a statement: the part that it is in, and the values of the enclosing counters.
 #[derive(Clone, Debug, Default)]
 pub struct Context {
-    /// The number of the scope; the description itself has 0.
+    /// Index of the scope. The description itself has scope 0.
     pub scope: usize,
-    /// The counters, the innermost last.
+    /// The counters, innermost last.
     pub counters: Rc<Vec<(String, i64)>>,
-    /// How far places of copies are behind those of the text.
+    /// Offset from places in the text to the places of this copy.
     pub by: usize,
 }
 
 impl Context {
-    /// The value of a counter.
+    /// Returns the value of a counter.
     pub fn counter(&self, name: &str) -> Option<i64> {
         let found = self.counters.iter().rev().find(|(known, _)| known == name);
         found.map(|(_, value)| *value)
     }
 }
 
-/// What a name stands for.
+/// A declared item.
 #[derive(Clone, Debug)]
 pub struct Thing {
-    /// What kind of thing it is.
+    /// Kind of the item.
     pub kind: Kind,
-    /// Its name once all is written out.
+    /// Final name, after expansion.
     pub name: String,
-    /// Where it is declared.
+    /// Place of its declaration.
     pub span: Span,
 }
 
-/// The kinds of things that matter here.
+/// Kinds of items that the expansion distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A frame.
     Frame,
-    /// A parameter, a coordinate, a function: anything with a name that is no frame.
+    /// Anything else with a name: a parameter, a coordinate, a function, …
     Other,
-    /// A part, with the number of its scope.
+    /// A part, with the index of its scope.
     Part(usize),
 }
 
-/// What a parameter of a component stands for.
+/// Argument bound to a parameter of a component.
 #[derive(Clone, Debug)]
 pub struct Binding<'a> {
-    /// Whether it is a frame.
+    /// Whether the parameter is a frame.
     pub frame: bool,
     /// The argument.
     pub value: &'a Expr,
-    /// Where the argument stands.
+    /// Context of the argument.
     pub context: Context,
 }
 
-/// Names of an array, by their indices.
+/// Items of an array, by their indices.
 pub type Array = BTreeMap<Vec<i64>, Thing>;
 
-/// The names of the description, or of one part.
+/// Names declared in the description, or in one part.
 #[derive(Debug, Default)]
 pub struct Scope<'a> {
-    /// Stands before the names that are declared here.
+    /// Prefix of the final names declared here.
     pub prefix: String,
-    /// The same as it is written.
+    /// The same prefix as it is written in the description.
     pub written: String,
-    /// The component of the part, with the scope in which that stands.
+    /// Component of the part, with the scope that contains the part.
     pub part: Option<(&'a Component, usize)>,
-    /// The parameters of the component.
+    /// Arguments bound to the parameters of the component.
     pub bindings: BTreeMap<&'a str, Binding<'a>>,
-    /// Names without an index, by themselves.
+    /// Items without an index, by name.
     pub plain: BTreeMap<String, Thing>,
-    /// Arrays, by their names and by what stands behind the index.
+    /// Arrays, by name and by the suffix after the index.
     pub arrays: BTreeMap<(String, String), Array>,
-    /// Constants, for ranges and indices.
+    /// Values of constants, for ranges and indices.
     pub constants: BTreeMap<&'a str, (&'a Expr, Context)>,
 }
 
-/// All that is known while a description is written out.
+/// State of the expansion of a description.
 pub struct World<'a> {
-    /// The scopes; that of the description is the first.
+    /// All scopes. The first one is that of the description.
     pub scopes: Vec<Scope<'a>>,
-    /// The components, with their statements and whether any part is one.
+    /// Components, each with the span of its statement and whether any part uses it.
     pub components: BTreeMap<&'a str, (&'a Component, Span, bool)>,
-    /// Where copies come from.
+    /// Origins of the copies.
     pub origins: Origins,
-    /// What is wrong.
+    /// Errors so far.
     pub report: Report,
-    /// The statements, whose names are still as written.
+    /// Copied statements, whose names are still as written.
     pub pending: Vec<(Item, Context)>,
-    /// How many statements and rounds there are.
+    /// Number of statements and rounds so far.
     pub size: usize,
-    /// Names in the end that ranges and indices mention.
+    /// Final names of constants used in ranges and indices.
     pub used: RefCell<BTreeSet<String>>,
-    /// Parameters of components that are mentioned.
+    /// Parameters of components that are used, by component and parameter.
     pub parameters: RefCell<BTreeSet<(String, String)>>,
-    /// Each name in the end, with how it is written and where.
+    /// Final names, each with its spelling in the description and its place.
     ends: BTreeMap<String, (String, Span)>,
 }
 
-/// What a name was found to be, and how many of its steps say so.
+/// Result of resolving a name.
 pub enum Found<'w, 'a> {
-    /// Nothing that is declared.
+    /// No declared item.
     Unknown,
-    /// A counter.
+    /// A counter, with its value.
     Number(i64),
-    /// The parameter of a component, with its scope and its name.
+    /// A parameter of a component, with its scope and its name.
     Parameter(usize, &'a str, &'w Binding<'a>),
-    /// A thing.
+    /// A declared item, with the number of steps that lead to it.
     Thing(&'w Thing, usize),
 }
 
 impl<'a> World<'a> {
-    /// Nothing is known yet.
+    /// Creates a state in which no names are known.
     pub fn new(system: &'a System) -> Self {
         World {
             scopes: vec![Scope::default()],
@@ -132,7 +132,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Where statements come from with how their names are written, and what is wrong.
+    /// Returns the origins, the map from final names to names as written where these differ, and the errors.
     pub fn finish(self) -> ((Origins, BTreeMap<String, String>), Report) {
         let differs = |(name, (written, _)): (String, (String, Span))| {
             let shown = (name != written).then_some(written)?;
@@ -142,7 +142,7 @@ impl<'a> World<'a> {
         ((self.origins, written), self.report)
     }
 
-    /// Notes a name that a statement declares, and replaces it by the one that it has in the end; whether it can be
+    /// Registers a name that a statement declares, and replaces it by its final name. Returns whether it can be
     /// declared here.
     pub fn declare(&mut self, ident: &mut Ident, kind: Kind, context: &Context) -> bool {
         let found = steps(ident);
@@ -186,7 +186,7 @@ impl<'a> World<'a> {
         true
     }
 
-    /// Notes a thing; its name in the end.
+    /// Registers an item and returns its final name.
     pub fn register(
         &mut self,
         base: &str,
@@ -221,15 +221,15 @@ impl<'a> World<'a> {
                 array.or_default().entry(indices).or_insert(thing)
             }
         };
-        // Of two things with one name the part is meant where parts of it are.
+        // If a part and something else share a name, the name refers to the part, so that names within it are found.
         if !matches!(known.kind, Kind::Part(_)) && matches!(kind, Kind::Part(_)) {
             known.kind = kind;
         }
         name
     }
 
-    /// What contradicts a declaration among those before it. What is declared twice with one name is reported later,
-    /// where that is wrong.
+    /// Returns the error for a declaration that contradicts an earlier one. A second declaration of the same name is
+    /// otherwise reported by a later stage if it is wrong.
     fn contradiction(
         &self,
         base: &str,
@@ -283,7 +283,7 @@ impl<'a> World<'a> {
         Some(error.note(*span, "the other one"))
     }
 
-    /// What the steps of a name lead to, from a statement.
+    /// Resolves the steps of a name that a statement mentions.
     pub fn find<'w>(
         &'w self,
         steps: &[Step],
@@ -309,7 +309,7 @@ impl<'a> World<'a> {
         Ok(Found::Unknown)
     }
 
-    /// Follows a name into the parts that it names.
+    /// Follows the steps of a name into parts.
     fn onward<'w>(
         &'w self,
         mut thing: &'w Thing,
@@ -344,9 +344,9 @@ impl<'a> World<'a> {
         Ok(Found::Thing(thing, taken))
     }
 
-    /// What can be written of a part.
+    /// Returns help that lists the names of a part.
     pub fn parts_of(&self, scope: usize) -> String {
-        /// Names that are listed.
+        /// Largest number of names listed.
         const MOST: usize = 8;
         let scope = &self.scopes[scope];
         let names: Vec<String> = scope
@@ -360,7 +360,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// A thing of a scope by its name and the index behind it, with the number of steps.
+    /// Finds an item of a scope by its name and the index after it. Returns the item and the number of steps used.
     fn step(
         &self,
         scope: usize,
@@ -419,7 +419,7 @@ impl<'a> World<'a> {
 }
 
 impl Scope<'_> {
-    /// The names that are declared here, without what stands behind them.
+    /// Returns the names declared here, without indices.
     pub fn bases(&self) -> impl Iterator<Item = &str> {
         let arrays = self.arrays.keys().filter(|(_, ending)| ending.is_empty());
         let arrays = arrays.map(|(name, _)| name.as_str());
@@ -427,7 +427,7 @@ impl Scope<'_> {
     }
 }
 
-/// A name as it is written: `link[3]`, `j[2]_dot`.
+/// Returns a name as it is written: `link[3]`, `j[2]_dot`.
 pub fn shown(base: &str, indices: Option<&[i64]>, ending: &str) -> String {
     match indices {
         None => base.to_owned(),

@@ -1,4 +1,4 @@
-//! Whole numbers that are known before a description is read: ranges and indices.
+//! Evaluation of whole numbers that must be known during expansion: ranges and indices.
 
 use super::names::{Context, Found, World};
 use crate::diagnostics::Diagnostic;
@@ -7,17 +7,17 @@ use crate::syntax::path::Step;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
 
-/// The longest chain of constants that are made of others.
+/// Largest length of a chain of constants that refer to one another.
 const MOST_LEVELS: usize = 100;
 
-/// The most bits of a number: what grows beyond is no range.
+/// Largest number of bits of a numerator or denominator. Larger numbers are not sensible ranges.
 const MOST_BITS: u64 = 4096;
 
-/// The largest exponent.
+/// Largest magnitude of an exponent.
 const MOST_EXPONENT: i32 = 1000;
 
 impl World<'_> {
-    /// The indices of a name: whole numbers from 0.
+    /// Evaluates the indices of a name, which must be whole numbers from 0.
     pub fn indices(&self, list: &[Expr], context: &Context) -> Result<Vec<i64>, Diagnostic> {
         let one = |index: &Expr| {
             let value = self.integer(index, context, 0)?;
@@ -32,7 +32,7 @@ impl World<'_> {
         list.iter().map(one).collect()
     }
 
-    /// The whole number that an expression is; its places are `by` later than it says.
+    /// Evaluates an expression to a whole number. In errors, its places are moved by `by`.
     pub fn integer(&self, expr: &Expr, context: &Context, by: usize) -> Result<i64, Diagnostic> {
         let value = self.number(expr, context, by, 0)?;
         let whole = value.is_integer().then(|| value.to_integer().to_i64());
@@ -108,7 +108,7 @@ impl World<'_> {
         self.number(value, context, context.by, level + 1)
     }
 
-    /// Notes that a parameter of a component is used.
+    /// Records that a parameter of a component is used.
     pub fn mention(&self, scope: usize, parameter: &str) {
         if let Some((component, _)) = self.scopes[scope].part {
             let name = component.name.name.clone();

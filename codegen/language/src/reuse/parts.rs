@@ -1,4 +1,4 @@
-//! Components, and the parts that are made of them.
+//! Components and their parts.
 
 use super::copies::moved;
 use super::names::{Binding, Context, Kind, Scope, Thing, World, shown};
@@ -11,11 +11,11 @@ use crate::syntax::suggest::closest;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// The deepest nesting of parts.
+/// Largest nesting depth of parts.
 const MOST_NESTED: usize = 32;
 
 impl<'a> World<'a> {
-    /// Notes a component.
+    /// Registers a component.
     pub fn component(&mut self, component: &'a Component, span: Span) {
         let Ident { name, span: place } = &component.name;
         if let Some((first, ..)) = self.components.get(name.as_str()) {
@@ -70,7 +70,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Whether a part of a component can stand here: not in itself, and not too deep.
+    /// Returns whether a part of a component can stand here: not within itself, and not nested too deeply.
     fn may_contain(&mut self, component: &Component, place: Span, context: &Context) -> bool {
         let (mut scope, mut depth) = (context.scope, 0);
         while let Some((outer, parent)) = self.scopes[scope].part {
@@ -94,7 +94,7 @@ impl<'a> World<'a> {
         depth < MOST_NESTED
     }
 
-    /// One part.
+    /// Creates one part: its scope, its arguments, and copies of the component's statements.
     fn instance(
         &mut self,
         part: &'a Part,
@@ -162,8 +162,8 @@ impl<'a> World<'a> {
         self.statements(&component.items, &context);
     }
 
-    /// Parameters with a shape are named expressions of the part, `left.hip`: what they are is found once, and whether it
-    /// has the shape.
+    /// Turns parameters that have a shape into named expressions of the part, such as `left.hip`. Each is then
+    /// evaluated once, and its shape is checked.
     fn shaped(&mut self, component: &'a Component, scope: usize, by: usize) {
         for parameter in &component.parameters {
             let Some(shape) = parameter.shape else {
@@ -197,7 +197,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Whether a scope has a part of this name.
+    /// Returns whether a scope has a part of this name.
     fn has_part(&self, base: &str, indices: Option<&Vec<i64>>, scope: usize) -> bool {
         let scope = &self.scopes[scope];
         let thing = match indices {
@@ -210,7 +210,7 @@ impl<'a> World<'a> {
         thing.is_some_and(|thing| matches!(thing.kind, Kind::Part(_)))
     }
 
-    /// The arguments of a part, by the parameters of its component.
+    /// Matches the arguments of a part with the parameters of its component.
     fn bindings(
         &mut self,
         part: &'a Part,
@@ -323,7 +323,7 @@ impl<'a> World<'a> {
                             .help(usage())
                             .note(parameter.name.span, "declared here"),
                     );
-                    // Known, so that what is made of it is no further error.
+                    // The parameter gets some binding nevertheless, so that its uses cause no further errors.
                     let Some(any) = part.arguments.first() else {
                         continue;
                     };
@@ -343,7 +343,7 @@ impl<'a> World<'a> {
         bindings
     }
 
-    /// Warnings for components that no part is one of, and for parameters that a component does not mention.
+    /// Returns warnings for components without a part, and for parameters that their component does not mention.
     pub fn unused(&self) -> Vec<Diagnostic> {
         let mut warnings = Vec::new();
         let parameters = self.parameters.borrow();

@@ -1,5 +1,5 @@
-//! The second walk: names as written are replaced by those that things have in the end, counters by numbers, and
-//! parameters of components by their arguments.
+//! Second pass of the expansion: replaces names as written by their final names, counters by numbers, and parameters of
+//! components by their arguments.
 
 use super::copies::moved;
 use super::names::{Binding, Context, Found, Kind, World};
@@ -10,16 +10,16 @@ use crate::syntax::path::{Step, of_expression, steps};
 use num_rational::BigRational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The deepest expression, arguments written out: what one expression of a text can have.
+/// Largest depth of an expression with arguments substituted, equal to that of a single parsed expression.
 const MOST_LEVELS: usize = 600;
 
-/// The most operations that arguments have where they are written out.
+/// Largest total number of operations of all substituted arguments.
 const MOST_WRITTEN: usize = 250_000;
 
-/// With more errors than this, no more statements are looked at.
+/// Replacement stops after more errors than this.
 const MOST_ERRORS: usize = 200;
 
-/// The statements with the names that they have in the end.
+/// Replaces the names in all statements by their final names.
 pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> Vec<Item> {
     let mut report = Report::new();
     let mut known = Known::default();
@@ -65,17 +65,17 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> Vec<Item
 /// An argument with its depth and its size.
 type Written = (Expr, usize, usize);
 
-/// What arguments are found to be, each once.
+/// Arguments after replacement, each computed once.
 #[derive(Default)]
 struct Known {
-    /// By scope and parameter: the expression with its depth and its size; none where it is wrong.
+    /// By scope and parameter: the expression with its depth and size, or `None` if it is in error.
     arguments: BTreeMap<(usize, String), Option<Written>>,
-    /// How much was written out, and whether that was too much.
+    /// Total size of the substituted arguments so far, and whether it exceeds the limit.
     written: usize,
     full: bool,
 }
 
-/// Every argument is looked at once, also where its parameter is not used.
+/// Replaces names in every argument once, even if its parameter is not used, to find errors.
 fn check_arguments(world: &World<'_>, known: &mut Known, report: &mut Report) {
     for scope in 0..world.scopes.len() {
         for (name, binding) in &world.scopes[scope].bindings {
@@ -97,9 +97,9 @@ struct Replacing<'w, 'a> {
     context: &'w Context,
     report: &'w mut Report,
     known: &'w mut Known,
-    /// Parameters of the function whose value this is.
+    /// Parameters of the function whose body this is.
     locals: BTreeSet<String>,
-    /// How deep the expression around is.
+    /// Depth of the current expression within its statement.
     level: usize,
 }
 
@@ -133,7 +133,7 @@ impl Visit for Replacing<'_, '_> {
             (Ok(Some((found, taken))), true) if taken + 1 == path.len() => {
                 target.name.name = found;
                 let last = target.field.as_ref().map(|field| field.span);
-                // The name is what stands before the field.
+                // The span of the name ends before the field.
                 target.name.span = before(target.name.span, last);
             }
             (Ok(Some((found, taken))), _) if taken == path.len() => {
@@ -174,7 +174,7 @@ impl Visit for Replacing<'_, '_> {
     fn place(&mut self, _: &mut Span) {}
 }
 
-/// A region up to the one of its last word, where that is in it.
+/// Returns a region without its last word and the dot before it, if the word is within the region.
 fn before(span: Span, last: Option<Span>) -> Span {
     let ends = span.range().zip(last.and_then(Span::range));
     match ends {
@@ -185,7 +185,7 @@ fn before(span: Span, last: Option<Span>) -> Span {
     }
 }
 
-/// The error for steps beyond a name.
+/// Returns the error for indices or parts that follow a complete name.
 fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
     let name = match path.first() {
         Some(Step::Name(name)) => name.as_str(),
@@ -203,7 +203,8 @@ fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
 }
 
 impl<'w, 'a> Replacing<'w, 'a> {
-    /// The name of the thing that steps lead to, with how many of them do; none where nothing here has it.
+    /// Resolves the steps of a name. Returns the final name and the number of steps that it covers, or `None` if the
+    /// name is not declared here.
     fn named(&mut self, path: &[Step], span: Span) -> Result<Option<(String, usize)>, Diagnostic> {
         let shown = || match path.first() {
             Some(Step::Name(name)) => name.clone(),
@@ -212,7 +213,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
         match self.world.find(path, span, self.context)? {
             Found::Unknown if path.len() == 1 => Ok(None),
             Found::Unknown => match path.get(1) {
-                // A part of a coordinate that does not exist is reported with the coordinate.
+                // An unknown name with one part, such as `q.c`, is reported later as an unknown coordinate.
                 Some(Step::Name(_)) if path.len() == 2 => Ok(None),
                 _ => {
                     let error = Diagnostic::new(span, format!("unknown name `{}`", shown()));
@@ -249,7 +250,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
         Diagnostic::new(span, format!("`{part}` is a part")).help(self.world.parts_of(scope))
     }
 
-    /// The argument that a parameter stands for, with its depth and size.
+    /// Returns the argument that a parameter stands for, with its depth and size.
     fn argument(
         &mut self,
         scope: usize,
@@ -260,7 +261,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
         if let Some(known) = self.known.arguments.get(&key) {
             return known.clone();
         }
-        // What is made of itself has no value.
+        // An argument that refers to itself finds this entry, and has no value.
         self.known.arguments.insert(key.clone(), None);
         let mut expr = binding.value.clone();
         moved(&mut expr, binding.context.by);
@@ -286,7 +287,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
         found
     }
 
-    /// Replaces an expression that has to name a frame; whether it does.
+    /// Replaces an expression that has to name a frame. Returns whether it does.
     fn frame(&mut self, expr: &mut Expr, parameter: &str) -> bool {
         let wrong = |span: Span, what: String| {
             Diagnostic::new(span, format!("`{parameter}` has to be a frame, {what}"))
@@ -355,7 +356,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
             }
             Ok(Found::Parameter(scope, name, binding)) => {
                 self.world.mention(scope, name);
-                // What is not written out is not copied either.
+                // The size is checked first, so that an argument that is too large is not copied.
                 let known = self.known.arguments.get(&(scope, name.to_owned()));
                 let measured = known.map(|known| known.as_ref().map(|(_, d, s)| (*d, *s)));
                 let (depth, size) = match measured {
@@ -398,7 +399,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
             };
         }
         if let Some(value) = value {
-            // A number with a sign is what is written with one.
+            // A negative number is written as a negation.
             node.kind = signed(value, node.span);
         }
     }
@@ -414,7 +415,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
 
     fn is_too_large(&mut self, depth: usize, size: usize, span: Span) -> bool {
         if self.known.full {
-            // Reported where it was crossed.
+            // The error was reported when the limit was crossed.
             return true;
         }
         self.known.written += size;
@@ -429,7 +430,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
     }
 }
 
-/// A negative number as the text of one: a sign and what follows it.
+/// Writes a negative number as the negation of a positive one, as the parser does.
 fn signed(value: ExprKind, span: Span) -> ExprKind {
     match value {
         ExprKind::Number(number) if number < BigRational::from_integer(0.into()) => {
@@ -440,7 +441,7 @@ fn signed(value: ExprKind, span: Span) -> ExprKind {
     }
 }
 
-/// The steps of an expression that is a name with indices and parts.
+/// Returns the steps of an expression that is a name with indices and parts.
 fn spine(expr: &Expr) -> Option<Vec<Step>> {
     match &expr.kind {
         ExprKind::Name(name) => {
@@ -461,7 +462,7 @@ fn spine(expr: &Expr) -> Option<Vec<Step>> {
     }
 }
 
-/// How many indices and parts stand behind the name that an expression begins with.
+/// Returns the number of indices and parts that follow the first name of an expression.
 fn layers(mut expr: &Expr) -> usize {
     let mut layers = 0;
     while let ExprKind::Field(base, _) | ExprKind::Index(base, _) = &expr.kind {
@@ -471,7 +472,7 @@ fn layers(mut expr: &Expr) -> usize {
     layers
 }
 
-/// The depth of an expression and the number of its nodes.
+/// Returns the depth of an expression and its number of nodes.
 fn measure(expr: &mut Expr) -> (usize, usize) {
     let inner: Vec<(usize, usize)> = parts(expr).into_iter().map(measure).collect();
     let depth = inner.iter().map(|(depth, _)| *depth).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Sums, products, quotients and powers: their shapes, and their numbers where those of both sides are known.
+//! Shapes of sums, products, quotients and powers, and their values if both operands are known.
 
 use super::infer::Inference;
 use super::shape::{Shape, Shaped};
@@ -9,11 +9,11 @@ use num_traits::{ToPrimitive, Zero};
 
 /// Largest number of multiplications of one matrix product.
 pub const LARGEST_PRODUCT: usize = 40 * 40 * 40;
-/// Numbers with more bits than this are an error where they are evaluated, and not followed here.
+/// Largest number of bits of a known value. Larger values are not computed here; they are reported on evaluation.
 const LARGEST_NUMBER: u64 = 20_000;
 
 impl<'a> Inference<'a> {
-    /// The value of an operation.
+    /// Returns the shape of a binary operation.
     pub fn binary(
         &mut self,
         op: BinaryOp,
@@ -109,7 +109,7 @@ impl<'a> Inference<'a> {
             return self.error(error.help("its parts are `.R` and `.p`"));
         }
         match b.as_number() {
-            // Reported where it is evaluated.
+            // Division by zero is reported on evaluation.
             Some(divisor) if divisor.is_zero() => None,
             Some(divisor) => Some(a.map(|number| number / divisor)),
             None => Some(Shaped::of(a.shape)),
@@ -131,7 +131,8 @@ impl<'a> Inference<'a> {
     }
 }
 
-/// A power with a whole exponent, where it is not beyond all use.
+/// Returns a power with a whole exponent, or `None` if the exponent is not whole, the result is too large, or 0 is
+/// raised to a negative power.
 fn whole_power(base: &BigRational, exponent: &BigRational) -> Option<BigRational> {
     let exponent = Some(exponent).filter(|exponent| exponent.is_integer())?;
     let exponent = exponent.to_integer().to_i32()?;

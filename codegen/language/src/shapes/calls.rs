@@ -1,4 +1,4 @@
-//! Calls of the functions of the language.
+//! Shapes of calls.
 
 use super::infer::Inference;
 use super::shape::{MOST_ENTRIES, Shape, Shaped};
@@ -10,7 +10,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive};
 
 impl<'a> Inference<'a> {
-    /// The shape of a call; wrong counts and shapes of arguments are reported.
+    /// Returns the shape of a call. Reports wrong numbers and shapes of arguments.
     pub fn call(
         &mut self,
         function: &'a Ident,
@@ -33,7 +33,7 @@ impl<'a> Inference<'a> {
             _ => {}
         }
         let found = self.all(arguments);
-        // A name that is no function is an error already.
+        // An unknown function has been reported already.
         let usage = usage(name)?;
         let found = found?;
         if FUNCTIONS.contains(&name) {
@@ -56,7 +56,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(span, message).help(help))
     }
 
-    /// The part of an S1 coordinate that stands for its sine or cosine.
+    /// Returns the part of an S1 coordinate that is its sine, cosine or tangent, as advice for `sin(q)` and the like.
     fn circle_part(&self, function: &str, arguments: &[Expr]) -> Option<String> {
         let [argument] = arguments else { return None };
         let ExprKind::Name(name) = &argument.kind else {
@@ -73,7 +73,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// What a joint calls for its axis, its place or its plane.
+    /// Returns the shape of an internal function that a joint calls for its axis, its placement or its plane.
     fn of_joint(&mut self, name: &str, argument: &'a Expr) -> Option<Shaped> {
         let found = self.of(argument)?.shape;
         let error = |message: &str| Diagnostic::new(argument.span, message);
@@ -93,7 +93,7 @@ impl<'a> Inference<'a> {
     }
 }
 
-/// The value of a call, where it takes such arguments.
+/// Returns the result of a call, or `None` if the function does not take such arguments.
 fn value(name: &str, arguments: &[Shaped]) -> Option<Shaped> {
     use Shape::{Matrix, Pose, Scalar, Vector};
     let shapes: Vec<Shape> = arguments.iter().map(|one| one.shape).collect();
@@ -136,18 +136,18 @@ fn value(name: &str, arguments: &[Shaped]) -> Option<Shaped> {
     Some(known.map_or(Shaped::of(shape), Shaped::number))
 }
 
-/// Whether a function makes so many rows.
+/// Returns whether a function can produce this many rows.
 fn is_size(rows: usize) -> bool {
     (1..=MOST_ENTRIES).contains(&rows)
 }
 
-/// Whether these are an angle, its cosine and sine, or an S1 coordinate.
+/// Returns whether the arguments specify a rotation angle: an angle, its cosine and sine, or an S1 coordinate.
 fn is_turn(shapes: &[Shape]) -> bool {
     use Shape::{Scalar, Vector};
     matches!(shapes, [Scalar] | [Scalar, Scalar] | [Vector(2)])
 }
 
-/// Functions by which numbers are chosen.
+/// Evaluates the functions that select one of their arguments, or its magnitude, exactly.
 fn number(name: &str, numbers: &[&BigRational]) -> Option<BigRational> {
     Some(match (name, numbers) {
         ("abs", [a]) => a.abs(),

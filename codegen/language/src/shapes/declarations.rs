@@ -1,4 +1,4 @@
-//! The shapes of all names, in the order in which they become known.
+//! Shapes of all names, determined in the order in which the names become known.
 
 use super::infer::Inference;
 use super::shape::{Shape, Shaped};
@@ -7,7 +7,7 @@ use crate::symbols::{Kind, Order, Relation, Step};
 use crate::syntax::ast::{Declaration, ItemKind, ShapeKind, Source, System};
 
 impl<'a> Inference<'a> {
-    /// Looks at all declarations, and at the values that they have.
+    /// Determines the shapes of all declarations, and checks their values.
     pub fn declarations(&mut self, system: &'a System, order: &Order<'a>) {
         for item in &system.items {
             if let ItemKind::Const(list) = &item.kind {
@@ -46,7 +46,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// What is made of symbols has the shape that it was declared with.
+    /// Defines names that have exactly their declared shape: parameters, velocities, inputs and states.
     fn symbols_of(&mut self, list: &'a [Declaration], kind: Kind) {
         for declaration in list {
             let shape = Shape::declared(declaration.shape.kind);
@@ -54,7 +54,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A constant or a named expression, which takes any shape where none was written.
+    /// Defines a constant or a named expression, which takes the shape of its value if none was written.
     fn valued(&mut self, declaration: &'a Declaration, kind: Kind) {
         let found = declaration.value.as_ref().and_then(|value| self.of(value));
         let declared = match declaration.shape.kind {
@@ -74,7 +74,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Whether a value has the declared shape; reports it where not.
+    /// Checks that a value has the declared shape, and reports an error otherwise.
     fn fits(&mut self, declaration: &'a Declaration, found: Shape) -> Option<()> {
         let (name, shape) = (&declaration.name, declaration.shape);
         if found == Shape::declared(shape.kind) {
@@ -94,7 +94,7 @@ impl<'a> Inference<'a> {
         )
     }
 
-    /// The default of a parameter.
+    /// Checks the default value of a parameter.
     pub fn default_of(&mut self, declaration: &'a Declaration) -> Option<()> {
         let value = declaration.value.as_ref()?;
         let found = self.of(value)?.shape;
@@ -114,7 +114,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(value.span, message).help(help))
     }
 
-    /// The start of a state.
+    /// Checks the initial value of a state.
     pub fn state(&mut self, declaration: &'a Declaration) -> Option<()> {
         let value = declaration.value.as_ref()?;
         let found = self.of(value)?.shape;
@@ -127,7 +127,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The definition of a velocity by rates.
+    /// Checks the definition of a velocity by rates.
     pub fn definition(&mut self, declaration: &'a Declaration) -> Option<()> {
         let value = declaration.value.as_ref()?;
         let found = self.of(value)?.shape;
@@ -155,7 +155,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(value.span, message).help(help))
     }
 
-    /// A frame, which is a pose whatever is wrong with its definition.
+    /// Defines a frame. It is a pose even if its definition is in error.
     fn frame(&mut self, relation: &Relation<'a>, back: bool) {
         let Relation { name, on, pose, .. } = *relation;
         let placed = on.filter(|_| back).unwrap_or(name);

@@ -1,4 +1,4 @@
-//! Calls of functions of the description, of those in Rust, and of tables.
+//! Shapes of calls of functions of the description, of external functions in Rust, and of tables.
 
 use super::infer::Inference;
 use super::shape::{Shape, Shaped};
@@ -7,7 +7,7 @@ use crate::syntax::ast::{self, Expr, External, Function, Ident, ShapeKind, Span}
 use std::collections::BTreeMap;
 
 impl<'a> Inference<'a> {
-    /// The value of a call of a function of the description. An error in the function's expression is reported there,
+    /// Returns the shape of a call of a function of the description. An error in the function's body is reported there,
     /// with a note at the call.
     pub fn applied(
         &mut self,
@@ -36,7 +36,7 @@ impl<'a> Inference<'a> {
         self.written_out(&function.name, &names, &function.value, values, span)
     }
 
-    /// The arguments of a call, as many as there are parameters.
+    /// Returns the shapes of the arguments of a call. Reports an error unless there are as many as parameters.
     fn counted(
         &mut self,
         name: &Ident,
@@ -61,7 +61,7 @@ impl<'a> Inference<'a> {
         self.error(error.note(name.span, note))
     }
 
-    /// The value of a function's expression with arguments of these shapes, which is found once for each set of them.
+    /// Returns the shape of a function's body for arguments of these shapes. Each combination is inferred only once.
     fn written_out(
         &mut self,
         name: &'a Ident,
@@ -88,7 +88,7 @@ impl<'a> Inference<'a> {
         found
     }
 
-    /// What a function in Rust gives: a number, or a vector where it has several components.
+    /// Returns the shape of the result of a function in Rust: a scalar, or a vector if it has several components.
     pub fn external(
         &mut self,
         function: &'a External,
@@ -128,7 +128,7 @@ impl<'a> Inference<'a> {
         })
     }
 
-    /// The value of a table at an argument.
+    /// Returns the shape of the value of a table.
     pub fn table(&mut self, name: &str, arguments: &'a [Expr], span: Span) -> Option<Shaped> {
         let values = self.all(arguments);
         let [argument] = arguments else {
@@ -144,7 +144,7 @@ impl<'a> Inference<'a> {
     }
 }
 
-/// Whether a value has the shape of a parameter; one without a written shape takes any.
+/// Returns whether a value fits the shape of a parameter. A parameter without a shape takes any value.
 fn fits(shape: &ast::Shape, found: Shape) -> bool {
     shape.kind == ShapeKind::Scalar || Shape::declared(shape.kind) == found
 }

@@ -1,4 +1,4 @@
-//! The shape of an expression, from those of its parts.
+//! Inference of the shape of an expression from those of its parts.
 
 use super::shape::{MOST_ENTRIES, Shape, Shaped};
 use crate::diagnostics::{Diagnostic, Report};
@@ -8,15 +8,16 @@ use crate::syntax::ast::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The deepest nesting of expressions, functions written out: one expression alone is never so deep.
+/// Largest nesting depth of expressions, including the bodies of called functions. A single expression never reaches
+/// it.
 pub const MOST_LEVELS: usize = 640;
 
 /// A function with the shapes of its arguments.
 type Called<'a> = (&'a str, Vec<Shaped>);
 
-/// Finds shapes; `None` means that there is an error, here or elsewhere.
+/// State of the shape inference. Its methods return `None` if there is an error, here or elsewhere.
 pub struct Inference<'a> {
-    /// What names stand for.
+    /// Symbol table.
     pub symbols: &'a Symbols<'a>,
     /// The errors so far.
     pub report: Report,
@@ -24,18 +25,18 @@ pub struct Inference<'a> {
     pub tables: BTreeSet<&'a str>,
     /// The functions in Rust.
     pub externals: BTreeMap<&'a str, &'a External>,
-    /// What calls of functions have given.
+    /// Results of calls, by function and argument shapes.
     pub called: BTreeMap<Called<'a>, Option<Shaped>>,
-    /// The parameters of the function whose value is looked at; none outside of functions.
+    /// Parameters of the function whose body is being checked. Empty outside of functions.
     pub locals: BTreeMap<&'a str, Shaped>,
-    /// By the numbers of the symbols: whether it is defined, and its shape unless its definition is in error.
+    /// By symbol number: `None` before the definition, `Some(None)` if the definition is in error, otherwise the shape.
     values: Vec<Option<Option<Shaped>>>,
-    /// How deep expressions are nested here, those of the functions around included.
+    /// Current nesting depth of expressions, including those of the enclosing functions.
     level: usize,
 }
 
 impl<'a> Inference<'a> {
-    /// No names are defined yet.
+    /// Creates a state in which no names are defined.
     pub fn new(system: &'a System, symbols: &'a Symbols<'a>) -> Self {
         let mut inference = Inference {
             symbols,
@@ -60,7 +61,7 @@ impl<'a> Inference<'a> {
         inference
     }
 
-    /// Defines a name. Whether it is the first of its declarations.
+    /// Defines the shape of a name. Returns whether this is its first declaration.
     pub fn define(&mut self, name: &Ident, kind: Kind, value: Option<Shaped>) -> bool {
         let Some(symbol) = self.symbols.get(&name.name) else {
             return false;
@@ -73,22 +74,22 @@ impl<'a> Inference<'a> {
         true
     }
 
-    /// The shape of a name that was declared.
+    /// Returns the shape of a declared name.
     pub fn named(&self, name: &str) -> Option<&Shaped> {
         let symbol = self.symbols.get(name)?;
         self.values[symbol.id.index()].as_ref()?.as_ref()
     }
 
-    /// Reports an error, once for each place.
+    /// Reports an error, once per place.
     pub fn error<T>(&mut self, error: Diagnostic) -> Option<T> {
         self.report.push_once(error);
         None
     }
 
-    /// The shape of an expression.
+    /// Returns the shape of an expression.
     pub fn of(&mut self, expr: &'a Expr) -> Option<Shaped> {
         if self.level >= MOST_LEVELS {
-            // Reported where it is evaluated.
+            // Excessive nesting is reported on evaluation.
             return None;
         }
         self.level += 1;
@@ -115,18 +116,18 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The shapes of arguments.
+    /// Returns the shapes of all expressions of a list.
     pub fn all(&mut self, list: &'a [Expr]) -> Option<Vec<Shaped>> {
         let found: Vec<Option<Shaped>> = list.iter().map(|expr| self.of(expr)).collect();
         found.into_iter().collect()
     }
 
-    /// Whether an expression is the name of an S1 coordinate.
+    /// Returns whether an expression is the name of an S1 coordinate.
     pub fn is_circle(&self, expr: &Expr) -> bool {
         matches!(&expr.kind, ExprKind::Name(name) if self.symbols.is_circle(name) && !self.locals.contains_key(name.as_str()))
     }
 
-    /// Whether an expression has a wanted shape; reports it where not.
+    /// Checks that an expression has the wanted shape, and reports an error otherwise.
     pub fn wants(&mut self, expr: &'a Expr, what: &str, wanted: Shape) -> Option<()> {
         let found = self.of(expr)?.shape;
         match found == wanted {
@@ -161,7 +162,7 @@ impl<'a> Inference<'a> {
         match name {
             "world" => Some(Shaped::of(Shape::Pose)),
             "pi" => Some(Shaped::of(Shape::Scalar)),
-            // A name that stands for nothing is an error already.
+            // An unknown name has been reported already.
             _ => None,
         }
     }
@@ -198,7 +199,7 @@ impl<'a> Inference<'a> {
         Some(Shaped { shape, numbers })
     }
 
-    /// Both branches have one shape.
+    /// Returns the shape of a choice, whose branches must have the same shape.
     fn choice(&mut self, choice: &'a Choice) -> Option<Shaped> {
         let mut side = |side: &'a Expr| {
             let found = self.of(side)?;

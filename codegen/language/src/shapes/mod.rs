@@ -1,10 +1,11 @@
-//! The shapes of all expressions: scalars, vectors, matrices and poses. All of this is found once, from the text and its
-//! names, without any algebra.
+//! Shape inference: every expression is a scalar, a vector, a matrix or a pose. Shapes are determined once, from the
+//! text and the resolved names, without any algebra.
 //!
-//! An expression has its shape from its parts; where a shape or an index depends on a number, as in `identity(n)` and
-//! `v[k]`, constants are computed exactly. Functions of a description take the shapes of their arguments, and are looked
-//! at once for each set of them. What is wrong with a shape, with the number of arguments, with an index or a part is
-//! an error here, and nowhere else; an expression in error has no shape, and is no error where it is used.
+//! The shape of an expression follows from those of its parts. If a shape or an index depends on a number, as in
+//! `identity(n)` and `v[k]`, constants are computed exactly. Functions of a description take the shapes of their
+//! arguments, and are checked once for each combination of them. All errors about shapes, numbers of arguments, indices
+//! and parts are reported here and nowhere else. An expression in error has no shape, and causes no further errors
+//! where it is used.
 
 mod arithmetic;
 mod calls;
@@ -28,7 +29,7 @@ pub use infer::MOST_LEVELS;
 pub use rates::{rate_help, velocity_for};
 pub use shape::MOST_ENTRIES;
 
-/// Checks the shapes in a description whose names are resolved; all that is wrong with them is reported.
+/// Checks the shapes in a description whose names are resolved, and reports all errors about them.
 pub fn check(system: &System, names: &Resolved, report: &mut Report) {
     let errors = read(system, names).report.finish().err();
     errors
@@ -37,7 +38,7 @@ pub fn check(system: &System, names: &Resolved, report: &mut Report) {
         .for_each(|error| report.push(error));
 }
 
-/// The shapes of all names, with the errors of all statements.
+/// Determines the shapes of all names, and collects the errors of all statements.
 pub(crate) fn read<'a>(system: &'a System, names: &'a Resolved<'a>) -> Inference<'a> {
     let mut inference = Inference::new(system, &names.symbols);
     inference.declarations(system, &names.order);

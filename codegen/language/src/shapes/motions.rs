@@ -1,4 +1,4 @@
-//! Motions of frames and of their points, with components in the axes of frames, and rates of expressions.
+//! Shapes of motions of frames and their points, of components in the axes of frames, and of rates of expressions.
 
 use super::infer::Inference;
 use super::shape::{Shape, Shaped};
@@ -7,8 +7,8 @@ use crate::symbols::words::FUNCTIONS;
 use crate::syntax::ast::{Expr, ExprKind, Span};
 
 impl<'a> Inference<'a> {
-    /// A call of `position`, `velocity` or another of the [`FUNCTIONS`]: of a frame, a point of it, and a frame to look
-    /// from.
+    /// Returns the shape of a call of one of the [`FUNCTIONS`], such as `velocity`. Arguments are a frame, optionally a
+    /// point of it, and optionally a frame of reference.
     pub fn motion(&mut self, name: &str, found: &[Shaped], span: Span) -> Option<Shaped> {
         use Shape::{Pose, Vector};
         let shapes: Vec<Shape> = found.iter().map(|one| one.shape).collect();
@@ -31,7 +31,8 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(span, message).help(help))
     }
 
-    /// `velocity(f, p) in g`: the components of a motion in the axes of a frame; `in body` are those of f itself.
+    /// Returns the shape of `velocity(f, p) in g`: the components of a motion in the axes of a frame. `in body` means
+    /// the axes of f itself.
     pub fn in_axes(&mut self, call: &'a Expr, frame: &'a Expr) -> Option<Shaped> {
         let own = &self.symbols.functions;
         let moves = matches!(&call.kind, ExprKind::Call(function, _) if FUNCTIONS.contains(&function.name.as_str())
@@ -56,7 +57,7 @@ impl<'a> Inference<'a> {
         value
     }
 
-    /// `rate(…)`: of the shape of its argument, an angular rate of an S1 coordinate.
+    /// Returns the shape of `rate(…)`: that of its argument, or a scalar (the angular rate) for an S1 coordinate.
     pub fn rate(&mut self, arguments: &'a [Expr], span: Span) -> Option<Shaped> {
         let [argument] = arguments else {
             let message = format!("`rate` takes one expression, not {}", arguments.len());

@@ -1,4 +1,4 @@
-//! Parts and entries: `q.c`, `M.T`, `v[k]`, `M[i, j]`.
+//! Shapes of parts and entries: `q.c`, `M.T`, `v[k]`, `M[i, j]`.
 
 use super::infer::Inference;
 use super::shape::{Shape, Shaped};
@@ -7,7 +7,7 @@ use crate::syntax::ast::{Expr, Ident, Span};
 use num_traits::ToPrimitive;
 
 impl<'a> Inference<'a> {
-    /// A part by its name.
+    /// Returns the shape of a part, by its name.
     pub fn field(&mut self, base: &'a Expr, field: &Ident) -> Option<Shaped> {
         let shape = self.of(base)?.shape;
         let circle = self.is_circle(base);
@@ -33,7 +33,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(field.span, message).help(help))
     }
 
-    /// An entry, or a row of a matrix.
+    /// Returns the shape of an entry, or of a row of a matrix.
     pub fn index(&mut self, base: &'a Expr, indices: &'a [Expr], span: Span) -> Option<Shaped> {
         let value = self.of(base);
         let places: Vec<Option<usize>> = indices.iter().map(|index| self.place(index)).collect();
@@ -78,7 +78,7 @@ impl<'a> Inference<'a> {
         Some(value.part(shape, first..first + count))
     }
 
-    /// The whole number that an index is.
+    /// Evaluates an index to a whole number.
     fn place(&mut self, index: &'a Expr) -> Option<usize> {
         let found = self.of(index)?;
         if found.shape != Shape::Scalar {

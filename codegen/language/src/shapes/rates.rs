@@ -1,8 +1,8 @@
-//! How the rate of a coordinate is written: what messages advise.
+//! Advice in messages on how to write the rate of a coordinate.
 
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, ShapeKind};
 
-/// How the rate of a coordinate is written, with the name of a velocity.
+/// Returns advice on how to write the rate of a coordinate, with the name of a velocity.
 pub fn rate_help(name: &str, kind: CoordKind, velocity: &str) -> String {
     match kind {
         CoordKind::Real => format!("write `rate {name} = {velocity};` with a scalar velocity"),
@@ -24,8 +24,8 @@ pub fn rate_help(name: &str, kind: CoordKind, velocity: &str) -> String {
     }
 }
 
-/// The velocity that probably moves a coordinate: one that its rate mentions, else the first
-/// or (for a rotation) last one of fitting shape, else a name for it.
+/// Guesses the velocity that moves a coordinate, among those of fitting shape: one that the given rate mentions, else
+/// the first one or (for a rotation or an angle) the last one, else a conventional name.
 pub fn velocity_for<'a>(
     kind: CoordKind,
     rate: Option<&Expr>,

@@ -1,9 +1,9 @@
-//! Shapes, and what is known of a value before it is computed.
+//! Shapes, and the exact values that are known during shape inference.
 
 use crate::syntax::ast::{CoordKind, ShapeKind};
 use num_rational::BigRational;
 
-/// Largest number of rows and columns of what arrays and functions make.
+/// Largest number of rows and of columns that arrays and functions can produce.
 pub const MOST_ENTRIES: usize = 64;
 
 /// The shape of a value.
@@ -11,19 +11,19 @@ pub const MOST_ENTRIES: usize = 64;
 pub enum Shape {
     /// One number.
     Scalar,
-    /// A column of so many numbers.
+    /// A column vector of this length.
     Vector(usize),
-    /// So many rows and columns.
+    /// A matrix with these numbers of rows and columns.
     Matrix(usize, usize),
-    /// Rotation and position of a frame.
+    /// The rotation and position of a frame.
     Pose,
 }
 
 impl Shape {
-    /// A rotation matrix.
+    /// Shape of a rotation matrix.
     pub(crate) const TURN: Shape = Shape::Matrix(3, 3);
 
-    /// The shape in words: "a vector of 3".
+    /// Describes the shape in words: "a vector of 3".
     pub(crate) fn describe(self) -> String {
         match self {
             Shape::Scalar => "a scalar".into(),
@@ -33,7 +33,7 @@ impl Shape {
         }
     }
 
-    /// The shape that an annotation says.
+    /// Returns the shape of an annotation.
     pub(crate) fn declared(kind: ShapeKind) -> Shape {
         match kind {
             ShapeKind::Scalar => Shape::Scalar,
@@ -42,7 +42,7 @@ impl Shape {
         }
     }
 
-    /// The shape of a coordinate.
+    /// Returns the shape of a coordinate.
     pub(crate) fn of_coordinate(kind: CoordKind) -> Shape {
         match kind {
             CoordKind::Real => Shape::Scalar,
@@ -55,17 +55,17 @@ impl Shape {
     }
 }
 
-/// A shape, with exact numbers where they are known.
+/// A shape, with the exact entries if they are known.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Shaped {
-    /// The shape.
+    /// Shape of the value.
     pub shape: Shape,
-    /// The entries, matrices by rows, where all of them are rational numbers of the text.
+    /// The entries, by rows for a matrix, if all of them are rational numbers that follow from the text.
     pub numbers: Option<Vec<BigRational>>,
 }
 
 impl Shaped {
-    /// A shape without numbers.
+    /// Creates a shape with unknown entries.
     pub fn of(shape: Shape) -> Self {
         Shaped {
             shape,
@@ -73,7 +73,7 @@ impl Shaped {
         }
     }
 
-    /// A number.
+    /// Creates a scalar of known value.
     pub fn number(number: BigRational) -> Self {
         Shaped {
             shape: Shape::Scalar,
@@ -81,7 +81,7 @@ impl Shaped {
         }
     }
 
-    /// The number that a scalar is.
+    /// Returns the value of a scalar, if it is known.
     pub fn as_number(&self) -> Option<&BigRational> {
         match (self.shape, self.numbers.as_deref()) {
             (Shape::Scalar, Some([number])) => Some(number),
@@ -89,7 +89,7 @@ impl Shaped {
         }
     }
 
-    /// The same shape with every number mapped.
+    /// Returns the same shape with a function applied to all known entries.
     pub fn map(&self, f: impl FnMut(&BigRational) -> BigRational) -> Self {
         let numbers = self.numbers.as_ref();
         Shaped {
@@ -98,7 +98,7 @@ impl Shaped {
         }
     }
 
-    /// Some of the numbers, in a shape.
+    /// Returns a range of the entries, with a given shape.
     pub fn part(&self, shape: Shape, places: std::ops::Range<usize>) -> Self {
         let numbers = self.numbers.as_ref();
         Shaped {

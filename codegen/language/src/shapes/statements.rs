@@ -1,4 +1,4 @@
-//! The shapes that statements want of their expressions.
+//! Checks of the shapes that statements require of their expressions.
 
 use super::infer::Inference;
 use super::shape::{Shape, Shaped};
@@ -12,7 +12,7 @@ use crate::syntax::written;
 use num_traits::Zero;
 
 impl<'a> Inference<'a> {
-    /// Looks at one statement, but for what became known with the names.
+    /// Checks the expressions of one statement, except those that were checked with the declarations.
     pub fn statement(&mut self, system: &'a System, item: &'a Item) {
         match &item.kind {
             ItemKind::Param(list) => list.iter().for_each(|one| _ = self.default_of(one)),
@@ -68,7 +68,7 @@ impl<'a> Inference<'a> {
                 self.scalars([stiffness], "a stiffness");
                 self.scalars(length, "the length of a spring without force");
                 match acting {
-                    // Of a circle its angle.
+                    // A spring on an S1 coordinate acts on its angle.
                     Acting::On(expr) if self.is_circle(expr) => {}
                     acting => self.acting(acting, "what a spring acts on"),
                 }
@@ -91,7 +91,7 @@ impl<'a> Inference<'a> {
                 self.conserved(conserved);
                 when.iter().for_each(|one| _ = self.condition(one));
             }
-            // Known already, or without expressions.
+            // The others were checked with the declarations, or have no expressions.
             _ => {}
         }
     }
@@ -118,7 +118,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Both sides of a loop or of a constraint on velocities; `… = 0` is meant entry by entry.
+    /// Checks both sides of a loop or of a constraint on velocities. A right side of 0 applies to every entry.
     fn equation(&mut self, left: &'a Expr, right: &'a Expr) {
         let (a, b) = (self.of(left), self.of(right));
         let (Some(a), Some(b)) = (a, b) else { return };
@@ -130,7 +130,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// What of a joint's braces is not written out.
+    /// Checks the fields of a joint that are not expanded into statements.
     fn joint(&mut self, joint: &'a Joint) {
         for (field, _, values) in &joint.fields {
             let what = match field {
@@ -197,14 +197,14 @@ impl<'a> Inference<'a> {
         self.vectors(along, "the direction of a momentum");
     }
 
-    /// `F = 0` sets every entry.
+    /// Checks a condition such as `F = 0`. A value of 0 sets every entry.
     fn condition(&mut self, condition: &'a Condition) -> Option<()> {
         let Condition { target, value } = condition;
         let set = match &target.kind {
             ExprKind::Index(base, _) => &base.kind,
             name => name,
         };
-        // What cannot be set is an error already.
+        // A target that cannot be set has been reported already.
         let ExprKind::Name(name) = set else {
             return None;
         };

@@ -1,4 +1,5 @@
-//! What statements are about: coordinates, velocities and states, or parts of them, with the shapes that they want.
+//! Targets of statements, such as coordinates, velocities and states or parts of them, and the shapes that they
+//! require.
 
 use super::infer::Inference;
 use super::rates::{rate_help, velocity_for};
@@ -11,7 +12,8 @@ use crate::syntax::ast::{
 use crate::syntax::written;
 
 impl<'a> Inference<'a> {
-    /// The shape of a velocity or state, or of an entry of it; fields have none of those that statements begin so for.
+    /// Returns the shape of a velocity or state, or of an entry of one. These have no fields; in the error for a field,
+    /// `begins` is the first word of the statement.
     fn whole(&mut self, target: &Target, begins: &str) -> Option<Shape> {
         let name = &target.name.name;
         let shape = self.named(name)?.shape;
@@ -23,7 +25,7 @@ impl<'a> Inference<'a> {
         self.error(error.help(format!("give the whole of it: `{begins} {name} = …;`")))
     }
 
-    /// The shape of a coordinate, or of a part of it.
+    /// Returns the shape of a coordinate, or of a part of it.
     fn part(&mut self, target: &Target, kind: CoordKind) -> Option<Shape> {
         let shape = self.named(&target.name.name)?.shape;
         let field = target.field.as_ref();
@@ -50,7 +52,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(target.span(), message).help(help))
     }
 
-    /// The shape of what a target names of a vector: all of it or an entry.
+    /// Returns the shape of a target in a vector: the whole vector or an entry.
     fn entry(&mut self, target: &Target, whole: Shape) -> Option<Shape> {
         let length = match (target.entry.as_slice(), whole) {
             ([], _) => return Some(whole),
@@ -81,7 +83,7 @@ impl<'a> Inference<'a> {
         )
     }
 
-    /// Rates are given of all entries at once.
+    /// Refuses a target with an index, since rates must be given for all entries at once.
     fn all_entries(&mut self, target: &Target) -> Option<()> {
         if target.entry.is_empty() {
             return Some(());
@@ -95,7 +97,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(target.span(), message).help(help))
     }
 
-    /// `rate q = …;` of a coordinate or a state.
+    /// Checks `rate q = …;` for a coordinate or a state.
     pub fn rate_of(&mut self, system: &System, target: &Target, value: &'a Expr) -> Option<()> {
         let found = self.of(value);
         let name = &target.name.name;
@@ -133,7 +135,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(value.span, message).help(help))
     }
 
-    /// `start q = …;` or `start q ~ …;` of a coordinate or a velocity.
+    /// Checks `start q = …;` or `start q ~ …;` for a coordinate or a velocity.
     pub fn start_of(&mut self, target: &Target, value: &'a Expr) -> Option<()> {
         let found = self.of(value);
         let (wanted, kind) = match self.symbols.kind(&target.name.name)? {
@@ -160,7 +162,7 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(value.span, message).help(help))
     }
 
-    /// `prescribe q = …;` or `prescribe rate(v) = …;`.
+    /// Checks `prescribe q = …;` or `prescribe rate(v) = …;`.
     pub fn prescribed(&mut self, target: &Target, rate: bool, value: &'a Expr) -> Option<()> {
         let found = self.of(value);
         let name = &target.name.name;
@@ -182,7 +184,7 @@ impl<'a> Inference<'a> {
                 let wanted = self.part(&given, kind)?;
                 let found = found?.shape;
                 match kind {
-                    // What else has no values that can be given is refused as a whole.
+                    // Parts and entries that cannot be prescribed are refused later, as a whole.
                     _ if target.field.is_some() || given != *target => Some(()),
                     CoordKind::S1 if found == Shape::Scalar => Some(()),
                     CoordKind::S1 => self.wrong(value.span, &what("motion"), "an angle", found),
@@ -196,7 +198,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// `generalized force v = …;`
+    /// Checks `generalized force v = …;`.
     pub fn force_of(&mut self, target: &Target, value: &'a Expr) -> Option<()> {
         let found = self.of(value);
         if self.symbols.kind(&target.name.name) != Some(Kind::Velocity) {
@@ -207,7 +209,7 @@ impl<'a> Inference<'a> {
         self.agree(value, &what, wanted, found?.shape)
     }
 
-    /// Whether a value has the shape that it is for; reports it where not.
+    /// Checks that a value has the required shape, and reports an error otherwise.
     pub fn agree(&mut self, value: &Expr, what: &str, wanted: Shape, found: Shape) -> Option<()> {
         match found == wanted {
             true => Some(()),
@@ -229,7 +231,7 @@ fn no_part(name: &Ident, field: &Ident, kind: CoordKind) -> Diagnostic {
     }
 }
 
-/// All velocities with their shapes, in the order of the text.
+/// Returns all velocities with their shapes, in the order of the text.
 fn velocities(system: &System) -> impl Iterator<Item = (&str, ShapeKind)> {
     let lists = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Velocity(list) => Some(list),
@@ -239,7 +241,7 @@ fn velocities(system: &System) -> impl Iterator<Item = (&str, ShapeKind)> {
     all.map(|declaration| (declaration.name.name.as_str(), declaration.shape.kind))
 }
 
-/// The w of a rate `R * w`, which lacks its `hat`.
+/// Returns the w of a rate `R * w` that lacks its `hat`.
 fn factor_of<'a>(coordinate: &str, rate: &'a Expr) -> Option<&'a str> {
     let ExprKind::Binary(BinaryOp::Mul, left, right) = &rate.kind else {
         return None;

@@ -1,4 +1,4 @@
-//! Names in expressions, and names of frames: whether they stand for something that is known there.
+//! Lookup of names in expressions and of names of frames.
 
 use super::table::{Kind, Symbol, Symbols};
 use super::words::{self, FUNCTIONS, reserved};
@@ -8,47 +8,47 @@ use crate::syntax::suggest::closest;
 use crate::syntax::written::written;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Names listed where none is close to a misspelt one.
+/// Largest number of names listed in a message if none is close to a misspelt one.
 const LISTED: usize = 12;
 
-/// How names begin that programs add to a description: they are not offered.
+/// Prefix of names that programs add to a description. They are never suggested.
 const GENERATED: &str = "hamel_";
 
-/// How the rates of coordinates are often called.
+/// Suffixes that users often expect for the rates of coordinates.
 const ENDINGS: [&str; 3] = ["_dot", "dot", "_d"];
 
-/// Misspelt names for which a close one is looked for.
+/// Largest number of unknown names for which a close one is searched.
 const MOST_MISSPELT: usize = 50;
 
-/// The value of a function, and the names of its parameters.
+/// The body of a function, and the names of its parameters.
 #[derive(Clone)]
 struct Body<'a> {
     parameters: BTreeSet<&'a str>,
     value: &'a Expr,
 }
 
-/// Looks up names, while more and more of them become known.
+/// Looks up names while more and more of them become known.
 pub struct Checker<'a> {
-    /// What is declared.
+    /// All declared symbols.
     pub symbols: Symbols<'a>,
     /// The errors so far.
     pub report: Report,
-    /// Names that are declared, but not known yet.
+    /// Names that are declared but not yet known.
     pub open: BTreeSet<&'a str>,
-    /// Names that were looked up.
+    /// Names that have been looked up.
     pub used: BTreeSet<String>,
-    /// What is written out where a function is called.
+    /// Bodies of functions, checked where the function is called.
     bodies: BTreeMap<&'a str, Body<'a>>,
-    /// Functions that were looked at, and how many names were open then.
+    /// Functions that have been checked, with the number of open names at that time, or 0 if there were no errors.
     seen: BTreeMap<&'a str, usize>,
-    /// The velocities, or entries of them, that are rates of coordinates by themselves.
+    /// Rates that are given for whole coordinates, by the name of the coordinate.
     rates: BTreeMap<&'a str, &'a Expr>,
-    /// How many names were found to be unknown.
+    /// Number of unknown names so far.
     misspelt: usize,
 }
 
 impl<'a> Checker<'a> {
-    /// Nothing is known yet.
+    /// Creates a checker to which no names are known.
     pub fn new(system: &'a System, symbols: Symbols<'a>) -> Self {
         let mut bodies = BTreeMap::new();
         for (&name, function) in &symbols.functions {
@@ -79,23 +79,23 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a name stands for, as far as it is known.
+    /// Returns the symbol with a name, if it is known already.
     pub fn known(&self, name: &str) -> Option<&Symbol> {
         let symbol = self.symbols.get(name)?;
         (!self.open.contains(name)).then_some(symbol)
     }
 
-    /// Reports an error, once for each place.
+    /// Reports an error, once per place.
     pub fn error(&mut self, error: Diagnostic) {
         self.report.push_once(error);
     }
 
-    /// The names in an expression.
+    /// Looks up the names in an expression.
     pub fn expr(&mut self, expr: &Expr) {
         self.within(expr, &BTreeSet::new());
     }
 
-    /// The values of all functions, called or not.
+    /// Looks up the names in the bodies of all functions that have not been checked.
     pub fn functions(&mut self) {
         for (name, body) in self.bodies.clone() {
             if self.seen.insert(name, self.open.len()).is_none() {
@@ -104,7 +104,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The names in the value of a function with these parameters.
+    /// Looks up the names in the body of a function with these parameters.
     fn within(&mut self, expr: &Expr, parameters: &BTreeSet<&str>) {
         match &expr.kind {
             ExprKind::Name(name) if parameters.contains(name.as_str()) => {}
@@ -117,7 +117,7 @@ impl<'a> Checker<'a> {
             }
             ExprKind::InAxes(call, axes) => {
                 self.within(call, parameters);
-                // `in body` is in the axes of the frame itself.
+                // `in body` means the axes of the frame itself.
                 if !matches!(&axes.kind, ExprKind::Name(name) if name == "body") {
                     self.within(axes, parameters);
                 }
@@ -145,7 +145,7 @@ impl<'a> Checker<'a> {
         self.error(error);
     }
 
-    /// A function that is called; what is wrong in its value is shown with the call.
+    /// Looks up a called function. Errors in its body are reported with a note at the call.
     fn call(&mut self, function: &Ident, span: Span) {
         let name = function.name.as_str();
         self.used.insert(name.into());
@@ -156,7 +156,7 @@ impl<'a> Checker<'a> {
                 self.error(error);
             }
             Some(_) => self.body(name, span),
-            // What joints call has blanks in its name.
+            // The internal functions of joints have blanks in their names.
             None if name == "rate" || name.contains(' ') || words::usage(name).is_some() => {}
             None => {
                 let error = self.no_function(function);
@@ -169,7 +169,7 @@ impl<'a> Checker<'a> {
         let Some((&name, body)) = self.bodies.get_key_value(name) else {
             return;
         };
-        // Fewer names are open later: what was in order stays so.
+        // The set of open names only shrinks, so a body without errors remains without errors.
         let open = self.open.len();
         if self.seen.get(name).is_some_and(|&seen| seen <= open) {
             return;
@@ -192,7 +192,7 @@ impl<'a> Checker<'a> {
         if self.symbols.get(name).is_some() {
             return error.help("a product is written with `*`");
         }
-        // As other languages have it.
+        // Names that other languages use.
         match name.as_str() {
             "ln" => return error.help("the natural logarithm is `log(a)`"),
             "pow" => return error.help("a power is written `a ^ b`"),
@@ -211,7 +211,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The name of a frame, which may be the world where `world` says so.
+    /// Looks up the name of a frame, which may be the world if `world` is true.
     pub fn frame(&mut self, name: &Ident, world: bool) {
         let Ident { name, span } = name;
         self.used.insert(name.clone());
@@ -225,8 +225,8 @@ impl<'a> Checker<'a> {
         });
     }
 
-    /// An error for a name that stands for nothing of the wanted kind (or for nothing at all,
-    /// where `wanted` is `None`), with the closest name that does.
+    /// Returns the error for a name that does not stand for anything of the wanted kind (or for anything at all, if
+    /// `wanted` is `None`). The help suggests the closest name that does.
     pub fn unknown(
         &mut self,
         span: Span,
@@ -283,7 +283,8 @@ impl<'a> Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// The coordinate of which a name seems to be the rate, as `x_dot` is of `x`, and the velocity that this rate is.
+    /// Returns the coordinate whose rate a name seems to denote, as `x_dot` does for `x`, with the velocity that equals
+    /// this rate.
     fn rate_of(&self, name: &str, accept: &impl Fn(Kind) -> bool) -> Option<(&str, String)> {
         let stripped = ENDINGS
             .iter()
@@ -307,7 +308,7 @@ impl Checker<'_> {
     }
 }
 
-/// Coordinates whose rates are velocities, or entries of these, by themselves.
+/// Returns the rates that are given for whole coordinates, by the name of the coordinate.
 fn plain_rates(system: &System) -> BTreeMap<&str, &Expr> {
     let rates = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Rate { target, value } => Some((target, value)),
@@ -319,7 +320,7 @@ fn plain_rates(system: &System) -> BTreeMap<&str, &Expr> {
         .collect()
 }
 
-/// A name that is defined, but not yet where it is used.
+/// Returns the error for a name that is defined, but not yet known where it is used.
 fn early(span: Span, name: &str, symbol: &Symbol) -> Diagnostic {
     let error = match symbol.kind {
         Kind::Const | Kind::Let | Kind::Frame => {

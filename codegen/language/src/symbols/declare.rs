@@ -1,4 +1,4 @@
-//! The names that the statements declare, each of them once.
+//! Declaration of the names in all statements, each of which must be declared once.
 
 use super::table::{Kind, Symbols};
 use super::words::{is_function, reserved};
@@ -6,7 +6,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{Expr, ExprKind, Function, Ident, ItemKind, System};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Takes all names in the order of the text; what is declared twice, or has a name of the language, is reported.
+/// Declares all names in the order of the text. Reports duplicates and names that are words of the language.
 pub fn declare<'a>(system: &'a System, report: &mut Report) -> Symbols<'a> {
     let mut symbols = Symbols::default();
     let mut functions = Vec::new();
@@ -25,7 +25,7 @@ pub fn declare<'a>(system: &'a System, report: &mut Report) -> Symbols<'a> {
                 continue;
             }
             ItemKind::Frame { name, .. } => {
-                // Two statements may be about one frame.
+                // Two statements may relate the same frame to others.
                 if symbols.kind(&name.name) != Some(Kind::Frame) {
                     claim(&mut symbols, name, Kind::Frame, report);
                 }
@@ -65,9 +65,9 @@ pub fn declare<'a>(system: &'a System, report: &mut Report) -> Symbols<'a> {
     symbols
 }
 
-/// Takes a name; a second declaration is an error.
+/// Declares a name, and reports a second declaration as an error.
 ///
-/// A word of the language is taken all the same, so that its uses are no further errors.
+/// A word of the language is declared nevertheless, so that its uses cause no further errors.
 fn claim<'a>(symbols: &mut Symbols<'a>, name: &'a Ident, kind: Kind, report: &mut Report) {
     if let Some(first) = symbols.get(&name.name) {
         report.push(
@@ -89,7 +89,7 @@ fn claim<'a>(symbols: &mut Symbols<'a>, name: &'a Ident, kind: Kind, report: &mu
     }
 }
 
-/// Takes the name of a function of the description, which none of the language's has.
+/// Declares a function of the description. Its name must not be that of a function of the language.
 fn claim_function<'a>(symbols: &mut Symbols<'a>, name: &'a Ident, report: &mut Report) {
     if is_function(&name.name) {
         let message = format!("`{}` is a function of the language", name.name);
@@ -100,7 +100,8 @@ fn claim_function<'a>(symbols: &mut Symbols<'a>, name: &'a Ident, report: &mut R
     }
 }
 
-/// Whether a function has no two parameters of one name and does not call itself; reports it where not.
+/// Returns whether a function is valid: its parameters have distinct names and it is not recursive. Reports an error
+/// otherwise.
 fn can_be_called(
     function: &Function,
     all: &BTreeMap<&str, &Function>,
@@ -129,7 +130,7 @@ fn can_be_called(
     true
 }
 
-/// Whether the value of a function calls a name, itself or by functions that it calls.
+/// Returns whether a function calls another, directly or through functions that it calls.
 fn reaches(all: &BTreeMap<&str, &Function>, function: &Function, wanted: &str) -> bool {
     let mut reached = BTreeSet::new();
     let mut open = vec![function];
@@ -145,7 +146,7 @@ fn reaches(all: &BTreeMap<&str, &Function>, function: &Function, wanted: &str) -
     reached.contains(wanted)
 }
 
-/// The functions that an expression calls.
+/// Collects the functions that an expression calls.
 fn called<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
     if let ExprKind::Call(function, _) = &expr.kind {
         names.insert(&function.name);

@@ -1,9 +1,9 @@
-//! What the names of a description stand for. All of this is found once, without any algebra, and holds in every graph
-//! that the description is read in.
+//! Name resolution. All names of a description are resolved once, without any algebra; the result is valid for every
+//! graph that is built from the description.
 //!
-//! A table of symbols has every name with its kind and its place. Names in statements are looked up there, in the
-//! order in which a description becomes known: constants, tables, what is declared, then named expressions and frames,
-//! first those that need no rates, then the others. What is wrong with a name is an error here, and nowhere else.
+//! A symbol table holds every name with its kind and its place. The names in statements are looked up in the order in
+//! which a description becomes known: constants, tables, declarations, then named expressions and frames, first those
+//! that need no rates of coordinates, then the others. All errors about names are reported here and nowhere else.
 
 mod check;
 mod declare;
@@ -19,19 +19,19 @@ use std::collections::BTreeSet;
 pub use order::{Order, Relation, Step};
 pub use table::{Kind, Symbols};
 
-/// The names of a description without components and joints, and the order in which its named expressions and frames
-/// become known.
+/// The resolved names of a description without components and joints, and the order in which its named expressions and
+/// frames become known.
 #[derive(Clone, Debug)]
 pub struct Resolved<'a> {
-    /// What each name stands for.
+    /// Symbol table.
     pub symbols: Symbols<'a>,
-    /// The order of named expressions and frames.
+    /// Order of named expressions and frames.
     pub order: Order<'a>,
-    /// The names that statements mention, but for what they declare.
+    /// Names that statements mention, other than those that they declare.
     pub used: BTreeSet<String>,
 }
 
-/// Resolves all names of a description; all that is wrong with them is reported.
+/// Resolves all names of a description and reports all errors about them.
 pub fn resolve<'a>(system: &'a System, report: &mut Report) -> Resolved<'a> {
     let symbols = declare::declare(system, report);
     let (names, errors) = statements::read(system, symbols);

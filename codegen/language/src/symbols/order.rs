@@ -1,10 +1,9 @@
-//! The order in which named expressions and frames become known.
+//! Order in which named expressions and frames become known.
 //!
-//! Expressions are read in the order of the text. Frames form a graph, whose nodes are the frames
-//! and the world, and whose edges are the `frame` statements: `frame f on g = P` relates two frames,
-//! and either may be the one that is known, g = f P⁻¹ as well as f = g P. The graph has to be a tree
-//! that hangs together with the world; the order of its statements does not matter. What is about
-//! velocities of frames waits until the rates of the coordinates are known.
+//! Named expressions are processed in the order of the text. Frames form a graph, whose nodes are the frames and the
+//! world, and whose edges are the `frame` statements. `frame f on g = P` relates two frames, and either of them may be
+//! the known one: f = g P, or g = f P⁻¹. The graph has to be a tree connected to the world; the order of its statements
+//! does not matter. Statements that need velocities of frames wait until the rates of the coordinates are known.
 
 use super::check::Checker;
 use super::table::Kind;
@@ -13,30 +12,30 @@ use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Declaration, Expr, ExprKind, Ident, ItemKind, Span, System};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One named expression or frame.
+/// Definition of one named expression or frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Step<'a> {
     /// A named expression.
     Let(&'a Declaration),
-    /// The pose of one frame in another; where `back` is true, it is the second of the two that follows from the first.
+    /// The pose of one frame in another. If the flag is set, the second frame follows from the first.
     Frame(Relation<'a>, bool),
 }
 
 /// `frame f on g = P`: the pose of f in g is P.
 #[derive(Clone, Copy, Debug)]
 pub struct Relation<'a> {
-    /// f.
+    /// The frame f.
     pub name: &'a Ident,
-    /// g, the world where absent.
+    /// The frame g, or the world if absent.
     pub on: Option<&'a Ident>,
-    /// P.
+    /// The pose P.
     pub pose: &'a Expr,
-    /// The statement.
+    /// Span of the statement.
     pub span: Span,
 }
 
 impl<'a> Relation<'a> {
-    /// The name of g.
+    /// Returns the name of g.
     pub fn parent(&self) -> &'a str {
         self.on.map_or("world", |on| on.name.as_str())
     }
@@ -49,36 +48,36 @@ impl<'a> Relation<'a> {
 /// Named expressions and frames, in the order in which they become known.
 #[derive(Clone, Debug, Default)]
 pub struct Order<'a> {
-    /// What is known before the rates of the coordinates.
+    /// Steps that do not need the rates of the coordinates.
     pub before: Vec<Step<'a>>,
-    /// What needs them.
+    /// Steps that need them.
     pub after: Vec<Step<'a>>,
 }
 
-/// Finds the order.
+/// Finds the order in which named expressions and frames become known.
 #[derive(Default)]
 pub struct Planner<'a> {
-    /// What is known so far, in this order.
+    /// Steps found so far, in order.
     pub steps: Vec<Step<'a>>,
-    /// Statements that are still to be read.
+    /// Steps that have not been processed.
     tasks: Vec<Step<'a>>,
-    /// Whether the rates are known.
+    /// Whether the rates of the coordinates are known.
     rates: bool,
-    /// The relations that placed a frame: the edges of the tree.
+    /// Relations that placed a frame: the edges of the tree.
     placed: Vec<Relation<'a>>,
     /// Names that a `frame` statement mentions on its left side or after `on`.
     nodes: BTreeSet<&'a str>,
     /// Names on the left side of a `frame` statement.
     named: BTreeSet<&'a str>,
-    /// What the values of functions mention, but for their parameters.
+    /// Names that the bodies of functions mention, other than their parameters.
     functions: BTreeMap<&'a str, BTreeSet<&'a str>>,
 }
 
-/// Stands among the names of an expression for the rates of the coordinates.
+/// Pseudo-name that represents the rates of the coordinates among the names in an expression.
 const RATES: &str = "d/dt";
 
 impl<'a> Step<'a> {
-    /// Names in its expression, and [`RATES`] where it needs them.
+    /// Returns the names in the expression of the step, and [`RATES`] if it needs the rates of the coordinates.
     fn mentions(&self) -> BTreeSet<&'a str> {
         let mut names = BTreeSet::new();
         match self {
@@ -97,7 +96,7 @@ fn mentioned<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
     match &expr.kind {
         ExprKind::Name(name) => _ = names.insert(name),
         ExprKind::Call(function, _) => {
-            // Where it is a function of the description, what that mentions follows.
+            // If this is a function of the description, the names that it mentions are added later.
             names.insert(&function.name);
             if needs_rates(&function.name) {
                 names.insert(RATES);
@@ -110,7 +109,7 @@ fn mentioned<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
 }
 
 impl<'a> Planner<'a> {
-    /// All statements are still to be read.
+    /// Creates a planner with all steps of a description.
     pub fn new(system: &'a System) -> Self {
         let mut planner = Planner::default();
         for item in &system.items {
@@ -143,12 +142,12 @@ impl<'a> Planner<'a> {
         planner
     }
 
-    /// From now on the rates of the coordinates are known.
+    /// Marks the rates of the coordinates as known.
     pub fn rates_are_known(&mut self) {
         self.rates = true;
     }
 
-    /// Goes on as far as what is known now allows.
+    /// Processes all steps that can be processed now. The remaining ones need the rates of the coordinates.
     pub fn go_on(&mut self, checker: &mut Checker<'a>) {
         loop {
             let (mut waiting, mut progress) = (Vec::new(), false);
@@ -177,7 +176,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Names that a statement mentions, itself and by the functions that it calls.
+    /// Returns the names that a step mentions, directly and through the functions that it calls.
     fn mentions(&self, task: &Step<'a>) -> BTreeSet<&'a str> {
         let mut all = BTreeSet::new();
         let mut open: Vec<&'a str> = task.mentions().into_iter().collect();
@@ -189,7 +188,7 @@ impl<'a> Planner<'a> {
         all
     }
 
-    /// Whether a statement needs what is not known yet.
+    /// Returns whether a step needs a name that is not known yet. `before` holds the waiting steps that precede it.
     fn waits(&self, task: &Step<'a>, before: &[Step<'a>], checker: &Checker) -> bool {
         if let Step::Frame(relation, _) = task
             && unplaced(relation, checker)
@@ -207,7 +206,7 @@ impl<'a> Planner<'a> {
         })
     }
 
-    /// The rates while they are not known, and the names of expressions and frames that need them.
+    /// Returns [`RATES`], while the rates are not known, and the names of all expressions and frames that need them.
     fn later(&self, checker: &Checker) -> BTreeSet<&'a str> {
         let mut later = BTreeSet::new();
         if self.rates {
@@ -235,7 +234,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Reads one statement that waits for nothing.
+    /// Processes a step that waits for nothing.
     fn define(&mut self, task: Step<'a>, checker: &mut Checker<'a>) {
         let relation = match task {
             Step::Let(declaration) => {
@@ -250,7 +249,7 @@ impl<'a> Planner<'a> {
         };
         let kind = checker.known(&relation.name.name).map(|symbol| symbol.kind);
         if kind.is_some_and(|kind| kind != Kind::Frame) {
-            // Defined twice, which is an error already.
+            // It is defined twice, which has been reported.
             return;
         }
         let open = relation.on.filter(|on| !is_known(on, checker));
@@ -276,7 +275,7 @@ impl<'a> Planner<'a> {
         self.steps.push(Step::Frame(relation, back));
     }
 
-    /// Reports a statement between two frames that are placed already; whether it is one.
+    /// Reports a statement that relates two frames which are both placed already. Returns whether it is one.
     fn closes(&self, relation: &Relation<'a>, checker: &mut Checker<'a>) -> bool {
         let path = self.path(relation.name.name.as_str(), relation.parent());
         let Some((first, _)) = path.first() else {
@@ -303,10 +302,10 @@ impl<'a> Planner<'a> {
         true
     }
 
-    /// The statements that lead from a frame to another, each with the frame that it leads away
-    /// from; the last name is the goal. Both are placed.
+    /// Returns the statements that lead from one placed frame to another, each with the frame that it leads away from.
+    /// The last name is the goal.
     fn path(&self, from: &'a str, to: &'a str) -> Vec<(Relation<'a>, &'a str)> {
-        // The tree is searched from the goal, so that the steps back to it come out in order.
+        // The search starts at the goal, so that the steps back to it come out in order.
         let mut reached: Vec<(&str, Option<(Relation<'a>, &str)>)> = vec![(to, None)];
         let mut next = 0;
         while let Some(&(node, _)) = reached.get(next) {
@@ -334,10 +333,10 @@ impl<'a> Planner<'a> {
         path
     }
 
-    /// Nothing can be read any more: reads the first statement that is not about unplaced frames
-    /// for its errors, or else reports the frames that nothing places.
+    /// Resolves a deadlock, in which no step can be processed. Processes the first step that does not wait for an
+    /// unplaced frame, to report its errors; if there is none, reports the frames that are not connected to the world.
     fn give_up(&mut self, stuck: &[bool], checker: &mut Checker<'a>) {
-        // A name that no statement defines is the error, before what it leaves unplaced.
+        // A name that no statement defines is reported before the frames that it leaves unplaced.
         for task in self.tasks.clone() {
             if let Step::Frame(relation, _) = task
                 && unplaced(&relation, checker)
@@ -394,7 +393,7 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// From now on a frame is known.
+/// Marks a frame as known.
 fn place<'a>(frame: &'a Ident, checker: &mut Checker<'a>) {
     if checker.symbols.get(&frame.name).is_none() && frame.name != "world" {
         checker
@@ -408,7 +407,7 @@ fn is_known(end: &Ident, checker: &Checker) -> bool {
     end.name == "world" || checker.known(&end.name).is_some()
 }
 
-/// Whether neither of two frames is known.
+/// Returns whether neither of the two frames of a relation is known.
 fn unplaced(relation: &Relation, checker: &Checker) -> bool {
     !is_known(relation.name, checker) && relation.on.is_some_and(|on| !is_known(on, checker))
 }
@@ -417,7 +416,7 @@ fn same(task: &Step, relation: &Relation) -> bool {
     matches!(task, Step::Frame(other, _) if std::ptr::eq(other.name, relation.name))
 }
 
-/// The frames that hang together with those of a relation, in the order of the text.
+/// Returns the frames that are connected with those of a relation, in the order of the text.
 fn island<'a>(first: &Relation<'a>, relations: &[Relation<'a>]) -> Vec<&'a str> {
     let mut island = vec![first.name.name.as_str(), first.parent()];
     loop {

@@ -1,4 +1,4 @@
-//! All statements, in the order in which names become known.
+//! Name lookup in all statements, in the order in which names become known.
 
 use super::Resolved;
 use super::check::Checker;
@@ -12,7 +12,7 @@ use crate::syntax::ast::{
 use crate::syntax::suggest::closest;
 use crate::syntax::written;
 
-/// Looks up the names in all statements; the errors follow.
+/// Looks up the names in all statements. Returns the resolved names and the errors.
 pub fn read<'a>(system: &'a System, symbols: Symbols<'a>) -> (Resolved<'a>, Vec<Diagnostic>) {
     let mut checker = Checker::new(system, symbols);
     let values = |checker: &mut Checker<'a>, list: &'a [Declaration]| {
@@ -67,7 +67,7 @@ pub fn read<'a>(system: &'a System, symbols: Symbols<'a>) -> (Resolved<'a>, Vec<
     (resolved, errors)
 }
 
-/// Whether a statement is read before the rates of the coordinates are known.
+/// Returns whether a statement is processed before the rates of the coordinates are known.
 fn precedes_rates(item: &Item, symbols: &Symbols) -> bool {
     match &item.kind {
         ItemKind::Constraint { .. }
@@ -79,7 +79,7 @@ fn precedes_rates(item: &Item, symbols: &Symbols) -> bool {
     }
 }
 
-/// The names in one statement, but for those that were looked up where they became known.
+/// Looks up the names in one statement, unless they were looked up when the statement became known.
 fn statement(item: &Item, checker: &mut Checker) {
     match &item.kind {
         ItemKind::Param(_)
@@ -89,7 +89,7 @@ fn statement(item: &Item, checker: &mut Checker) {
         | ItemKind::External(_)
         | ItemKind::Table(_)
         | ItemKind::Frame { .. } => {}
-        // Its motion is written out in other statements, what it documents is not.
+        // The motion of a joint has been expanded into other statements; the values in its braces have not.
         ItemKind::Joint(joint) => {
             // A frame that a joint moves is used by the joint.
             checker.used.insert(joint.moves.name.clone());
@@ -135,7 +135,7 @@ fn statement(item: &Item, checker: &mut Checker) {
             }
             others(item, false, checker);
         }
-        // The points that these act on may be in the world.
+        // The points that these act on may be fixed to the world.
         ItemKind::Push { .. }
         | ItemKind::Spring { .. }
         | ItemKind::Damper { .. }
@@ -151,15 +151,15 @@ fn statement(item: &Item, checker: &mut Checker) {
     }
 }
 
-/// Expressions and frames of a statement; the latter may be the world where `world` says so.
+/// Looks up the expressions and frames of a statement. A frame may be the world if `world` is true.
 fn others(mut item: Item, world: bool, checker: &mut Checker) {
     visit(&mut item, &mut Mentions { checker, world });
 }
 
-/// Looks up what a statement mentions.
+/// Visitor that looks up the names that a statement mentions.
 struct Mentions<'c, 'a> {
     checker: &'c mut Checker<'a>,
-    /// Whether the world may stand for a frame.
+    /// Whether a frame may be the world.
     world: bool,
 }
 
@@ -179,7 +179,7 @@ impl Visit for Mentions<'_, '_> {
     fn place(&mut self, _: &mut Span) {}
 }
 
-/// What has a rate of its own: coordinates and states.
+/// Checks the target of a `rate` statement: a coordinate or state.
 fn rate(target: &Target, checker: &mut Checker) {
     let Ident { name, span } = &target.name;
     let is_coordinate = |kind| matches!(kind, Kind::Coord(_));
@@ -196,7 +196,7 @@ fn rate(target: &Target, checker: &mut Checker) {
     checker.error(error);
 }
 
-/// What has a start of its own: coordinates and velocities.
+/// Checks the target of a `start` statement: a coordinate or velocity.
 fn start(target: &Target, checker: &mut Checker) {
     let Ident { name, span } = &target.name;
     let has_start = |kind| matches!(kind, Kind::Coord(_) | Kind::Velocity);
@@ -212,7 +212,7 @@ fn start(target: &Target, checker: &mut Checker) {
     checker.error(error);
 }
 
-/// What can be prescribed: coordinates and velocities, or the rates of the latter.
+/// Checks the target of a `prescribe` statement: a coordinate or velocity, or the rate of a velocity.
 fn prescribed(target: &Target, of_velocity: bool, checker: &mut Checker) {
     let Ident { name, span } = &target.name;
     let symbol = checker.symbols.get(name).copied();
@@ -234,7 +234,7 @@ fn prescribed(target: &Target, of_velocity: bool, checker: &mut Checker) {
     }
 }
 
-/// Whether a claim can set this: an input or a parameter.
+/// Returns whether the condition of an invariant can set this: an input or a parameter. Reports an error otherwise.
 fn settable(target: &Expr, checker: &mut Checker) -> bool {
     let (name, span) = match &target.kind {
         ExprKind::Name(name) => (name, target.span),
@@ -261,7 +261,7 @@ fn settable(target: &Expr, checker: &mut Checker) -> bool {
     false
 }
 
-/// `jacobian f in f`: the frame, and the axes, which are its own or those of the world.
+/// Checks `jacobian f in f`: the frame, and the axes, which must be those of the frame or of the world.
 fn jacobian(frame: &Ident, axes: Option<&Ident>, checker: &mut Checker) {
     let Ident { name, span } = frame;
     checker.used.insert(name.clone());

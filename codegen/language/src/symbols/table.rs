@@ -1,9 +1,9 @@
-//! The table of symbols.
+//! The symbol table.
 
 use crate::syntax::ast::{CoordKind, Function, Span};
 use std::collections::BTreeMap;
 
-/// What kind of thing a name is.
+/// Kind of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A run-time parameter.
@@ -22,17 +22,17 @@ pub enum Kind {
     State,
     /// A frame.
     Frame,
-    /// A function of expressions, one in Rust, or a table.
+    /// A function of the description, an external function in Rust, or a table.
     Function,
 }
 
 impl Kind {
-    /// Whether a claim can set it: an input or a parameter.
+    /// Returns whether the condition of an invariant can set it: an input or a parameter.
     pub fn is_settable(self) -> bool {
         matches!(self, Kind::Input | Kind::Param)
     }
 
-    /// The kind in words.
+    /// Describes the kind in words.
     pub fn describe(self) -> &'static str {
         match self {
             Kind::Param => "a parameter",
@@ -48,67 +48,67 @@ impl Kind {
     }
 }
 
-/// The number of a symbol, by which values are kept.
+/// Number of a symbol, used as an index for its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SymbolId(usize);
 
 impl SymbolId {
-    /// The number.
+    /// Returns the number.
     pub fn index(self) -> usize {
         self.0
     }
 }
 
-/// One name.
+/// A symbol.
 #[derive(Clone, Copy, Debug)]
 pub struct Symbol {
-    /// Its number.
+    /// Number.
     pub id: SymbolId,
-    /// What kind of thing it is.
+    /// Kind.
     pub kind: Kind,
-    /// Where it was first declared.
+    /// Place of its first declaration.
     pub span: Span,
-    /// Whether it has a word of the language for a name, and therefore no value.
+    /// Whether its name is a word of the language. This is reported as an error, and the symbol has no value.
     pub refused: bool,
 }
 
-/// The names of a description.
+/// The symbols of a description.
 #[derive(Clone, Debug, Default)]
 pub struct Symbols<'a> {
     names: BTreeMap<&'a str, Symbol>,
-    /// The outputs, which expressions cannot use; they may share their names with expressions.
+    /// Outputs. Expressions cannot use them, so they may share their names with other symbols.
     pub outputs: BTreeMap<&'a str, Span>,
-    /// The functions of the description that can be called.
+    /// Functions of the description that can be called, without those in error.
     pub functions: BTreeMap<&'a str, &'a Function>,
 }
 
 impl<'a> Symbols<'a> {
-    /// The symbol of a name.
+    /// Returns the symbol with a name.
     pub fn get(&self, name: &str) -> Option<&Symbol> {
         self.names.get(name)
     }
 
-    /// What kind of thing a name is.
+    /// Returns the kind of the symbol with a name.
     pub fn kind(&self, name: &str) -> Option<Kind> {
         Some(self.names.get(name)?.kind)
     }
 
-    /// Whether this is the name of a coordinate that is an angle, as a pair (c, s).
+    /// Returns whether this is the name of an S1 coordinate, an angle given as a pair (c, s).
     pub fn is_circle(&self, name: &str) -> bool {
         self.kind(name) == Some(Kind::Coord(CoordKind::S1))
     }
 
-    /// How many symbols there are.
+    /// Returns the number of symbols.
     pub fn len(&self) -> usize {
         self.names.len()
     }
 
-    /// All names in alphabetical order.
+    /// Returns all symbols in alphabetical order.
     pub fn iter(&self) -> impl Iterator<Item = (&'a str, &Symbol)> {
         self.names.iter().map(|(name, symbol)| (*name, symbol))
     }
 
-    /// Takes a name that is free.
+    /// Adds a symbol whose name is not yet in the table.
     pub(super) fn add(&mut self, name: &'a str, kind: Kind, span: Span, refused: bool) {
         let id = SymbolId(self.names.len());
         let symbol = Symbol {

@@ -1,9 +1,9 @@
-//! The words of the language that names can meet: its functions, how they are called, and its constants.
+//! Words of the language that can conflict with names: its functions, with their usage, and its constants.
 
 use crate::algebra::function::Function;
 use std::borrow::Cow;
 
-/// Names of functions and constants of the language, which cannot be redefined.
+/// Names of functions and constants of the language that descriptions cannot redefine.
 const RESERVED: &[&str] = &[
     "transpose",
     "dot",
@@ -46,15 +46,15 @@ const RESERVED: &[&str] = &[
     "world",
 ];
 
-/// Names of functions and constants of the language: those of the table of functions without a place of their own
-/// come last.
+/// Returns the reserved names of functions and constants. Functions of the algebra that are not listed explicitly come
+/// last.
 pub fn reserved() -> impl Iterator<Item = &'static str> {
     let table = Function::ALL.iter().map(|function| function.name());
     let further = table.filter(|name| !RESERVED.contains(name) && Function::named(name).is_some());
     RESERVED.iter().copied().chain(further)
 }
 
-/// The functions of motions; a value may share the name of one, as a coordinate `position` does.
+/// Functions for the motion of frames. Values may share their names, such as a coordinate named `position`.
 pub const FUNCTIONS: [&str; 5] = [
     "position",
     "velocity",
@@ -63,22 +63,22 @@ pub const FUNCTIONS: [&str; 5] = [
     "angular_acceleration",
 ];
 
-/// What a joint calls for its axis; no name of the language has blanks.
+/// Internal function that joints call to normalize their axis. Its name has blanks, so no description can call it.
 pub const AXIS: &str = "the axis of a joint";
-/// What a joint calls for its place.
+/// Internal function that joints call for their placement.
 pub const PLACE: &str = "the place of a joint";
-/// What a planar joint calls for the two directions of its plane, as the columns of a 3×2 matrix.
+/// Internal function that planar joints call for the two directions of their plane, the columns of a 3×2 matrix.
 pub const PLANE: &str = "the plane of a joint";
 
-/// Whether a function is known only once the rates are.
+/// Returns whether a function can be evaluated only once the rates of the coordinates are known.
 pub fn needs_rates(function: &str) -> bool {
     function == "rate" || FUNCTIONS.contains(&function) && function != "position"
 }
 
-/// Functions whose names values and functions of a description may share.
+/// Functions of the language whose names a description may use for its own values and functions.
 const NAMES_OF_ALL: [&str; 2] = ["translation", "angle"];
 
-/// The functions of the language by their names.
+/// Returns the names of the functions of the language.
 pub fn names() -> impl Iterator<Item = &'static str> {
     reserved()
         .chain(FUNCTIONS)
@@ -86,14 +86,14 @@ pub fn names() -> impl Iterator<Item = &'static str> {
         .filter(|name| usage(name).is_some())
 }
 
-/// Whether a name is that of a function of the language, which no function of a description can have.
+/// Returns whether this is the name of a function of the language that a description cannot use for its own functions.
 pub fn is_function(name: &str) -> bool {
     usage(name).is_some() && !NAMES_OF_ALL.contains(&name)
         || FUNCTIONS.contains(&name)
         || name == "rate"
 }
 
-/// How a function is called.
+/// Describes how a function is called.
 pub fn usage(name: &str) -> Option<Cow<'static, str>> {
     let text = match name {
         "sin" => "`sin(angle)` of a scalar",

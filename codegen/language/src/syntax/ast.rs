@@ -1,4 +1,4 @@
-//! The description as written: every node carries its span, nothing is resolved.
+//! The syntax tree of a description: every node carries its span, and nothing is resolved.
 
 mod expression;
 mod joint;
@@ -19,19 +19,19 @@ pub use table::{Between, Beyond, Source, Table};
 pub use target::Target;
 pub use wanted::Wanted;
 
-/// A name with its place.
+/// A name with its source position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ident {
-    /// The name as written: `knee`, but also `left.knee`, `link[i-1]` until components are written out.
+    /// The name as written. Until components are expanded it can be `knee`, but also `left.knee` or `link[i-1]`.
     pub name: String,
-    /// Where it stands.
+    /// Position in the source.
     pub span: Span,
 }
 
 /// A whole description: `pub system Name { … }`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
-    /// Doc comments above the system, one string a line, without the blank after `///`.
+    /// Doc comments above the system, one string per line, without the blank after `///`.
     pub docs: Vec<String>,
     /// Whether it was declared `pub`.
     pub public: bool,
@@ -39,12 +39,12 @@ pub struct System {
     pub name: Ident,
     /// The statements, in source order.
     pub items: Vec<Item>,
-    /// Where statements come from that do not stand in the text itself.
+    /// Origins of statements that do not stand in the text itself.
     pub origins: Origins,
-    /// Whether all frames are results, as where they are drawn: then none of them is without a use.
+    /// Whether all frames are results, for example because they are drawn. If so, no frame is reported as unused.
     pub shows_frames: bool,
-    /// Whether nobody has chosen the start, as that of a robot in URDF, whose coordinates start at 0: M may be singular
-    /// there if it is not so nearby.
+    /// Whether the start was not chosen by anyone, as for a robot in URDF, whose coordinates start at 0. If so, M may
+    /// be singular at the start provided it is regular nearby.
     pub starts_anywhere: bool,
 }
 
@@ -62,7 +62,7 @@ pub enum ShapeKind {
 }
 
 impl ShapeKind {
-    /// The shape in words.
+    /// Describes the shape in words.
     pub fn describe(self) -> String {
         match self {
             ShapeKind::Scalar => "a scalar".into(),
@@ -71,7 +71,7 @@ impl ShapeKind {
         }
     }
 
-    /// What stands behind a name: `: vec3`, nothing for a scalar.
+    /// Returns the annotation that follows a name: `: vec3`, or nothing for a scalar.
     pub fn annotation(self) -> String {
         match self {
             ShapeKind::Scalar => String::new(),
@@ -82,16 +82,16 @@ impl ShapeKind {
     }
 }
 
-/// A shape annotation with its place (the place of the name where none was written).
+/// A shape annotation with its position, which is that of the name if no annotation was written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     /// The shape.
     pub kind: ShapeKind,
-    /// Where it stands.
+    /// Position in the source.
     pub span: Span,
 }
 
-/// The coordinate kinds.
+/// The kinds of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoordKind {
     /// A bare real number: an unconstrained scalar, or a raw coordinate of user-written `constraint`s.
@@ -115,7 +115,7 @@ pub struct Declaration {
     pub name: Ident,
     /// Its shape.
     pub shape: Shape,
-    /// Its value, where the statement has one.
+    /// Value, if the statement has one.
     pub value: Option<Expr>,
 }
 
@@ -124,29 +124,29 @@ pub struct Declaration {
 pub struct Function {
     /// Its name.
     pub name: Ident,
-    /// Its parameters; a scalar's shape stands for any where none was written.
+    /// Parameters. A parameter without an annotation is stored as a scalar but accepts any shape.
     pub parameters: Vec<(Ident, Shape)>,
-    /// Its value, in its parameters and all names of the description.
+    /// Body, an expression in the parameters and in all names of the description.
     pub value: Expr,
 }
 
-/// `extern fn lift(alpha, mach) -> 2;`, or with a stand-in: `… -> 2 = [a, b];`
+/// `extern fn lift(alpha, mach) -> 2;`, or with a substitute: `… -> 2 = [a, b];`
 #[derive(Clone, Debug, PartialEq)]
 pub struct External {
     /// Its name.
     pub name: Ident,
-    /// The names of its arguments, all of them numbers.
+    /// Names of the arguments, which are all scalars.
     pub parameters: Vec<Ident>,
-    /// How many components it has, and where that is said.
+    /// Number of components of the result, and its position in the source.
     pub components: (usize, Span),
-    /// What has its place where numbers of it are wanted and the function is not there.
+    /// Substitute for numerical evaluation where the Rust function is not available.
     pub stand_in: Option<Expr>,
-    /// Whether numbers of it are wanted.
+    /// Whether the function is to be evaluated numerically, by its substitute.
     pub evaluated: bool,
 }
 
 impl System {
-    /// From now on numbers of functions in Rust are wanted: those of their stand-ins.
+    /// Switches functions in Rust to numerical evaluation by their substitutes.
     pub fn evaluate(&mut self) {
         evaluate(&mut self.items);
     }
@@ -183,19 +183,19 @@ pub enum Components {
     Frame(Ident),
 }
 
-/// The axes in which components are computed: those of a load, or of a motion that is traced.
+/// The axes in which the components of a load, or of a traced motion, are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// Those of the frame itself.
+    /// The axes of the frame itself.
     Body,
-    /// Those of the world.
+    /// The world axes.
     World,
 }
 
 /// The fields of `body on f { … }`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// The frame it is fixed to.
+    /// Frame to which the body is fixed.
     pub frame: Ident,
     /// `mass m;`
     pub mass: Option<Expr>,
@@ -205,28 +205,28 @@ pub struct Body {
     pub inertia: Option<(Expr, Option<About>)>,
 }
 
-/// What a load statement applies.
+/// Load that a statement applies.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load {
-    /// `force F at p on f in …;` p in the frame's axes, the origin where absent.
+    /// `force F at p on f in …;` with p in the frame's axes.
     Force {
-        /// The force.
+        /// Force.
         force: Expr,
-        /// The point it acts at.
+        /// Point of application, the origin of the frame if absent.
         at: Option<Expr>,
     },
     /// `torque t on f in …;`
     Torque {
-        /// The torque.
+        /// Torque.
         torque: Expr,
     },
     /// `wrench (F, t) [at p] on f in …;`
     Wrench {
-        /// The force.
+        /// Force.
         force: Expr,
-        /// The torque about the point.
+        /// Torque about the point.
         torque: Expr,
-        /// The point they act at, the origin of the frame where absent.
+        /// Point of application, the origin of the frame if absent.
         at: Option<Expr>,
     },
 }
@@ -234,61 +234,61 @@ pub enum Load {
 /// A point of a frame: `p on f`, or `f` for its origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct End {
-    /// The point in the frame's axes, the origin where absent.
+    /// Point in the frame's axes, the origin if absent.
     pub at: Option<Expr>,
-    /// The frame; the world is one.
+    /// Frame, possibly the world.
     pub frame: Ident,
 }
 
-/// What a spring or damper acts on.
+/// The two points or the scalar that a spring, damper or inerter acts on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Acting {
     /// `from p on f to q on g`: along the line between two points.
     Between(End, End),
-    /// `on q2 - q1`: a scalar; for a damper, a rate.
+    /// `on q2 - q1`: a scalar coordinate expression; for a damper or inerter, a rate.
     On(Expr),
 }
 
-/// What an `invariant` statement claims to be constant along the motion.
+/// Quantity that an `invariant` statement claims to be constant along the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Conserved {
     /// `energy`: T + V.
     Energy,
-    /// `linear_momentum [of f] [along a]`, world axes.
+    /// `linear_momentum [of f] [along a]`, in world axes.
     LinearMomentum {
-        /// The frame whose bodies are meant, everything where absent.
+        /// Frame whose bodies count, or all bodies if absent.
         of: Option<Ident>,
-        /// The direction, all three components where absent.
+        /// Direction of the constant component, or all three components if absent.
         along: Option<Expr>,
     },
-    /// `angular_momentum [of f] [about p] [along a]`, world axes.
+    /// `angular_momentum [of f] [about p] [along a]`, in world axes.
     AngularMomentum {
-        /// The frame whose bodies are meant, everything where absent.
+        /// Frame whose bodies count, or all bodies if absent.
         of: Option<Ident>,
-        /// The point of reference in the world, its origin where absent.
+        /// Reference point in the world, the origin if absent.
         about: Option<Expr>,
-        /// The direction, all three components where absent.
+        /// Direction of the constant component, or all three components if absent.
         along: Option<Expr>,
     },
     /// An expression.
     Value(Expr),
 }
 
-/// `F = 0` of `invariant … when F = 0;`: an input or a parameter, or an entry of one, with its value.
+/// `F = 0` in `invariant … when F = 0;`: the value of an input or parameter, or of an entry of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
-    /// What is set.
+    /// Input or parameter that is set.
     pub target: Expr,
-    /// Its value, of parameters and constants.
+    /// Its value, made of parameters and constants.
     pub value: Expr,
 }
 
 /// One statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
-    /// What it says.
+    /// Kind and contents of the statement.
     pub kind: ItemKind,
-    /// The whole statement.
+    /// Span of the whole statement.
     pub span: Span,
 }
 
@@ -305,11 +305,11 @@ pub enum ItemKind {
     Function(Function),
     /// `extern fn lift(alpha, mach) -> 2;`
     External(External),
-    /// `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;` a function by its values.
+    /// `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;` a function given by its values.
     Table(Table),
     /// `coord r: R3, R: SO3, q;`
     Coord(Vec<(Ident, CoordKind)>),
-    /// `velocity v: vec3, w: vec3, u;`, or with rows of Y: `velocity v: vec3 = R.T * rate(r);`
+    /// `velocity v: vec3, w: vec3, u;`, or with the rows of Y that define it: `velocity v: vec3 = R.T * rate(r);`
     Velocity(Vec<Declaration>),
     /// `constraint a = b;`
     Constraint {
@@ -325,21 +325,21 @@ pub enum ItemKind {
         /// Its time derivative, linear in the velocities.
         value: Expr,
     },
-    /// `time t;` the time, under a name of the user's.
+    /// `time t;` the user's name for the time.
     Time(Ident),
-    /// `prescribe q = 0.3 * sin(t);` the motion of a coordinate or of a velocity is given, or with `rate(v)` the rate of
-    /// a velocity.
+    /// `prescribe q = 0.3 * sin(t);` a given motion of a coordinate or velocity, or with `rate(v)` a given rate of a
+    /// velocity.
     Prescribe {
         /// The coordinate or velocity.
         target: Target,
-        /// Whether it is the rate of the velocity that is given.
+        /// Whether the rate of the velocity is given rather than the velocity itself.
         rate: bool,
-        /// What is given.
+        /// Prescribed value.
         value: Expr,
     },
     /// `inactive v, w[3];` velocities that stay zero.
     Inactive(Vec<Expr>),
-    /// `independent u, w[1];` velocities that no constraint gives by others.
+    /// `independent u, w[1];` velocities that must remain independent when constraints are solved.
     Independent(Vec<Expr>),
     /// `nonholonomic a = b;` both sides linear in the velocities.
     Nonholonomic {
@@ -347,23 +347,23 @@ pub enum ItemKind {
         left: Expr,
         /// The right side.
         right: Expr,
-        /// λ in d/dt (B ξ) = −2 λ B ξ (1/s), nothing where absent.
+        /// λ in d/dt (B ξ) = −2 λ B ξ (1/s), no stabilisation if absent.
         stabilized: Option<Expr>,
     },
-    /// `loop a = b;` a closed loop, kept by multipliers.
+    /// `loop a = b;` a loop closure, enforced by multipliers.
     Loop {
         /// The left side.
         left: Expr,
         /// The right side.
         right: Expr,
-        /// λ in φ̈ = −2 λ φ̇ − λ² φ (1/s), nothing where absent.
+        /// λ in φ̈ = −2 λ φ̇ − λ² φ (1/s), no stabilisation if absent.
         stabilized: Option<Expr>,
     },
     /// `frame f [on g] = pose(R, p);`
     Frame {
         /// The new frame.
         name: Ident,
-        /// The frame that the pose is relative to, the world where absent.
+        /// Frame that the pose is relative to, the world if absent.
         on: Option<Ident>,
         /// Its pose.
         pose: Expr,
@@ -372,13 +372,13 @@ pub enum ItemKind {
     Joint(Box<Joint>),
     /// `body on f { … }`
     Body(Body),
-    /// `particle mass m at p [on f];` p in world axes, or in those of the frame.
+    /// `particle mass m at p [on f];` with p in world axes, or in those of the frame.
     Particle {
         /// Its mass.
         mass: Expr,
         /// Its position.
         at: Expr,
-        /// The frame it is fixed to, the world's axes where absent.
+        /// Frame to which the particle is fixed, the world if absent.
         on: Option<Ident>,
     },
     /// `kinetic expr;`
@@ -389,20 +389,20 @@ pub enum ItemKind {
     Gravity(Expr),
     /// `input F: vec3;`
     Input(Vec<Declaration>),
-    /// `state i = 0;` states of first order with their values at the start; `rate i = …;` says how they change.
+    /// `state i = 0;` first-order states with their initial values; `rate i = …;` gives their derivatives.
     State(Vec<Declaration>),
     /// `force …`, `torque …`, `wrench …`
     Load {
-        /// What is applied.
+        /// The load.
         load: Load,
-        /// The frame it acts on.
+        /// Frame it acts on.
         frame: Ident,
-        /// `from g`: the frame that exerts it, and takes the reaction.
+        /// `from g`: the frame that exerts the load and takes the reaction.
         from: Option<Ident>,
-        /// The axes of its components.
+        /// Axes of the components.
         axes: Components,
     },
-    /// `force F from p on f to q on g;` along the line between two points, positive apart.
+    /// `force F from p on f to q on g;` a force along the line between two points, positive if it pushes them apart.
     Push {
         /// The force, a scalar.
         force: Expr,
@@ -415,67 +415,67 @@ pub enum ItemKind {
     Spring {
         /// The stiffness.
         stiffness: Expr,
-        /// The length without force, 0 where absent.
+        /// Free length, 0 if absent.
         length: Option<Expr>,
-        /// What it acts on.
+        /// Points or scalar that it acts on.
         acting: Acting,
     },
     /// `damper coefficient c from p on f to q on g;` or `… on w2 - w1;`
     Damper {
         /// The coefficient.
         coefficient: Expr,
-        /// What it acts on.
+        /// Points or scalar that it acts on.
         acting: Acting,
     },
     /// `inerter inertance b from p on f to q on g;` or `… on w2 - w1;`
     Inerter {
         /// The inertance.
         inertance: Expr,
-        /// What it acts on.
+        /// Points or scalar that it acts on.
         acting: Acting,
     },
     /// `dissipation d * w^2 / 2;` Rayleigh's function.
     Dissipation(Expr),
-    /// `generalized force w = -d * w;` dual to a velocity.
+    /// `generalized force w = -d * w;` a generalized force, dual to a velocity.
     Generalized {
         /// The velocity.
         target: Target,
-        /// The components dual to it.
+        /// Components of the force.
         value: Expr,
     },
     /// `start w = [0.01, 1, 0];`
     Start {
         /// The coordinate or velocity.
         target: Target,
-        /// Its value at the start.
+        /// Its initial value.
         value: Expr,
     },
-    /// `start q ~ 1.2;` near which value the start is looked for.
+    /// `start q ~ 1.2;` an initial guess from which the start is solved for.
     Guess {
         /// The coordinate or velocity.
         target: Target,
-        /// A value near that at the start.
+        /// Approximate initial value.
         value: Expr,
     },
     /// `output speed = norm(v);`
     Output {
         /// The name of the function.
         name: Ident,
-        /// What it returns.
+        /// Value that the function returns.
         value: Expr,
     },
     /// `invariant name = expr when F = 0;`, `invariant energy;`
     Invariant {
-        /// The name of the function that watches it.
+        /// Name of the function that monitors the invariant.
         name: Ident,
-        /// What is constant.
+        /// Constant quantity.
         conserved: Conserved,
-        /// Where it is.
+        /// Conditions under which the quantity is constant.
         when: Vec<Condition>,
     },
     /// `generate accel, energy, jacobian tip in world;`
     Generate(Vec<Wanted>),
-    /// `include "leg.eom";` the statements of a file, with the place of its name.
+    /// `include "leg.eom";` the statements of a file. Holds the file name and its span.
     Include(String, Span),
     /// `component Leg(mount: frame, side = 1) { … }`
     Component(Component),

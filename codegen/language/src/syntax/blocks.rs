@@ -1,4 +1,4 @@
-//! What stands between braces, and the doc comments in front of it.
+//! Parsing of braces with fields, and of doc comments.
 
 use proc_macro2::Delimiter;
 
@@ -7,7 +7,7 @@ use super::cursor::{Cursor, MAX_ERRORS, Parsed};
 use super::tokens::Kind;
 use crate::diagnostics::Diagnostic;
 
-/// The fields up to the closing brace, each read by `field`; faulty ones are reported and left out.
+/// Parses the fields up to the closing brace, each with `field`. Faulty fields are reported and skipped.
 pub(super) fn fields(
     cursor: &mut Cursor<'_>,
     mut field: impl FnMut(&mut Cursor<'_>) -> Parsed<()>,
@@ -34,7 +34,7 @@ pub(super) fn fields(
     cursor.expect_close(Delimiter::Brace, false)
 }
 
-/// The lines of the doc comments that stand here.
+/// Parses the doc comments at the cursor into lines.
 pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
     let mut lines = Vec::new();
     while cursor.is_punct('#') {
@@ -74,13 +74,14 @@ pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
     Ok(lines)
 }
 
-/// The lines of a doc comment, without the stars at the beginnings of `/** … */`, which would be points of a list.
+/// Returns the lines of a doc comment. The stars at the line beginnings of `/** … */` are removed, since they would
+/// read as list items.
 fn undecorated(text: &str) -> Vec<&str> {
     let lines: Vec<&str> = text.lines().collect();
     let Some((first, rest)) = lines.split_first() else {
         return lines;
     };
-    // The end of the comment stands on a line of its own.
+    // The end of the comment is on a line of its own.
     let rest = match rest.split_last() {
         Some((last, before)) if last.trim().is_empty() => before,
         _ => rest,
@@ -94,7 +95,7 @@ fn undecorated(text: &str) -> Vec<&str> {
     first.into_iter().chain(rest).collect()
 }
 
-/// The region from a first token to the one before the cursor.
+/// Returns the region from a first token to the one before the cursor.
 pub(super) fn since(start: Span, cursor: &Cursor<'_>) -> Span {
     start.to(cursor.before())
 }

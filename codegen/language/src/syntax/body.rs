@@ -1,4 +1,4 @@
-//! Bodies and particles.
+//! Parsing of bodies and particles.
 
 use proc_macro2::Delimiter;
 
@@ -10,7 +10,7 @@ use super::path;
 use super::suggest::closest;
 use crate::diagnostics::Diagnostic;
 
-/// What a body has, each with its form.
+/// Fields of a body, each with a sentence that shows its syntax.
 const FIELDS: [(&str, &str); 3] = [
     ("mass", "a mass is written `mass m;`"),
     ("com", "a centre of mass is written `com [0, 0, l];`"),
@@ -20,7 +20,7 @@ const FIELDS: [(&str, &str); 3] = [
     ),
 ];
 
-/// What a body has, each with its form.
+/// Returns the fields of a body, each with a sentence that shows its syntax.
 pub(crate) fn fields_of() -> impl Iterator<Item = (&'static str, &'static str)> {
     FIELDS.into_iter()
 }
@@ -39,7 +39,7 @@ pub(super) fn particle(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     Ok(ItemKind::Particle { mass, at, on })
 }
 
-/// `on f { mass m; com s; inertia J about origin; }`, each in any order and at most once.
+/// `on f { mass m; com s; inertia J about origin; }`, with the fields in any order and each at most once.
 pub(super) fn body(cursor: &mut Cursor<'_>) -> Parsed<Body> {
     cursor.expect_word("on")?;
     let frame = path::path(cursor, "a frame")?;
@@ -59,10 +59,10 @@ pub(super) fn body(cursor: &mut Cursor<'_>) -> Parsed<Body> {
     Ok(given.body)
 }
 
-/// A body so far.
+/// A body whose fields are being parsed.
 struct Fields {
     body: Body,
-    /// Where each field of [`FIELDS`] was given.
+    /// Span of each field of [`FIELDS`] that has been given.
     seen: [Option<Span>; 3],
 }
 

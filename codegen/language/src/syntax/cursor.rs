@@ -1,4 +1,4 @@
-//! The place in the list of tokens, and how an unexpected token is reported.
+//! Position in the list of tokens, and errors for unexpected tokens.
 
 use proc_macro2::Delimiter;
 
@@ -7,28 +7,28 @@ use super::tokens::{Kind, Token, closing};
 use super::words::{CLAUSES, CONNECTIVES, RUST_WORDS, is_statement};
 use crate::diagnostics::Diagnostic;
 
-/// Errors reported for one description; what follows is rarely read.
+/// Largest number of errors reported for one description; more are rarely read.
 pub(super) const MAX_ERRORS: usize = 100;
 
-/// A part of the description, or the error that ends its statement.
+/// A parsed part of the description, or the error that ends its statement.
 pub(super) type Parsed<T> = Result<T, Diagnostic>;
 
-/// The tokens, the place among them, and the errors so far.
+/// The tokens, the current position, and the errors so far.
 pub(super) struct Cursor<'a> {
-    /// All tokens; the last is the end.
+    /// All tokens; the last is the end marker.
     tokens: &'a [Token],
-    /// The index of the next token.
+    /// Index of the next token.
     at: usize,
-    /// Where the next statement starts, if the current one turned out to lack its `;`.
+    /// Start of the next statement, if the current one turned out to lack its `;`.
     resume: Option<usize>,
-    /// How many choices the next token is in: their conditions have no brackets that would bound them.
+    /// Number of choices around the next token. Their nesting needs its own bound because conditions have no brackets.
     pub choices: usize,
-    /// The errors of the statements that were given up.
+    /// Errors of the statements that were skipped.
     pub errors: Vec<Diagnostic>,
 }
 
 impl<'a> Cursor<'a> {
-    /// At the first token of a list that [`flatten`](super::tokens::flatten) made.
+    /// Creates a cursor at the first token of a list from [`flatten`](super::tokens::flatten).
     pub fn new(tokens: &'a [Token]) -> Self {
         Cursor {
             tokens,
@@ -39,24 +39,24 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The next token but `ahead`.
+    /// Returns the token `ahead` places after the next one.
     fn ahead(&self, ahead: usize) -> &'a Token {
-        // The list is never empty: it ends with the end.
+        // The list is never empty: it contains at least the end marker.
         let last = self.tokens.len() - 1;
         &self.tokens[(self.at + ahead).min(last)]
     }
 
-    /// The next token.
+    /// Returns the next token.
     pub fn peek(&self) -> &'a Token {
         self.ahead(0)
     }
 
-    /// The region of the next token.
+    /// Returns the span of the next token.
     pub fn here(&self) -> Span {
         self.peek().span
     }
 
-    /// The region of the token before.
+    /// Returns the span of the previous token.
     pub fn before(&self) -> Span {
         self.previous().span
     }
@@ -65,7 +65,7 @@ impl<'a> Cursor<'a> {
         &self.tokens[self.at.saturating_sub(1)]
     }
 
-    /// Takes the next token.
+    /// Consumes the next token.
     pub fn bump(&mut self) -> &'a Token {
         let token = self.peek();
         if token.kind != Kind::End {
@@ -74,63 +74,63 @@ impl<'a> Cursor<'a> {
         token
     }
 
-    /// The index of the next token, to recover from.
+    /// Returns the index of the next token, for [`recover`](Self::recover).
     pub fn mark(&self) -> usize {
         self.at
     }
 
-    /// Whether the next token is this word.
+    /// Returns whether the next token is this word.
     pub fn is_word(&self, word: &str) -> bool {
         let token = self.peek();
         token.kind == Kind::Word && token.text == word
     }
 
-    /// Whether the next token is a word at all.
+    /// Returns whether the next token is a word.
     pub fn is_any_word(&self) -> bool {
         self.peek().kind == Kind::Word
     }
 
-    /// Whether the next token is this character.
+    /// Returns whether the next token is this character.
     pub fn is_punct(&self, c: char) -> bool {
         self.peek().kind == Kind::Punct(c)
     }
 
-    /// Whether the next token opens this kind of bracket.
+    /// Returns whether the next token opens this kind of bracket.
     pub fn is_open(&self, delimiter: Delimiter) -> bool {
         matches!(self.peek().kind, Kind::Open(found, _) if found == delimiter)
     }
 
-    /// Whether the token after the next opens a parenthesis.
+    /// Returns whether the token after the next opens a parenthesis.
     pub fn is_call(&self) -> bool {
         matches!(self.ahead(1).kind, Kind::Open(Delimiter::Parenthesis, _))
     }
 
-    /// Whether the token after the next opens a bracket.
+    /// Returns whether the token after the next opens a bracket.
     pub fn is_indexed(&self) -> bool {
         matches!(self.ahead(1).kind, Kind::Open(Delimiter::Bracket, _))
     }
 
-    /// Whether a name with a counter in brackets is next: `leg[i in`.
+    /// Returns whether a name with a counter in brackets is next: `leg[i in`.
     pub fn starts_array(&self) -> bool {
         let [counter, word] = [self.ahead(2), self.ahead(3)];
         self.is_indexed() && counter.kind == Kind::Word && word.text == "in"
     }
 
-    /// A word that begins with `_`, where it is next.
+    /// Returns the next token if it is a word that begins with `_`.
     pub fn next_ending(&self) -> Option<&'a str> {
         let token = self.peek();
         let begins = token.text.len() > 1 && token.text.starts_with('_');
         (token.kind == Kind::Word && begins).then_some(token.text.as_str())
     }
 
-    /// Takes a word that begins with `_`, where it is next.
+    /// Consumes the next token if it is a word that begins with `_`.
     pub fn ending(&mut self) -> Option<&'a str> {
         let ending = self.next_ending();
         self.at += usize::from(ending.is_some());
         ending
     }
 
-    /// Whether the token after the next is one of these characters or words.
+    /// Returns whether the token after the next is one of these characters or words.
     pub fn is_followed_by(&self, characters: &[char], words: &[&str]) -> bool {
         let token = self.ahead(1);
         match token.kind {
@@ -140,38 +140,38 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Whether the next token closes a bracket or is the end.
+    /// Returns whether the next token closes a bracket or is the end.
     pub fn is_end(&self) -> bool {
         matches!(self.peek().kind, Kind::Close(_) | Kind::End)
     }
 
-    /// Whether the next token is one of the words that end an expression.
+    /// Returns whether the next token is one of the words that end an expression.
     pub fn is_connective(&self) -> bool {
         is_connective(self.peek())
     }
 
-    /// Takes this word if it is next.
+    /// Consumes this word if it is next. Returns whether it was.
     pub fn eat_word(&mut self, word: &str) -> bool {
         let found = self.is_word(word);
         self.at += usize::from(found);
         found
     }
 
-    /// Takes this character if it is next.
+    /// Consumes this character if it is next. Returns whether it was.
     pub fn eat_punct(&mut self, c: char) -> bool {
         let found = self.is_punct(c);
         self.at += usize::from(found);
         found
     }
 
-    /// Takes an opening bracket if it is next.
+    /// Consumes an opening bracket if it is next. Returns whether it was.
     pub fn eat_open(&mut self, delimiter: Delimiter) -> bool {
         let found = self.is_open(delimiter);
         self.at += usize::from(found);
         found
     }
 
-    /// Takes this word.
+    /// Consumes this word; an error if it is not next.
     pub fn expect_word(&mut self, word: &str) -> Parsed<()> {
         if self.eat_word(word) {
             Ok(())
@@ -180,7 +180,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Takes this character.
+    /// Consumes this character; an error if it is not next.
     pub fn expect_punct(&mut self, c: char) -> Parsed<()> {
         if self.eat_punct(c) {
             Ok(())
@@ -189,7 +189,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Takes a closing bracket, where commas may continue the list.
+    /// Consumes a closing bracket; an error if it is not next. `separator` says whether a comma could stand here
+    /// instead.
     pub fn expect_close(&mut self, delimiter: Delimiter, separator: bool) -> Parsed<()> {
         if self.peek().kind == Kind::Close(delimiter) {
             self.at += 1;
@@ -207,7 +208,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Takes the `=` of a statement.
+    /// Consumes the `=` of a statement.
     pub fn assign(&mut self) -> Parsed<()> {
         self.expect_punct('=')?;
         if self.is_punct('=') {
@@ -218,7 +219,7 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// Takes a name; `of` says what it names.
+    /// Consumes a name. `of` describes the named thing, for messages.
     pub fn name(&mut self, of: &str) -> Parsed<Ident> {
         let token = self.peek();
         let span = self.here();
@@ -233,7 +234,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Takes a name that nothing else can stand for: a field, a shape, a choice between words.
+    /// Consumes a word where Rust's keywords are allowed, too: a field, a shape, a choice between words.
     pub fn word(&mut self, expected: &str) -> Parsed<Ident> {
         let token = self.peek();
         if token.kind != Kind::Word || is_connective(token) {
@@ -247,7 +248,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Takes the `;` of a statement; `expression` says whether more of an expression could stand in its place.
+    /// Consumes the `;` of a statement. `expression` says whether an expression could continue in its place.
     pub fn end(&mut self, expression: bool) -> Parsed<()> {
         if self.eat_punct(';') {
             return Ok(());
@@ -267,10 +268,11 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Whether the next two tokens are the start of a statement, and no names.
+    /// Returns whether the next two tokens start a statement rather than being names.
     pub fn starts_statement(&self) -> bool {
         let follows = self.ahead(1);
-        // `spring stiffness force length 2 …`: what is called as a statement stands before a part of one.
+        // `spring stiffness force length 2 …`: here `force` is a name, since `length` is a clause of the current
+        // statement.
         let clause = CLAUSES.contains(&follows.text.as_str())
             && !matches!(
                 self.ahead(2).kind,
@@ -283,7 +285,7 @@ impl<'a> Cursor<'a> {
             && !clause
     }
 
-    /// The error for a token in the place of something else.
+    /// Returns the error for a token found in the place of something else.
     pub fn unexpected(&mut self, expected: &str) -> Diagnostic {
         let found = self.peek();
         if self.starts_statement() {
@@ -312,7 +314,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Goes on behind the statement that starts at an index: after its `;`, or the braces that end it.
+    /// Skips the statement that starts at an index, up to and including its `;` or the braces that end it.
     pub fn recover(&mut self, start: usize) {
         let resume = self.resume.take();
         let mut at = start;
@@ -326,7 +328,7 @@ impl<'a> Cursor<'a> {
             match token.kind {
                 Kind::Open(delimiter, close) => {
                     at = close + 1;
-                    // A choice goes on behind its first braces.
+                    // A choice continues after its first braces.
                     let next = self.tokens.get(at).filter(|token| token.text != "else");
                     let next = next.map(|token| token.kind);
                     if delimiter == Delimiter::Brace && next == Some(Kind::Punct(';')) {
@@ -351,10 +353,10 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// How a transpose is written.
+/// Syntax of a transpose, for messages.
 const TRANSPOSE: &str = "a transpose is written `transpose(M)` or `M.T`";
 
-/// What to do about a token where an expression could go on.
+/// Returns help for a token found where an expression could continue.
 fn operator_help(found: &Token) -> Option<&'static str> {
     match found.kind {
         Kind::Word if is_connective(found) => None,
@@ -376,7 +378,7 @@ fn is_connective(token: &Token) -> bool {
     token.kind == Kind::Word && CONNECTIVES.contains(&token.text.as_str())
 }
 
-/// Refuses names that the generated code could not have.
+/// Refuses names that the generated code cannot use.
 pub(super) fn check_name(token: &Token, span: Span) -> Parsed<()> {
     if let Some(name) = token.text.strip_prefix("r#") {
         return Err(
@@ -399,7 +401,7 @@ pub(super) fn check_name(token: &Token, span: Span) -> Parsed<()> {
     Ok(())
 }
 
-/// A token as messages quote it.
+/// Quotes a token for a message.
 pub(super) fn quoted(token: &Token) -> String {
     match token.kind {
         Kind::End => "the end of the input".to_owned(),
@@ -411,7 +413,7 @@ pub(super) fn quoted(token: &Token) -> String {
     }
 }
 
-/// A text short enough for a message.
+/// Shortens a text for a message.
 pub(super) fn shown(text: &str) -> String {
     /// Longer texts are cut.
     const LONGEST: usize = 40;

@@ -1,4 +1,4 @@
-//! Statements that declare names: parameters, coordinates, velocities, inputs.
+//! Parsing of statements that declare names: parameters, coordinates, velocities, inputs.
 
 use super::ast::{CoordKind, Declaration, External, Function, Ident, Shape, ShapeKind, Span};
 use super::cursor::{Cursor, Parsed, shown};
@@ -8,7 +8,7 @@ use super::tokens::Kind;
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
-/// The largest vector, matrix or Euclidean coordinate.
+/// Largest size of a vector, matrix or Euclidean coordinate.
 const MAX_SIZE: usize = 64;
 
 /// `m = 1.3, s: vec3 = [0, 0, 1]`
@@ -24,7 +24,7 @@ pub(super) fn values(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Vec<Declaratio
     })
 }
 
-/// `v: vec3, u`, each with a row of Y where it is defined by rates: `w = q.c * rate(q.s)`
+/// `v: vec3, u`, each with a row of Y if rates define the velocity: `w = q.c * rate(q.s)`
 pub(super) fn velocities(cursor: &mut Cursor<'_>) -> Parsed<Vec<Declaration>> {
     separated(cursor, |cursor| {
         let (name, shape) = head(cursor, "a velocity")?;
@@ -95,7 +95,7 @@ pub(super) fn function(cursor: &mut Cursor<'_>) -> Parsed<Function> {
     })
 }
 
-/// Behind `extern`: `fn lift(alpha, mach) -> 2`, and a stand-in behind `=`.
+/// Parses what follows `extern`: `fn lift(alpha, mach) -> 2`, and optionally a substitute after `=`.
 pub(super) fn external(cursor: &mut Cursor<'_>) -> Parsed<External> {
     cursor.expect_word("fn")?;
     let name = cursor.name("a function")?;
@@ -142,7 +142,7 @@ pub(super) fn external(cursor: &mut Cursor<'_>) -> Parsed<External> {
     })
 }
 
-/// One or more, with commas between them.
+/// Parses one or more elements separated by commas.
 fn separated<T>(
     cursor: &mut Cursor<'_>,
     one: impl Fn(&mut Cursor<'_>) -> Parsed<T>,
@@ -154,14 +154,14 @@ fn separated<T>(
     Ok(all)
 }
 
-/// A name and its shape, a scalar where none is written.
+/// Parses a name and its shape, which is a scalar if none is written.
 fn head(cursor: &mut Cursor<'_>, of: &str) -> Parsed<(Ident, Shape)> {
     let name = path::declared(cursor, of)?;
     let shape = after(cursor, &name)?;
     Ok((name, shape))
 }
 
-/// The shape after a name, a scalar where none is written.
+/// Parses the shape after a name, which is a scalar if none is written.
 fn after(cursor: &mut Cursor<'_>, name: &Ident) -> Parsed<Shape> {
     match cursor.eat_punct(':') {
         true => shape(cursor),
@@ -220,13 +220,13 @@ fn coordinate_kind(cursor: &mut Cursor<'_>) -> Parsed<CoordKind> {
     }))
 }
 
-/// The letters of a name and the digits that end it.
+/// Splits a name into its letters and the digits at its end.
 fn family(name: &str) -> (&str, &str) {
     let family = name.trim_end_matches(|c: char| c.is_ascii_digit());
     (family, &name[family.len()..])
 }
 
-/// A size in bounds, without leading zeros.
+/// Parses a size. Returns `None` if it is out of bounds or has leading zeros.
 fn number(size: &str) -> Option<usize> {
     if size.starts_with('0') {
         return None;

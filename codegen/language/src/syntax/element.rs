@@ -1,19 +1,19 @@
-//! Springs, dampers and inerters, and the two points that they act between.
+//! Parsing of springs, dampers and inerters, and of the two points that they act between.
 
 use super::ast::{Acting, End, ItemKind};
 use super::cursor::{Cursor, Parsed};
 use super::expression::expression;
 use super::path;
 
-/// The words that these statements start with.
+/// First words of these statements.
 const WORDS: [&str; 3] = ["spring", "damper", "inerter"];
 
-/// Whether a word starts one of these statements.
+/// Returns whether a word starts one of these statements.
 pub(super) fn is_one(word: &str) -> bool {
     WORDS.contains(&word)
 }
 
-/// What follows such a word.
+/// Parses the rest of a statement after its first word.
 pub(super) fn element(word: &str, cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     match word {
         "spring" => spring(cursor),

@@ -1,4 +1,4 @@
-//! Expressions.
+//! Parsing of expressions.
 //!
 //! ```text
 //! sum      = product (("+" | "-") product)*
@@ -10,8 +10,8 @@
 //! choice   = "if" sum ("<" | "<=" | ">" | ">=") sum "{" sum "}" "else" (choice | "{" sum "}")
 //! ```
 //!
-//! Only brackets recurse, and those are bounded before parsing starts; chains are loops, and bounded because the tree
-//! they build is walked by recursion later.
+//! Recursion happens only at brackets, whose nesting is bounded before parsing starts. Chains are parsed by loops;
+//! their length is bounded because later stages walk the resulting tree recursively.
 
 mod choice;
 
@@ -24,10 +24,10 @@ use super::path;
 use super::tokens::Kind;
 use crate::diagnostics::Diagnostic;
 
-/// The most operands that operators of one precedence join.
+/// Largest number of operands in a chain of operators of one precedence.
 const MAX_OPERANDS: usize = 500;
 
-/// The deepest tree of one expression: a longest chain and what its operands hold.
+/// Largest depth of an expression tree: a longest chain, plus the depth of its operands.
 pub const MAX_DEPTH: usize = 600;
 
 /// An expression and the depth of its tree.
@@ -36,7 +36,7 @@ struct Node {
     depth: usize,
 }
 
-/// A list of expressions and the depth of the deepest.
+/// A list of expressions, and the depth of the deepest one.
 #[derive(Default)]
 pub(super) struct List {
     pub entries: Vec<Expr>,
@@ -60,7 +60,7 @@ fn product(cursor: &mut Cursor<'_>) -> Parsed<Node> {
     chain(cursor, [('*', BinaryOp::Mul), ('/', BinaryOp::Div)], sign)
 }
 
-/// Operands joined by operators of one precedence, to the left.
+/// Parses operands joined by left-associative operators of one precedence.
 fn chain(
     cursor: &mut Cursor<'_>,
     operators: [(char, BinaryOp); 2],
@@ -89,7 +89,7 @@ fn sign(cursor: &mut Cursor<'_>) -> Parsed<Node> {
     negate(signs, value)
 }
 
-/// The minus signs before an operand.
+/// Parses the minus signs before an operand.
 fn signs(cursor: &mut Cursor<'_>) -> Parsed<Vec<Span>> {
     let mut signs = Vec::new();
     while cursor.is_punct('-') {
@@ -127,7 +127,7 @@ fn postfix(cursor: &mut Cursor<'_>) -> Parsed<Node> {
     let mut value = primary(cursor)?;
     loop {
         let span = value.expr.span;
-        // Of a range, `1..n`, the first dot ends the expression.
+        // In a range such as `1..n`, the first dot ends the expression.
         let range = cursor.is_punct('.') && cursor.is_followed_by(&['.'], &[]);
         let (part, depth) = if !range && cursor.eat_punct('.') {
             let field = field(cursor)?;
@@ -177,7 +177,7 @@ fn field(cursor: &mut Cursor<'_>) -> Parsed<Ident> {
     cursor.word("the name of a part")
 }
 
-/// One index or two, with their brackets.
+/// Parses one or two indices, with their brackets.
 pub(super) fn indices(cursor: &mut Cursor<'_>) -> Parsed<List> {
     let open = cursor.here();
     cursor.bump();
@@ -191,7 +191,7 @@ pub(super) fn indices(cursor: &mut Cursor<'_>) -> Parsed<List> {
     Ok(indices)
 }
 
-/// Expressions up to the closing bracket, which is taken.
+/// Parses expressions up to and including the closing bracket.
 fn list(cursor: &mut Cursor<'_>, delimiter: Delimiter) -> Parsed<List> {
     let mut list = List::default();
     while !cursor.is_end() {
@@ -269,7 +269,7 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
     }
 }
 
-/// `velocity(f) in g`: a call, and the frame whose axes its components are in.
+/// Parses an optional `in` after a call, as in `velocity(f) in g`, with the frame whose axes the components are in.
 fn in_axes(cursor: &mut Cursor<'_>, call: Node) -> Parsed<Node> {
     if !cursor.eat_word("in") {
         return Ok(call);
@@ -294,7 +294,7 @@ fn binary(op: BinaryOp, left: Node, right: Node) -> Parsed<Node> {
     )
 }
 
-/// A tree of parts of a depth.
+/// Creates a node whose operands have depth `parts`, unless the tree becomes too deep.
 fn node(kind: ExprKind, span: Span, parts: usize) -> Parsed<Node> {
     let depth = parts + 1;
     if depth > MAX_DEPTH {

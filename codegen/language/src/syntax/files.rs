@@ -1,4 +1,4 @@
-//! What a description has in other files: included statements, and tables.
+//! Files that a description refers to: included statements, and tables.
 
 use proc_macro2::TokenStream;
 
@@ -8,19 +8,19 @@ use super::tokens::{self, Kind, Token};
 use super::{parse, scan, table};
 use crate::diagnostics::Diagnostic;
 
-/// The deepest chain of files that include one another.
+/// Largest depth of nested includes.
 const MOST_NESTED: usize = 16;
 
-/// The most bytes of all included texts.
+/// Largest total size of all included texts, in bytes.
 const MOST_BYTES: usize = 1 << 24;
 
-/// Gives the text of a file by the name that a description has for it.
+/// Function that returns the text of a file, given its path relative to the description.
 type Open<'a> = dyn FnMut(&str) -> std::io::Result<String> + 'a;
 
-/// Reads what stands in files, in the place of their names: included statements, and the points of tables. `open` gives
-/// the text of a file by its path from the description. The texts are returned in the order in which they were read.
+/// Replaces references to files by their contents: included statements, and the points of tables. `open` returns the
+/// text of a file, given its path relative to the description. Returns the texts in the order in which they were read.
 ///
-/// A file that is included twice is read where it is included first. Paths start at the file that they stand in.
+/// A file that is included twice is read only at its first include. Paths in a file are relative to that file.
 pub fn read_files(
     system: &mut System,
     open: &mut Open<'_>,
@@ -47,9 +47,9 @@ pub fn read_files(
 struct Reader<'a, 'b> {
     open: &'a mut Open<'b>,
     origins: Origins,
-    /// The files that are being read, with the statements that include them.
+    /// Files that are being read, each with the span of the statement that includes it.
     within: Vec<(String, Span)>,
-    /// All files that were included.
+    /// All files included so far.
     known: Vec<String>,
     bytes: usize,
     texts: Vec<String>,
@@ -57,7 +57,7 @@ struct Reader<'a, 'b> {
 }
 
 impl Reader<'_, '_> {
-    /// The statements with those of files in their places; paths start at a folder.
+    /// Replaces the file references in statements. Paths are relative to `folder`.
     fn items(&mut self, items: Vec<Item>, folder: &str) -> Vec<Item> {
         let mut all = Vec::new();
         for mut item in items {
@@ -151,7 +151,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// A path from a folder, without `.` and, where that is possible, without `..`.
+/// Joins a folder and a path. Resolves `.` and, where possible, `..`.
 fn joined(folder: &str, name: &str) -> String {
     if name.starts_with('/') || name.contains(':') {
         return name.to_owned();
@@ -171,7 +171,7 @@ fn joined(folder: &str, name: &str) -> String {
     }
 }
 
-/// The statements of a text whose first byte has this place.
+/// Parses the statements of a text whose first byte has the place `start`.
 fn statements(text: &str, start: usize) -> Result<Vec<Item>, Vec<Diagnostic>> {
     let scanned = scan::scan(text);
     let mut errors = scanned.errors;
@@ -208,12 +208,12 @@ fn statements(text: &str, start: usize) -> Result<Vec<Item>, Vec<Diagnostic>> {
     }
 }
 
-/// Gives tokens their places in a text: they stand there in this order, with blanks and comments between them. The
-/// compiler does not tell a macro where the tokens of a text are.
+/// Assigns tokens their spans in a text, in which they appear in this order, separated by blanks and comments. This is
+/// necessary because the compiler does not tell a macro where the tokens of a text are.
 fn place(tokens: &mut [Token], text: &str, start: usize) {
     let mut at = 0;
     let mut last = Span::new(start..start);
-    // Of a doc comment, the text stands in the file, and not what it is written out as.
+    // A doc comment is a single piece of text in the file, but expands into six tokens of an attribute.
     let mut docs = 0_usize;
     for index in 0..tokens.len() {
         let opens_docs = matches!(tokens[index].kind, Kind::Punct('#'))
@@ -242,7 +242,7 @@ fn place(tokens: &mut [Token], text: &str, start: usize) {
     }
 }
 
-/// The place after blanks and comments, and after doc comments where those count as such.
+/// Returns the position after blanks and comments. If `docs`, doc comments are skipped as well.
 fn skipped(text: &str, from: usize, docs: bool) -> Option<usize> {
     let mut at = from;
     loop {
@@ -258,7 +258,7 @@ fn skipped(text: &str, from: usize, docs: bool) -> Option<usize> {
         if rest.is_empty() {
             return None;
         } else if doc && !docs {
-            // What comes is a doc comment.
+            // A doc comment comes next.
             return Some(at);
         } else if rest.starts_with("//") {
             at += rest.find('\n').unwrap_or(rest.len());
@@ -270,7 +270,7 @@ fn skipped(text: &str, from: usize, docs: bool) -> Option<usize> {
     }
 }
 
-/// The length of a block comment; such comments nest.
+/// Returns the length of a block comment, including nested ones.
 fn comment(text: &str) -> usize {
     let (mut at, mut depth) = (0, 0_usize);
     while let Some(rest) = text.get(at..).filter(|rest| !rest.is_empty()) {

@@ -1,4 +1,4 @@
-//! Claims that something is constant along the motion.
+//! Parsing of `invariant` statements, which claim that a quantity is constant along the motion.
 
 use super::ast::{Condition, Conserved, Ident, ItemKind};
 use super::cursor::{Cursor, Parsed};
@@ -7,9 +7,9 @@ use super::path;
 use super::reuse::is_name;
 use crate::diagnostics::Diagnostic;
 
-/// What has a name of its own.
+/// Conserved quantities that have a keyword.
 const BUILT_IN: [&str; 3] = ["energy", "linear_momentum", "angular_momentum"];
-/// The words that may follow it.
+/// Words that may follow such a keyword.
 const DETAILS: [&str; 4] = ["of", "about", "along", "when"];
 
 /// `[name =] energy | linear_momentum … | angular_momentum … | expr [when F = 0, tau = 0]`
@@ -44,7 +44,7 @@ pub(super) fn invariant(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     })
 }
 
-/// Whether a built-in quantity is next, and no expression that starts with its name.
+/// Returns whether a built-in quantity is next, rather than an expression that starts with its name.
 fn is_built_in(cursor: &Cursor<'_>) -> bool {
     BUILT_IN.iter().any(|word| cursor.is_word(word)) && cursor.is_followed_by(&[';'], &DETAILS)
 }
@@ -68,7 +68,7 @@ fn built_in(cursor: &mut Cursor<'_>) -> Parsed<Conserved> {
     Ok(Conserved::AngularMomentum { of, about, along })
 }
 
-/// The expression after a word, where that stands.
+/// Parses the expression after a keyword, if the keyword is next.
 fn after(cursor: &mut Cursor<'_>, word: &str) -> Parsed<Option<super::ast::Expr>> {
     if cursor.eat_word(word) {
         expression(cursor).map(Some)

@@ -1,4 +1,4 @@
-//! Joints: `joint j: revolute [0, 0, 1] on f at P moves g follows e { damping d; }`.
+//! Parsing of joints: `joint j: revolute [0, 0, 1] on f at P moves g follows e { damping d; }`.
 
 use proc_macro2::Delimiter;
 
@@ -10,7 +10,7 @@ use super::path;
 use super::suggest::closest;
 use crate::diagnostics::Diagnostic;
 
-/// The kinds, each with the number of its axes and its form.
+/// Kinds of joints, each with its number of axes and its syntax.
 const KINDS: [(&str, JointKind, usize, &str); 9] = [
     ("revolute", JointKind::Revolute, 1, "revolute [0, 0, 1]"),
     (
@@ -43,7 +43,7 @@ const KINDS: [(&str, JointKind, usize, &str); 9] = [
     ("fixed", JointKind::Fixed, 0, "fixed"),
 ];
 
-/// What a joint can have, each with its form.
+/// Fields of a joint, each with a sentence that shows its syntax.
 const FIELDS: [(&str, JointField, &str); 8] = [
     (
         "damping",
@@ -87,17 +87,17 @@ const FIELDS: [(&str, JointField, &str); 8] = [
     ),
 ];
 
-/// The names of the kinds.
+/// Returns the names of the kinds.
 pub(crate) fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.into_iter().map(|(name, ..)| name)
 }
 
-/// The names of the fields, each with its form.
+/// Returns the names of the fields, each with a sentence that shows its syntax.
 pub(crate) fn fields_of() -> impl Iterator<Item = (&'static str, &'static str)> {
     FIELDS.into_iter().map(|(name, _, form)| (name, form))
 }
 
-/// The name of a field.
+/// Returns the name of a field.
 pub fn field_name(field: JointField) -> &'static str {
     FIELDS
         .iter()
@@ -105,7 +105,7 @@ pub fn field_name(field: JointField) -> &'static str {
         .map_or("", |(name, ..)| name)
 }
 
-/// The name of a kind.
+/// Returns the name of a kind.
 pub fn kind_name(kind: JointKind) -> &'static str {
     KINDS
         .iter()
@@ -113,7 +113,7 @@ pub fn kind_name(kind: JointKind) -> &'static str {
         .map_or("spherical", |(name, ..)| name)
 }
 
-/// What the names of the coordinates and of the velocities of a joint have behind the name of the joint.
+/// Returns the suffixes that form the names of a joint's coordinates and of its velocities from the name of the joint.
 pub(crate) fn endings(joint: &Joint) -> (&'static [&'static str], &'static [&'static str]) {
     match joint.kind.0 {
         JointKind::Fixed => (&[], &[]),
@@ -222,7 +222,7 @@ fn kind(cursor: &mut Cursor<'_>) -> Parsed<((JointKind, Span), Vec<Expr>)> {
     Ok(((kind, span), axes))
 }
 
-/// Whether what follows the axes of a joint is next.
+/// Returns whether the list of axes has ended.
 fn at_end(cursor: &Cursor<'_>) -> bool {
     ["on", "at", "moves", "follows"]
         .iter()
@@ -232,7 +232,7 @@ fn at_end(cursor: &Cursor<'_>) -> bool {
         || cursor.is_end()
 }
 
-/// One of `{ damping d; limit a to b; }`, in any order and each at most once.
+/// Parses one field of `{ damping d; limit a to b; }`. Fields come in any order, each at most once.
 fn field(cursor: &mut Cursor<'_>, fields: &mut Vec<(JointField, Span, Vec<Expr>)>) -> Parsed<()> {
     let span = cursor.here();
     let Some(&(name, field, form)) = FIELDS.iter().find(|(name, ..)| cursor.is_word(name)) else {
@@ -257,7 +257,7 @@ fn field(cursor: &mut Cursor<'_>, fields: &mut Vec<(JointField, Span, Vec<Expr>)
     Ok(())
 }
 
-/// The value of a field, or the two of a limit, with the `;`.
+/// Parses the value of a field, or the two values of a limit, with the `;`.
 fn values(cursor: &mut Cursor<'_>, field: JointField) -> Parsed<Vec<Expr>> {
     let mut values = vec![expression(cursor)?];
     if field == JointField::Limit {

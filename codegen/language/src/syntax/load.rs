@@ -1,4 +1,4 @@
-//! Forces, torques and wrenches.
+//! Parsing of forces, torques and wrenches.
 
 use proc_macro2::Delimiter;
 

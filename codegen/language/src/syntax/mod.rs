@@ -1,24 +1,24 @@
-//! The language: from text or tokens to a placed description.
+//! The parser: from text or tokens to a syntax tree with source positions.
 //!
-//! A macro hands over the compiler's tokens, a `.eom` file is cut into tokens of the same kind; from there on one
-//! parser serves both. Nothing is resolved here: names, shapes and units are the business of the model. What this stage
-//! guarantees is that every node carries its span, that no input overflows the stack, and that a description with
-//! several faulty statements gets an error for each.
+//! A macro passes the compiler's tokens; the text of a `.eom` file is split into tokens of the same kind. One parser
+//! then serves both. This stage resolves nothing: names, shapes and units are checked later. It guarantees that every
+//! node carries its span, that no input overflows the stack, and that a description with several faulty statements gets
+//! an error for each.
 //!
 //! | file | owns |
 //! |---|---|
-//! | `ast` | the description as written |
-//! | `scan` | the raw text of a file: brackets, and characters that no token has |
+//! | `ast` | the syntax tree |
+//! | `scan` | the raw text of a file: brackets, and characters that no token can contain |
 //! | `tokens` | the flat list of tokens, and its canonical spelling |
-//! | `cursor` | the place in that list, and how an unexpected token is reported |
-//! | `blocks` | what stands between braces, doc comments |
-//! | `parse` | the system, statement after statement, and recovery |
+//! | `cursor` | the position in that list, and errors for unexpected tokens |
+//! | `blocks` | the contents of braces, doc comments |
+//! | `parse` | the system, statement after statement, and error recovery |
 //! | `statement`, `declaration`, `table`, `body`, `joint`, `load` | the statements |
-//! | `reuse`, `path` | statements that stand for others, and the names that these have |
+//! | `reuse`, `path` | components, parts and loops, and names with indices and parts |
 //! | `files` | included texts, and tables in files |
 //! | `expression`, `number` | values |
 //! | `words` | the words of the language |
-//! | `suggest` | the word that was probably meant |
+//! | `suggest` | "did you mean" suggestions |
 
 use proc_macro2::TokenStream;
 
@@ -57,7 +57,7 @@ pub use expression::MAX_DEPTH;
 pub(crate) use joint::{endings as joint_endings, fields_of as joint_fields, kinds as joint_kinds};
 pub(crate) use words::forms as statement_forms;
 
-/// Parses a description given as tokens; places in it are places of these tokens.
+/// Parses a description given as tokens. Spans in the result are token numbers, which the returned [`Places`] resolve.
 pub fn parse_tokens(tokens: TokenStream) -> (Places, Result<ast::System, Vec<Diagnostic>>) {
     let (tokens, places) = tokens::of_stream(tokens);
     let mut parsed = parse(&tokens);
@@ -72,7 +72,7 @@ fn parse(tokens: &[tokens::Token]) -> Result<ast::System, Vec<Diagnostic>> {
     parse::system(tokens)
 }
 
-/// Parses a description given as text, such as a `.eom` file; places in it are bytes of the text.
+/// Parses a description given as text, such as a `.eom` file. Spans in the result are byte ranges of the text.
 #[cfg(feature = "files")]
 pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
     let scanned = scan::scan(text);
@@ -95,9 +95,9 @@ pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
     Err(errors)
 }
 
-/// One spelling for all sources of the same tokens, to be hashed: the tokens joined by single spaces.
+/// Returns one spelling for all sources with the same tokens, for hashing: the tokens joined by single spaces.
 ///
-/// Layout and plain comments do not count; doc comments do, however their text was quoted.
+/// Layout and plain comments do not count; doc comments do, in whichever form they were written.
 pub fn canonical(tokens: &TokenStream) -> String {
     tokens::canonical(tokens)
 }

@@ -1,17 +1,17 @@
-//! Decimal literals, exact.
+//! Parsing of decimal literals into exact numbers.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero, pow};
 
-/// The most digits of a number, and the largest magnitude of its exponent.
+/// Largest number of digits of a literal, and largest magnitude of its exponent.
 const MAX_DIGITS: usize = 400;
 
-/// What is wrong with a literal, and what to do.
+/// Reason why a literal is refused, with a suggestion.
 pub(super) struct Refusal {
-    /// What is wrong.
+    /// The problem.
     pub message: String,
-    /// What to do.
+    /// Suggested fix.
     pub help: String,
 }
 
@@ -22,7 +22,7 @@ fn refuse<T>(message: String, help: impl Into<String>) -> Result<T, Refusal> {
     })
 }
 
-/// The value of a literal; `shown` is how messages quote it.
+/// Returns the exact value of a literal. `shown` is the text that messages quote.
 pub(super) fn value(text: &str, shown: &str) -> Result<BigRational, Refusal> {
     if !text.starts_with(|first: char| first.is_ascii_digit()) {
         return if text.starts_with('\'') || text.starts_with("b'") {
@@ -87,7 +87,7 @@ pub(super) fn value(text: &str, shown: &str) -> Result<BigRational, Refusal> {
         );
     };
 
-    // `whole` starts with a digit and both hold nothing else.
+    // `whole` starts with a digit, and `whole` and `fraction` contain only digits.
     let mantissa: BigInt = format!("{whole}{fraction}")
         .parse()
         .unwrap_or_else(|_| BigInt::zero());
@@ -106,7 +106,7 @@ pub(super) fn value(text: &str, shown: &str) -> Result<BigRational, Refusal> {
     })
 }
 
-/// The leading digits without their underscores, and what follows.
+/// Splits off the leading digits. Returns them without underscores, and the rest.
 fn digits(text: &str) -> (String, &str) {
     let end = text
         .find(|c: char| !c.is_ascii_digit() && c != '_')
@@ -114,7 +114,7 @@ fn digits(text: &str) -> (String, &str) {
     (text[..end].replace('_', ""), &text[end..])
 }
 
-/// The exponent after the mantissa, `None` where it is too large, and the suffix after it.
+/// Parses the exponent after the mantissa. Returns the exponent, or `None` if it is too large, and the suffix after it.
 fn exponent(text: &str) -> (Option<isize>, &str) {
     let Some(signed) = text.strip_prefix(['e', 'E']) else {
         return (Some(0), text);

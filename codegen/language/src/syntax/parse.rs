@@ -1,4 +1,4 @@
-//! A system, statement after statement.
+//! Parsing of a system, statement after statement.
 
 use super::ast::{Item, Origins, System};
 use super::blocks::docs;
@@ -8,10 +8,10 @@ use super::tokens::{Kind, Token};
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
-/// The form of a description.
+/// Syntax of a description, for messages.
 const SYSTEM: &str = "a description is written `system Name { … }`";
 
-/// Parses one system, and nothing else.
+/// Parses exactly one system.
 pub(super) fn system(tokens: &[Token]) -> Result<System, Vec<Diagnostic>> {
     let mut cursor = Cursor::new(tokens);
     let parsed = header(&mut cursor).and_then(|mut system| {
@@ -24,14 +24,14 @@ pub(super) fn system(tokens: &[Token]) -> Result<System, Vec<Diagnostic>> {
     match parsed {
         Ok(system) if errors.is_empty() => return Ok(system),
         Ok(_) => {}
-        // With all the errors there are, the closing brace was not reached.
+        // If the largest number of errors was reached, the closing brace was not.
         Err(_) if errors.len() >= MAX_ERRORS => {}
         Err(error) => errors.push(with_form(error, SYSTEM)),
     }
     Err(errors)
 }
 
-/// Up to the opening brace.
+/// Parses everything up to the opening brace.
 fn header(cursor: &mut Cursor<'_>) -> Parsed<System> {
     let docs = docs(cursor)?;
     let public = cursor.eat_word("pub");
@@ -77,7 +77,7 @@ fn nothing_else(cursor: &Cursor<'_>) -> Parsed<()> {
     )
 }
 
-/// Adds the form of the statement to an error that has no better help.
+/// Adds the syntax of the statement to an error that has no better help.
 fn with_form(error: Diagnostic, form: &str) -> Diagnostic {
     if error.help.is_some() {
         error
@@ -86,7 +86,7 @@ fn with_form(error: Diagnostic, form: &str) -> Diagnostic {
     }
 }
 
-/// Parses statements without a system around them: those of an included text.
+/// Parses statements without a system around them, as in an included text.
 pub(super) fn statements(tokens: &[Token]) -> Result<Vec<Item>, Vec<Diagnostic>> {
     let mut cursor = Cursor::new(tokens);
     if cursor.is_word("system") || cursor.is_word("pub") {

@@ -1,7 +1,7 @@
 //! Names with indices and parts, as they are written: `left.knee`, `link[i-1]`, `leg[3].j[2]_dot`.
 //!
-//! Behind the index of a joint stands the ending of one of its coordinates or velocities: the velocity of `j[2]` is
-//! `j[2]_dot`, as that of `j` is `j_dot`.
+//! A suffix after the index of a joint names one of its coordinates or velocities: just as `j_dot` is the velocity of
+//! `j`, `j[2]_dot` is the velocity of `j[2]`.
 
 use proc_macro2::{Delimiter, TokenStream};
 
@@ -12,32 +12,32 @@ use super::tokens::{Kind, of_stream};
 use super::written::written;
 use crate::diagnostics::Diagnostic;
 
-/// One step along a name.
+/// One component of a name.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
     /// A word.
     Name(String),
     /// `[i]`, `[i, j]`
     Index(Vec<Expr>),
-    /// What stands behind an index: `_dot`.
+    /// Suffix after an index: `_dot`.
     Ending(String),
 }
 
-/// A name that a statement declares: `link`, `link[i]`.
+/// Parses a name that a statement declares: `link`, `link[i]`.
 pub(super) fn declared(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Ident> {
     let mut name = cursor.name(of)?;
     index(cursor, &mut name)?;
     Ok(name)
 }
 
-/// A name of something that is declared elsewhere: `left.knee`, `leg[3].foot`.
+/// Parses a name that is declared elsewhere: `left.knee`, `leg[3].foot`.
 pub(super) fn path(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Ident> {
     let mut name = cursor.name(of)?;
     while index(cursor, &mut name)? || part(cursor, &mut name)? {}
     Ok(name)
 }
 
-/// Takes an index and the ending behind it, where one is next.
+/// Parses an index and the suffix after it, if an index is next, and appends them to `name`.
 fn index(cursor: &mut Cursor<'_>, name: &mut Ident) -> Parsed<bool> {
     if !cursor.is_open(Delimiter::Bracket) {
         return Ok(false);
@@ -69,12 +69,12 @@ fn part(cursor: &mut Cursor<'_>, name: &mut Ident) -> Parsed<bool> {
     Ok(true)
 }
 
-/// The spelling of an expression in a name.
+/// Returns the spelling of an expression within a name, which has no blanks.
 fn spelled(expr: &Expr) -> String {
     written(expr).replace(' ', "")
 }
 
-/// An index of a name is made of counters and numbers.
+/// Refuses an index of a name unless it consists of names, numbers and operators.
 fn check(index: &Expr) -> Parsed<()> {
     match &index.kind {
         ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Neg(_) | ExprKind::Binary(..) => {
@@ -85,7 +85,7 @@ fn check(index: &Expr) -> Parsed<()> {
     }
 }
 
-/// The name that an expression is, with its index and parts, if it is one.
+/// Returns the expression as a name with indices and parts, if it is one.
 pub fn of_expression(expr: &Expr) -> Option<Ident> {
     let named = match &expr.kind {
         ExprKind::Name(_) => true,
@@ -99,7 +99,7 @@ pub fn of_expression(expr: &Expr) -> Option<Ident> {
     named.then_some(Ident { name, span })
 }
 
-/// A name with indices or parts as descriptions spell it; any other text as it is.
+/// Normalizes the spelling of a name with indices or parts. Returns any other text unchanged.
 pub fn spelling(name: &str) -> String {
     if !name.contains('[') {
         return name.to_owned();
@@ -108,7 +108,7 @@ pub fn spelling(name: &str) -> String {
     parsed.map_or_else(|| name.to_owned(), |name| name.name)
 }
 
-/// The expression that a name with indices or parts is; none where the text is none.
+/// Parses a name with indices or parts as an expression. Returns `None` for a plain name and for any other text.
 pub fn expression(name: &str) -> Option<Expr> {
     if !name.contains(['[', '.']) {
         return None;
@@ -117,7 +117,7 @@ pub fn expression(name: &str) -> Option<Expr> {
     of_expression(&expr).map(|_| expr)
 }
 
-/// All of a text as one thing.
+/// Parses a whole text with `one`. Returns `None` on an error or if something is left over.
 fn read<T>(text: &str, one: impl FnOnce(&mut Cursor<'_>) -> Parsed<T>) -> Option<T> {
     let mut tokens = of_stream(text.parse().ok()?).0;
     tokens
@@ -128,7 +128,7 @@ fn read<T>(text: &str, one: impl FnOnce(&mut Cursor<'_>) -> Parsed<T>) -> Option
     (cursor.peek().kind == Kind::End).then_some(parsed)
 }
 
-/// The steps of a name as written, all of them at its place; none where it is no such name.
+/// Splits a name into its components, each with the span of the whole name. Returns an empty list for a malformed name.
 pub fn steps(name: &Ident) -> Vec<Step> {
     let plain = |text: &str| !text.contains(['[', '.']);
     if plain(&name.name) {
@@ -184,8 +184,8 @@ pub fn steps(name: &Ident) -> Vec<Step> {
     }
 }
 
-/// The name without indices and parts that stands for a name as written in generated code: `leg_3_knee` for
-/// `leg[3].knee`, `j_2_dot` for `j[2]_dot`. Blanks do not count.
+/// Returns the plain name that generated code uses for a name with indices and parts: `leg_3_knee` for `leg[3].knee`,
+/// `j_2_dot` for `j[2]_dot`. Blanks are ignored.
 pub fn plain(name: &str) -> String {
     let mut plain = String::new();
     for c in name.chars().filter(|c| !c.is_whitespace()) {
@@ -198,7 +198,7 @@ pub fn plain(name: &str) -> String {
     plain
 }
 
-/// A name in an expression whose base ends here: its ending becomes part of it.
+/// Appends a suffix to an expression that is a name, as in `j[2]_dot`. `end` is the span of the suffix.
 pub(super) fn with_ending(base: &Expr, ending: &str, end: Span) -> Option<Expr> {
     let name = of_expression(base)?;
     Some(Expr {

@@ -1,4 +1,4 @@
-//! Statements that stand for others: `include`, `component`, `part` and `for`.
+//! Parsing of statements that expand into others: `include`, `component`, `part` and `for`.
 
 use proc_macro2::Delimiter;
 
@@ -15,7 +15,7 @@ use super::table::quoted;
 use super::words::form;
 use crate::diagnostics::Diagnostic;
 
-/// The statements up to a closing brace or the end; faulty ones are reported and left out.
+/// Parses statements up to a closing brace or the end. Faulty statements are reported and skipped.
 pub(super) fn items(cursor: &mut Cursor<'_>) -> Vec<Item> {
     let mut items = Vec::new();
     while cursor.errors.len() < MAX_ERRORS {
@@ -76,7 +76,7 @@ fn counter(cursor: &mut Cursor<'_>) -> Parsed<Counter> {
     Ok(Counter { name, first, last })
 }
 
-/// `{ … }`, statements that stand in a component or a `for`.
+/// Parses `{ … }`, the statements of a component or a `for`.
 fn block(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Vec<Item>> {
     if !cursor.eat_open(Delimiter::Brace) {
         return Err(cursor.unexpected("`{`"));
@@ -135,7 +135,7 @@ pub(super) fn component(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     }))
 }
 
-/// What a parameter can be.
+/// Kinds of parameters, for messages.
 const PARAMETERS: &str = "a parameter of a component is a frame, `mount: frame`, of a shape, `hip: vec3`, or any expression, `side` or `side = 1`";
 
 /// `mount: frame`, `hip: vec3`, `side = 1`
@@ -204,13 +204,13 @@ fn part_name(cursor: &mut Cursor<'_>) -> Parsed<(Ident, Option<Counter>)> {
     Ok((name, Some(counter)))
 }
 
-/// The item of a statement that ends with its braces, or with a `;` that was taken.
+/// Returns the item of a statement that ends with its braces, or whose `;` has been parsed.
 pub(super) fn ended(kind: ItemKind, start: super::ast::Span, cursor: &Cursor<'_>) -> Vec<Item> {
     let span = since(start, cursor);
     vec![Item { kind, span }]
 }
 
-/// Whether an expression is a name with indices or parts.
+/// Returns whether an expression is a name with indices or parts.
 pub(super) fn is_name(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Name(_) => true,

@@ -1,7 +1,7 @@
-//! The raw text of a file, before it is cut into tokens.
+//! Scan of the raw text of a file, before it is split into tokens.
 //!
-//! Unbalanced brackets and characters outside of the language are found here, where their places are still known; the
-//! tokeniser would stop at the first of them. Comments and strings are skipped.
+//! This finds unbalanced brackets and characters that are not part of the language while their places are still known;
+//! the tokeniser would stop at the first of them. Comments and strings are skipped.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use super::cursor::MAX_ERRORS;
 use super::tokens::{MAX_NESTING, too_deep};
 use crate::diagnostics::Diagnostic;
 
-/// Characters that have a spelling in the language, and that spelling.
+/// Characters that have an equivalent in the language, with that equivalent.
 const SPELLINGS: [(char, &str); 14] = [
     ('×', "*"),
     ('·', "*"),
@@ -30,21 +30,21 @@ const SPELLINGS: [(char, &str); 14] = [
     ('→', "="),
 ];
 
-/// What a scan found.
+/// Result of a scan.
 pub(super) struct Scan {
     /// The errors, in the order of the text.
     pub errors: Vec<Diagnostic>,
-    /// The text with every refused character replaced by others of the same length; `None` where its brackets,
-    /// comments or strings do not close.
+    /// The text with every refused character replaced by others of the same length, or `None` if its brackets, comments
+    /// or strings do not close.
     pub readable: Option<String>,
 }
 
-/// A finding, placed by byte offsets.
+/// An error, placed by byte offset.
 struct Finding {
     at: usize,
     message: String,
     help: String,
-    /// Another place, and its label.
+    /// Another place, with its label.
     note: Option<(usize, &'static str)>,
 }
 
@@ -71,7 +71,7 @@ pub(super) fn scan(text: &str) -> Scan {
     Scan { errors, readable }
 }
 
-/// The error for a text that passed the scan, and yet cannot be cut into tokens.
+/// Returns the error for a text that passed the scan but cannot be split into tokens.
 pub(super) fn unreadable(error: &LexError) -> Diagnostic {
     #[cfg(feature = "files")]
     let place = Span::new(error.span().byte_range());
@@ -81,21 +81,21 @@ pub(super) fn unreadable(error: &LexError) -> Diagnostic {
         .help("check the spelling of what stands here")
 }
 
-/// The walk along the text.
+/// State of the scan.
 #[derive(Default)]
 struct Scanner<'a> {
     text: &'a str,
     at: usize,
     open: Vec<(usize, char)>,
     findings: Vec<Finding>,
-    /// Offsets of refused characters, and the operator to read in their place.
+    /// Offsets of refused characters, each with the text that replaces it.
     replaced: BTreeMap<usize, &'static str>,
-    /// Characters beyond ASCII that are known to continue a name.
+    /// Non-ASCII characters that are known to be allowed in names.
     letters: BTreeSet<char>,
 }
 
 impl<'a> Scanner<'a> {
-    /// Whether brackets, comments and strings close.
+    /// Scans the text. Returns whether brackets, comments and strings close.
     fn run(&mut self) -> bool {
         if self.text.starts_with('\u{feff}') {
             self.at = '\u{feff}'.len_utf8();
@@ -143,7 +143,8 @@ impl<'a> Scanner<'a> {
             if !proceed {
                 return false;
             }
-            // A comment or a blank leaves what stands before it next to what follows.
+            // The last character of a comment or blank counts as the previous one, so that a quote after it does not
+            // follow a value.
             previous = self.text[start..self.at].chars().next_back().unwrap_or(c);
         }
         if let Some(&(at, bracket)) = self.open.last() {
@@ -232,9 +233,9 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// At a `;`: parentheses and brackets that are still open, and that nothing in the next statement closes.
+    /// Reports, at a `;`, parentheses and brackets that are still open and that nothing in the next statement closes.
     ///
-    /// What stands from the bracket to the `;` is left out, so that the other statements can be read.
+    /// The text from the bracket to the `;` is left out, so that the other statements can be parsed.
     fn unclosed(&mut self) {
         let braced = self
             .open
@@ -268,7 +269,8 @@ impl<'a> Scanner<'a> {
         );
     }
 
-    /// A prime after a value is meant as a transpose; elsewhere a character is left to the parser.
+    /// Handles a quote. After a value it is meant as a transpose and refused; a character literal is left to the
+    /// parser.
     fn quote(&mut self, previous: char) {
         let start = self.at;
         self.at += 1;
@@ -325,7 +327,8 @@ impl<'a> Scanner<'a> {
         let at = self.at;
         self.at += c.len_utf8();
         if let Some((_, spelling)) = SPELLINGS.iter().find(|(other, _)| *other == c) {
-            // What has an operator of its own is read as that; so the statement brings no second error.
+            // A character with an equivalent operator is read as that operator, so that the statement causes no second
+            // error.
             let operator = spelling.len() == 1;
             self.replaced
                 .insert(at, if operator { spelling } else { "" });
@@ -340,7 +343,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Whether a name may have it: letters, digits, and marks such as the dot of `q̇`.
+    /// Returns whether a name may contain a character: letters, digits, and marks such as the dot of `q̇`.
     fn is_name(&mut self, c: char) -> bool {
         if c.is_ascii() || c.is_whitespace() {
             return c.is_ascii_alphanumeric() || c == '_';
@@ -348,7 +351,7 @@ impl<'a> Scanner<'a> {
         if self.letters.contains(&c) {
             return true;
         }
-        // The tokeniser knows.
+        // Asks the tokeniser.
         let blank = matches!(c, '\u{200e}' | '\u{200f}');
         let letter = !blank && format!("a{c}").parse::<TokenStream>().is_ok();
         if letter {
@@ -358,7 +361,7 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// The message for a character that no token has.
+/// Returns the message for a character that no token contains.
 fn not_part(c: char) -> String {
     let shown = if c == '\\' {
         c.to_string()
@@ -368,12 +371,12 @@ fn not_part(c: char) -> String {
     format!("the character `{shown}` is not part of the language")
 }
 
-/// Whether a value may end so, and what follows continues it.
+/// Returns whether a value may end with this character, so that what follows continues it.
 fn is_end_of_value(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | ')' | ']' | '\'')
 }
 
-/// The bracket that closes another.
+/// Returns the closing bracket for an opening one.
 fn counterpart(bracket: char) -> char {
     match bracket {
         '(' => ')',
@@ -382,7 +385,7 @@ fn counterpart(bracket: char) -> char {
     }
 }
 
-/// The text with refused characters replaced, every other at its place.
+/// Replaces refused characters, keeping all others at their offsets.
 fn substitute(text: &str, replaced: &BTreeMap<usize, &'static str>) -> String {
     let mut readable = String::with_capacity(text.len());
     for (at, c) in text.char_indices() {
@@ -397,7 +400,7 @@ fn substitute(text: &str, replaced: &BTreeMap<usize, &'static str>) -> String {
     readable
 }
 
-/// Blanks of so many bytes, one character where there is one of that length.
+/// Returns blanks of this many bytes, as a single character if there is one of that length.
 fn blank(bytes: usize) -> &'static str {
     match bytes {
         0 => "",

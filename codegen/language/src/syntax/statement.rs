@@ -1,4 +1,4 @@
-//! The statements, by their first word.
+//! Parsing of statements, selected by their first word.
 
 use super::ast::{Expr, Ident, Item, ItemKind, Span, Target, Wanted};
 use super::blocks::since;
@@ -11,7 +11,7 @@ use super::{body, declaration, element, invariant, joint, load, path, reuse, tab
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
-/// Parses one statement with its `;`: one item, or one for each part of a list.
+/// Parses one statement with its `;`. Returns one item, or one for each element of a list.
 pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
     let start = cursor.here();
     let word = cursor.peek();
@@ -47,7 +47,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "output" => return list(cursor, start, output),
         "frame" => return list(cursor, start, frame),
         "include" => reuse::include(cursor)?,
-        // End with their braces, or take their `;`.
+        // These end with their braces, or parse their own `;`.
         "component" => {
             let kind = reuse::component(cursor)?;
             return Ok(reuse::ended(kind, start, cursor));
@@ -60,14 +60,14 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
             let kind = reuse::part(cursor)?;
             return Ok(reuse::ended(kind, start, cursor));
         }
-        // Ends with its braces.
+        // This ends with its braces.
         "body" => {
             let kind = ItemKind::Body(body::body(cursor)?);
             cursor.eat_punct(';');
             let span = since(start, cursor);
             return Ok(vec![Item { kind, span }]);
         }
-        // Ends with its braces, where it has any.
+        // This ends with its braces, if it has any.
         "joint" => {
             let kind = ItemKind::Joint(Box::new(joint::joint(cursor)?));
             let span = since(start, cursor);
@@ -111,7 +111,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
     Ok(vec![Item { kind, span }])
 }
 
-/// `start a = 1, b = 2;`, `rate q = u, s = v;`: an item for each part.
+/// Parses a list such as `start a = 1, b = 2;` or `rate q = u, s = v;` into one item per element.
 fn list(
     cursor: &mut Cursor<'_>,
     start: Span,
@@ -135,7 +135,7 @@ fn list(
     Ok(items)
 }
 
-/// One or more expressions, with commas between them.
+/// Parses one or more expressions separated by commas.
 fn expressions(cursor: &mut Cursor<'_>) -> Parsed<Vec<Expr>> {
     let mut list = vec![expression(cursor)?];
     while cursor.eat_punct(',') {
@@ -189,7 +189,7 @@ fn prescribe(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     })
 }
 
-/// `a = b [stabilized λ]`, of velocities
+/// `a = b [stabilized λ]`, an equation between velocities
 fn nonholonomic(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     let (left, right, stabilized) = kept(cursor)?;
     Ok(ItemKind::Nonholonomic {
@@ -199,7 +199,7 @@ fn nonholonomic(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     })
 }
 
-/// `a = b [stabilized λ]`, of coordinates
+/// `a = b [stabilized λ]`, an equation between coordinates
 fn closed_loop(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     let (left, right, stabilized) = kept(cursor)?;
     Ok(ItemKind::Loop {
@@ -229,7 +229,7 @@ fn output(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     })
 }
 
-/// `R`, `X.p`, `leg[3].knee`: its last word is the field, until it is known what the others stand for.
+/// `R`, `X.p`, `leg[3].knee`: the last word is stored as the field until names are resolved.
 fn target(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Target> {
     let name = path::path(cursor, of)?;
     let last = cursor.before();
@@ -359,7 +359,7 @@ fn unknown(cursor: &Cursor<'_>, word: &Ident) -> Diagnostic {
     Diagnostic::new(word.span, format!("unknown statement `{name}`")).help(known())
 }
 
-/// Which statements exist.
+/// Lists the existing statements, for messages.
 fn known() -> String {
     let words: Vec<String> = statements().map(|word| format!("`{word}`")).collect();
     format!("the statements are {}", words.join(", "))

@@ -1,10 +1,11 @@
-//! The word that was probably meant.
+//! Suggestions for misspelt words.
 
-/// The candidate closest to a misspelt word, if any is close enough to be worth a suggestion.
+/// Returns the candidate closest to a misspelt word, if any is close enough to be worth a suggestion.
 ///
-/// Counts insertions, deletions, substitutions and swaps of neighbours; at most a third of the word may differ.
+/// The distance counts insertions, deletions, substitutions and swaps of neighbours. At most a third of the word,
+/// rounded up, may differ.
 pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    /// Words longer than this are not misspelt names.
+    /// Longer words are not taken for misspelt names.
     const LONGEST: usize = 64;
     let word: Vec<char> = word.chars().take(LONGEST + 1).collect();
     if word.len() > LONGEST {
@@ -28,7 +29,7 @@ pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, candidate)| candidate)
 }
 
-/// Optimal string alignment distance, by three rows of its table.
+/// Returns the optimal string alignment distance, using three rows of its table.
 fn distance(a: &[char], b: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut above: Vec<usize> = (0..=b.len()).collect();

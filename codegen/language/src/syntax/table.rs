@@ -1,4 +1,4 @@
-//! Tables of values: `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;`.
+//! Parsing of tables of values: `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;`.
 
 use super::ast::{Between, Beyond, Expr, Source, Span, Table};
 use super::cursor::{Cursor, Parsed};
@@ -7,7 +7,7 @@ use super::tokens::Kind;
 use crate::diagnostics::Diagnostic;
 use proc_macro2::{Delimiter, Literal, TokenStream};
 
-/// Behind `table`.
+/// Parses what follows `table`.
 pub(super) fn table(cursor: &mut Cursor<'_>) -> Parsed<Table> {
     let name = cursor.name("a table")?;
     let source = match cursor.eat_word("from") {
@@ -67,7 +67,7 @@ fn file(cursor: &mut Cursor<'_>) -> Parsed<Source> {
     Ok(Source::File(quoted(cursor)?, span))
 }
 
-/// A text in quotes, which names a file.
+/// Parses a file name in quotes.
 pub(super) fn quoted(cursor: &mut Cursor<'_>) -> Parsed<String> {
     let token = cursor.peek();
     let literal = (token.kind == Kind::Literal).then(|| token.text.parse::<Literal>().ok());
@@ -82,7 +82,7 @@ pub(super) fn quoted(cursor: &mut Cursor<'_>) -> Parsed<String> {
     Ok(text.value())
 }
 
-/// The place of the next word in a list.
+/// Parses one of the words in a list and returns its index.
 fn one_of(cursor: &mut Cursor<'_>, words: &[&str]) -> Parsed<usize> {
     match words.iter().position(|word| cursor.eat_word(word)) {
         Some(place) => Ok(place),
@@ -97,8 +97,8 @@ fn one_of(cursor: &mut Cursor<'_>, words: &[&str]) -> Parsed<usize> {
     }
 }
 
-/// The points that a text has, a pair of numbers a line, at the place of its name. Lines that begin with `#`, empty
-/// ones, and a first line of names are left out.
+/// Reads the points of a table from a text, with one pair of numbers per line. All points get the span of the file's
+/// name. Skips empty lines, lines that begin with `#`, and a first line of column names.
 pub(super) fn read(text: &str, name: &str, span: Span) -> Parsed<Vec<(Expr, Expr)>> {
     let mut points = Vec::new();
     let mut first = true;
@@ -124,7 +124,7 @@ pub(super) fn read(text: &str, name: &str, span: Span) -> Parsed<Vec<(Expr, Expr
     Ok(points)
 }
 
-/// A decimal number with a sign.
+/// Parses a decimal number with an optional sign.
 fn signed(text: &str, span: Span) -> Option<Expr> {
     use super::ast::ExprKind;
     let (negative, digits) = match text.strip_prefix('-') {

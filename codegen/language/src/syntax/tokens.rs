@@ -1,44 +1,44 @@
-//! Tokens in one flat list, so that neither deep nor malformed nesting costs stack.
+//! Tokens in one flat list, so that neither deep nor malformed nesting uses stack.
 
 use proc_macro2::{Delimiter, Literal, Span as TokenSpan, TokenStream, TokenTree, token_stream};
 
 use super::ast::Span;
 use crate::diagnostics::Diagnostic;
 
-/// The deepest nesting of brackets in a description.
+/// Largest nesting depth of brackets in a description.
 pub(super) const MAX_NESTING: usize = 64;
 
-/// The kinds of token.
+/// Kinds of tokens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A word.
     Word,
-    /// A number, or a literal that the language does not have.
+    /// A number, or a literal that does not exist in the language.
     Literal,
     /// The text of a doc comment, decoded.
     Doc,
     /// One character of punctuation.
     Punct(char),
-    /// An opening bracket and the index of the closing one.
+    /// An opening bracket, with the index of the closing one.
     Open(Delimiter, usize),
     /// A closing bracket.
     Close(Delimiter),
-    /// After the last token.
+    /// The end marker after the last token.
     End,
 }
 
 /// One token.
 #[derive(Clone, Debug)]
 pub(super) struct Token {
-    /// What it is.
+    /// Kind of the token.
     pub kind: Kind,
-    /// As written; without the quotes for a doc comment, empty for invisible brackets and the end.
+    /// Text as written. Without quotes for a doc comment; empty for invisible brackets and the end.
     pub text: String,
-    /// Where it stands.
+    /// Position in the source.
     pub span: Span,
 }
 
-/// The tokens of a macro's input, whose numbers are the places in its description.
+/// Compiler spans of a macro's input, by token number. Token numbers are the places in its description.
 #[derive(Clone, Debug, Default)]
 pub struct Places(Vec<TokenSpan>);
 
@@ -48,7 +48,7 @@ impl Places {
         Span::new(self.0.len() - 1..self.0.len())
     }
 
-    /// The first and the last token of a region; the macro's call where there is none.
+    /// Returns the first and the last token of a region, or the macro call if the region has no place.
     pub fn ends(&self, span: Span) -> (TokenSpan, TokenSpan) {
         let at = |index: Option<usize>| index.and_then(|index| self.0.get(index).copied());
         let range = span.range();
@@ -59,23 +59,24 @@ impl Places {
     }
 }
 
-/// The tokens of a text, placed by its bytes.
+/// Flattens the tokens of a text. Their spans are byte ranges.
 #[cfg(feature = "files")]
 pub(super) fn of_text(stream: TokenStream) -> Vec<Token> {
     flatten(stream, &mut |span| Span::new(span.byte_range()))
 }
 
-/// The tokens of a macro's input, placed by their numbers.
+/// Flattens the tokens of a macro's input. Their spans are token numbers, which [`Places`] resolves.
 pub(super) fn of_stream(stream: TokenStream) -> (Vec<Token>, Places) {
     let mut places = Places::default();
     let tokens = flatten(stream, &mut |span| places.add(span));
     (tokens, places)
 }
 
-/// The tokens in source order, with a last one that marks the end.
+/// Lists the tokens in source order, followed by an end marker.
 ///
-/// Invisible brackets, which the compiler puts around what a `macro_rules!` matched, stay where they hold an operator:
-/// there they group like parentheses. Elsewhere, as around a doc comment, a path or nothing at all, they say nothing.
+/// The compiler puts invisible brackets around what a `macro_rules!` matched. These are kept if they contain an
+/// operator, since they then group like parentheses. Elsewhere, as around a doc comment, a path or nothing at all, they
+/// are dropped.
 fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec<Token> {
     let mut tokens: Vec<Token> = Vec::new();
     let mut outer: Vec<Frame> = Vec::new();
@@ -95,7 +96,7 @@ fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec
                 if !seen {
                     continue;
                 }
-                // The matching index is filled in when the bracket closes.
+                // The index of the closing bracket is filled in when the bracket closes.
                 (
                     Kind::Open(delimiter, 0),
                     opening(delimiter).to_owned(),
@@ -146,27 +147,27 @@ fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec
     tokens
 }
 
-/// A bracket whose content is being listed.
+/// A bracket whose contents are being listed.
 struct Frame {
     rest: token_stream::IntoIter,
-    /// The place of its opening token, where it has one.
+    /// Index of its opening token, if it has one.
     open: Option<usize>,
     delimiter: Delimiter,
     close: TokenSpan,
 }
 
-/// Whether an operator or a choice stands in a stream, outside of further brackets.
+/// Returns whether a stream contains an operator or a choice outside of further brackets.
 fn has_operator(stream: TokenStream) -> bool {
     stream.into_iter().any(|tree| match tree {
         TokenTree::Punct(punct) => "+-*/^<>".contains(punct.as_char()),
         TokenTree::Ident(ident) => ident == "if" || ident == "in",
         TokenTree::Group(_) => false,
-        // `-1` is one literal where a macro wrote it.
+        // `-1` is a single literal if a macro produced it.
         TokenTree::Literal(literal) => literal.to_string().starts_with('-'),
     })
 }
 
-/// The text of a literal that stands in `#[doc = …]`.
+/// Returns the text of a literal in `#[doc = …]`, or `None` for other literals.
 fn doc_text(before: &[Token], literal: &Literal) -> Option<String> {
     let [.., open, doc, equal] = before else {
         return None;
@@ -183,7 +184,7 @@ fn doc_text(before: &[Token], literal: &Literal) -> Option<String> {
     Some(text.replace("\r\n", "\n"))
 }
 
-/// Refuses brackets nested too deeply.
+/// Refuses brackets that are nested too deeply.
 pub(super) fn check_depth(tokens: &[Token]) -> Result<(), Diagnostic> {
     let mut depth = 0_usize;
     for token in tokens {
@@ -199,7 +200,7 @@ pub(super) fn check_depth(tokens: &[Token]) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// The error for brackets nested too deeply.
+/// Returns the error for brackets that are nested too deeply.
 pub(super) fn too_deep(span: Span) -> Diagnostic {
     Diagnostic::new(
         span,
@@ -208,7 +209,7 @@ pub(super) fn too_deep(span: Span) -> Diagnostic {
     .help("name a part of it with `let`")
 }
 
-/// All tokens joined by one space.
+/// Joins all tokens with single spaces.
 pub(super) fn canonical(stream: &TokenStream) -> String {
     let mut spelling = String::new();
     for token in of_stream(stream.clone()).0 {
@@ -227,7 +228,7 @@ pub(super) fn canonical(stream: &TokenStream) -> String {
     spelling
 }
 
-/// The opening bracket as written.
+/// Returns the spelling of an opening bracket.
 fn opening(delimiter: Delimiter) -> &'static str {
     match delimiter {
         Delimiter::Parenthesis => "(",
@@ -237,7 +238,7 @@ fn opening(delimiter: Delimiter) -> &'static str {
     }
 }
 
-/// The closing bracket as written.
+/// Returns the spelling of a closing bracket.
 pub(super) fn closing(delimiter: Delimiter) -> &'static str {
     match delimiter {
         Delimiter::Parenthesis => ")",

@@ -1,6 +1,6 @@
 //! The words of the language.
 
-/// The statements, each with the sentence that shows its form.
+/// Statements, each with a sentence that shows its syntax.
 const STATEMENTS: [(&str, &str); 41] = [
     (
         "param",
@@ -138,13 +138,13 @@ const STATEMENTS: [(&str, &str); 41] = [
     ),
 ];
 
-/// Words that end an expression, and can name nothing.
+/// Words that end an expression and cannot be names.
 pub(super) const CONNECTIVES: [&str; 5] = ["at", "on", "in", "about", "stabilized"];
 
-/// Words that may stand behind an expression, and can be names.
+/// Words that may follow an expression and can also be names.
 pub(super) const CLAUSES: [&str; 7] = ["length", "from", "to", "moves", "follows", "along", "when"];
 
-/// Words that no item of the generated code can have for a name.
+/// Words that cannot be names of items in the generated code.
 pub(super) const RUST_WORDS: [&str; 53] = [
     "_", "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
     "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
@@ -153,22 +153,22 @@ pub(super) const RUST_WORDS: [&str; 53] = [
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
 
-/// The words that start statements.
+/// Returns the words that start statements.
 pub(super) fn statements() -> impl Iterator<Item = &'static str> {
     STATEMENTS.iter().map(|(word, _)| *word)
 }
 
-/// The words that start statements, each with its form.
+/// Returns the words that start statements, each with a sentence that shows the syntax.
 pub(crate) fn forms() -> impl Iterator<Item = (&'static str, &'static str)> {
     STATEMENTS.into_iter()
 }
 
-/// Whether a word starts statements.
+/// Returns whether a word starts a statement.
 pub(super) fn is_statement(word: &str) -> bool {
     form(word).is_some()
 }
 
-/// The sentence that shows how a statement is written.
+/// Returns the sentence that shows the syntax of a statement.
 pub(super) fn form(word: &str) -> Option<&'static str> {
     STATEMENTS
         .iter()

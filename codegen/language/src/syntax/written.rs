@@ -1,16 +1,16 @@
-//! Expressions as text: one spelling for all sources of the same tokens.
+//! Printing of expressions: one spelling for all sources with the same tokens.
 
 use super::ast::{BinaryOp, Condition, Expr, ExprKind, Target};
 use num_rational::BigRational;
 use num_traits::Signed;
 
-/// The most decimal places of a number that is printed as one: literals have no more.
+/// Largest number of decimal places of a number printed as a decimal. Literals have no more.
 const MOST_PLACES: usize = 400;
 
-/// With more zeros behind its point than this, a number is printed with an exponent.
+/// A number with more zeros than this after its decimal point is printed with an exponent.
 const LEADING_ZEROS: usize = 4;
 
-/// An expression in the language, with no more parentheses than it needs.
+/// Prints an expression in the syntax of the language, with no more parentheses than necessary.
 pub fn written(expr: &Expr) -> String {
     match &expr.kind {
         ExprKind::Number(number) => decimal(number),
@@ -39,7 +39,7 @@ pub fn written(expr: &Expr) -> String {
                 BinaryOp::Div => (" / ", 2),
                 BinaryOp::Pow => ("^", 4),
             };
-            // Equal strength groups from the left, but powers, which stand in parentheses.
+            // Operators of equal precedence group from the left, except powers, which get parentheses.
             let power = *op == BinaryOp::Pow;
             let first = tight(left, own + u8::from(power));
             format!("{first}{sign}{}", tight(right, own + 1))
@@ -47,7 +47,7 @@ pub fn written(expr: &Expr) -> String {
     }
 }
 
-/// What a statement is about, as it is written: `X.p`, `w[3]`.
+/// Prints the target of a statement: `X.p`, `w[3]`.
 pub fn target(target: &Target) -> String {
     let mut text = target.name.name.clone();
     if let Some(field) = &target.field {
@@ -61,23 +61,23 @@ pub fn target(target: &Target) -> String {
     text
 }
 
-/// An equation as it is written: `a = b`.
+/// Prints an equation: `a = b`.
 pub fn equation(left: &Expr, right: &Expr) -> String {
     format!("{} = {}", written(left), written(right))
 }
 
-/// What a claim sets: `F = 0, tau = 0`.
+/// Prints the conditions of a claim: `F = 0, tau = 0`.
 pub fn conditions(when: &[Condition]) -> String {
     let one = |c: &Condition| format!("{} = {}", written(&c.target), written(&c.value));
     when.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// Expressions with commas between them.
+/// Prints expressions separated by commas.
 pub fn list(items: &[Expr]) -> String {
     items.iter().map(written).collect::<Vec<_>>().join(", ")
 }
 
-/// An expression in parentheses where it binds less than is wanted.
+/// Prints an expression, in parentheses if it binds less tightly than `wanted`.
 fn tight(expr: &Expr, wanted: u8) -> String {
     let binds = match &expr.kind {
         ExprKind::If(_) | ExprKind::InAxes(..) => 0,
@@ -94,7 +94,8 @@ fn tight(expr: &Expr, wanted: u8) -> String {
     }
 }
 
-/// A number as a decimal where it is one, with an exponent where it would be long, else as a quotient.
+/// Prints a number as a decimal if it has a finite one, with an exponent if that is shorter, and otherwise as a
+/// quotient.
 fn decimal(number: &BigRational) -> String {
     if number.is_integer() {
         return number.to_string();

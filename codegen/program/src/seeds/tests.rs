@@ -1,9 +1,9 @@
-//! Directions that entries of a sparse pattern share: none meets another in a row.
+//! Tests: no two entries of one row share a direction.
 
 use super::seeds;
 
-/// Entries of one row differ in direction, and no more directions are taken than the longest row needs where no row
-/// forces them.
+/// Entries of one row get different directions, and no more directions are used than the longest row needs, as long as
+/// the pattern allows it.
 #[test]
 fn entries_of_a_row_have_directions_of_their_own() {
     let hull = [0, 1, 2, 3, 4, 5, 8, 9, 10];
@@ -19,6 +19,6 @@ fn entries_of_a_row_have_directions_of_their_own() {
         assert_eq!(own.len(), row.len(), "{row:?}: {seeds:?}");
     }
     assert_eq!(seeds.iter().max(), Some(&8));
-    // Entry 16 moves nothing.
+    // Entry 16 occurs in no row.
     assert_eq!(seeds[16], 0);
 }

@@ -1,8 +1,8 @@
-//! Names of the description in LaTeX.
+//! Tests of names in LaTeX.
 
 use super::latex_name;
 
-/// The rate of the velocity `q_dot` has the name `q_dot_dot`, with the indices of a joint before or behind.
+/// The rate of the velocity `q_dot` is named `q_dot_dot`, with the index of a joint before or after `_dot`.
 #[test]
 fn rates_of_rates_have_two_dots() {
     for (name, wanted) in [

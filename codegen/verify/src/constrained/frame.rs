@@ -1,5 +1,7 @@
-//! The full frame, before constraints act: M, Γ ξ ξ, ∂V, f, T and V, which reduced systems are compared with, follow from the
-//! rules that the generator derives by. Here they are compared with the three forms (30a), (30b), (30c) in numbers, which
+//! The full frame, before constraints act.
+//!
+//! Reduced systems are compared with M, Γ ξ ξ, ∂V, f, T and V of the full frame, which follow from the same rules of
+//! derivation as in the generator. Here these are compared with the three forms (30a), (30b), (30c) in numbers, which
 //! share none of these rules.
 
 use crate::kernel::places;
@@ -20,10 +22,10 @@ use hamel_language::model::{Model, class};
 use hamel_program::{FunctionId, Program};
 use num_rational::BigRational;
 
-/// Everything of the full frame that is compared with.
+/// Quantities of the full frame, with which reduced systems are compared.
 pub(super) struct Full {
     pub(super) reference: Reference,
-    /// Whether it agrees with the three forms in numbers, where that is known.
+    /// Whether the full frame agrees with the three forms in numbers; `None` if no point was found to compare at.
     pub(super) frame: Option<bool>,
     /// Ċ ξₐ + ċ.
     pub(super) drift: Vec<Edge>,
@@ -31,18 +33,19 @@ pub(super) struct Full {
     pub(super) complement: Vec<Edge>,
     /// B, all rows.
     pub(super) rows: Vec<Edge>,
-    /// The part of T in the energy.
+    /// The part of T that counts as energy.
     pub(super) in_energy: Edge,
     /// d/dt (T + V) at ξ̇ = 0.
     pub(super) change: Edge,
-    /// The symbols of velocities that were solved away, with what gives them.
+    /// Symbols of the velocities that were solved for, with their expressions in ξₐ.
     pub(super) solved: Vec<(usize, Edge)>,
-    /// The forms that they have as arguments of functions, in the reduced graph: values and coefficients.
+    /// Linear forms that stand for these velocities in arguments of functions, in the reduced graph: atoms and
+    /// coefficients.
     pub(super) forms: Vec<Vec<(Edge, BigRational)>>,
-    /// Kept rows in ξₐ and their right sides, in the reduced graph.
+    /// The reduced model; its constraints are the kept rows, in ξₐ, with their right-hand sides in `right`.
     pub(super) reduced: Model,
     pub(super) right: Vec<Edge>,
-    /// What is claimed to be constant, by its definition.
+    /// Quantities that are claimed to be constant, by their definitions.
     pub(super) claims: Vec<(String, Vec<Edge>)>,
 }
 
@@ -110,7 +113,7 @@ impl Full {
         Some(full)
     }
 
-    /// λ of all rows, with 0 for those that were dropped, then the forces of drives.
+    /// Extends multipliers to all rows, with 0 for redundant rows, followed by the forces of drives.
     pub(super) fn of_all_rows(&self, lambda: Vec<Fp>) -> Vec<Fp> {
         let mut next = lambda.into_iter();
         let constraints = self.reference.model.constraints.iter();
@@ -123,8 +126,8 @@ impl Full {
         all
     }
 
-    /// Whether the forces of drives are known, which take part in d/dt (T + V): not where they are not emitted, nor where
-    /// the forces of loops are not unique.
+    /// Returns whether the forces of drives, which contribute to d/dt (T + V), are known: they have to be emitted, and
+    /// the multipliers of loops have to be unique.
     pub(super) fn power_is_known(&self, program: &Program) -> bool {
         let model = &self.reference.model;
         let driven = model.clock.is_some() || !model.accelerated.is_empty();
@@ -133,9 +136,11 @@ impl Full {
         program.xi_dot().is_some() && (!driven || forces && !self.reduced.overconstrained)
     }
 
-    /// Puts prescribed coordinates and ξ⁰ = 1 in, now that all derivatives are taken: at a point, sin q of a symbol q
-    /// and sin f of a sum f with the same value would differ. So would the roots of v² + 1 and of (4/9) u² + 1 where
-    /// 3 v = 2 u, by their sign: under roots, velocities that were solved away are put in as well.
+    /// Substitutes prescribed coordinates and ξ⁰ = 1, after all derivatives have been taken.
+    ///
+    /// At a point, sin q of a symbol q and sin f of a sum f with the same value would differ. So would, by their sign,
+    /// the roots of v² + 1 and of (4/9) u² + 1 where 3 v = 2 u: under roots, velocities that were solved for are
+    /// substituted, too.
     fn prescribe(&mut self) {
         let reference = &mut self.reference;
         let model = &mut reference.model;
@@ -173,8 +178,9 @@ impl Full {
     }
 }
 
-/// The part of T in the energy: T less T₁ + 2 T₀ of what was written, which is ½ (T(2) − T(0)) as a function of ṫ with the rates
-/// of all other coordinates held.
+/// Returns the part of T that counts as energy: T less T₁ + 2 T₀ of the kinetic energy that the user wrote.
+///
+/// T₁ + 2 T₀ is ½ (T(2) − T(0)), where T is a function of ṫ with the rates of all other coordinates held constant.
 fn in_energy(full: &mut Model, kinetic: Edge) -> Option<Edge> {
     let Some(clock) = full.clock.filter(|_| full.kinetic != full.graph.zero()) else {
         return Some(kinetic);
@@ -198,7 +204,7 @@ fn in_energy(full: &mut Model, kinetic: Edge) -> Option<Edge> {
     Some(graph.sub(kinetic, beyond))
 }
 
-/// The symbols of prescribed coordinates with what they are prescribed to be, and ξ⁰ with 1.
+/// Returns the symbols of prescribed coordinates with their prescribed values, and ξ⁰ with 1.
 pub(super) fn given(model: &Model) -> Vec<(usize, Edge)> {
     let first = model.points.first;
     let given = model.prescribed.iter();
@@ -210,8 +216,9 @@ pub(super) fn given(model: &Model) -> Vec<(usize, Edge)> {
     given.chain(time).collect()
 }
 
-/// Whether they agree at fresh points of X, or of a prescribed motion where roots have values only there; `None` where there are
-/// none.
+/// Returns whether a reference agrees with the three forms in numbers; `None` if there are no points to compare at.
+///
+/// The points are fresh points of X, or points of a prescribed motion if roots have values only there.
 pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
     let numbers = Numbers::new(model)?;
     let mut roots = reference.mass.concat();

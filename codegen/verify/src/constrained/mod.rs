@@ -1,6 +1,7 @@
-//! The proof for systems with constraints: at points of X, with ξ = C ξₐ, the emitted ξ̇ₐ and
-//! multipliers satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row of the full frame, and d/dt (B ξ) is what
-//! the constraints ask for; M, h, V and f are those of the full frame.
+//! Proof for systems with constraints.
+//!
+//! At points of X with ξ = C ξₐ, the emitted ξ̇ₐ and multipliers have to satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row
+//! of the full frame, and d/dt (B ξ) has to be what the constraints demand; M, h, V and f are those of the full frame.
 
 pub mod frame;
 mod point;
@@ -21,7 +22,7 @@ use hamel_program::{FunctionId, Program};
 use point::At;
 use seen::Seen;
 
-/// What is compared.
+/// Claims about the emitted functions that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Claim {
     Complement,
@@ -44,7 +45,7 @@ enum Claim {
 }
 
 impl Claim {
-    /// All of them, in the order in which they are shown.
+    /// All claims, in the order in which they are shown.
     const ALL: [Claim; 17] = [
         Claim::Complement,
         Claim::Rate,
@@ -65,7 +66,7 @@ impl Claim {
         Claim::FullFrame,
     ];
 
-    /// The label and the equation that `check` prints.
+    /// Returns the label and the equation that `check` prints.
     fn said(self) -> (&'static str, &'static str) {
         match self {
             Claim::Complement => ("C", "B C = 0 for the rows that were solved"),
@@ -124,7 +125,7 @@ impl Claim {
         }
     }
 
-    /// Nothing is said of what is not there.
+    /// Returns whether the program has the functions that the claim is about; other claims are not shown.
     fn is_there(self, full: &Full, reduction: &Reduction, program: &Program) -> bool {
         let has_entries = |id: &FunctionId| {
             let function = program.function(*id);
@@ -176,7 +177,10 @@ impl Claim {
     }
 }
 
-/// Validates the functions of a program with constraints; an error is a fault of the generator.
+/// Validates the functions of a program with constraints.
+///
+/// # Errors
+/// A fault of the generator, with the first claim that fails.
 pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Result<(), Diagnostic> {
     let Some(full) = Full::new(model, reduction, program) else {
         return Err(failure(model, "Y A = I"));
@@ -190,9 +194,10 @@ pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Resu
     }
 }
 
-/// What fails at fresh points; `None` where there are none.
+/// Returns the claims that fail at fresh points; `None` if there are no such points.
 ///
-/// Where constraints make velocities multiples of one another, their norm is √c |ξ|, and c may be no square of F_p.
+/// If constraints make velocities multiples of one another, their norm is √c |ξ|, and c may have no root in F_p: then
+/// points are tried that allow roots in F_p(i).
 fn compare(
     full: &Full,
     model: &Model,
@@ -211,11 +216,11 @@ fn compare_at(
 ) -> Option<Vec<Claim>> {
     let mut failed: Vec<Claim> = Vec::new();
     let charts = Charts::new(program)?;
-    // Prescribed coordinates are where they are prescribed to be, so that roots of them have values.
+    // Prescribed coordinates take their prescribed values, so that roots of them have values.
     let given = given(&full.reference.model);
     let compared = at_fresh_points(
         |number| {
-            // Roots of what constraints give need values, too.
+            // Roots of velocities that constraints determine need values, too.
             let graph = &full.reference.model.graph;
             let solved = |lane| imposed(lane, graph, &full.solved);
             points.lane_moved(0xb0d5 + number, graph, &given, &solved)
@@ -230,7 +235,8 @@ fn compare_at(
             Some(Ok::<(), ()>(()))
         },
     );
-    // Powers balance where B ξ + b = 0 in the rows that have forces: where a loop is open, the others ask for something else.
+    // Power balances where B ξ + b = 0 in the rows that have multipliers; where a loop is open, the other rows demand
+    // other velocities.
     let n = full.reference.model.n();
     let solved = reduction.solved.iter().map(|&(row, _)| row);
     let rows = solved.chain(reduction.kept.iter().copied());
@@ -254,7 +260,7 @@ fn compare_at(
     (compared.is_ok() && still != Err(Unequal::Nowhere)).then_some(failed)
 }
 
-/// What agreement at all points says: all that is evaluated, in sums and solutions of n + rows terms.
+/// Bounds the chance of error: everything is evaluated, in sums and linear solves of n + rows terms.
 fn confidence(full: &Full, model: &Model, program: &Program) -> Confidence {
     let reference = &full.reference;
     let mut roots = reference.mass.concat();
@@ -283,7 +289,7 @@ fn confidence(full: &Full, model: &Model, program: &Program) -> Confidence {
     Confidence::new(model, &expressions, terms, POINTS, terms * terms)
 }
 
-/// The identities with their verdicts.
+/// Returns the identities with their verdicts.
 pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
     let full = Full::new(model, reduction, program);
     let failed = full

@@ -1,5 +1,5 @@
-//! One point at which a system with constraints is compared: numbers of the full frame, its power, its
-//! slopes.
+//! One point at which a system with constraints is compared: numbers of the full frame, balance of power,
+//! linearisation.
 
 use super::frame::Full;
 use crate::kernel::{dot, places};
@@ -14,7 +14,7 @@ use hamel_dynamics::reduction::Reduction;
 use hamel_language::model::class;
 use hamel_program::{FunctionId, Program};
 
-/// A point with ξ = C ξₐ, and the same for the reduced model.
+/// A point with ξ = C ξₐ + c, as a point of the full model and of the reduced one.
 pub(super) struct At<'a> {
     full: &'a Full,
     program: &'a Program,
@@ -22,13 +22,13 @@ pub(super) struct At<'a> {
     pub(super) c: Vec<Fp>,
     /// c.
     pub(super) shift: Vec<Fp>,
-    /// The point of the full model.
+    /// Values of the symbols of the full model.
     pub(super) point: Lane,
-    /// That of the reduced one.
+    /// Values of the symbols of the reduced model.
     pub(super) inner: Lane,
 }
 
-/// Numbers of the full frame.
+/// Numbers of the full frame at a point.
 pub(super) struct Values {
     pub(super) mass: Vec<Fp>,
     pub(super) bias: Vec<Fp>,
@@ -43,7 +43,7 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ.
+    /// Returns ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ.
     pub(super) fn lift(&self, c: &[Fp], xi_dot: &[Fp]) -> Vec<Fp> {
         let na = xi_dot.len();
         let rows = self.drift.iter().enumerate();
@@ -51,7 +51,7 @@ impl Values {
             .collect()
     }
 
-    /// M ξ̇ + h + ∂V, the force that a motion of the full frame needs.
+    /// Returns M ξ̇ + h + ∂V, the force that a motion of the full frame needs.
     pub(super) fn needed(&self, xi_dot: &[Fp]) -> Vec<Fp> {
         let rows = self
             .mass
@@ -64,7 +64,7 @@ impl Values {
 }
 
 impl<'a> At<'a> {
-    /// The point with the active velocities of a lane.
+    /// Creates the point with the active velocities of a lane.
     pub(super) fn new(
         full: &'a Full,
         reduction: &Reduction,
@@ -110,7 +110,7 @@ impl<'a> At<'a> {
         })
     }
 
-    /// ẋ = A ξ of the full frame.
+    /// Returns ẋ = A ξ of the full frame.
     pub(super) fn rate(&self) -> Option<Vec<Fp>> {
         let model = &self.full.reference.model;
         let a = evaluate_at(&model.graph, &model.a.concat(), &mut self.point.clone())?;
@@ -118,7 +118,7 @@ impl<'a> At<'a> {
         Some(a.chunks(xi.len()).map(|row| dot(row, &xi)).collect())
     }
 
-    /// What the full model has there.
+    /// Returns the numbers of the full frame.
     pub(super) fn values(&self) -> Option<Values> {
         let reference = &self.full.reference;
         let (graph, n) = (&reference.model.graph, reference.model.n());
@@ -158,8 +158,10 @@ impl<'a> At<'a> {
         })
     }
 
-    /// Whether d/dt (T + V) = f ξ, which holds where B ξ + b = 0. Drives take part, and with time the row of ξ⁰, by
-    /// the power that it would need: −∂L/∂t, and that of prescribed motion.
+    /// Returns whether d/dt (T + V) = f ξ, which holds where B ξ + b = 0.
+    ///
+    /// The power of drives is added to the right side. With time, so is the power that the row of ξ⁰ needs: −∂L/∂t, and
+    /// that of prescribed motion.
     pub(super) fn power(&self) -> Option<bool> {
         let Some(xi_dot) = self
             .program
@@ -202,7 +204,7 @@ impl<'a> At<'a> {
         Some(values.change + dot(&momentum, &xi_dot) == power)
     }
 
-    /// [A B] against dual numbers: δξ̇ = DF, and A ḣ = D(ẋ)[A h] − Ȧ h.
+    /// Compares [A B] with dual numbers: δξ̇ = DF, and A ḣ = D(ẋ)[A h] − Ȧ h.
     pub(super) fn linear(&self) -> Option<bool> {
         let (Some(linear), Some(accel)) = (
             self.program.function(FunctionId::Linearize),
@@ -216,7 +218,7 @@ impl<'a> At<'a> {
             return Some(false);
         }
         let (all, na, nu) = (full.n(), reduced.n(), full.nu());
-        // The time is not displaced.
+        // Time is not displaced.
         let time = full.clock.map(|clock| clock.xi);
         let displaced: Vec<usize> = (0..all).filter(|&i| Some(i) != time).collect();
         let n = displaced.len();
@@ -234,12 +236,12 @@ impl<'a> At<'a> {
         let symbols = |class| places(&reduced.graph, class);
         let first = full.points.first;
         let (x, mut others) = (first..first + nu, symbols(class::VELOCITY));
-        // z stands before u.
+        // z follows u among the symbols, but precedes it in the columns of [A B].
         let mut given = symbols(class::INPUT);
         given.rotate_right(n_z);
         others.extend(given);
         let size = reduced.graph.symbols().len();
-        // How the columns of A change along the motion.
+        // Rates of the columns of A along the motion.
         let mut moving = vec![Fp::ZERO; full.graph.symbols().len()];
         moving[x.clone()].copy_from_slice(&rate);
         let swept = tangent_at(&full.graph, &a_edges, &mut self.point.clone(), &moving)?;
@@ -273,8 +275,9 @@ impl<'a> At<'a> {
                 sum + swept - ahead[alpha].1
             });
             let left: Vec<Fp> = left.collect();
-            // A prescribed coordinate is not read where it is displaced: its ẋ stays what it was, which is tangent no more where
-            // the coordinate is on a circle. Along the columns of A it is what ḣ says.
+            // Prescribed coordinates are not read by the functions, so that their ẋ stays the same when they are
+            // displaced; on a circle it is then no longer tangent. Their rows are only compared along the columns of A,
+            // where ḣ determines them.
             let moved = (0..nu).all(|alpha| given(alpha) || left[alpha].is_zero())
                 && displaced.iter().all(|&j| {
                     let along = (0..nu).filter(|&alpha| given(alpha));

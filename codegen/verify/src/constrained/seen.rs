@@ -1,4 +1,4 @@
-//! All that is compared at one point of a system with constraints.
+//! Comparisons at one point of a system with constraints.
 
 use super::Claim;
 use super::frame::Full;
@@ -14,7 +14,7 @@ use hamel_dynamics::accel::saddle::{self, Solved};
 use hamel_dynamics::reduction::Reduction;
 use hamel_program::{FunctionId, Program};
 
-/// A point with everything there that several comparisons need.
+/// A point with the numbers that several comparisons need.
 pub(super) struct Seen<'a> {
     full: &'a Full,
     reduction: &'a Reduction,
@@ -24,22 +24,22 @@ pub(super) struct Seen<'a> {
     values: Values,
     /// B of the full frame, by rows.
     rows: Vec<Fp>,
-    /// The rows that are kept, in ξₐ, and B ξ̇ₐ there.
+    /// Kept rows in terms of ξₐ, and the B ξ̇ₐ that they demand.
     kept: Vec<Fp>,
     right: Vec<Fp>,
-    /// The active velocities whose rates are given, with these.
+    /// Active velocities whose rates are given, with these rates.
     driven: Vec<(usize, Fp)>,
     /// Cᵀ M C.
     mass: Vec<Fp>,
     /// Γ ξ ξ + M (Ċ ξₐ + ċ), in the full frame.
     bias: Vec<Fp>,
-    /// ξ̇ₐ as emitted, and the rates of states behind it.
+    /// Emitted ξ̇ₐ, and the emitted rates of states.
     xi_dot: Option<Vec<Fp>>,
     state_rates: Vec<Fp>,
 }
 
 impl<'a> Seen<'a> {
-    /// The point of a lane; `None` where something has no value there.
+    /// Evaluates the numbers at the point of a lane; `None` if something has no value there.
     pub(super) fn new(
         full: &'a Full,
         reduction: &'a Reduction,
@@ -100,7 +100,7 @@ impl<'a> Seen<'a> {
         })
     }
 
-    /// Whether a claim holds here; `None` where something has no value.
+    /// Returns whether a claim holds here; `None` if something has no value.
     pub(super) fn holds(&self, claim: Claim) -> Option<bool> {
         let (full, program, inner) = (self.full, self.program, &self.at.inner);
         Some(match claim {
@@ -120,7 +120,7 @@ impl<'a> Seen<'a> {
             }
             Claim::Bias => self.equal("bias", &self.projected(&self.bias))?,
             Claim::Loads => self.loads()?,
-            // It is compared at points of its own.
+            // Compared at points of its own.
             Claim::Power => true,
             Claim::Projection => self.leads_back()?,
             Claim::Linearisation => self.at.linear()?,
@@ -143,7 +143,7 @@ impl<'a> Seen<'a> {
         self.full.reference.model.n()
     }
 
-    /// Cᵀ v.
+    /// Returns Cᵀ v.
     fn projected(&self, v: &[Fp]) -> Vec<Fp> {
         let na = self.reduction.active.len();
         let entry = |j: usize| {
@@ -153,7 +153,7 @@ impl<'a> Seen<'a> {
         (0..na).map(entry).collect()
     }
 
-    /// The values of an emitted function, where there is one.
+    /// Returns the values of an emitted function; `Some(None)` if it is not emitted, `None` if it has no value.
     fn emitted(&self, name: &str) -> Option<Option<Vec<Fp>>> {
         match self.program.function(name) {
             None => Some(None),
@@ -169,7 +169,7 @@ impl<'a> Seen<'a> {
         Some(self.emitted(name)?.is_none_or(|found| found == expected))
     }
 
-    /// B C = 0 and B c = 0.
+    /// Returns whether B C = 0 and B c = 0 for the solved rows.
     fn solved_rows_vanish(&self) -> bool {
         let n = self.n();
         self.reduction.solved.iter().all(|&(row, _)| {
@@ -187,7 +187,8 @@ impl<'a> Seen<'a> {
         })
     }
 
-    /// ξ̇ₐ and λ of Cᵀ M C ξ̇ₐ = force + Bᵀ λ, B ξ̇ₐ = right, by elimination in numbers; steps have no forces.
+    /// Solves Cᵀ M C ξ̇ₐ = force + Bᵀ λ, B ξ̇ₐ = right for ξ̇ₐ and λ by elimination in numbers; for steps `force` is
+    /// `None`.
     fn solution(
         &self,
         force: Option<&[Fp]>,
@@ -205,7 +206,7 @@ impl<'a> Seen<'a> {
         )
     }
 
-    /// The ξ̇ₐ and λ that the forces imply.
+    /// Returns the ξ̇ₐ and λ that the forces imply.
     fn implied(&self) -> Option<Solved> {
         let Values { force, slope, .. } = &self.values;
         let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
@@ -213,13 +214,15 @@ impl<'a> Seen<'a> {
         self.solution(Some(&self.projected(&rest)), &self.right, &self.driven)
     }
 
-    /// M ξ̇ + h + ∂V of the full frame for active rates.
+    /// Returns M ξ̇ + h + ∂V of the full frame for rates of the active velocities.
     fn needed(&self, xi_dot: &[Fp]) -> Vec<Fp> {
         self.values.needed(&self.values.lift(&self.at.c, xi_dot))
     }
 
-    /// Every row of the full frame with the emitted multipliers, and along virtual velocities without them. Where ξ̇ is
-    /// not emitted, multipliers are compared with the ξ̇ that the forces imply.
+    /// Compares every row of the full frame with the emitted multipliers, and the power along virtual velocities
+    /// without them.
+    ///
+    /// If ξ̇ is not emitted, multipliers are compared with the ξ̇ that the forces imply.
     fn balances(&self) -> Option<bool> {
         let force = &self.values.force;
         let lambda = self.emitted("constraint_force")?;
@@ -233,7 +236,7 @@ impl<'a> Seen<'a> {
         {
             return Some(false);
         }
-        // A virtual velocity v has B v = 0, and moves no drive: neither multipliers nor drives do work on it.
+        // A virtual velocity v has B v = 0 and moves no drive: neither multipliers nor drives do work along v.
         if let Some(xi_dot) = &xi_dot {
             let needed = self.needed(xi_dot);
             let left = needed.iter().zip(force).map(|(&needed, &f)| needed - f);
@@ -243,24 +246,25 @@ impl<'a> Seen<'a> {
                 return Some(false);
             }
         }
-        // Of any ξ̇.
+        // Inverse dynamics holds for any ξ̇.
         let reduced = &self.full.reduced;
         let rates = evaluate_at(&reduced.graph, &reduced.xi_dot, &mut self.at.inner.clone())?;
         self.equal("inverse_dynamics", &self.projected(&self.needed(&rates)))
     }
 
-    /// The rows of the full frame with the multipliers of all constraints, then of drives; `None` where some have no value.
+    /// Returns whether the rows of the full frame balance with the multipliers of all constraints and the forces of
+    /// drives; `None` if some have no value.
     fn bonds_balance(&self, xi_dot: &[Fp], lambda: &[Fp]) -> Option<bool> {
         let model = &self.full.reference.model;
         let (n, force) = (self.n(), &self.values.force);
         let needed = self.needed(xi_dot);
         let time = model.clock.map(|clock| clock.xi);
-        // The row of ξ⁰ is no equation of motion.
+        // The row of ξ⁰ is not an equation of motion.
         let compared = (0..n).filter(|&i| Some(i) != time && !self.contradicts(i));
         let mut balanced = compared.map(|i| {
             let bonds = lambda.iter().zip(self.rows.chunks(n));
             let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
-            // Beyond the rows of constraints stand the forces of drives whose rates are given.
+            // The multipliers of constraint rows are followed by the forces of drives whose rates are given.
             let drives = model.accelerated.iter();
             let drives = drives.zip(lambda.get(self.rows.len() / n..)?);
             let drive = drives.filter(|((velocity, _), _)| *velocity == i);
@@ -270,14 +274,15 @@ impl<'a> Seen<'a> {
         balanced.try_fold(true, |all, row| Some(all & row?))
     }
 
-    /// Whether rates are given beside rows that depend on one another. Off the loops these contradict one another and the rates
-    /// that are given, which hold exactly.
+    /// Returns whether rates are given and constraint rows depend on one another. Where loops are not closed, such rows
+    /// contradict one another and the given rates, which hold exactly.
     fn is_shared(&self) -> bool {
         let reduced = &self.full.reduced;
         reduced.overconstrained && !reduced.accelerated.is_empty()
     }
 
-    /// Whether the row of a velocity balances where the loops are closed alone: that of one which moves by itself.
+    /// Returns whether the row of a velocity balances only where the loops are closed: that of an active velocity whose
+    /// rate is not given, if [`Self::is_shared`].
     fn contradicts(&self, velocity: usize) -> bool {
         let model = &self.full.reference.model;
         let driven = model
@@ -287,8 +292,8 @@ impl<'a> Seen<'a> {
         self.is_shared() && !driven && self.reduction.active.contains(&velocity)
     }
 
-    /// Whether the multipliers of kept rows are those of the elimination in numbers, where rows of the balance are not compared.
-    /// The rows that are compared give all other multipliers.
+    /// Returns whether the multipliers of kept rows are those of the elimination in numbers, if [`Self::is_shared`], so
+    /// that some rows of the balance are not compared. The compared rows determine all other multipliers.
     fn shared_is_implied(&self, lambda: &[Fp]) -> Option<bool> {
         if !self.is_shared() {
             return Some(true);
@@ -298,7 +303,7 @@ impl<'a> Seen<'a> {
         Some(kept.all(|(&row, implied)| lambda.get(row) == Some(implied)))
     }
 
-    /// The constraints, along the emitted ξ̇.
+    /// Returns whether the emitted ξ̇ satisfies the constraints.
     fn is_kept(&self) -> Option<bool> {
         let Some(xi_dot) = &self.xi_dot else {
             return Some(true);
@@ -332,8 +337,9 @@ impl<'a> Seen<'a> {
         Some(true)
     }
 
-    /// φ of the loops, and the steps back to φ = 0 and to B ξ + b = 0: the δ with B δ = −φ, or B δ = −(B ξ + b), that is
-    /// M⁻¹ Bᵀ times something, and moves no drive.
+    /// Compares φ of the loops, and the steps back to φ = 0 and to B ξ + b = 0.
+    ///
+    /// A step is the δ with B δ = −φ, or B δ = −(B ξ + b), that has the form M⁻¹ Bᵀ μ and moves no drive.
     fn leads_back(&self) -> Option<bool> {
         let (reduced, na) = (&self.full.reduced, self.reduction.active.len());
         let inner = |edges: &[Edge]| evaluate_at(&reduced.graph, edges, &mut self.at.inner.clone());
@@ -365,7 +371,7 @@ impl<'a> Seen<'a> {
                 return Some(false);
             }
         }
-        // What stands before them are the rows of φ of coordinates, which vanish on X and are proved off it.
+        // Before the loops come the rows of φ of coordinates, which vanish on X; they are proved off X by `correction`.
         let zero = reduced.graph.zero();
         let loops = constraints.iter().zip(residuals);
         let loops = loops.filter(|(constraint, _)| constraint.residual != zero);

@@ -1,5 +1,5 @@
-//! Claims about systems with constraints on their velocities: d/dt I at exact points modulo p where
-//! B ξ = 0, with ξ̇ by the program, which has been validated.
+//! Claims about systems with constraints on their velocities: d/dt I at exact points modulo p where B ξ = 0, with ξ̇
+//! from the program, which has already been validated.
 
 use crate::confidence::Confidence;
 use crate::kernel::at_rest;
@@ -17,7 +17,7 @@ use hamel_language::model::Model;
 use hamel_language::model::invariants::Invariant;
 use hamel_program::Program;
 
-/// Refuses false claims; `model` is that of the active velocities.
+/// Reports false claims as errors; `model` is that of the active velocities.
 pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
     let loops = model
         .constraints
@@ -52,7 +52,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
     }
 }
 
-/// The claims with their verdicts.
+/// Returns the claims with their verdicts.
 pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
     let verdict = |claim: &Invariant| match refuted(model, program, claim) {
         None => Verdict::Checked(confidence(model, program)),
@@ -69,7 +69,7 @@ pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
         .collect()
 }
 
-/// What agreement at all points says: an integral of T, V and momenta is differentiated along ξ̇.
+/// Bounds the chance of error: an integral made of T, V and momenta is differentiated along ξ̇.
 fn confidence(model: &Model, program: &Program) -> Confidence {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
@@ -83,7 +83,7 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
     Confidence::new(model, &expressions, terms, POINTS, 9)
 }
 
-/// T and V.
+/// Returns T and V.
 fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
     let kinetic = if model.is_affine() {
         energy::traced(model, calculus)
@@ -95,7 +95,7 @@ fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
     (kinetic, energy::potential(model))
 }
 
-/// How the claim fails, if it does: by the entry that changes.
+/// Returns how the claim fails, with the index of the entry that changes; `None` if it does not fail.
 fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
@@ -117,7 +117,7 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
     compared.err()
 }
 
-/// d/dt of the entries at a point with B ξ = 0.
+/// Returns d/dt of the entries at a point with B ξ = 0.
 fn slopes(model: &Model, program: &Program, entries: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
     let graph = &model.graph;
     let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut lane.clone())?;

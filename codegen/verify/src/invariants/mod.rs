@@ -1,15 +1,15 @@
 //! Claims of constancy along the motion: d/dt I = ∂I/∂x A ξ + ∂I/∂ξ ξ̇ = 0 with ξ̇ from
 //! M ξ̇ = f − Γ ξ ξ − ∂V (KR18 (30c)).
 //!
-//! Every claim is checked at fresh exact points of X modulo p, where M ξ̇ = … is solved in numbers
-//! and the slope of I is taken by dual numbers. For `hamel check` it is proved over the rationals
-//! where that is possible, and for a false claim what d/dt leaves is written out.
+//! Every claim is checked at fresh exact points of X modulo p, where M ξ̇ = … is solved in numbers and I is
+//! differentiated by dual numbers. For `hamel check` it is proved over the rationals where that is possible, and for a
+//! false claim the remainder of d/dt I is written out.
 //!
 //! | file | owns |
 //! |---|---|
 //! | `constrained` | claims about systems with constraints on their velocities |
 //! | `proof` | normal forms of d/dt I |
-//! | `remainder` | a polynomial as people read it |
+//! | `remainder` | the text of a polynomial |
 
 pub mod constrained;
 mod proof;
@@ -32,7 +32,7 @@ use hamel_language::model::Model;
 use hamel_language::model::invariants::Invariant;
 use proof::{Proof, Prover};
 
-/// Refuses false claims, each with what its derivative leaves.
+/// Reports false claims as errors, each with the remainder of its derivative.
 pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
     if model.invariants.is_empty() {
         return Ok(());
@@ -93,7 +93,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
     }
 }
 
-/// The claims with their verdicts, for `hamel check`.
+/// Returns the claims with their verdicts, for `hamel check`.
 pub fn identities(model: &Model) -> Vec<Identity> {
     if model.invariants.is_empty() {
         return Vec::new();
@@ -138,7 +138,7 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     all
 }
 
-/// The equations of motion that claims are held against.
+/// Equations of motion with which claims are compared.
 struct Equations {
     reference: Reference,
     calculus: Calculus,
@@ -158,14 +158,14 @@ impl Equations {
         &mut self.reference.model.graph
     }
 
-    /// The entries of what is claimed to be constant.
+    /// Returns the entries of the quantity that is claimed to be constant.
     fn entries(&mut self, claim: &Invariant) -> Vec<Edge> {
         let energies = (self.reference.kinetic, self.reference.potential);
         let model = &mut self.reference.model;
         quantity::value(model, &mut self.calculus, energies, &claim.quantity).entries()
     }
 
-    /// f − Γ ξ ξ − ∂V.
+    /// Returns f − Γ ξ ξ − ∂V.
     fn force(&mut self) -> Vec<Edge> {
         let reference = &mut self.reference;
         let graph = &mut reference.model.graph;
@@ -177,7 +177,7 @@ impl Equations {
             .collect()
     }
 
-    /// What agreement at all points says: the entries are differentiated along a solution of n equations.
+    /// Bounds the chance of error: the entries are differentiated along a solution of n equations.
     fn confidence(&mut self, model: &Model, entries: &[Edge]) -> Confidence {
         let force = self.force();
         let reference = &self.reference;
@@ -188,7 +188,7 @@ impl Equations {
         Confidence::new(model, &[(graph, &roots)], terms, POINTS, entries.len())
     }
 
-    /// How the claim fails, if it does.
+    /// Returns how the claim fails; `None` if it does not.
     fn refuted(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Unequal<usize>> {
         let force = self.force();
         let model = &self.reference.model;
@@ -206,7 +206,7 @@ impl Equations {
         compared.err()
     }
 
-    /// d/dt of the entries at a point.
+    /// Returns d/dt of the entries at a point.
     fn slopes(&self, entries: &[Edge], force: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
         let model = &self.reference.model;
         let graph = &model.graph;
@@ -223,7 +223,7 @@ impl Equations {
         Some(duals.into_iter().map(|dual| dual.1).collect())
     }
 
-    /// The rate of an entry at the start, in words; `None` where that is zero or has no value.
+    /// Describes the rate of an entry at the initial state; `None` if it is zero or has no value.
     fn at_start(&mut self, claim: &Invariant, entry: Edge) -> Option<String> {
         let force = self.force();
         let set = claim.set.clone();
@@ -259,7 +259,7 @@ impl Equations {
     }
 }
 
-/// The direction of the motion in all symbols: ẋ and ξ̇.
+/// Returns the direction of the motion in all symbols, from ẋ and ξ̇.
 pub(super) fn direction(model: &Model, rate: &[Fp], xi_dot: &[Fp]) -> Vec<Fp> {
     let mut direction = vec![Fp::ZERO; model.graph.symbols().len()];
     let moving = model.x.iter().zip(rate).chain(model.xi.iter().zip(xi_dot));

@@ -1,9 +1,9 @@
-//! d/dt I by normal forms over the rationals.
+//! Proofs of d/dt I = 0 by normal forms over the rationals.
 //!
-//! M ξ̇ = F is never divided: with a covector w such that w M = σ ∂I/∂ξ for a scalar σ ≠ 0,
-//! σ d/dt I = σ ∂I/∂x A ξ + w F is a polynomial. For momenta and the energy w is a simple vector
-//! with σ = 1 (ξ for the energy, an axis for an angular momentum), which M⁻¹ ∂I/∂ξ comes to where
-//! equal values are one node; else, for n ≤ 3, w = ∂I/∂ξ adj M and σ = det M.
+//! M ξ̇ = F is never divided by M: with a covector w such that w M = σ ∂I/∂ξ for a scalar σ ≠ 0,
+//! σ d/dt I = σ ∂I/∂x A ξ + w F is a polynomial. For momenta and the energy w is a simple vector with σ = 1 (ξ for the
+//! energy, an axis for an angular momentum), to which M⁻¹ ∂I/∂ξ simplifies in a graph where equal values are one node;
+//! otherwise, for n ≤ 3, w = ∂I/∂ξ adj M and σ = det M.
 
 use super::Equations;
 use super::remainder::readable;
@@ -19,25 +19,25 @@ use hamel_dynamics::tables::Geometry;
 use hamel_language::model::Model;
 use hamel_language::model::invariants::Invariant;
 
-/// Models with more velocities are only checked modulo p.
+/// Largest number of velocities of models whose claims are proved; those of larger models are only checked modulo p.
 const MOST_PROVED: usize = 8;
-/// Expressions of more nodes are not expanded.
+/// Largest number of nodes of expressions that are expanded.
 const MOST_NODES: usize = 20_000;
 
-/// Products and sums of terms of all expansions together; more leave the claim to points modulo p.
+/// Budget of products and sums of terms for all expansions together; beyond it, the claim is only checked modulo p.
 const WORK: usize = 300_000;
 
-/// What became of a proof.
+/// Outcome of a proof.
 pub enum Proof {
     /// d/dt I lies in the ideal of φ.
     Proved,
-    /// d/dt I in normal form, where it is short.
+    /// d/dt I is not zero; its normal form, which is short.
     Leaves(String),
-    /// Too large, or no polynomial.
+    /// Undecided: too large, or not polynomial.
     Open,
 }
 
-/// The equations of motion with free coordinates, where nothing is merged modulo φ.
+/// Equations of motion in free coordinates, where nothing is merged modulo φ.
 pub struct Prover {
     model: Model,
     calculus: Calculus,
@@ -48,7 +48,7 @@ pub struct Prover {
 }
 
 impl Prover {
-    /// `None` where the model is too large, or its kinematics have no left inverse.
+    /// Derives the equations; `None` if the model is too large, or its kinematics have no left inverse.
     pub fn new(model: &Model) -> Option<Self> {
         if model.n() > MOST_PROVED {
             return None;
@@ -61,8 +61,8 @@ impl Prover {
             mut potential,
             ..
         } = Geometry::unreduced(model)?;
-        // Normal forms at every stage keep the polynomials small. They may be differentiated, as
-        // the columns of A are tangent to X.
+        // Normal forms at every stage keep the polynomials small. They may be differentiated, since the columns of A
+        // are tangent to X.
         let mut forms = NormalForms::within(&model.points, WORK);
         let entries = gamma.iter_mut().flatten().flatten();
         for entry in entries.chain(mass.iter_mut().flatten()) {
@@ -111,13 +111,14 @@ impl Prover {
             .map(|row| self.model.graph.dot(row, &slopes))
             .collect();
         match self.with(claim, entry, &slopes, &w, Some(determinant)) {
-            // A multiple of what is left is no answer.
+            // The remainder is a multiple of d/dt I, which is not worth showing.
             Proof::Leaves(_) => Proof::Open,
             proof => proof,
         }
     }
 
-    /// M⁻¹ ∂I/∂ξ in the motion's graph, where it merges with what is there, rebuilt at free points.
+    /// Returns M⁻¹ ∂I/∂ξ, computed in the motion's graph, where it merges with known expressions, and copied to free
+    /// coordinates; `None` if quotients remain.
     fn covector(
         &mut self,
         motion: &mut Equations,
@@ -137,7 +138,7 @@ impl Prover {
             .map(|xi| vec![Derivation::new([(xi.node(), graph.one())]).of(graph, all[n * n])])
             .collect();
         let w: Vec<Edge> = solve_symmetric(graph, &mass, &slopes)?.concat();
-        // Quotients are no polynomials, and what is built later would merge with them.
+        // Quotients are not polynomial, and expressions built later would merge with them.
         let quotient = |id: &u32| matches!(graph.node(*id), Node::Div(..));
         if graph.reachable(&w).iter().any(quotient) {
             return None;
@@ -145,7 +146,7 @@ impl Prover {
         Some(rebuild(graph, &mut self.model.graph, &w))
     }
 
-    /// ∂I/∂ξ.
+    /// Returns ∂I/∂ξ.
     fn slopes(&mut self, entry: Edge) -> Vec<Edge> {
         let xi = self.model.xi.clone();
         let graph = &mut self.model.graph;
@@ -154,8 +155,9 @@ impl Prover {
             .collect()
     }
 
-    /// The proof with a covector: w M = σ ∂I/∂ξ and σ ∂I/∂x A ξ + w F = 0. Where σ is given, w is
-    /// made by it and the first equation holds.
+    /// Attempts the proof with a covector: w M = σ ∂I/∂ξ and σ ∂I/∂x A ξ + w F = 0.
+    ///
+    /// If σ is given as `scale`, w was constructed with it, and the first equation holds; otherwise σ = 1.
     fn with(
         &mut self,
         claim: &Invariant,
@@ -200,8 +202,8 @@ impl Prover {
     }
 }
 
-/// Puts Rᵀ (eₖ × r) of every frame into the graph: the covectors of angular momenta, for M⁻¹ ∂I/∂ξ
-/// to merge with.
+/// Adds Rᵀ (eₖ × r) of every frame to the graph: the covectors of angular momenta, so that M⁻¹ ∂I/∂ξ can merge with
+/// them.
 fn seed_rotations(model: &mut Model) {
     let graph = &mut model.graph;
     let axes = identity3(graph);
@@ -213,7 +215,7 @@ fn seed_rotations(model: &mut Model) {
     }
 }
 
-/// The normal form of an expression, or itself where it is too large.
+/// Returns the normal form of an expression, or the expression itself if it is too large.
 fn normal(forms: &mut NormalForms, graph: &mut Graph, edge: Edge) -> Edge {
     if graph.reachable(&[edge]).len() > MOST_NODES {
         return edge;
@@ -225,7 +227,7 @@ fn normal(forms: &mut NormalForms, graph: &mut Graph, edge: Edge) -> Edge {
     build(graph, &reduced)
 }
 
-/// adj M and det M of a symmetric matrix of at most three rows.
+/// Returns adj M and det M of a symmetric matrix with at most three rows.
 fn adjugate(graph: &mut Graph, m: &[Vec<Edge>]) -> (Vec<Vec<Edge>>, Edge) {
     let n = m.len();
     let mut adjugate = vec![vec![graph.one(); n]; n];

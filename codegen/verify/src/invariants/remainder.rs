@@ -1,4 +1,4 @@
-//! A polynomial as people read it: `m g s[1] R[3,2] - 1/2 d w^2`.
+//! Readable text of a polynomial: `m g s[1] R[3,2] - 1/2 d w^2`.
 
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::poly::monomial::Var;
@@ -7,10 +7,10 @@ use hamel_dynamics::normal::variable_node;
 use num_rational::BigRational;
 use num_traits::{One, Signed};
 
-/// Terms that are written out; the rest is counted.
+/// Number of terms that are written out; further terms are only counted.
 const SHOWN: usize = 6;
 
-/// The text of a polynomial; `None` where a quotient is among its variables.
+/// Returns the text of a polynomial; `None` if one of its variables cannot be written briefly, such as a quotient.
 pub fn readable(graph: &Graph, polynomial: &Poly<BigRational>) -> Option<String> {
     let mut text = String::new();
     let terms = polynomial.terms();
@@ -46,9 +46,9 @@ fn variable(graph: &Graph, var: Var) -> Option<String> {
     expression(graph, variable_node(graph, var), 0)
 }
 
-/// A node in few words: symbols, and functions of sums and products of them.
+/// Returns the text of a node: symbols, and functions of sums and products of them.
 fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
-    /// Arguments deeper than this are no reading matter.
+    /// Depth from which arguments are no longer readable.
     const DEEPEST: usize = 6;
     if depth > DEEPEST {
         return None;

@@ -1,4 +1,4 @@
-//! The expressions of a model that are evaluated, as tapes, and how their values are read back.
+//! The expressions of a model that are evaluated, as tapes, and how their values are read.
 
 use super::motion::entries;
 use super::space::{Mat3, Vec3};
@@ -8,20 +8,20 @@ use hamel_dynamics::{energy, kinematics};
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
 
-/// A model with what is evaluated of it.
+/// A model with tapes of the expressions that are evaluated.
 pub struct Expressions {
-    /// The model, its graph holding Y and V.
+    /// The model; its graph contains Y and V.
     pub model: Model,
     /// A by rows, ẋ, Y by rows.
     pub kinematics: Tape,
-    /// V, V without gravity on bodies, the kinetic energy that was written; frames; points of
+    /// V, V without gravity on bodies and particles, the kinetic energy that the user wrote; frames; points of
     /// particles and lines.
     pub poses: Tape,
-    /// The kinetic energy that was written, the dissipation, rates that dampers act along.
+    /// The kinetic energy that the user wrote, the dissipation, the rates along which dampers act.
     pub velocity: Tape,
     /// ξ, ξ̇, gravity, inertias, loads.
     pub constants: Tape,
-    /// The frames, in their order in `poses`.
+    /// Indices of the frames, in their order in `poses`.
     pub frames: Vec<usize>,
     x: Vec<usize>,
     xi: Vec<usize>,
@@ -29,7 +29,7 @@ pub struct Expressions {
 }
 
 impl Expressions {
-    /// Collects what is evaluated; `None` where Y is not found, or a number has no image.
+    /// Collects the expressions; `None` if Y is not found, or a number has no image modulo p.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let y = kinematics::left_inverse(&mut model)?;
@@ -97,7 +97,7 @@ impl Expressions {
         })
     }
 
-    /// Whether there is a kinetic energy beyond that of bodies and particles.
+    /// Returns whether the user wrote a kinetic energy in addition to that of bodies and particles.
     pub fn writes_kinetic(&self) -> bool {
         self.model.kinetic != self.model.graph.zero()
     }
@@ -114,23 +114,23 @@ impl Expressions {
         seed
     }
 
-    /// A direction in x, for all symbols.
+    /// Returns a direction in x as a direction in all symbols.
     pub fn of_x(&self, x: &[Fp]) -> Vec<Fp> {
         self.seed([(&self.x, x), (&[], &[])])
     }
 
-    /// A direction in ξ, for all symbols.
+    /// Returns a direction in ξ as a direction in all symbols.
     pub fn of_xi(&self, xi: &[Fp]) -> Vec<Fp> {
         self.seed([(&self.xi, xi), (&[], &[])])
     }
 
-    /// The entries of ξ in a list with one entry for each symbol.
+    /// Returns the entries of ξ in a list with one entry for each symbol.
     pub fn xi_of(&self, symbols: &[Fp]) -> Vec<Fp> {
         let entry = |&place: &usize| symbols.get(place).copied().unwrap_or(Fp::ZERO);
         self.xi.iter().map(entry).collect()
     }
 
-    /// A direction in both.
+    /// Returns a direction in x and ξ as a direction in all symbols.
     pub fn of_x_and_xi(&self, x: &[Fp], xi: &[Fp]) -> Vec<Fp> {
         self.seed([(&self.x, x), (&self.xi, xi)])
     }
@@ -142,29 +142,29 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// From the first one.
+    /// Starts at the first value.
     pub fn new(values: &'a [Fp]) -> Self {
         Reader {
             rest: values.iter(),
         }
     }
 
-    /// A number.
+    /// Reads a number.
     pub fn one(&mut self) -> Option<Fp> {
         self.rest.next().copied()
     }
 
-    /// A vector.
+    /// Reads a vector.
     pub fn three(&mut self) -> Option<Vec3> {
         Some([self.one()?, self.one()?, self.one()?])
     }
 
-    /// A matrix.
+    /// Reads a matrix, by rows.
     pub fn nine(&mut self) -> Option<Mat3> {
         Some([self.three()?, self.three()?, self.three()?])
     }
 
-    /// As many as asked for.
+    /// Reads a list of `count` numbers.
     pub fn list(&mut self, count: usize) -> Option<Vec<Fp>> {
         (0..count).map(|_| self.one()).collect()
     }

@@ -1,37 +1,37 @@
-//! What bodies and particles contribute to the three forms (30) at one point, modulo p.
+//! Contributions of bodies and particles to the three forms (30) at one point, modulo p.
 
 use super::motion::{Moving, MovingFrame};
 use super::space::{Mat3, Vec3, add, apply, apply_transposed, cross, scale};
 use crate::kernel::dot;
 use hamel_algebra::fp::Fp;
 
-/// Inertia of a body in numbers.
+/// Mass properties of a body in numbers.
 pub struct BodyNumbers {
     /// Mass.
     pub mass: Fp,
-    /// Centre of mass, frame axes.
+    /// Centre of mass, in frame axes.
     pub com: Vec3,
-    /// Inertia about it.
+    /// Inertia about the centre of mass.
     pub inertia_com: Mat3,
     /// Inertia about the frame's origin.
     pub inertia_origin: Mat3,
 }
 
-/// Sums over bodies and particles, and over a kinetic energy that was written.
+/// Sums over bodies and particles, and over a kinetic energy that the user wrote.
 pub struct Sums {
     /// ∂S/∂ξ̇ⁱ by accelerations, (30b).
     pub gibbs: Vec<Fp>,
-    /// Σ m ⟨g, ∂ᵢr⟩.
+    /// Generalised weights Σ m ⟨g, ∂ᵢr⟩.
     pub weight: Vec<Fp>,
-    /// ∂T/∂ξⁱ, from velocities.
+    /// Generalised momenta ∂T/∂ξⁱ, from velocities.
     pub momentum: Vec<Fp>,
     /// d/dt ∂T/∂ξⁱ.
     pub momentum_rate: Vec<Fp>,
     /// ∂ᵢT.
     pub slope: Vec<Fp>,
-    /// T.
+    /// Kinetic energy T.
     pub kinetic: Fp,
-    /// M, KR18 (20).
+    /// Mass matrix M, KR18 (20).
     pub mass: Vec<Vec<Fp>>,
     /// Ṁ_ij ξʲ.
     pub mass_rate: Vec<Fp>,
@@ -48,7 +48,7 @@ fn increase(sum: &mut Fp, by: Fp) {
 }
 
 impl Sums {
-    /// Nothing yet.
+    /// Creates sums without any terms.
     pub fn new(n: usize) -> Self {
         let zero = || vec![Fp::ZERO; n];
         Sums {
@@ -64,7 +64,7 @@ impl Sums {
         }
     }
 
-    /// A point mass: everything by (30a), (30b), and weight.
+    /// Adds a point mass to the terms of (30a) and (30b), and its weight.
     fn point(&mut self, mass: Fp, gravity: Vec3, point: &Moving<Vec3>) {
         let (velocity, acceleration) = (scale(mass, point.rate), scale(mass, point.second));
         let weight = scale(mass, gravity);
@@ -82,7 +82,8 @@ impl Sums {
         increase(&mut self.kinetic, half() * dot(&velocity, &point.rate));
     }
 
-    /// M and its derivatives: t_i with its rates, t = tᵢ ξⁱ, ∂ᵢt, and the inertia that acts on them.
+    /// Adds to M and its derivatives, given the velocity t = tᵢ ξⁱ with tᵢ, d/dt tᵢ and ∂ᵢt, and the inertia that acts
+    /// on it.
     fn metric(&mut self, twists: &Twists, xi: &[Fp], inertia: impl Fn(&[Fp]) -> Vec<Fp>) {
         let n = xi.len();
         let momentum = inertia(&twists.total);
@@ -114,7 +115,7 @@ impl Sums {
         }
     }
 
-    /// A particle.
+    /// Adds a particle.
     pub fn particle(&mut self, mass: Fp, gravity: Vec3, point: &Moving<Vec3>, xi: &[Fp]) {
         self.point(mass, gravity, point);
         let all = |list: &[Vec3]| list.iter().map(|entry| entry.to_vec()).collect();
@@ -129,7 +130,7 @@ impl Sums {
         });
     }
 
-    /// A body: forces from its centre of mass, M from the velocity of its frame's origin.
+    /// Adds a body: (30a) and (30b) from its centre of mass, M from the twist of its frame's origin.
     pub fn body(&mut self, body: &BodyNumbers, gravity: Vec3, frame: &MovingFrame, xi: &[Fp]) {
         let n = xi.len();
         self.point(body.mass, gravity, &frame.point(body.com));
@@ -175,7 +176,7 @@ impl Sums {
     }
 }
 
-/// The velocity that M is the metric of, as a linear function of ξ.
+/// Velocity t, linear in ξ, whose kinetic energy M describes: that of a particle, or the twist of a body in body axes.
 struct Twists {
     /// t.
     total: Vec<Fp>,

@@ -1,5 +1,5 @@
-//! Generalised forces by virtual work, fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩, KR18 (28), at one point modulo p: every load
-//! as forces on points, as `virtual_power` does it with expressions.
+//! Generalised forces by virtual work, fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩, KR18 (28), at one point modulo p: every load is a sum of
+//! forces on points, as in `virtual_power`, which does the same with expressions.
 
 use super::motion::{Moving, MovingFrame};
 use super::space::{Vec3, add, apply, column, cross, scale, sub};
@@ -7,14 +7,14 @@ use crate::kernel::dot;
 use hamel_algebra::fp::Fp;
 use hamel_language::syntax::ast::Axes;
 
-/// A sum of forces on points.
+/// Sum of forces on points, as generalised forces.
 pub struct Forces {
-    /// fᵢ.
+    /// Generalised forces fᵢ.
     pub sum: Vec<Fp>,
 }
 
 impl Forces {
-    /// Adds forces as they were given.
+    /// Adds generalised forces as they are given.
     pub fn add(&mut self, forces: impl IntoIterator<Item = Fp>) {
         for (sum, force) in self.sum.iter_mut().zip(forces) {
             *sum = *sum + force;
@@ -26,7 +26,7 @@ impl Forces {
         self.add(by.map(|column| dot(&force, &column)).collect::<Vec<_>>());
     }
 
-    /// Adds a force along a line, positive apart.
+    /// Adds a force along a line, positive if it drives the points apart.
     pub fn along(&mut self, force: Vec3, from: &Moving<Vec3>, to: &Moving<Vec3>) {
         self.at(
             force,
@@ -34,8 +34,8 @@ impl Forces {
         );
     }
 
-    /// Adds a wrench at a point of a frame: the force there, and the torque as three couples, ½ τ × eₖ at
-    /// the tips of the frame's axes and −½ τ × eₖ at its origin.
+    /// Adds a wrench at a point of a frame: the force there, and the torque as three couples, ½ τ × eₖ at the tips of
+    /// the frame's axes and −½ τ × eₖ at its origin.
     pub fn wrench(&mut self, axes: Axes, [at, force, torque]: [Vec3; 3], frame: &MovingFrame) {
         let world = |a: Vec3| match axes {
             Axes::World => a,
@@ -51,7 +51,7 @@ impl Forces {
         }
     }
 
-    /// Adds a damper along a line, −c (d·ḋ)/(d·d) d on its second point.
+    /// Adds a damper along a line, as a force −c (d·ḋ)/(d·d) d on its second point and the opposite one on its first.
     pub fn damper(
         &mut self,
         coefficient: Fp,

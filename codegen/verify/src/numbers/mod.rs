@@ -1,23 +1,22 @@
-//! The reference of every build: the three left sides (30a), (30b), (30c) at points of X, in numbers
-//! modulo p.
+//! Reference of every build: the left sides of the three forms (30a), (30b), (30c) at points of X, in numbers modulo p.
 //!
 //! | file | owns |
 //! |---|---|
 //! | `space` | vectors of numbers |
 //! | `motion` | poses with first and second derivatives |
-//! | `inertia` | what bodies contribute |
+//! | `inertia` | contributions of bodies and particles |
 //! | `loads` | forces on points |
-//! | `expressions` | what of a model is evaluated |
+//! | `expressions` | the expressions of a model that are evaluated |
 //!
-//! Nothing is derived as an expression here: the absolute poses of bodies, T and V as they were written
-//! are differentiated by hyper-dual numbers, so that the cost is that of the poses times n, and no rule of
-//! the generator takes part. The forms are
+//! Nothing is derived as an expression here: the absolute poses of bodies, V, and a kinetic energy that the user wrote
+//! are differentiated by hyper-dual numbers, so that the cost is that of the poses times n, and no rule of the
+//! generator is used. The forms are
 //!
 //! - (30a) d/dt ∂T/∂ξⁱ − ∂ᵢT + γᵢⱼᵏ ξʲ ∂T/∂ξᵏ + ∂ᵢV, with γ by (12),
-//! - (30b) Σ m ⟨r̈, ∂ᵢr⟩ + ⟨Θα + ω × Θω, ωᵢ⟩ − Σ m ⟨g, ∂ᵢr⟩ + ∂ᵢV of what else has a potential,
+//! - (30b) Σ m ⟨r̈, ∂ᵢr⟩ + ⟨Θα + ω × Θω, ωᵢ⟩ − Σ m ⟨g, ∂ᵢr⟩ + ∂ᵢV of all other potentials,
 //! - (30c) M_ij ξ̇ʲ + Ṁ_ij ξʲ − ½ ∂ᵢM_jk ξʲ ξᵏ + γᵢⱼˢ ξʲ M_sk ξᵏ + ∂ᵢV, with γ by (13): Γ of (23) contracted.
 //!
-//! For a kinetic energy that was written, (30b) is taken from its M, as there are no particles to it.
+//! For a kinetic energy that the user wrote, (30b) is taken from its M, as it belongs to no particles.
 
 mod expressions;
 mod inertia;
@@ -38,34 +37,34 @@ use motion::{Moving, MovingFrame, point};
 use rustc_hash::FxHashMap;
 use space::{Vec3, scale, sub};
 
-/// The reference of a model.
+/// Evaluation of the three forms for a model.
 pub struct Numbers {
     expressions: Expressions,
 }
 
-/// What holds at one point (x, ξ, ξ̇, u).
+/// Quantities of a model at one point (x, ξ, ξ̇, u).
 pub struct Values {
     /// Left sides of (30a), (30b), (30c).
     pub left: [Vec<Fp>; 3],
-    /// M.
+    /// Mass matrix M.
     pub mass: Vec<Vec<Fp>>,
-    /// h = Γ ξ ξ.
+    /// Bias forces h = Γ ξ ξ.
     pub bias: Vec<Fp>,
-    /// ∂V.
+    /// Derivatives ∂ᵢV of the potential energy.
     pub slope: Vec<Fp>,
-    /// f.
+    /// Generalised forces f.
     pub force: Vec<Fp>,
-    /// p = ∂T/∂ξ.
+    /// Generalised momenta p = ∂T/∂ξ.
     pub momentum: Vec<Fp>,
     /// Ṁ ξ.
     pub mass_rate: Vec<Fp>,
-    /// ẋ.
+    /// Rates of the coordinates, ẋ.
     pub rate: Vec<Fp>,
-    /// T.
+    /// Kinetic energy T.
     pub kinetic: Fp,
-    /// V.
+    /// Potential energy V.
     pub potential: Fp,
-    /// D.
+    /// Dissipation D.
     pub dissipation: Fp,
 }
 
@@ -88,7 +87,7 @@ impl Kinematics {
             .collect()
     }
 
-    /// ∂ᵢẋ at constant ξ.
+    /// Returns ∂ᵢẋ at constant ξ.
     fn drift(&self, i: usize) -> Vec<Fp> {
         self.rate.iter().map(|jet| jet.across(i)).collect()
     }
@@ -97,7 +96,7 @@ impl Kinematics {
         self.y.chunks(self.nu.max(1))
     }
 
-    /// Whether Y A = I.
+    /// Returns whether Y A = I.
     fn inverse(&self) -> bool {
         self.rows().enumerate().all(|(k, row)| {
             let mut product = vec![Fp::ZERO; self.n];
@@ -114,7 +113,7 @@ impl Kinematics {
         })
     }
 
-    /// γᵢⱼᵏ ξʲ p_k by (12), (∂ᵢẋ − Ȧᵢ) Y p.
+    /// Returns γᵢⱼᵏ ξʲ p_k by (12), (∂ᵢẋ − Ȧᵢ) Y p.
     fn turn(&self, p: &[Fp]) -> Vec<Fp> {
         let weighted = self.weighted(p, |jet| jet.value);
         let turn = |i: usize| {
@@ -124,11 +123,11 @@ impl Kinematics {
         (0..self.n).map(turn).collect()
     }
 
-    /// The same by (13), (Ẏ Aᵢ − ∂ᵢY ẋ) p.
+    /// Returns γᵢⱼᵏ ξʲ p_k by (13), (Ẏ Aᵢ − ∂ᵢY ẋ) p.
     fn turn_of_rows(&self, p: &[Fp]) -> Vec<Fp> {
         let rate: Vec<Fp> = self.rate.iter().map(|jet| jet.value).collect();
         let moved = self.weighted(p, |jet| jet.along);
-        // Entries Y_α^k that move, weighted by p_k ẋ^α: of large frames they are few.
+        // Entries Y_α^k that are not constant, weighted by p_k ẋ^α; in large frames there are few of them.
         let mut moving: Vec<(&Jet, Fp)> = Vec::new();
         for (row, &p) in self.rows().zip(p) {
             let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_still());
@@ -144,7 +143,7 @@ impl Kinematics {
         (0..self.n).map(turn).collect()
     }
 
-    /// Y_α^k p_k.
+    /// Returns Y_α^k p_k, or the same with derivatives of Y.
     fn weighted(&self, p: &[Fp], of: impl Fn(&Jet) -> Fp) -> Vec<Fp> {
         let mut sum = vec![Fp::ZERO; self.nu];
         for (row, &p) in self.rows().zip(p) {
@@ -157,14 +156,17 @@ impl Kinematics {
 }
 
 impl Numbers {
-    /// Prepares for a model; `None` where AᵀA is singular, or a number has no image.
+    /// Prepares the evaluation; `None` if AᵀA is singular, or a number has no image modulo p.
     pub fn new(model: &Model) -> Option<Self> {
         Some(Numbers {
             expressions: Expressions::new(model)?,
         })
     }
 
-    /// The values at a point; `None` where something has no value there, an error where Y A is not I.
+    /// Evaluates at a point; `None` if something has no value there.
+    ///
+    /// # Errors
+    /// The name of the identity if Y A is not I.
     pub fn at(&self, lane: &Lane) -> Option<Result<Values, String>> {
         let all = &self.expressions;
         let model = &all.model;
@@ -205,7 +207,7 @@ impl Numbers {
         if !kinematics.inverse() {
             return Some(Err("(6), Y A = I".into()));
         }
-        // Columns: Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
+        // Columns (x₂ with x₁₂): Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
         let second: Vec<Fp> = kinematics.rate.iter().map(|jet| jet.along).collect();
         let following = (0..n).map(|i| all.of_x(&kinematics.column(i, |jet| jet.along)));
         let drifting = (0..n).map(|i| all.of_x(&kinematics.drift(i)));
@@ -285,7 +287,7 @@ impl Numbers {
         }))
     }
 
-    /// Adds a kinetic energy that was written; what (30b) has of it.
+    /// Adds the kinetic energy that the user wrote to the sums, and returns its contribution to (30b).
     fn written(
         &self,
         lane: &Lane,
@@ -332,7 +334,7 @@ impl Numbers {
         Some(left)
     }
 
-    /// f, and D of what resists.
+    /// Returns f, and D of dampers and dissipation.
     fn forces(
         &self,
         lane: &Lane,
@@ -396,7 +398,7 @@ impl Numbers {
     }
 }
 
-/// The i-th of n directions.
+/// Returns the i-th of n unit vectors.
 fn unit(n: usize, i: usize) -> Vec<Fp> {
     (0..n)
         .map(|j| if i == j { Fp::ONE } else { Fp::ZERO })

@@ -1,33 +1,32 @@
-//! How frames and points move at one point of X, modulo p: ṙ, r̈, and for every i ∂ᵢr, d/dt ∂ᵢr, ∂ᵢṙ.
+//! Motion of frames and points at one point of X, modulo p: ṙ, r̈, and for every i ∂ᵢr, d/dt ∂ᵢr, ∂ᵢṙ.
 //!
-//! The poses are differentiated by hyper-dual numbers along ẋ = A ξ and along the columns of A. In
-//! d/dt ∂ᵢr the column Aᵢ moves with x, in ∂ᵢṙ it is ẋ that moves; the difference of the two is what the
-//! coefficients γ stand for.
+//! The poses are differentiated by hyper-dual numbers along ẋ = A ξ and along the columns of A. In d/dt ∂ᵢr the column
+//! Aᵢ changes with x, in ∂ᵢṙ it is ẋ that changes; the difference of the two is what the coefficients γ express.
 
 use super::space::{Mat3, Vec3, add, apply, spin};
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::jets::Jet;
 
-/// A quantity and its derivatives.
+/// A quantity q and its derivatives.
 #[derive(Clone, Debug)]
 pub struct Moving<T> {
-    /// q.
+    /// Value q.
     pub value: T,
-    /// q̇.
+    /// Rate q̇.
     pub rate: T,
-    /// q̈.
+    /// Second derivative q̈.
     pub second: T,
-    /// ∂ᵢq.
+    /// Derivatives ∂ᵢq along the columns of A.
     pub by: Vec<T>,
-    /// d/dt ∂ᵢq.
+    /// Their rates, d/dt ∂ᵢq.
     pub rate_by: Vec<T>,
-    /// ∂ᵢq̇ at constant ξ.
+    /// Derivatives of the rate, ∂ᵢq̇ at constant ξ.
     pub by_rate: Vec<T>,
 }
 
 impl<T: Copy> Moving<T> {
-    /// Derivatives in columns: Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
+    /// Collects derivatives from jets with the columns Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
     fn assemble(n: usize, entry: impl Fn(&dyn Fn(&Jet) -> Fp) -> T) -> Self {
         let across = |i: usize| entry(&|jet| jet.across.get(i).copied().unwrap_or(Fp::ZERO));
         let mixed = |i: usize| entry(&|jet| jet.mixed.get(i).copied().unwrap_or(Fp::ZERO));
@@ -41,7 +40,7 @@ impl<T: Copy> Moving<T> {
         }
     }
 
-    /// The same of a linear function of the quantity.
+    /// Applies a linear function to the quantity and its derivatives.
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Moving<U> {
         let all = |list: &[T]| list.iter().map(|&entry| f(entry)).collect();
         Moving {
@@ -56,7 +55,7 @@ impl<T: Copy> Moving<T> {
 }
 
 impl Moving<Vec3> {
-    /// The sum of two points.
+    /// Adds two points.
     pub fn plus(&self, other: &Self) -> Self {
         let all = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(&a, &b)| add(a, b)).collect();
         Moving {
@@ -70,32 +69,32 @@ impl Moving<Vec3> {
     }
 }
 
-/// A frame.
+/// A frame and its derivatives.
 #[derive(Clone, Debug)]
 pub struct MovingFrame {
-    /// Its axes.
+    /// Axes of the frame.
     pub rotation: Moving<Mat3>,
-    /// Its origin.
+    /// Origin of the frame.
     pub position: Moving<Vec3>,
 }
 
-/// The angular velocity of a frame in its own axes.
+/// Angular velocity of a frame in its own axes, and its derivatives.
 #[derive(Clone, Debug)]
 pub struct Spin {
-    /// ω.
+    /// Angular velocity ω.
     pub omega: Vec3,
-    /// dω/dt.
+    /// Angular acceleration dω/dt.
     pub alpha: Vec3,
-    /// ωᵢ = ∂ω/∂ξⁱ.
+    /// Partial angular velocities ωᵢ = ∂ω/∂ξⁱ.
     pub by: Vec<Vec3>,
-    /// d/dt ωᵢ.
+    /// Their rates, d/dt ωᵢ.
     pub rate_by: Vec<Vec3>,
-    /// ∂ᵢω.
+    /// Derivatives ∂ᵢω along the columns of A at constant ξ.
     pub by_omega: Vec<Vec3>,
 }
 
 impl MovingFrame {
-    /// From the jets of the nine entries of the axes and the three of the origin.
+    /// Creates a frame from the jets of the nine entries of its axes and the three of its origin.
     pub fn new(n: usize, jets: &[Jet]) -> Option<Self> {
         let (axes, origin) = jets.split_at_checked(9)?;
         let origin: &[Jet; 3] = origin.try_into().ok()?;
@@ -108,13 +107,13 @@ impl MovingFrame {
         })
     }
 
-    /// The point of the frame with constant components.
+    /// Returns the point of the frame with constant components `at`.
     pub fn point(&self, at: Vec3) -> Moving<Vec3> {
         self.position
             .plus(&self.rotation.map(|axes| apply(&axes, at)))
     }
 
-    /// ω and its derivatives, by the product rule on Rᵀ Ṙ.
+    /// Returns ω and its derivatives, by the product rule on Rᵀ Ṙ.
     pub fn spin(&self) -> Spin {
         let r = &self.rotation;
         let n = r.by.len();
@@ -129,12 +128,12 @@ impl MovingFrame {
     }
 }
 
-/// A point from the jets of its entries.
+/// Creates a point from the jets of its entries.
 pub fn point(n: usize, jets: &[Jet; 3]) -> Moving<Vec3> {
     Moving::assemble(n, |of| std::array::from_fn(|i| of(&jets[i])))
 }
 
-/// The entries of a pose as they are read by `MovingFrame::new`.
+/// Lists the entries of a pose in the order in which [`MovingFrame::new`] reads them.
 pub fn entries(rotation: &[[Edge; 3]; 3], position: &[Edge; 3]) -> Vec<Edge> {
     rotation.iter().flatten().chain(position).copied().collect()
 }

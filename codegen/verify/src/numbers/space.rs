@@ -1,29 +1,29 @@
-//! Vectors of three numbers modulo p, and the velocities of a frame from those of its axes.
+//! Vectors and matrices of numbers modulo p, and the angular velocity of a frame from the rates of its axes.
 
 use crate::kernel::dot;
 use hamel_algebra::fp::Fp;
 
-/// A vector.
+/// Vector of three numbers.
 pub type Vec3 = [Fp; 3];
-/// A matrix, by rows.
+/// Matrix of three rows.
 pub type Mat3 = [Vec3; 3];
 
-/// a + b.
+/// Returns a + b.
 pub fn add(a: Vec3, b: Vec3) -> Vec3 {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// a − b.
+/// Returns a − b.
 pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// c a.
+/// Returns c a.
 pub fn scale(c: Fp, a: Vec3) -> Vec3 {
     a.map(|entry| c * entry)
 }
 
-/// a × b.
+/// Returns a × b.
 pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -31,22 +31,22 @@ pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     })
 }
 
-/// M a.
+/// Returns M a.
 pub fn apply(m: &Mat3, a: Vec3) -> Vec3 {
     m.map(|row| dot(&row, &a))
 }
 
-/// A column.
+/// Returns the j-th column.
 pub fn column(m: &Mat3, j: usize) -> Vec3 {
     m.map(|row| row[j])
 }
 
-/// Mᵀ a.
+/// Returns Mᵀ a.
 pub fn apply_transposed(m: &Mat3, a: Vec3) -> Vec3 {
     std::array::from_fn(|j| dot(&column(m, j), &a))
 }
 
-/// vee(Rᵀ Ṙ) for a change Ṙ of R: the angular velocity in the axes of R.
+/// Returns vee(Rᵀ Ṙ) for a change Ṙ of R: the angular velocity in the axes of R.
 pub fn spin(rotation: &Mat3, change: &Mat3) -> Vec3 {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);

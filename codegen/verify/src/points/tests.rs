@@ -1,4 +1,4 @@
-//! Fresh points: agreement takes all of them.
+//! Tests of fresh points: agreement requires all of them.
 
 use super::{MISSING, POINTS, Unequal, at_fresh_points};
 use hamel_algebra::lane::Lane;

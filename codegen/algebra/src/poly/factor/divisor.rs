@@ -17,7 +17,7 @@ pub(super) struct Occurrence {
     pub(super) size: usize,
     /// Operations saved by writing m K, not counting those of K.
     pub(super) saved: i64,
-    /// The one before it of the same kernel.
+    /// Index of the previous occurrence of the same kernel.
     pub(super) previous: Option<usize>,
 }
 
@@ -25,16 +25,16 @@ pub(super) struct Occurrence {
 pub(super) struct Kernel {
     /// Operations of c₁ ± c₂.
     pub(super) cost: i64,
-    /// Operations saved with all occurrences.
+    /// Operations saved by all occurrences together, less those of the kernel itself.
     pub(super) saved: i64,
-    /// The latest of its occurrences.
+    /// Index of the latest occurrence.
     pub(super) latest: Option<usize>,
 }
 
 /// A cube l₁ l₂.
 pub(super) struct Cube {
     pub(super) pair: (Literal, Literal),
-    /// Operations saved with all nodes.
+    /// Operations saved in all nodes together, less the one of the cube itself.
     pub(super) saved: i64,
     pub(super) nodes: Vec<usize>,
 }
@@ -46,7 +46,7 @@ pub(super) enum Divisor {
     Cube(usize),
 }
 
-/// How the next divisor is chosen: the best of weight × operations saved + noise.
+/// Choice of the next divisor: the best one by weight × operations saved + noise.
 #[derive(Clone, Copy)]
 pub(super) struct Strategy {
     pub(super) kernel: i64,
@@ -56,7 +56,7 @@ pub(super) struct Strategy {
 }
 
 impl Strategy {
-    /// The rank of a divisor that saves so many operations.
+    /// Returns the score of a divisor that saves this number of operations.
     pub(super) fn score(&self, divisor: Divisor, saved: i64) -> i64 {
         let (weight, key) = match divisor {
             Divisor::Kernel(index) => (self.kernel, 2 * index as u64),
@@ -67,12 +67,12 @@ impl Strategy {
     }
 }
 
-/// Operations for a product of so many literals.
+/// Operations for a product of this number of literals.
 pub(super) fn multiplications(literals: usize) -> i64 {
     literals.saturating_sub(1) as i64
 }
 
-/// Number and hash of the common literals.
+/// Returns the number of common literals, and a hash of them.
 pub(super) fn common(a: &[Literal], b: &[Literal]) -> (usize, u64) {
     let (mut i, mut j, mut size, mut hash) = (0, 0, 0, 0u64);
     while let (Some(x), Some(y)) = (a.get(i), b.get(j)) {

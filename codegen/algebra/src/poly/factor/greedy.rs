@@ -1,11 +1,11 @@
-//! Extraction of divisors, the one that saves most first, until none saves anything.
+//! Greedy extraction of divisors: the one that saves most comes first, until none saves anything.
 
 use super::divisor::{Divisor, Occurrence, Strategy};
 use super::network::{Network, Node};
 use super::system::{Literal, Literals, System};
 use std::cmp::Reverse;
 
-/// The system after extraction, and the work it took. Stops early beyond a bound on work.
+/// Returns the system after extraction, and the work it took. Stops early once the work exceeds `most`.
 pub(super) fn extracted(system: &System, strategy: Strategy, most: u64) -> (System, u64) {
     let mut network = Network::new(system, strategy);
     while network.work <= most {
@@ -19,7 +19,7 @@ pub(super) fn extracted(system: &System, strategy: Strategy, most: u64) -> (Syst
         if saved <= 0 {
             continue;
         }
-        // Entries of the queue are out of date once a product they count is gone.
+        // Entries of the queue are out of date once a product that they count has been removed.
         if network.strategy.score(divisor, saved) < score {
             network.push(divisor, saved);
             continue;
@@ -38,8 +38,8 @@ pub(super) fn extracted(system: &System, strategy: Strategy, most: u64) -> (Syst
 }
 
 impl Network {
-    /// Occurrences of a kernel that can be replaced together, the definition of the kernel first;
-    /// and whether there is one: a sum that is nothing but the kernel.
+    /// Returns occurrences of a kernel that can be replaced together, with its definition first; and
+    /// whether there is a definition, that is, a sum that consists of the kernel alone.
     fn disjoint_occurrences(&mut self, kernel: usize) -> (Vec<Occurrence>, bool) {
         let mut candidates = self.occurrences(kernel);
         let defines = |o: &Occurrence| o.size == 0 && self.sums[self.nodes[o.first].sum].len() == 2;
@@ -57,13 +57,13 @@ impl Network {
         (chosen, defined)
     }
 
-    /// Operations saved by a kernel as things are now.
+    /// Number of operations that extracting a kernel saves at present.
     fn kernel_saving(&mut self, kernel: usize) -> i64 {
         let (chosen, _) = self.disjoint_occurrences(kernel);
         chosen.iter().map(|o| o.saved).sum::<i64>() - self.kernels[kernel].cost
     }
 
-    /// Operations saved by a cube as things are now.
+    /// Number of operations that extracting a cube saves at present.
     fn cube_saving(&mut self, cube: usize) -> i64 {
         let nodes = &self.nodes;
         let entry = &mut self.cubes[cube];
@@ -94,8 +94,8 @@ impl Network {
         let literal = self.literal(definition);
         for &o in chosen.iter().skip(usize::from(defined)) {
             let (mut cofactor, a, b) = self.divided(o);
-            // Equal hashes are all but surely equal products; this makes it sure. And a product
-            // may be gone because a literal in it was forwarded.
+            // Products with equal hashes are almost certainly equal; this comparison makes sure. In
+            // addition, a product may have been removed because a literal in it was forwarded.
             let alive = self.nodes[o.first].alive && self.nodes[o.second].alive;
             if !alive || a != first || b != second {
                 continue;
@@ -148,7 +148,7 @@ impl Network {
         }
     }
 
-    /// Cofactor m and parts c₁, c₂ of an occurrence.
+    /// Returns the cofactor m and the parts c₁, c₂ of an occurrence.
     fn divided(&self, o: Occurrence) -> (Literals, Literals, Literals) {
         let (mut m, mut first) = (Literals::new(), Literals::new());
         let mut second = self.nodes[o.second].literals.clone();
@@ -166,7 +166,7 @@ impl Network {
         self.sums.len() - 1
     }
 
-    /// If a sum has become another literal, puts that in its place everywhere.
+    /// If a sum has become a single literal, replaces the sum by it everywhere.
     fn forward(&mut self, sum: usize) {
         let &[node] = self.sums[sum].as_slice() else {
             return;
@@ -192,7 +192,7 @@ impl Network {
     }
 }
 
-/// How often a pair of literals can be taken from a product.
+/// Number of times that a pair of literals can be taken from a product.
 fn count(literals: &[Literal], (a, b): (Literal, Literal)) -> usize {
     let of = |l: Literal| literals.iter().filter(|&&other| other == l).count();
     if a == b { of(a) / 2 } else { of(a).min(of(b)) }

@@ -1,11 +1,10 @@
-//! A cheap straight-line program for several polynomials at once.
+//! Factorization of several polynomials at once into a cheap straight-line program.
 //!
-//! Σ_k (number of products and sums) is made small by factoring and by sharing subexpressions:
-//! f = m c₁ + m c₂ + … becomes m K + … with K = c₁ + c₂, wherever K occurs, and products of two
-//! factors that occur several times are computed once. Coefficients are factors like any other.
-//! Which divisor to extract first is decided greedily; the order matters, so several orders are
-//! tried, then parts of the best program are expanded and extracted anew. All of it is
-//! deterministic and within a fixed amount of work.
+//! The total number of products and sums is made small by factoring and by sharing subexpressions: f = m c₁
+//! + m c₂ + … becomes m K + … with K = c₁ + c₂, wherever K occurs, and products of two factors that occur
+//! several times are computed once. Coefficients are factors like any other. Divisors are extracted
+//! greedily. As the result depends on their order, several orders are tried; then parts of the best program
+//! are expanded and extracted again. The search is deterministic, and limited to a fixed amount of work.
 
 mod divisor;
 mod greedy;
@@ -26,7 +25,7 @@ use system::{Literal, Product, System, cancelled};
 /// ± a run-time constant. Different ids are unrelated; id 0 is the number 1.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Coefficient {
-    /// Which constant.
+    /// Identifier of the constant.
     pub id: u32,
     /// Whether it is negated.
     pub negative: bool,
@@ -41,14 +40,15 @@ pub struct Term {
     pub monomial: Monomial,
 }
 
-/// Pairs of products looked at in all attempts together, but at least one attempt: about 50 ms.
+/// Budget of all attempts together, in pairs of products examined (about 50 ms); one attempt is always
+/// made.
 const WORK: u64 = 300_000;
-/// Attempts without an improvement before the search ends: so many, and so many for each term.
+/// Attempts without an improvement before the search ends: a fixed number, and a number for each term.
 const PATIENCE: (usize, usize) = (30, 4);
-/// Products one product may become when sums in it are expanded.
+/// Largest number of products that one product may become when sums in it are expanded.
 const EXPANSION: usize = 64;
 
-/// A cheap program whose outputs are the given polynomials.
+/// Returns a cheap program whose outputs are the given polynomials.
 pub fn factor(polynomials: &[Vec<Term>]) -> Program {
     let system = split::split(system(polynomials));
     let strategy = |kernel, cube, noise, seed| Strategy {
@@ -95,7 +95,7 @@ pub fn factor(polynomials: &[Vec<Term>]) -> Program {
     best.program()
 }
 
-/// The polynomials as sums of products of literals.
+/// Writes the polynomials as sums of products of literals.
 fn system(polynomials: &[Vec<Term>]) -> System {
     let values = |term: &Term| {
         let id = term.coefficient.id;

@@ -26,17 +26,17 @@ pub(super) struct Network {
     pub(super) cubes: Vec<Cube>,
     kernel_index: FxHashMap<(u64, u64, bool), usize>,
     cube_index: FxHashMap<(Literal, Literal), usize>,
-    /// Upper bounds of the saving, to be checked when popped.
+    /// Divisors with upper bounds of their scores, which are checked when an entry is popped.
     pub(super) queue: BinaryHeap<(i64, Reverse<Divisor>)>,
     pub(super) strategy: Strategy,
-    /// Pairs of products looked at.
+    /// Number of pairs of products examined so far.
     pub(super) work: u64,
-    /// Whether the network is being built, so that nothing is queued yet.
+    /// Whether the network is still being built, in which case nothing is queued yet.
     indexing: bool,
 }
 
 impl Network {
-    /// The network of a system.
+    /// Builds the network of a system.
     pub(super) fn new(system: &System, strategy: Strategy) -> Self {
         let mut network = Network {
             inputs: system.inputs.len(),
@@ -67,7 +67,7 @@ impl Network {
         network
     }
 
-    /// The sums as they are now.
+    /// Returns the present sums.
     pub(super) fn products(&self) -> Vec<Vec<Product>> {
         let product = |&node: &usize| Product {
             negative: self.nodes[node].negative,
@@ -78,7 +78,7 @@ impl Network {
             .collect()
     }
 
-    /// The literal of a sum.
+    /// Returns the literal that stands for a sum.
     pub(super) fn literal(&self, sum: usize) -> Literal {
         (self.inputs + sum) as Literal
     }
@@ -110,7 +110,7 @@ impl Network {
         self.pairs_of_literals(node);
     }
 
-    /// Indexes the kernel of two products of a sum.
+    /// Indexes the kernel of two products in a sum.
     fn pair(&mut self, a: usize, b: usize) {
         self.work += 1;
         let (size, common) = common(&self.nodes[a].literals, &self.nodes[b].literals);
@@ -150,7 +150,7 @@ impl Network {
         self.push(Divisor::Kernel(kernel), saved);
     }
 
-    /// The occurrences of a kernel whose products are alive.
+    /// Returns the occurrences of a kernel whose products are alive.
     pub(super) fn occurrences(&mut self, kernel: usize) -> Vec<Occurrence> {
         let mut result = Vec::new();
         let entry = &mut self.kernels[kernel];
@@ -199,7 +199,7 @@ impl Network {
         }
     }
 
-    /// Queues a divisor that may save so many operations.
+    /// Queues a divisor that may save this number of operations.
     pub(super) fn push(&mut self, divisor: Divisor, saved: i64) {
         if saved > 0 && !self.indexing {
             let score = self.strategy.score(divisor, saved);

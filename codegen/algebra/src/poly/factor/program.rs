@@ -1,4 +1,4 @@
-//! A straight-line program: a list of products and sums, each of earlier values.
+//! Straight-line programs: lists of products and sums of earlier values.
 
 use super::super::field::Field;
 use super::super::monomial::Var;
@@ -40,7 +40,7 @@ impl Operand {
     }
 }
 
-/// One operation. Operands of a product are unsigned; of a sum the first is.
+/// One operation. The operands of a product are unsigned, and so is the first operand of a sum.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Step {
     /// a b.
@@ -54,7 +54,7 @@ pub enum Step {
 pub struct Program {
     /// The operations, in order.
     pub steps: Vec<Step>,
-    /// One result for each polynomial.
+    /// Results, one for each polynomial.
     pub outputs: Vec<Operand>,
 }
 
@@ -64,7 +64,7 @@ impl Program {
         self.steps.len()
     }
 
-    /// The outputs for given constants and variables.
+    /// Evaluates the outputs for given constants and variables.
     pub fn evaluate<F: Field>(
         &self,
         coefficient: &dyn Fn(u32) -> F,
@@ -97,7 +97,7 @@ impl Program {
     }
 }
 
-/// Appends steps to a program, never the same twice.
+/// Builder of a program that never contains the same step twice.
 #[derive(Default)]
 pub(super) struct Builder {
     pub(super) program: Program,
@@ -138,7 +138,7 @@ impl Builder {
         }
     }
 
-    /// a − b, or −(b − a) where that is known already.
+    /// Returns a − b, or −(b − a) if b − a has already been computed.
     fn difference(&mut self, a: Operand, b: Operand) -> Operand {
         let opposite = Step::Add(b.negated_if(true), a.negated_if(true));
         match self.known.get(&opposite) {

@@ -1,13 +1,13 @@
-//! Sums too long to look at all pairs of products: f = Σ_l l q_l + r, by their most frequent
-//! literals l, until every sum is short.
+//! Splitting of sums that are too long to examine all pairs of their products: f = Σ_l l q_l + r, by their
+//! most frequent literals l, until every sum is short.
 
 use super::system::{Literal, Literals, Product, System};
 use std::collections::BTreeMap;
 
-/// Pairs of products in all sums together that are affordable.
+/// Affordable number of pairs of products in all sums together.
 const PAIRS: usize = 60_000;
 
-/// The system with long sums split.
+/// Splits the long sums of a system.
 pub(super) fn split(mut system: System) -> System {
     let pairs = |system: &System| -> usize {
         let sums = system.sums.iter();
@@ -37,7 +37,8 @@ pub(super) fn split(mut system: System) -> System {
     system
 }
 
-/// Takes q_l and its literal l from a sum; where no literal occurs twice, some products.
+/// Takes q_l and its literal l from a sum; if no literal occurs twice, takes some products without a
+/// literal.
 fn take_part(sum: &mut Vec<Product>, most: usize) -> (Vec<Product>, Option<Literal>) {
     let mut counts: BTreeMap<Literal, usize> = BTreeMap::new();
     for product in sum.iter() {

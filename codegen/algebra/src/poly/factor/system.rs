@@ -5,10 +5,10 @@ use super::program::{Builder, Operand, Program, Value};
 use smallvec::SmallVec;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An input, or `inputs.len()` + the index of a sum.
+/// An input by its index, or a sum by `inputs.len()` + its index.
 pub(super) type Literal = u32;
 
-/// The literals of a product: as many as most have take no memory of their own.
+/// Literals of a product; short lists need no heap allocation.
 pub(super) type Literals = SmallVec<[Literal; 8]>;
 
 /// ± Π literals, ascending, repeated for powers.
@@ -27,12 +27,12 @@ pub(super) struct System {
 }
 
 impl System {
-    /// The sum a literal stands for.
+    /// Returns the sum that a literal stands for, if it is not an input.
     pub(super) fn sum_of(&self, literal: Literal) -> Option<usize> {
         (literal as usize).checked_sub(self.inputs.len())
     }
 
-    /// Sums in use, each after those it depends on.
+    /// Returns the sums in use, each after those it depends on.
     fn schedule(&self) -> Vec<usize> {
         let mut done = vec![false; self.sums.len()];
         let mut result = Vec::new();
@@ -55,7 +55,7 @@ impl System {
         result
     }
 
-    /// The number of operations, without sharing beyond that of the literals.
+    /// Number of operations, where nothing is shared except through literals.
     pub(super) fn operations(&self) -> usize {
         let sums = self.schedule();
         let cost = |&sum: &usize| {
@@ -66,7 +66,7 @@ impl System {
         sums.iter().map(cost).sum()
     }
 
-    /// The program that evaluates the sums in use.
+    /// Builds the program that evaluates the sums in use.
     pub(super) fn program(&self) -> Program {
         let mut builder = Builder::default();
         let mut values = vec![Operand::new(Value::Zero); self.sums.len()];
@@ -91,8 +91,8 @@ impl System {
         program
     }
 
-    /// The system with the chosen sums multiplied out where they are used, as long as no product
-    /// grows into more than `most` products; sums out of use are dropped.
+    /// Multiplies out the chosen sums where they are used, as long as no product grows into more than
+    /// `most` products, and drops sums that are not in use.
     pub(super) fn expanded(&self, chosen: &BTreeSet<usize>, most: usize) -> System {
         let mut sums: Vec<Vec<Product>> = vec![Vec::new(); self.sums.len()];
         let schedule = self.schedule();
@@ -122,7 +122,7 @@ impl System {
         .compact()
     }
 
-    /// The same system without the sums out of use.
+    /// Drops the sums that are not in use.
     pub(super) fn compact(self) -> System {
         let mut kept: Vec<usize> = (0..self.outputs).collect();
         let scheduled = self.schedule().into_iter();
@@ -154,7 +154,7 @@ impl System {
     }
 }
 
-/// The products of each with each.
+/// Returns the products of each product in a with each in b.
 fn multiply(a: &[Product], b: &[Product]) -> Vec<Product> {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     let product = |(p, q): (&Product, &Product)| Product {
@@ -164,7 +164,7 @@ fn multiply(a: &[Product], b: &[Product]) -> Vec<Product> {
     pairs.map(product).collect()
 }
 
-/// The products in their order, with sorted literals, without pairs of opposite ones.
+/// Returns the products in their order, with sorted literals and without pairs that cancel.
 pub(super) fn cancelled(products: impl Iterator<Item = Product>) -> Vec<Product> {
     let mut result: Vec<Product> = Vec::new();
     let mut open: BTreeMap<(Literals, bool), Vec<usize>> = BTreeMap::new();

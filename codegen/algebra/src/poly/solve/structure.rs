@@ -1,11 +1,11 @@
-//! What the shape of a system tells: its independent parts, which variable to set next.
+//! Structure of a system: its independent parts, and the variable to set next.
 
 use super::super::monomial::Var;
 use super::super::polynomial::Poly;
 use crate::prime::Residue;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The system as independent parts, with their variables.
+/// Splits the system into independent parts, with their variables.
 pub(super) fn parts<const K: usize>(
     system: &[Poly<Residue<K>>],
     open: &BTreeSet<Var>,
@@ -31,7 +31,7 @@ pub(super) fn parts<const K: usize>(
     parts
 }
 
-/// The coefficients of a polynomial in one variable, ascending.
+/// Returns the coefficients of a polynomial in one variable, ascending.
 pub(super) fn dense<const K: usize>(f: &Poly<Residue<K>>) -> Vec<Residue<K>> {
     let mut result = vec![Residue::ZERO; f.degree() as usize + 1];
     for (monomial, c) in f.terms() {
@@ -40,7 +40,7 @@ pub(super) fn dense<const K: usize>(f: &Poly<Residue<K>>) -> Vec<Residue<K>> {
     result
 }
 
-/// A variable of a Gröbner basis with a finite variety.
+/// Picks a variable of a Gröbner basis with a finite variety; `None` if the variety is not finite.
 pub(super) fn determined<const K: usize>(
     system: &[Poly<Residue<K>>],
     open: &BTreeSet<Var>,
@@ -62,8 +62,8 @@ pub(super) fn determined<const K: usize>(
         .map(|power| power.0)
 }
 
-/// The open variables, first those of the polynomial with the fewest; among these first the one
-/// of highest degree, so that the rest is easy to solve.
+/// Returns the open variables by preference: first those of the polynomial with the fewest variables, and
+/// among these first the one of highest degree, so that the rest is easy to solve.
 pub(super) fn by_preference<const K: usize>(
     system: &[Poly<Residue<K>>],
     open: &BTreeSet<Var>,

@@ -1,4 +1,4 @@
-//! The rotations of the tetrahedron.
+//! Tests of the rotations of the tetrahedron.
 
 use super::{matrix, tetrahedron};
 

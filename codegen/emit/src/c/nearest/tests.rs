@@ -1,4 +1,4 @@
-//! Arrays of C are given from where most is near.
+//! Tests that arrays are passed from the place near which most of their uses lie.
 
 use super::nearest;
 
@@ -10,6 +10,6 @@ fn arrays_are_given_from_where_most_is_near() {
     // 0 to 31 are near 16.
     assert_eq!(from(&[0, 5, 15, 31, 40]), 16);
     assert_eq!(from(&[3, 60, 61, 75]), 76);
-    // Within the array, and one behind it at most.
+    // The origin is within the array, or one behind it at most.
     assert_eq!(from(&[3, 97, 98, 99]), 100);
 }

@@ -1,4 +1,4 @@
-//! Words that C wants for itself are not given to anything else.
+//! Tests that reserved words of C are not used as identifiers.
 
 use super::legal;
 

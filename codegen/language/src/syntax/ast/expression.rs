@@ -1,14 +1,14 @@
-//! Expressions as they are written.
+//! Expressions of the syntax tree.
 
 use super::{Ident, Span};
 use num_rational::BigRational;
 
-/// An expression with its region.
+/// An expression with its source position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
-    /// What it is.
+    /// Form of the expression, with its operands.
     pub kind: ExprKind,
-    /// Where it stands.
+    /// Position in the source.
     pub span: Span,
 }
 
@@ -25,7 +25,7 @@ pub enum ExprKind {
     Index(Box<Expr>, Vec<Expr>),
     /// `f(a, b)`.
     Call(Ident, Vec<Expr>),
-    /// `velocity(f, p) in g`: the components of a call in the axes of a frame.
+    /// `velocity(f, p) in g`: the result of a call, expressed in the axes of a frame.
     InAxes(Box<Expr>, Box<Expr>),
     /// `-a`.
     Neg(Box<Expr>),
@@ -55,15 +55,15 @@ pub enum BinaryOp {
 /// `if left < right { then } else { otherwise }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// What is compared.
+    /// Left side of the comparison.
     pub left: Expr,
-    /// How.
+    /// Comparison operator.
     pub comparison: Comparison,
-    /// With what.
+    /// Right side of the comparison.
     pub right: Expr,
-    /// The value where the comparison holds.
+    /// Value if the comparison holds.
     pub then: Expr,
-    /// The value elsewhere.
+    /// Value otherwise.
     pub otherwise: Expr,
 }
 
@@ -81,7 +81,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// As it is written.
+    /// Returns the operator's spelling.
     pub fn sign(self) -> &'static str {
         match self {
             Comparison::Less => "<",
@@ -93,7 +93,7 @@ impl Comparison {
 }
 
 impl Expr {
-    /// The expressions that it is made of, in the order of the text.
+    /// Returns the direct subexpressions, in the order of the text.
     pub fn parts(&self) -> Vec<&Expr> {
         match &self.kind {
             ExprKind::Number(_) | ExprKind::Name(_) => Vec::new(),

@@ -1,4 +1,4 @@
-//! Joints as they are written.
+//! Joints of the syntax tree.
 
 use super::{Expr, Ident, Span};
 
@@ -27,7 +27,7 @@ pub enum JointKind {
     Fixed,
 }
 
-/// What the braces of a joint can hold.
+/// Fields that the braces of a joint can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum JointField {
     /// `damping d;`
@@ -40,7 +40,7 @@ pub enum JointField {
     Rest,
     /// `force E;`
     Force,
-    /// `limit LOWER to UPPER;`, two values.
+    /// `limit LOWER to UPPER;`, with two values.
     Limit,
     /// `max_speed V;`
     MaxSpeed,
@@ -53,18 +53,18 @@ pub enum JointField {
 pub struct Joint {
     /// Its name.
     pub name: Ident,
-    /// Its kind, and where that was written.
+    /// Kind of the joint, and its source position.
     pub kind: (JointKind, Span),
-    /// Its axes: one, two for `universal`, none where the kind has none.
+    /// Axes: two for `universal`, none for kinds without an axis, one otherwise.
     pub axes: Vec<Expr>,
-    /// The frame that it is fixed to, the world where absent.
+    /// Frame to which the joint is fixed, the world if absent.
     pub on: Option<Ident>,
-    /// Where it stands in that frame, at its origin where absent.
+    /// Placement of the joint in that frame, its origin if absent.
     pub at: Option<Expr>,
-    /// The frame that it carries.
+    /// New frame that the joint moves.
     pub moves: Ident,
-    /// What its coordinate is, where it has none of its own.
+    /// Value of the joint coordinate, if the joint has no coordinate of its own.
     pub follows: Option<Expr>,
-    /// What its braces hold, each once, with the place of its word.
+    /// Fields in the braces, each at most once: the field, the span of its keyword, and its values.
     pub fields: Vec<(JointField, Span, Vec<Expr>)>,
 }

@@ -1,8 +1,8 @@
-//! Where statements come from that do not stand in the description itself: included texts, and copies of statements.
+//! Origins of statements that do not stand in the description itself: included texts, and copies of statements.
 //!
-//! Places are numbers. Those of the description come first; each included text, and each copy that a part or a round of
-//! a `for` is, has a region of its own behind them. So whatever is found later needs its place alone, and
-//! [`Origins::located`] says in which text that is, and which statements led there.
+//! Places are numbers. Those of the description come first. Each included text, and each copy of statements made by a
+//! part or by one round of a `for`, has a region of its own after them. A place alone is therefore enough to locate an
+//! error: [`Origins::located`] finds the text that it belongs to and the statements that led there.
 
 use super::Span;
 use crate::diagnostics::Diagnostic;
@@ -10,17 +10,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Notes of one error that say which statement made a copy.
+/// Largest number of notes per error that name a statement which made a copy.
 const MOST_NOTES: usize = 4;
 
-/// The regions behind a description; they take no part in equality.
+/// Regions of places after those of a description. They are ignored in comparisons for equality.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
-    /// The first place that is free.
+    /// First free place.
     next: usize,
-    /// In the order of their places.
+    /// Regions in the order of their places.
     regions: Vec<Region>,
-    /// Names as they are written, by those that stand for them.
+    /// Map from internal names to the names as written.
     written: Arc<BTreeMap<String, String>>,
 }
 
@@ -30,7 +30,7 @@ impl PartialEq for Origins {
     }
 }
 
-/// Consecutive places.
+/// A range of consecutive places.
 #[derive(Clone, Debug)]
 struct Region {
     range: Range<usize>,
@@ -41,25 +41,25 @@ struct Region {
 enum Origin {
     /// An included text.
     Text(Arc<Included>),
-    /// A copy of what stands from a place on, made by a statement.
+    /// A copy, made by the statement `by`, of the text that starts at place `of`.
     Copy { of: usize, by: Span, label: String },
 }
 
 /// A text that a description includes.
 #[derive(Clone, Debug)]
 pub struct Included {
-    /// Its path from the description.
+    /// Path relative to the description.
     pub name: String,
-    /// What it says.
+    /// Contents.
     pub text: String,
-    /// The statement that includes it.
+    /// Statement that includes it.
     pub by: Span,
-    /// The place of its first byte.
+    /// Place of the first byte.
     start: usize,
 }
 
 impl Included {
-    /// The line and the column at a byte, from 1.
+    /// Returns the line and the column of a byte, both counted from 1.
     pub fn line(&self, at: usize) -> (usize, usize) {
         let before = self.text.get(..at).unwrap_or(&self.text);
         let start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -68,12 +68,12 @@ impl Included {
     }
 }
 
-/// The included texts that an error is about.
+/// Included texts that the places of an error lie in.
 #[derive(Clone, Debug, Default)]
 pub struct Texts(Vec<Arc<Included>>);
 
 impl Texts {
-    /// The included text in which a region is, and its bytes there.
+    /// Returns the included text that contains a region, and the byte range in that text.
     pub fn find(&self, span: Span) -> Option<(&Included, Range<usize>)> {
         let range = span.range()?;
         let inside = |text: &&Arc<Included>| {
@@ -86,7 +86,7 @@ impl Texts {
 }
 
 impl Origins {
-    /// Behind a description with as many places.
+    /// Creates an empty set of regions after a description with this many places.
     pub fn behind(places: usize) -> Origins {
         Origins {
             next: places + 1,
@@ -94,7 +94,7 @@ impl Origins {
         }
     }
 
-    /// Makes room for as many places; `None` where there is none left.
+    /// Reserves a region of `len` places and returns its first place, or `None` if no places are left.
     fn room(&mut self, len: usize, origin: Origin) -> Option<usize> {
         let start = self.next;
         let range = start..start + len + 1;
@@ -104,7 +104,7 @@ impl Origins {
         Some(start)
     }
 
-    /// The first place of an included text.
+    /// Reserves a region for an included text and returns its first place, or `None` if no places are left.
     pub fn include(&mut self, name: &str, text: &str, by: Span) -> Option<usize> {
         let included = Included {
             name: name.to_owned(),
@@ -115,7 +115,8 @@ impl Origins {
         self.room(text.len(), Origin::Text(Arc::new(included)))
     }
 
-    /// By how much the places of a copy are beyond those of what it is a copy of; nothing where no room is left.
+    /// Reserves a region for a copy of `of`, and returns the offset from the places of the original to those of the
+    /// copy. Returns 0 if no places are left.
     pub fn copy(&mut self, of: Span, by: Span, label: String) -> usize {
         let Some(range) = of.range() else {
             return 0;
@@ -125,12 +126,12 @@ impl Origins {
         room.map_or(0, |start| start - of)
     }
 
-    /// Says how names are written that stand in the description under others.
+    /// Sets the map from internal names to the names as written.
     pub fn name(&mut self, written: BTreeMap<String, String>) {
         self.written = Arc::new(written);
     }
 
-    /// How a name is written, where that differs.
+    /// Returns the name as written, if it differs from the internal name.
     pub fn written(&self, name: &str) -> Option<&str> {
         self.written.get(name).map(String::as_str)
     }
@@ -144,18 +145,18 @@ impl Origins {
         region.range.contains(&at).then_some(region)
     }
 
-    /// Whether a place is in an included text.
+    /// Returns whether a place is in an included text.
     pub fn is_included(&self, span: Span) -> bool {
         let region = self.region(self.source(span));
         region.is_some_and(|region| matches!(region.origin, Origin::Text(_)))
     }
 
-    /// Where a statement was written that may be a copy.
+    /// Returns the place where a statement, possibly a copy, was written.
     pub fn source(&self, span: Span) -> Span {
         self.unwound(span, &mut Vec::new())
     }
 
-    /// Where a region was written, and what the copies on the way to it are.
+    /// Returns the place where a region was written, and collects the copies on the way there.
     fn unwound<'a>(&'a self, mut span: Span, copies: &mut Vec<(Span, &'a str)>) -> Span {
         while let (Some(range), Some(region)) = (span.range(), self.region(span)) {
             let Origin::Copy { of, by, label } = &region.origin else {
@@ -168,7 +169,7 @@ impl Origins {
         span
     }
 
-    /// An error at the place where it was written, with notes at the statements that led there.
+    /// Moves an error to the place where it was written, with notes at the statements that led there.
     pub fn located(&self, mut error: Diagnostic) -> Diagnostic {
         if self.regions.is_empty() && self.written.is_empty() {
             return error;
@@ -200,7 +201,7 @@ impl Origins {
         error
     }
 
-    /// Gives an error the included texts that it is about, with a note at the statements that include them.
+    /// Attaches to an error the included texts that it refers to, with a note at each statement that includes one.
     fn attach(&self, error: &mut Diagnostic) {
         let text = |span: Span| match &self.region(span)?.origin {
             Origin::Text(text) => Some(text.clone()),
@@ -216,13 +217,13 @@ impl Origins {
         error.texts = Texts(spans.filter_map(text).collect());
     }
 
-    /// All errors at their places, those once that are the same for several copies.
+    /// Locates all errors. Errors that are the same for several copies are kept once.
     pub fn located_all(&self, errors: Vec<Diagnostic>) -> Vec<Diagnostic> {
         let mut seen = BTreeSet::new();
         let mut all = Vec::new();
         for error in errors {
             let copied = self.source(error.span).range() != error.span.range();
-            // What is quoted, and numbers, may differ between copies.
+            // Quoted names, and numbers, may differ between copies.
             let said: String = error.message.split('`').step_by(2).collect();
             let shape = said.replace(|c: char| c.is_ascii_digit(), "");
             let error = self.located(error);
@@ -234,7 +235,7 @@ impl Origins {
         all
     }
 
-    /// A sentence with names as they are written.
+    /// Replaces internal names in a sentence by the names as written.
     fn in_words(&self, text: &str) -> String {
         if self.written.is_empty() {
             return text.to_owned();

@@ -1,4 +1,4 @@
-//! Statements that stand for others: repetition, components and their parts.
+//! Statements that expand into others: repetition, components and their parts.
 
 use super::{Expr, Ident, Item, Shape, Span};
 
@@ -14,7 +14,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// The region of all of it.
+    /// Returns the span from the counter's name to the last value.
     pub fn span(&self) -> Span {
         self.name.span.to(self.last.span)
     }
@@ -23,7 +23,7 @@ impl Counter {
 /// `for i in 1..n { … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repeat {
-    /// What counts.
+    /// Counter of the loop.
     pub counter: Counter,
     /// The statements that are repeated.
     pub items: Vec<Item>,
@@ -34,7 +34,7 @@ pub struct Repeat {
 pub struct Component {
     /// Its name.
     pub name: Ident,
-    /// What a part has to say of itself.
+    /// Parameters, for which each part gives arguments.
     pub parameters: Vec<Parameter>,
     /// Its statements.
     pub items: Vec<Item>,
@@ -45,11 +45,11 @@ pub struct Component {
 pub struct Parameter {
     /// Its name in the component.
     pub name: Ident,
-    /// Whether it stands for a frame, else for an expression.
+    /// Whether it stands for a frame; otherwise for an expression.
     pub frame: bool,
-    /// The shape that the expression has to have, where one is written.
+    /// Required shape of the expression, if one is written.
     pub shape: Option<Shape>,
-    /// What it is where a part does not say.
+    /// Default, if one is written.
     pub default: Option<Expr>,
 }
 
@@ -58,19 +58,19 @@ pub struct Parameter {
 pub struct Part {
     /// Its name, as written.
     pub name: Ident,
-    /// The counter of an array of parts.
+    /// Counter of an array of parts, if it is one.
     pub counter: Option<Counter>,
-    /// The component that it is one of.
+    /// Component that the part is an instance of.
     pub component: Ident,
-    /// What its parameters are.
+    /// Arguments for the component's parameters.
     pub arguments: Vec<Argument>,
 }
 
 /// An argument of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Argument {
-    /// The name of the parameter, where it is written.
+    /// Name of the parameter, if written.
     pub name: Option<Ident>,
-    /// Its value; a frame by its name.
+    /// Value; for a frame, its name.
     pub value: Expr,
 }

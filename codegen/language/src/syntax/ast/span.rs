@@ -1,11 +1,11 @@
-//! Regions of the source, as data.
+//! Regions of the source.
 
 use std::ops::Range;
 
 /// A region of the source: bytes of a text, or the numbers of tokens in the input of a macro.
 ///
-/// It is data alone, so that descriptions and diagnostics can be sent between threads. Places take no part in
-/// equality: two descriptions are equal where they say the same.
+/// It is plain data, so descriptions and diagnostics can be sent between threads. Spans are ignored in comparisons: all
+/// spans are equal, so two descriptions are equal if they say the same.
 #[derive(Clone, Copy)]
 pub struct Span {
     start: u32,
@@ -13,13 +13,13 @@ pub struct Span {
 }
 
 impl Span {
-    /// No region: what was written by a program has none.
+    /// No region: the span of nodes that a program has created.
     pub const NOWHERE: Span = Span {
         start: u32::MAX,
         end: u32::MAX,
     };
 
-    /// The region of a range; none where its end is beyond 2³² − 2.
+    /// Creates the region of a range; [`Span::NOWHERE`] if its end is beyond 2³² − 2.
     pub fn new(range: Range<usize>) -> Self {
         match (u32::try_from(range.start), u32::try_from(range.end)) {
             (Ok(start), Ok(end)) if end < u32::MAX => Span { start, end },
@@ -27,13 +27,13 @@ impl Span {
         }
     }
 
-    /// The range, where there is one.
+    /// Returns the range, or `None` for [`Span::NOWHERE`].
     pub fn range(self) -> Option<Range<usize>> {
         let somewhere = self.start != u32::MAX;
         somewhere.then(|| self.start as usize..self.end.max(self.start) as usize)
     }
 
-    /// The region as many places later.
+    /// Returns the region moved `by` places later.
     pub fn later(self, by: usize) -> Self {
         match self.range() {
             Some(range) if by > 0 => Span::new(range.start + by..range.end + by),
@@ -41,7 +41,7 @@ impl Span {
         }
     }
 
-    /// The region from the start of this one to the end of another.
+    /// Returns the region from the start of this one to the end of another.
     pub fn to(self, other: Span) -> Self {
         match (self.range(), other.range()) {
             (Some(first), Some(last)) if last.end > first.start => Span::new(first.start..last.end),

@@ -1,43 +1,43 @@
-//! Tables of values as they are written.
+//! Tables of values in the syntax tree.
 
 use super::{Expr, Ident, Span};
 
 /// `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// The name by which it is called.
+    /// Name by which the table is called.
     pub name: Ident,
-    /// Where its points stand.
+    /// Source of its points.
     pub source: Source,
-    /// What is between the points.
+    /// Interpolation between the points.
     pub between: Between,
-    /// What is beyond the first and the last point.
+    /// Extrapolation beyond the first and the last point.
     pub beyond: Beyond,
 }
 
-/// Where the points of a table stand.
+/// Source of the points of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// `= [(a, b), …]`, all of it at a place.
+    /// `= [(a, b), …]`: the points, and the span of the list.
     Points(Vec<(Expr, Expr)>, Span),
-    /// `from "file.csv"`, the name at a place.
+    /// `from "file.csv"`: the file name, and its span.
     File(String, Span),
 }
 
-/// What is between two points.
+/// Interpolation between two points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Between {
-    /// `linear`: a line.
+    /// `linear`: a straight line.
     Linear,
-    /// `pchip`: cubics with continuous slopes that keep what rises rising.
+    /// `pchip`: cubics with continuous slopes that preserve monotonicity.
     Pchip,
 }
 
 impl Between {
-    /// All of them.
+    /// All interpolations.
     pub const ALL: [Between; 2] = [Between::Linear, Between::Pchip];
 
-    /// As it is written.
+    /// Returns the keyword.
     pub fn word(self) -> &'static str {
         match self {
             Between::Linear => "linear",
@@ -46,22 +46,22 @@ impl Between {
     }
 }
 
-/// What is beyond the first and the last point.
+/// Extrapolation beyond the first and the last point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beyond {
-    /// `hold`: the value there.
+    /// `hold`: the value at the end point.
     Hold,
-    /// `linear`: a line with the slope there.
+    /// `linear`: a line with the slope at the end point.
     Linear,
-    /// `error`: nothing, NaN.
+    /// `error`: NaN.
     Error,
 }
 
 impl Beyond {
-    /// All of them.
+    /// All extrapolations.
     pub const ALL: [Beyond; 3] = [Beyond::Hold, Beyond::Linear, Beyond::Error];
 
-    /// As it is written.
+    /// Returns the keyword.
     pub fn word(self) -> &'static str {
         match self {
             Beyond::Hold => "hold",

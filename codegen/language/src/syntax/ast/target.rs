@@ -1,21 +1,22 @@
-//! What statements are about: `R`, `X.p`, `w[3]`.
+//! Targets of statements: `R`, `X.p`, `w[3]`.
 
 use super::{Ident, Span};
 
-/// A name or one of its parts on the left of `rate` and `start`: `R`, `X.p`, `w[3]`.
+/// A coordinate or velocity, or a part or entry of one, on the left side of statements such as `rate` and `start`: `R`,
+/// `X.p`, `w[3]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     /// The coordinate or velocity.
     pub name: Ident,
-    /// The part of it: `R` or `p` of an SE3, `c` or `s` of an S1.
+    /// Part: `R` or `p` of an SE3, `c` or `s` of an S1.
     pub field: Option<Ident>,
-    /// The indices of an entry of it, from 1; none where the whole is meant. Until it is known what the name stands
-    /// for, they are a part of the name.
+    /// Indices of an entry, from 1; empty if the whole is meant. Until names are resolved, indices are part of the name
+    /// instead.
     pub entry: Vec<i64>,
 }
 
 impl Target {
-    /// Whether something belongs to both of two targets.
+    /// Returns whether two targets have an entry in common.
     pub fn overlaps(&self, other: &Target) -> bool {
         let both = self.entry.iter().zip(&other.entry);
         let field = |target: &Target| target.field.as_ref().map(|field| field.name.clone());
@@ -23,7 +24,8 @@ impl Target {
         self.name.name == other.name.name && !apart && both.into_iter().all(|(a, b)| a == b)
     }
 
-    /// The place of an entry among those of a vector of some length.
+    /// Returns the position, from 0, of the entry in a vector of the given length. Returns `None` if there is no single
+    /// index or it is out of range.
     pub fn place(&self, length: usize) -> Option<usize> {
         let [index] = self.entry.as_slice() else {
             return None;
@@ -32,7 +34,7 @@ impl Target {
         (place < length).then_some(place)
     }
 
-    /// The region of the whole target.
+    /// Returns the span of the whole target.
     pub fn span(&self) -> Span {
         match &self.field {
             Some(field) => self.name.span.to(field.span),

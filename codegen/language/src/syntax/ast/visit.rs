@@ -1,25 +1,26 @@
-//! The names, expressions and places of a statement, visited one by one.
+//! Visitor for the names, expressions and source positions of a statement.
 
 use super::{
     Acting, Body, Choice, Components, Condition, Conserved, Declaration, End, Expr, ExprKind,
     External, Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target, Wanted,
 };
 
-/// What is done with the parts of a statement.
+/// Operations on the parts of a statement.
 pub trait Visit {
-    /// A name that the statement declares, and whether it is that of a frame.
+    /// Visits a name that the statement declares. `frame` says whether it is the name of a frame.
     fn declares(&mut self, name: &mut Ident, frame: bool);
-    /// A name of something else.
+    /// Visits a name that is declared elsewhere.
     fn uses(&mut self, name: &mut Ident);
-    /// A coordinate or velocity, or a part of it.
+    /// Visits a coordinate or velocity, or a part of one.
     fn target(&mut self, target: &mut Target);
-    /// An expression.
+    /// Visits an expression.
     fn expr(&mut self, expr: &mut Expr);
-    /// The place of anything that has no name and is no expression.
+    /// Visits the span of anything that is neither a name nor an expression.
     fn place(&mut self, span: &mut Span);
 }
 
-/// Visits all of a statement that is made of no others, in the order of the text.
+/// Visits all parts of a statement in the order of the text. Statements that contain or expand into others are not
+/// entered.
 pub fn visit(item: &mut Item, to: &mut impl Visit) {
     let Item { kind, span } = item;
     to.place(span);
@@ -203,7 +204,7 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
                 }
             }
         }
-        // Made of others.
+        // These contain or expand into other statements.
         ItemKind::Include(..)
         | ItemKind::Component(_)
         | ItemKind::Part(_)
@@ -282,7 +283,7 @@ fn claim(conserved: &mut Conserved, to: &mut impl Visit) {
     }
 }
 
-/// Moves all places of an expression.
+/// Applies `to` to all spans of an expression.
 pub fn places(expr: &mut Expr, to: &mut impl FnMut(&mut Span)) {
     to(&mut expr.span);
     match &mut expr.kind {
@@ -294,7 +295,7 @@ pub fn places(expr: &mut Expr, to: &mut impl FnMut(&mut Span)) {
     }
 }
 
-/// The expressions that an expression is made of, to be changed.
+/// Returns the direct subexpressions of an expression, mutably.
 pub fn parts(expr: &mut Expr) -> Vec<&mut Expr> {
     match &mut expr.kind {
         ExprKind::Number(_) | ExprKind::Name(_) => Vec::new(),

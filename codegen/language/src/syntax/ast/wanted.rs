@@ -1,17 +1,17 @@
-//! What a description asks for.
+//! Entries of a `generate` statement.
 
 use super::Ident;
 
-/// What `generate` lists.
+/// One entry of a `generate` statement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
-    /// A function by its name.
+    /// A function, by name.
     Function(Ident),
-    /// `jacobian f in f`: the kinematics of a frame, and the frame in whose axes components are.
+    /// `jacobian f in f`: the kinematics of a frame, and the frame whose axes its components are in.
     Jacobian {
         /// The frame.
         frame: Ident,
-        /// `world` where absent.
+        /// Frame whose axes are used, `world` if absent.
         axes: Option<Ident>,
     },
 }

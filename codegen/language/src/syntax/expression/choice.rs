@@ -1,6 +1,6 @@
-//! Choices: `if a < b { c } else if d < e { f } else { g }`.
+//! Parsing of choices: `if a < b { c } else if d < e { f } else { g }`.
 //!
-//! A chain of `else if` is a loop, as chains of operators are.
+//! Like chains of operators, a chain of `else if` is parsed by a loop rather than by recursion.
 
 use super::{Node, check_operands, node, sum};
 use crate::diagnostics::Diagnostic;
@@ -9,10 +9,10 @@ use crate::syntax::cursor::{Cursor, Parsed};
 use crate::syntax::tokens::MAX_NESTING;
 use proc_macro2::Delimiter;
 
-/// How a choice is written.
+/// Syntax of a choice, for messages.
 const FORM: &str = "a choice is written `if a < b { c } else { d }`";
 
-/// What stands before a branch that is taken elsewhere.
+/// One `if` of a chain: its condition and the branch taken if it holds.
 struct Case {
     span: Span,
     left: Expr,
@@ -22,7 +22,7 @@ struct Case {
     depth: usize,
 }
 
-/// A choice, at its `if`.
+/// Parses a choice, with the cursor at its `if`.
 pub(super) fn choice(cursor: &mut Cursor<'_>) -> Parsed<Node> {
     if cursor.choices >= MAX_NESTING {
         let message = format!("choices are nested more than {MAX_NESTING} deep");
