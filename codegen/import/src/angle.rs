@@ -1,4 +1,4 @@
-//! Angles: multiples of a right angle are exact, whatever decimals were written for them.
+//! Angles and rotations; rounded multiples of a right angle become exact.
 
 use crate::decimal::Decimal;
 use std::f64::consts::FRAC_PI_2;
@@ -6,18 +6,18 @@ use std::f64::consts::FRAC_PI_2;
 /// An angle in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Angle {
-    /// So many right angles, −1 to 2.
+    /// A multiple of π/2, by a factor from −1 to 2.
     Right(i8),
-    /// A decimal.
+    /// An angle that is not a multiple of π/2, as a decimal number of radians.
     Decimal(Decimal),
 }
 
 impl Angle {
-    /// The multiple of a right angle that lies within the tolerance (rad), else the decimal.
+    /// Reads an angle: the multiple of π/2 if one lies within the tolerance (rad), else the decimal itself.
     pub(crate) fn read(number: &Decimal, tolerance: f64) -> Self {
         let quarters = (number.value / FRAC_PI_2).round();
         let near = (number.value - quarters * FRAC_PI_2).abs() <= tolerance;
-        // Beyond some turns nobody means a right angle.
+        // More than two full turns are not meant as a right angle.
         if !near || quarters.abs() > 8.0 {
             return Angle::Decimal(number.clone());
         }
@@ -27,7 +27,7 @@ impl Angle {
         }
     }
 
-    /// Whether it turns nothing.
+    /// Whether the angle is exactly zero.
     pub(crate) fn is_zero(&self) -> bool {
         match self {
             Angle::Right(quarters) => *quarters == 0,
@@ -35,7 +35,7 @@ impl Angle {
         }
     }
 
-    /// As a description writes it.
+    /// Returns the angle as it is written in a description.
     pub(crate) fn text(&self) -> String {
         match self {
             Angle::Right(0) => "0".into(),
@@ -52,12 +52,12 @@ impl Angle {
 pub(crate) struct Rotation(pub(crate) [Angle; 3]);
 
 impl Rotation {
-    /// No rotation.
+    /// Returns the identity.
     pub(crate) fn identity() -> Self {
         Rotation(std::array::from_fn(|_| Angle::Right(0)))
     }
 
-    /// As a description writes it; `None` for the identity.
+    /// Returns the rotation as it is written in a description; `None` for the identity.
     pub(crate) fn text(&self) -> Option<String> {
         let turns: Vec<(&str, &Angle)> = ["rotx", "roty", "rotz"]
             .into_iter()
@@ -74,7 +74,7 @@ impl Rotation {
         }
     }
 
-    /// The matrix, where all angles are multiples of a right angle: entries −1, 0, 1.
+    /// Returns the rotation matrix, with entries −1, 0 and 1, if all angles are multiples of a right angle.
     pub(crate) fn exact(&self) -> Option<[[i8; 3]; 3]> {
         let mut product = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
         for (axis, angle) in self.0.iter().enumerate() {
@@ -93,7 +93,7 @@ impl Rotation {
             turn[k][k] = c;
             turn[j][k] = -s;
             turn[k][j] = s;
-            // Roll comes first, so later turns multiply from the left.
+            // Roll acts first, so later rotations multiply from the left.
             let mut next = [[0; 3]; 3];
             for row in 0..3 {
                 for column in 0..3 {
@@ -132,7 +132,7 @@ mod tests {
         }
     }
 
-    /// URDF: a point that is turned by roll about x first, then by yaw about the fixed z.
+    /// In URDF, roll about x acts on a point first, then yaw about the fixed z axis.
     #[test]
     fn roll_comes_before_yaw() {
         let turned = Rotation([
@@ -140,7 +140,7 @@ mod tests {
             angle("0"),
             angle("1.570796326794897"),
         ]);
-        // e_y goes to e_z by roll, and stays there; e_x goes to e_y by yaw.
+        // Roll takes e_y to e_z, where yaw leaves it; yaw takes e_x to e_y.
         assert_eq!(turned.exact(), Some([[0, 0, 1], [1, 0, 0], [0, 1, 0]]));
         assert_eq!(turned.text().as_deref(), Some("rpy(pi / 2, 0, pi / 2)"));
         assert_eq!(

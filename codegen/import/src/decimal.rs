@@ -1,21 +1,22 @@
-//! Decimal numbers as they were written: exact, and spelled as descriptions spell them.
+//! Exact decimal numbers that keep the spelling of the file.
 
-/// Exponents beyond this are no lengths, masses or angles, and overflow what computes with them.
+/// Largest size of an exponent: beyond it a number is no length, mass or angle, and later computations would
+/// overflow.
 const MOST_EXPONENT: i32 = 300;
-/// More digits are no measurement.
+/// Largest number of digits: no measurement has more.
 const MOST_DIGITS: usize = 200;
 
 /// A finite decimal number.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Decimal {
-    /// As a description writes it: a sign where it is negative, a digit first.
+    /// The number as it is written in a description: a minus sign if it is negative, then a digit.
     pub(crate) text: String,
     /// The nearest double.
     pub(crate) value: f64,
 }
 
 impl Decimal {
-    /// 0.
+    /// Returns 0.
     pub(crate) fn zero() -> Self {
         Decimal {
             text: "0".into(),
@@ -23,7 +24,7 @@ impl Decimal {
         }
     }
 
-    /// 1.
+    /// Returns 1.
     pub(crate) fn one() -> Self {
         Decimal {
             text: "1".into(),
@@ -31,7 +32,7 @@ impl Decimal {
         }
     }
 
-    /// A number as URDF writes it: `1`, `-0.5`, `.5`, `+1.`, `1e-05`; `None` for everything else.
+    /// Parses a number as URDF writes it: `1`, `-0.5`, `.5`, `+1.`, `1e-05`; returns `None` for everything else.
     pub(crate) fn parse(written: &str) -> Option<Self> {
         let (negative, unsigned) = match written.strip_prefix(['-', '+']) {
             Some(rest) => (written.starts_with('-'), rest),
@@ -74,12 +75,12 @@ impl Decimal {
         Some(if negative { number.negated() } else { number })
     }
 
-    /// Whether it is 0 exactly.
+    /// Whether the number is exactly 0.
     pub(crate) fn is_zero(&self) -> bool {
         self.text == "0"
     }
 
-    /// −a.
+    /// Returns −a.
     pub(crate) fn negated(&self) -> Self {
         let text = match self.text.strip_prefix('-') {
             Some(positive) => positive.to_string(),
@@ -93,7 +94,7 @@ impl Decimal {
     }
 }
 
-/// `[a, b, c]`
+/// Writes a vector as `[a, b, c]`.
 pub(crate) fn vector(entries: &[Decimal; 3]) -> String {
     let texts: Vec<&str> = entries.iter().map(|entry| entry.text.as_str()).collect();
     format!("[{}]", texts.join(", "))

@@ -1,17 +1,19 @@
-//! From bytes to text: UTF-8, UTF-16 with or without its mark, and what an XML declaration says.
+//! Decodes the bytes of a file: UTF-8, UTF-16 with or without a byte order mark, or the encoding that an XML
+//! declaration names.
 
 use std::fmt;
 
-/// The mark at the start of a Unicode text.
+/// Byte order mark at the start of a Unicode text.
 const MARK: char = '\u{feff}';
-/// An XML declaration is not longer.
+/// Number of bytes in which an XML declaration is looked for.
 const DECLARATION: usize = 200;
-/// Windows-1252 from 0x80 to 0x9f, where it is not ISO-8859-1; signs that it does not have stay as they are.
+/// Windows-1252 for the bytes 0x80 to 0x9f, where it differs from ISO-8859-1; bytes that it leaves undefined keep
+/// their meaning in ISO-8859-1.
 const WINDOWS: [char; 32] = [
     '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
     '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
 ];
-/// ISO-8859-15 where it is not ISO-8859-1.
+/// Bytes at which ISO-8859-15 differs from ISO-8859-1.
 const LATIN_9: [(u8, char); 8] = [
     (0xa4, '€'),
     (0xa6, 'Š'),
@@ -23,17 +25,17 @@ const LATIN_9: [(u8, char); 8] = [
     (0xbe, 'Ÿ'),
 ];
 
-/// Bytes that are no text.
+/// Why bytes could not be decoded as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Undecoded {
-    /// A byte that the encoding does not have, by its place from 0.
+    /// A byte sequence that is invalid in the encoding.
     Byte {
-        /// Its place.
+        /// Offset of the first invalid byte, from 0.
         place: usize,
-        /// The name of the encoding.
+        /// Name of the encoding.
         encoding: &'static str,
     },
-    /// The declaration names an encoding that is not read.
+    /// The XML declaration names an encoding that is not supported.
     Encoding(String),
 }
 
@@ -52,7 +54,7 @@ impl fmt::Display for Undecoded {
 
 impl std::error::Error for Undecoded {}
 
-/// The text that the bytes of a file are: UTF-8, UTF-16, or what the XML declaration says.
+/// Decodes the bytes of a file as UTF-8, as UTF-16, or as the XML declaration says.
 ///
 /// ```
 /// let utf16: Vec<u8> = "\u{feff}<robot/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
@@ -60,7 +62,7 @@ impl std::error::Error for Undecoded {}
 /// ```
 ///
 /// # Errors
-/// Where a byte is no part of the encoding, or the declaration names one that is not read.
+/// Fails if a byte is invalid in the encoding, or if the declaration names an encoding that is not supported.
 pub fn decode(bytes: Vec<u8>) -> Result<String, Undecoded> {
     match bytes.as_slice() {
         [0xff, 0xfe, ..] | [b'<', 0, ..] => return wide(&bytes, u16::from_le_bytes),
@@ -69,7 +71,7 @@ pub fn decode(bytes: Vec<u8>) -> Result<String, Undecoded> {
     }
     let name = declared(&bytes).map(str::to_ascii_lowercase);
     match name.as_deref().unwrap_or("utf-8") {
-        // Single bytes that name UTF-16 are not UTF-16: the declaration is older than the file.
+        // A declaration of UTF-16 in a file of single bytes is out of date: somebody re-encoded the file.
         "utf-8" | "utf8" | "us-ascii" | "ascii" | "utf-16" => unicode(bytes),
         "iso-8859-1" | "iso8859-1" | "latin1" | "latin-1" => {
             Ok(bytes.into_iter().map(char::from).collect())
@@ -123,7 +125,7 @@ fn wide(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Result<String, Undecoded> {
     }
 }
 
-/// The encoding that an XML declaration names.
+/// Returns the encoding that an XML declaration names.
 fn declared(bytes: &[u8]) -> Option<&str> {
     let start = bytes.get(..bytes.len().min(DECLARATION))?;
     let end = start.windows(2).position(|pair| pair == b"?>")?;
@@ -139,7 +141,7 @@ fn declared(bytes: &[u8]) -> Option<&str> {
 mod tests {
     use super::{Undecoded, decode};
 
-    /// The same text in every encoding that is read.
+    /// The same text decodes alike from every supported encoding.
     #[test]
     fn encodings() {
         let text = "<?xml version=\"1.0\"?>\n<robot name=\"é 𝛼\"/>";
@@ -187,7 +189,7 @@ mod tests {
         assert_eq!(other, Err(Undecoded::Encoding("shift_jis".into())));
     }
 
-    /// A mark before what is no XML stays for whoever reads that.
+    /// A byte order mark is kept if the text is not XML: whoever reads the text handles it.
     #[test]
     fn descriptions_keep_their_mark() {
         let text = "\u{feff}system S {}";

@@ -1,18 +1,19 @@
-//! Which links have to have mass, and which inertias are those of a body.
+//! Warnings about links without mass and about inertias that are not physical.
 
 use crate::plan::{Mobility, Plan};
 use crate::problem::Problems;
 use crate::robot::{Inertial, Robot};
 use crate::tree::Tree;
 
-/// A part of the largest moment that says nothing: the cosines below lose half of the digits where
-/// moments are equal, and printed inertias have no more.
+/// Relative tolerance of principal moments, as a fraction of the largest: Viète's formula below loses half of its
+/// digits where moments coincide, and inertias are printed with no more digits than that.
 const ROUNDING: f64 = 1e-6;
 
-/// Radii of gyration that no link has (m).
+/// Radius of gyration (m) above which an inertia is suspect.
 const LARGE: f64 = 10.0;
 
-/// Warns of what moves without mass and of inertias that no body has; once where nothing that moves has mass.
+/// Warns of moving links without mass and of inertias that are not physical. If no moving link has mass, that is the
+/// only warning.
 pub(crate) fn check(
     robot: &Robot,
     tree: &Tree,
@@ -20,7 +21,7 @@ pub(crate) fn check(
     floating: bool,
     warnings: &mut Problems<'_>,
 ) {
-    // What a link carries, itself with it: children come after their parents.
+    // Whether each link has mass; the loop below adds what it carries. Children come after their parents.
     let mut carries: Vec<bool> = robot
         .links
         .iter()
@@ -80,8 +81,8 @@ pub(crate) fn check(
     }
 }
 
-/// Warns of what moves by itself, carries mass and is nowhere given an `<inertial>`: links that move
-/// rigidly together are one.
+/// Warns of bodies that move by a joint of their own, carry mass and have no `<inertial>`. Links that are joined
+/// rigidly count as one body.
 fn bare(
     robot: &Robot,
     tree: &Tree,
@@ -106,7 +107,7 @@ fn bare(
     }
     for (index, link) in robot.links.iter().enumerate() {
         let moves = own[index] && (index != tree.root || floating);
-        // Where there is nothing with mass behind it either, that was said.
+        // If it carries no mass either, there has been a warning already.
         if moves && !given[index] && carries[index] {
             let name = &link.name.name;
             warnings.push(
@@ -118,7 +119,8 @@ fn bare(
     }
 }
 
-/// The moments of a body are positive, and none is larger than the two others together.
+/// Warns of an inertia that no body has: principal moments are not negative, and none exceeds the sum of the two
+/// others.
 fn physical(name: &str, inertial: &Inertial, warnings: &mut Problems<'_>) {
     if inertial.mass.is_zero() {
         let help = "a body with inertia has mass; check the units";
@@ -159,7 +161,8 @@ fn physical(name: &str, inertial: &Inertial, warnings: &mut Problems<'_>) {
     }
 }
 
-/// Principal moments, the least first: roots of the characteristic polynomial by Viète's cosines.
+/// Returns the principal moments in ascending order: roots of the characteristic polynomial by Viète's trigonometric
+/// formula.
 fn moments([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> [f64; 3] {
     let mean = (xx + yy + zz) / 3.0;
     let (a, b, c) = (xx - mean, yy - mean, zz - mean);

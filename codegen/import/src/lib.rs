@@ -1,15 +1,15 @@
-//! Robots in URDF (Unified Robot Description Format) as descriptions for `hamel`.
+//! Imports robots in URDF (Unified Robot Description Format) as descriptions for `hamel`.
 //!
 #![doc = include_str!("../README.md")]
 //!
 //! # What is imported
 //!
 //! [`import`] reads the tree of links and joints and writes an `.eom` text: one `joint` statement for each joint, one
-//! `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for those that are
-//! roundings of multiples of π/2 or of 0; the text says what was changed.
-//! The list of what a file may hold is `read/list.rs`.
+//! `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for rounded
+//! multiples of π/2 and rounded zeros; the text says which numbers were changed. `read/list.rs` lists the elements
+//! and attributes that a file may contain.
 //!
-//! XML is read by `roxmltree`, which keeps the position of every attribute, so that every error names its place.
+//! XML is parsed by `roxmltree`, which keeps the position of every attribute, so that every error names its place.
 
 mod angle;
 mod decimal;
@@ -31,15 +31,22 @@ pub use problem::Problem;
 use problem::Problems;
 use std::collections::BTreeMap;
 
-/// Reads a robot and writes its description; all independent errors at once, in the order of the
-/// text.
+/// Reads a robot and writes its description.
+///
+/// # Errors
+/// Returns all independent errors at once, in the order of the text.
 pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
     import_without(xml, options, &BTreeMap::new())
 }
 
-/// The same without equations of closing joints that are `idle`, by their places among the
-/// [`equations`](Imported::equations) of [`import`]. The text has them as comments, with the reason. Which equations these are
-/// is not known here: it takes derivatives of the equations along the tree.
+/// Imports a robot as [`import`] does, but leaves out redundant equations of loop-closing joints.
+///
+/// The keys of `idle` are indices into the [`equations`](Imported::equations) that [`import`] gives; the values are
+/// the reasons. The text keeps the equations as comments, with the reason. The caller has to find them, since that
+/// takes derivatives of the equations along the tree.
+///
+/// # Errors
+/// As [`import`].
 pub fn import_without(
     xml: &str,
     options: &Options,
@@ -50,7 +57,7 @@ pub fn import_without(
     let Some(read) = read::robot(xml, options, &mut errors, &mut warnings) else {
         return Err(errors.sorted());
     };
-    // A tree of what was misread would be wrong about what is right.
+    // After errors in reading, tree and plan are still checked for errors of their own, but not used.
     let tree = tree::tree(&read.robot, &mut errors);
     let plan = plan::plan(&read.robot, options, &mut errors, &mut warnings);
     let (Some(tree), true) = (tree, errors.is_empty()) else {

@@ -1,14 +1,13 @@
-//! Names of links and joints as identifiers of the language.
+//! Turns the names of links and joints into identifiers of the language.
 //!
-//! What is no letter, digit or underscore becomes `_`; a name that starts with a digit gets `n`
-//! before it; a word of the language, a name of Rust's, or one that is taken gets `_joint` or
-//! `_link` after it, and then `_2`, `_3` and so on. Joints choose first, in the order of the file.
+//! Every character other than an ASCII letter, digit or underscore becomes `_`. A name that starts with a digit gets
+//! the prefix `n`. A keyword of the language or of Rust, or a name already in use, gets the suffix `_joint`, `_link`
+//! or `_loop`, and then `_2`, `_3` and so on. Joints choose first, in the order of the file.
 
 use crate::robot::{Joint, Kind, Robot};
 use std::collections::BTreeSet;
 
-/// Words that name nothing, or something else: statements, connectives, functions, constants of
-/// the language, and keywords of Rust.
+/// Reserved words: statements, connectives, functions and constants of the language, and keywords of Rust.
 const WORDS: &str = "\
 abs abstract acceleration acos angular_acceleration angular_momentum angular_velocity armature as \
 asin async at atan atan2 await axis_angle become body box break clamp com const constraint continue \
@@ -23,38 +22,38 @@ system tan tanh to torque trace trait transpose true try type typeof universal u
 vee velocity virtual when where while world wrench yield about cart _ x xi u xi_dot R1 R2 R3 S1 S3 \
 SO3 SE3 vec2 vec3 mat3 sym3";
 
-/// What the symbols that belong to a joint add to its name.
+/// Suffixes of the symbols that belong to a joint.
 const SUFFIXES: [&str; 10] = [
     "", "_dot", "_tau", "_r", "_r_dot", "_R", "_v", "_w", "_force", "_torque",
 ];
-/// The same of a joint with two angles.
+/// Suffixes of the symbols that belong to a joint with two angles.
 const PAIR: [&str; 6] = ["", "_1", "_2", "_1_dot", "_2_dot", "_tau"];
-/// What the frames of a closing joint add to its name.
+/// Suffixes of the frames of a loop-closing joint.
 const ENDS: [&str; 3] = ["", "_1", "_2"];
-/// What the parameters of a body add to its link's name.
+/// Suffixes of the parameters of a link's body.
 const PARAMETERS: [&str; 4] = ["", "_mass", "_com", "_inertia"];
 
-/// Names in the description, by index of joint and link.
+/// Names in the description, by index of the joint, link or loop.
 #[derive(Debug)]
 pub(crate) struct Names {
     pub(crate) system: String,
-    /// The joint of a floating base.
+    /// Name of the joint of a floating base.
     pub(crate) root: String,
     pub(crate) joints: Vec<String>,
     pub(crate) links: Vec<String>,
-    /// Closing joints.
+    /// Names of loop-closing joints.
     pub(crate) loops: Vec<String>,
 }
 
 impl Names {
-    /// Chooses all names; the root link's own is needed where the base floats.
+    /// Chooses all names; `root` is used only if the base floats.
     pub(crate) fn of(robot: &Robot, system: Option<&str>) -> Self {
         let mut taken = Taken::default();
         let root = robot
             .joints
             .iter()
             .any(|joint| joint.name.name == "root_joint");
-        // A floating base is `root_joint`, unless the robot has one already.
+        // A floating base moves by `root_joint`, unless the robot has a joint of that name.
         let root_first = (!root).then(|| taken.choose("root_joint", "_joint", &SUFFIXES));
         let joints = robot.joints.iter();
         let joints: Vec<String> = joints.map(|joint| taken.joint(joint)).collect();
@@ -81,7 +80,7 @@ impl Names {
     }
 }
 
-/// Names that are in use.
+/// Names that are in use, with their suffixes.
 #[derive(Default)]
 struct Taken(BTreeSet<String>);
 
@@ -95,7 +94,7 @@ impl Taken {
         self.choose(&joint.name.name, "_joint", suffixes)
     }
 
-    /// The first name that is free with all its suffixes.
+    /// Picks the first candidate that is free with all its suffixes.
     fn choose(&mut self, name: &str, kind: &str, suffixes: &[&str]) -> String {
         let plain = identifier(name);
         let reserved = WORDS.split(' ').any(|word| word == plain);
@@ -110,7 +109,7 @@ impl Taken {
                 .iter()
                 .all(|suffix| !self.0.contains(&format!("{candidate}{suffix}")))
         };
-        // The numbers do not end.
+        // The candidates never run out, so the fallback is never used.
         let chosen = candidates.find(free).unwrap_or(longer);
         self.0
             .extend(suffixes.iter().map(|suffix| format!("{chosen}{suffix}")));
@@ -118,7 +117,7 @@ impl Taken {
     }
 }
 
-/// Letters, digits and underscores, a letter first.
+/// Replaces everything but ASCII letters and digits by `_`; the result starts with a letter or `_`.
 fn identifier(name: &str) -> String {
     let plain: String = name
         .chars()
@@ -132,7 +131,7 @@ fn identifier(name: &str) -> String {
     }
 }
 
-/// `so_arm100` as `SoArm100`.
+/// Converts a name to a type name: `so_arm100` becomes `SoArm100`.
 fn camel(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric());
     let joined: String = words
@@ -163,7 +162,7 @@ mod tests {
         assert_eq!(choose("elbow", "_joint"), "elbow");
         assert_eq!(choose("elbow", "_link"), "elbow_link");
         assert_eq!(choose("elbow", "_link"), "elbow_link_2");
-        // Its velocity would be taken for another joint.
+        // The velocity of joint `a` would have the name of another joint, `a_dot`.
         assert_eq!(choose("a_dot", "_joint"), "a_dot");
         assert_eq!(choose("a", "_joint"), "a_joint");
         assert_eq!(choose("body", "_link"), "body_link");

@@ -1,38 +1,41 @@
-//! What an import may decide, and what it gives.
+//! Options and results of an import.
 
 use crate::problem::Problem;
 use std::ops::Range;
 
-/// Angles this near to a multiple of π/2 (rad), and entries this small beside the largest of their
-/// vector or matrix, are taken for roundings; so are lengths (m) below a millionth of it.
+/// Default of [`Options::tolerance`], for numbers that are rounded in the file.
+///
+/// An angle within this distance (rad) of a multiple of π/2 is read as that multiple. An entry of a vector or matrix
+/// is read as 0 if it is at most this fraction of the largest entry, and so is a length (m) of at most a millionth of
+/// the tolerance.
 pub const TOLERANCE: f64 = 1e-9;
 
 /// How joints with `<mimic>` move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mimic {
-    /// As the joint that they mimic: no coordinate of their own.
+    /// They follow the joint that they mimic and have no coordinate of their own.
     #[default]
     Follow,
-    /// By themselves.
+    /// They move independently and have a coordinate of their own.
     Free,
 }
 
-/// What an import may decide.
+/// Options of an import.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Name of the file, for the header of the description.
     pub file: String,
     /// Name of the system; by default the robot's name.
     pub name: Option<String>,
-    /// Whether the base moves freely; else it stands in the world.
+    /// Whether the base floats; otherwise it is fixed to the world.
     pub floating: bool,
-    /// Joints that do not move, by name, with their angle (rad) or length (m) as a decimal.
+    /// Locked joints: their names, and the angle (rad) or length (m) at which they stand, as a decimal.
     pub locks: Vec<(String, String)>,
-    /// Whether masses, centres of mass and inertias are run-time parameters; else exact constants.
+    /// Whether masses, centres of mass and inertias become run-time parameters; otherwise they are exact constants.
     pub params: bool,
     /// How joints with `<mimic>` move.
     pub mimic: Mimic,
-    /// What is taken for a rounding, see [`TOLERANCE`]; 0 keeps every digit.
+    /// Tolerance for rounded numbers, see [`TOLERANCE`]; 0 keeps every digit.
     pub tolerance: f64,
 }
 
@@ -50,36 +53,37 @@ impl Default for Options {
     }
 }
 
-/// A robot as a description.
+/// A robot that was imported: its description, and the names in it.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// The description, an `.eom` text.
     pub text: String,
-    /// The name of the system in it.
+    /// Name of the system in the description.
     pub name: String,
-    /// Joints with coordinates of their own: name in the URDF, name in the description.
+    /// Joints with coordinates of their own: name in the URDF and name in the description.
     pub joints: Vec<(String, String)>,
-    /// Links that are frames of the description: name in the URDF, name in the description.
+    /// Links that are frames of the description: name in the URDF and name in the description.
     pub links: Vec<(String, String)>,
-    /// The link that stands in the world, where the base does not float, and the name that a frame for it may have.
+    /// The link that is fixed to the world unless the base floats: its name in the URDF, and a free name for its
+    /// frame.
     pub ground: Option<(String, String)>,
-    /// Whether any link that moves has mass; else there are kinematics alone.
+    /// Whether any moving link has mass; otherwise the system is kinematic only.
     pub has_masses: bool,
-    /// What was taken for a rounding, one sentence each.
+    /// Numbers that were changed because they look rounded, one sentence each.
     pub cleaned: Vec<String>,
-    /// What is legal and still looks wrong.
+    /// Warnings about input that is legal but looks wrong.
     pub warnings: Vec<Problem>,
-    /// For each line of the text, the bytes of the URDF that it is made from.
+    /// For each line of the text, the byte range of the URDF that it was made from.
     pub origins: Vec<Option<Range<usize>>>,
-    /// The lines of the text, from 0, on which the equations of closing joints stand.
+    /// Line numbers in the text, from 0, of the equations of loop-closing joints.
     pub equations: Vec<usize>,
 }
 
-/// Why an equation of a closing joint says nothing that the others do not say.
+/// Why an equation of a loop-closing joint is redundant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Idle {
-    /// Both sides are equal wherever the tree is.
+    /// It holds in every configuration of the tree.
     Holds,
-    /// It follows from other equations wherever the tree is.
+    /// It follows from the other equations in every configuration of the tree.
     Follows,
 }

@@ -1,4 +1,4 @@
-//! How each joint moves: by itself, not at all, or as another one.
+//! Decides how each joint moves: freely, not at all, or following another joint.
 
 use crate::decimal::Decimal;
 use crate::options::{Mimic, Options};
@@ -12,31 +12,32 @@ use std::collections::BTreeMap;
 pub(crate) enum Mobility {
     /// It has coordinates of its own.
     Free,
-    /// It is fixed by its type.
+    /// The type of the joint is `fixed`.
     Fixed,
-    /// It stands at an angle or a length.
+    /// The joint is locked at an angle or a length.
     Locked(Linear),
-    /// Its angle or length is that of the joint with this index, times a number plus a number, and
-    /// so on: joints may mimic joints that mimic.
+    /// The joint follows the joint of this index: each step (factor, offset) maps q to factor · q + offset. There are
+    /// several steps if the joint mimics a joint that itself mimics another.
     Follows(usize, Vec<(Decimal, Decimal)>),
 }
 
-/// A number as an expression: a decimal, then multiplied and added to.
+/// A number written as an expression: start with `value`, then multiply by the factor and add the offset of each
+/// step.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Linear {
     pub(crate) value: Decimal,
     pub(crate) steps: Vec<(Decimal, Decimal)>,
 }
 
-/// The motions of all joints, by index.
+/// Mobility of all joints, by index.
 #[derive(Debug)]
 pub(crate) struct Plan {
     pub(crate) motions: Vec<Mobility>,
-    /// Whether another joint follows this one: its angle has to be a coordinate then.
+    /// Whether some joint follows this one, whose angle then has to be a coordinate.
     pub(crate) followed: Vec<bool>,
 }
 
-/// Decides, after the options.
+/// Decides how each joint moves, as the options say.
 pub(crate) fn plan(
     robot: &Robot,
     options: &Options,
@@ -82,7 +83,7 @@ pub(crate) fn plan(
     Plan { motions, followed }
 }
 
-/// Locked joints with their values.
+/// Reads the values of the locked joints.
 fn locks(
     robot: &Robot,
     options: &Options,
@@ -136,7 +137,7 @@ fn locks(
     locks
 }
 
-/// The joint that a chain of mimics ends in.
+/// Follows a chain of mimicking joints to its end.
 fn follow(
     robot: &Robot,
     number: usize,
@@ -159,7 +160,7 @@ fn follow(
         };
         let source = index.get(mimic.source.name.as_str()).copied();
         let Some(next) = source else {
-            // Said once, by the joint that names it.
+            // Reported only for the joint that names it.
             if at == number {
                 unknown("joint", &mimic.source, index.keys().copied(), errors);
             }

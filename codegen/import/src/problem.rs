@@ -1,4 +1,4 @@
-//! What is wrong with a robot's file: where, what, and what to do.
+//! Errors and warnings about a robot's file, with place, message and remedy.
 
 use std::fmt;
 use std::ops::Range;
@@ -6,15 +6,15 @@ use std::ops::Range;
 /// One error or warning, placed in the URDF text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// The bytes that it is about.
+    /// Range of bytes that the problem is about.
     pub range: Range<usize>,
     /// Line of the first byte, from 1.
     pub line: usize,
     /// Column of the first byte in characters, from 1.
     pub column: usize,
-    /// What is wrong, in one sentence.
+    /// Description of the problem, in one sentence.
     pub message: String,
-    /// What to do.
+    /// Suggested remedy.
     pub help: String,
 }
 
@@ -48,7 +48,7 @@ impl<'a> Problems<'a> {
         }
     }
 
-    /// Adds a problem with the bytes of a range.
+    /// Adds a problem at a range of bytes.
     pub(crate) fn push(
         &mut self,
         range: &Range<usize>,
@@ -69,7 +69,7 @@ impl<'a> Problems<'a> {
         self.list.is_empty()
     }
 
-    /// All of them, in the order of the text.
+    /// Returns all problems in the order of the text.
     pub(crate) fn sorted(mut self) -> Vec<Problem> {
         self.list
             .sort_by_key(|problem| (problem.range.start, problem.range.end));
@@ -77,7 +77,7 @@ impl<'a> Problems<'a> {
     }
 }
 
-/// Line and column of a byte, from 1.
+/// Returns line and column of a byte, both from 1.
 pub(crate) fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line = before.matches('\n').count() + 1;

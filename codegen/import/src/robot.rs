@@ -1,14 +1,14 @@
-//! A robot as its file describes it.
+//! The robot as its file describes it.
 
 use crate::angle::Rotation;
 use crate::decimal::Decimal;
 use std::ops::Range;
 
-/// A robot, as written.
+/// A robot as it is written.
 #[derive(Debug)]
 pub(crate) struct Robot {
     pub(crate) name: String,
-    /// Place of the robot's name.
+    /// Place of the robot's name in the text.
     pub(crate) range: Range<usize>,
     pub(crate) links: Vec<Link>,
     pub(crate) joints: Vec<Joint>,
@@ -16,7 +16,7 @@ pub(crate) struct Robot {
     pub(crate) springs: Vec<Spring>,
 }
 
-/// A name with its place.
+/// A name with its place in the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Named {
     pub(crate) name: String,
@@ -27,7 +27,7 @@ pub(crate) struct Named {
 #[derive(Debug)]
 pub(crate) struct Link {
     pub(crate) name: Named,
-    /// `None` without `<inertial>`.
+    /// Mass and inertia; `None` without `<inertial>`.
     pub(crate) inertial: Option<Inertial>,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Link {
 pub(crate) struct Inertial {
     pub(crate) range: Range<usize>,
     pub(crate) mass: Decimal,
-    /// Centre of mass and principal frame, in link axes.
+    /// Pose of the inertial frame in the link: centre of mass, and axes of `inertia`.
     pub(crate) origin: Origin,
     /// xx, xy, xz, yy, yz, zz about the centre of mass, in the axes of the origin.
     pub(crate) inertia: [Decimal; 6],
@@ -61,7 +61,7 @@ pub(crate) enum Kind {
     Floating,
     /// Free rotation about a point.
     Spherical,
-    /// Rotation about x and then about the y that it has turned.
+    /// Rotation about x and then about the rotated y.
     Universal,
 }
 
@@ -80,23 +80,23 @@ pub(crate) struct Joint {
     pub(crate) parent: Named,
     pub(crate) child: Named,
     pub(crate) origin: Origin,
-    /// `None` where URDF's default (1, 0, 0) is meant.
+    /// Axis of motion; `None` for URDF's default (1, 0, 0).
     pub(crate) axis: Option<[Decimal; 3]>,
     pub(crate) damping: Option<Decimal>,
-    /// Coulomb friction, which descriptions do not model.
+    /// Coulomb friction; descriptions do not model it.
     pub(crate) friction: Option<Decimal>,
     pub(crate) lower: Option<Decimal>,
     pub(crate) upper: Option<Decimal>,
     pub(crate) velocity: Option<Decimal>,
     pub(crate) effort: Option<Decimal>,
     pub(crate) mimic: Option<Follows>,
-    /// Inertias of rotors with the ratios of their gears: the sum of inertia · ratio² is the armature.
+    /// Rotor inertias with gear ratios; the armature is Σ inertia · ratio².
     pub(crate) rotors: Vec<(Decimal, Decimal)>,
-    /// Stiffness of a spring in the joint, and where it is without force.
+    /// Stiffness of a spring in the joint, and the position at which it is relaxed.
     pub(crate) spring: Option<(Decimal, Decimal)>,
 }
 
-/// A joint that closes a loop: it ties two frames of links that the tree moves.
+/// A loop-closing joint: it connects frames of two links of the tree.
 #[derive(Debug)]
 pub(crate) struct Loop {
     pub(crate) name: Named,
@@ -104,7 +104,7 @@ pub(crate) struct Loop {
     pub(crate) ends: [End; 2],
 }
 
-/// Motions that a closing joint leaves.
+/// Types of loop-closing joints, with the axis of the motion that they leave free.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Closing {
     Fixed,
@@ -113,7 +113,7 @@ pub(crate) enum Closing {
     Prismatic([Decimal; 3]),
 }
 
-/// A frame of a link.
+/// A frame on a link.
 #[derive(Debug)]
 pub(crate) struct End {
     pub(crate) link: Named,
@@ -138,7 +138,7 @@ pub(crate) struct Follows {
     pub(crate) offset: Decimal,
 }
 
-/// A number that was taken for a rounding.
+/// A number that was changed because it looks rounded.
 #[derive(Debug)]
 pub(crate) struct Cleaned {
     pub(crate) range: Range<usize>,
@@ -146,7 +146,7 @@ pub(crate) struct Cleaned {
     pub(crate) read: String,
 }
 
-/// A robot and what was changed while it was read.
+/// A robot, with the numbers that were changed while reading it.
 #[derive(Debug)]
 pub(crate) struct Read {
     pub(crate) robot: Robot,
@@ -154,7 +154,7 @@ pub(crate) struct Read {
 }
 
 impl Inertial {
-    /// Whether it says that there is no mass.
+    /// Whether mass and inertia are both zero.
     pub(crate) fn is_zero(&self) -> bool {
         self.mass.is_zero() && self.inertia.iter().all(Decimal::is_zero)
     }

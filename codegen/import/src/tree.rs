@@ -1,20 +1,20 @@
-//! Links and joints as a tree: one root, every other link moved by one joint.
+//! The tree of links and joints: one root, and one joint that moves each other link.
 
 use crate::problem::Problems;
 use crate::robot::{Named, Robot};
 use std::collections::BTreeMap;
 
-/// The order in which links are reached from the root.
+/// Links and joints in the order in which they are reached from the root.
 #[derive(Debug)]
 pub(crate) struct Tree {
-    /// The link that no joint moves.
+    /// Link that no joint moves.
     pub(crate) root: usize,
-    /// The joints, parents first, each branch to its end, those on one link in the order of their
-    /// names, as in programs that build on `urdfdom`: rows of matrices are in one order then.
+    /// Joints in depth-first order, parents first; the joints on one link are sorted by name, as in programs that
+    /// build on `urdfdom`, so that rows of matrices come in the same order.
     pub(crate) joints: Vec<Edge>,
 }
 
-/// A joint between two links, all by index.
+/// A joint between two links, each given by its index.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
     pub(crate) joint: usize,
@@ -22,7 +22,7 @@ pub(crate) struct Edge {
     pub(crate) child: usize,
 }
 
-/// Finds the tree; `None` where there is none.
+/// Finds the tree; `None` if there is none.
 pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
     let links = by_name(robot.links.iter().map(|link| &link.name), "link", errors);
     by_name(
@@ -77,11 +77,11 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
     let roots: Vec<usize> = (0..mover.len())
         .filter(|&link| mover[link].is_none())
         .collect();
-    // What is wrong with a joint leaves its link without one: that is no further error.
+    // A joint with an error leaves its child without a joint, which is not a further error.
     let sound = sound && errors.is_empty();
     let cycles = cycles(&edges, robot.links.len());
     if sound && roots.is_empty() && cycles.len() == 1 {
-        // Every link is moved by another one.
+        // Every link is moved by another link.
         errors.push(
             &robot.range,
             "no link is the base: the joints form a cycle",
@@ -123,7 +123,7 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
     })
 }
 
-/// The first joint of each cycle, in the order of the file; no link is moved by two of the edges.
+/// Returns the first joint of each cycle, in the order of the file. Each link is the child of at most one edge.
 fn cycles(edges: &[Edge], links: usize) -> Vec<usize> {
     let mut parents: Vec<Option<usize>> = vec![None; links];
     for edge in edges {
@@ -135,7 +135,7 @@ fn cycles(edges: &[Edge], links: usize) -> Vec<usize> {
         if known[edge.child] {
             continue;
         }
-        // From parent to parent, at most once around: a link of a cycle comes back to itself.
+        // Go from parent to parent, at most once around: from a link of a cycle this leads back to it.
         let up = std::iter::successors(Some(edge.parent), |&link| parents[link]);
         let way: Vec<usize> = up
             .take(links)
@@ -151,7 +151,7 @@ fn cycles(edges: &[Edge], links: usize) -> Vec<usize> {
     first
 }
 
-/// Indices by name; a name that comes again is an error.
+/// Returns indices by name; a repeated name is an error.
 fn by_name<'a>(
     names: impl Iterator<Item = &'a Named>,
     what: &str,
@@ -172,7 +172,7 @@ fn by_name<'a>(
     known
 }
 
-/// Reports a name that nothing has.
+/// Reports a name that does not exist.
 pub(crate) fn unknown<'a>(
     what: &str,
     name: &Named,
@@ -189,7 +189,7 @@ pub(crate) fn unknown<'a>(
     );
 }
 
-/// The name that differs least, if it differs by little.
+/// Returns the most similar name, if it is similar enough to be a misspelling.
 pub(crate) fn near<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let most = name.chars().count().div_ceil(3);
     known

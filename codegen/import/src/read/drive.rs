@@ -1,4 +1,5 @@
-//! Reads properties of joints that dialects write elsewhere: rotors in `<transmission>`, springs in `<gazebo>`.
+//! Reads joint properties that dialects of URDF keep elsewhere: rotor inertias in `<transmission>`, springs in
+//! `<gazebo>`.
 
 use super::list::{RATIOS, ROTORS};
 use super::xml::{Reader, tag, written};
@@ -7,13 +8,13 @@ use crate::robot::{Joint, Kind, Named};
 use crate::tree::unknown;
 use roxmltree::Node;
 
-/// Ending of the types of transmissions with one joint and one drive.
+/// Suffix of the types of transmissions with one joint and one actuator.
 const SIMPLE: &str = "SimpleTransmission";
-/// Start of the names that Drake defines.
+/// Prefix of the names that Drake defines.
 const DRAKE: &str = "drake:";
 
 impl<'a> Reader<'a, '_, '_> {
-    /// Inertias of rotors: seen from the joint, that of a rotor is inertia · ratio².
+    /// Reads the rotor inertias of a transmission. Reflected to the joint, a rotor has inertia · ratio².
     pub(super) fn transmission(&mut self, node: &Node<'_, 'a>, joints: &mut [Joint]) {
         let text = self.text;
         let all = |name: &str| -> Vec<Node<'_, 'a>> {
@@ -63,7 +64,8 @@ impl<'a> Reader<'a, '_, '_> {
         }
     }
 
-    /// The ratio of the gear of a rotor; one that is not given is 1 in Drake, and unknown elsewhere.
+    /// Reads the gear ratio of a rotor. A missing ratio is 1 in Drake; elsewhere it is unknown, and the rotor is left
+    /// out.
     fn ratio(&mut self, rotor: &Node<'_, 'a>, around: &[Node<'_, 'a>]) -> Option<Decimal> {
         let text = self.text;
         let name = written(text, rotor);
@@ -90,7 +92,7 @@ impl<'a> Reader<'a, '_, '_> {
         }
     }
 
-    /// Gives a rotor to its joint.
+    /// Adds a rotor to its joint.
     fn rotor(
         &mut self,
         element: &Node<'_, 'a>,
@@ -121,7 +123,8 @@ impl<'a> Reader<'a, '_, '_> {
         found.rotors.push((inertia, ratio));
     }
 
-    /// The joint that an element is about; one that has no single angle or length is said to be none.
+    /// Finds the joint that an element refers to. Notes that the element is left out if the joint has no single angle
+    /// or length, unless the joint is fixed and the element is not a spring.
     fn driven<'j>(
         &mut self,
         element: &str,
@@ -149,7 +152,7 @@ impl<'a> Reader<'a, '_, '_> {
         None
     }
 
-    /// Springs that Gazebo has in joints: k (q − q₀).
+    /// Reads the spring k (q − q₀) that Gazebo may add to a joint.
     pub(super) fn gazebo(&mut self, node: &Node<'_, 'a>, joints: &mut [Joint]) {
         let Some(element) = self.child(node, SPRING) else {
             return;
@@ -179,7 +182,7 @@ impl<'a> Reader<'a, '_, '_> {
         found.spring = Some((stiffness, rest));
     }
 
-    /// The number that an element says, as `value` or as its text.
+    /// Reads the number of an element, from its attribute `value` or from its text.
     pub(super) fn said(&mut self, element: &Node<'_, 'a>) -> Option<Decimal> {
         if element.has_attribute("value") {
             return self.number(element, "value");
@@ -190,5 +193,5 @@ impl<'a> Reader<'a, '_, '_> {
     }
 }
 
-/// The stiffness of a joint in `<gazebo>`.
+/// Gazebo's element for the stiffness of a joint.
 const SPRING: &str = "springStiffness";

@@ -1,14 +1,14 @@
-//! `<joint>`, and `<drake:joint>`.
+//! Reads `<joint>` and `<drake:joint>`.
 
 use super::xml::{Reader, tag, written};
 use crate::decimal::Decimal;
 use crate::robot::{Follows, Joint, Kind, Origin};
 use roxmltree::Node;
 
-/// Joints that Drake has and URDF has not; their axes are those of the joint's frame.
+/// Drake's element for joints that URDF does not have; their axes are those of the joint's frame.
 const DRAKE: &str = "drake:joint";
 
-/// The types of joints, as URDF names them.
+/// Types of joints in URDF.
 const KINDS: [(&str, Kind); 6] = [
     ("fixed", Kind::Fixed),
     ("revolute", Kind::Revolute),
@@ -18,7 +18,7 @@ const KINDS: [(&str, Kind); 6] = [
     ("floating", Kind::Floating),
 ];
 
-/// The types of the dialects: those of Bullet, SDF and MuJoCo beside those of Drake.
+/// Types of joints in dialects: those of Bullet, SDF, MuJoCo and Drake.
 const OTHERS: [(&str, Kind); 3] = [
     ("spherical", Kind::Spherical),
     ("ball", Kind::Spherical),
@@ -26,8 +26,8 @@ const OTHERS: [(&str, Kind); 3] = [
 ];
 
 impl<'a> Reader<'a, '_, '_> {
-    /// A joint; `None` where its name or its links cannot be read. What else is wrong with it is an error, and does not hide
-    /// what is wrong with the tree.
+    /// Reads a joint; `None` if its name or its links cannot be read. Other errors do not drop the joint, so that
+    /// errors of the tree are still found.
     pub(super) fn joint(&mut self, node: &Node<'_, 'a>) -> Option<Joint> {
         let name = self.name(node, "name");
         let drake = written(self.text, node) == DRAKE;
@@ -51,7 +51,7 @@ impl<'a> Reader<'a, '_, '_> {
         let limit = self.child(node, "limit");
         let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"]
             .map(|name| limit.and_then(|element| self.bound(&element, name)));
-        // Positions of the other types have no limits in URDF, whatever the file says.
+        // In URDF only revolute and prismatic joints have limits of position, whatever the file says.
         let limited = matches!(kind, Some(Kind::Revolute | Kind::Prismatic));
         if let (Some(lower), Some(upper), Some(element)) = (&lower, &upper, limit)
             && limited
@@ -96,7 +96,7 @@ impl<'a> Reader<'a, '_, '_> {
             found.map(|(_, kind)| *kind)
         };
         let known = listed(&KINDS);
-        // The axes of a universal joint are known of Drake alone.
+        // Only Drake defines the axes of a universal joint.
         let other = listed(&OTHERS).filter(|&kind| drake || kind != Kind::Universal);
         if known.is_none() && other.is_none() {
             let names = KINDS.map(|(name, _)| name).join(", ");
@@ -124,7 +124,7 @@ impl<'a> Reader<'a, '_, '_> {
         known.or(other)
     }
 
-    /// A direction; it need not have length 1.
+    /// Reads an axis, which need not have unit length.
     fn axis(&mut self, element: &Node<'_, 'a>, kind: Option<Kind>) -> Option<[Decimal; 3]> {
         let attribute = self.attribute(element, "xyz")?;
         let mut axis = self.vector(&attribute)?;
@@ -144,7 +144,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some(axis)
     }
 
-    /// The normal of Drake's planar joints, z whatever the file says.
+    /// Returns the normal of Drake's planar joints: always z, with a note if the file says otherwise.
     fn normal(
         &mut self,
         element: Option<Node<'_, 'a>>,
@@ -162,7 +162,7 @@ impl<'a> Reader<'a, '_, '_> {
         [Decimal::zero(), Decimal::zero(), Decimal::one()]
     }
 
-    /// Damping or friction, from `<dynamics>` or else from `<joint_properties>`, its forerunner.
+    /// Reads damping or friction from `<dynamics>`, or else from its predecessor `<joint_properties>`.
     fn dissipation(
         &mut self,
         dynamics: Option<Node<'_, 'a>>,
@@ -213,7 +213,8 @@ impl<'a> Reader<'a, '_, '_> {
         Some(number)
     }
 
-    /// Damping of several freedoms, which URDF does not explain.
+    /// Reads damping of a joint with several degrees of freedom, which URDF does not define and which is not
+    /// modelled.
     fn several(&mut self, element: Node<'_, 'a>) -> Option<Decimal> {
         let attribute = element.attribute_node("damping")?;
         let written = attribute.value().trim();
@@ -231,7 +232,7 @@ impl<'a> Reader<'a, '_, '_> {
         Decimal::parse(written)
     }
 
-    /// `armature` of `<dynamics>`, from dialects that have it.
+    /// Reads `armature` of `<dynamics>`, which some dialects have.
     fn armature(&mut self, element: &Node<'_, 'a>) -> Option<(Decimal, Decimal)> {
         let armature = self.coefficient(element, "armature")?;
         let attribute = element.attribute_node("armature")?;
@@ -244,7 +245,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some((armature, Decimal::one()))
     }
 
-    /// A bound, which does not enter the equations: one that is no number is left out.
+    /// Reads a limit. Limits do not enter the equations, so one that is not a number is left out with a note.
     fn bound(&mut self, element: &Node<'_, 'a>, name: &str) -> Option<Decimal> {
         let attribute = element.attribute_node(name)?;
         let written = attribute.value().trim();
@@ -259,7 +260,7 @@ impl<'a> Reader<'a, '_, '_> {
         number
     }
 
-    /// A number of `<dynamics>`, not negative.
+    /// Reads a non-negative number of `<dynamics>`; `None` if it is 0.
     fn coefficient(&mut self, element: &Node<'_, 'a>, name: &str) -> Option<Decimal> {
         let number = self.optional(element, name)?;
         if number.value < 0.0 {

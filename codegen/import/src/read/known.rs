@@ -1,28 +1,28 @@
-//! How the closed list of what may stand in a URDF file is written: elements and attributes that are read, and those that are
-//! no part of the equations of motion. Whatever is not on it is named in a warning.
+//! Types for the closed list of elements and attributes that a URDF file may contain: those that are read, and those
+//! that do not affect the equations of motion. Anything that is not on the list causes a warning.
 
 /// The role of an element in the equations of motion.
 pub(super) enum Element {
-    /// What stands in it is on the list, too.
+    /// It is read; the level lists its contents.
     Read(&'static Level),
-    /// No part of the equations, with all that is in it.
+    /// It does not affect the equations, and neither do its contents.
     Apart,
-    /// Changes the motion unless it holds one of these words; what to do then.
+    /// It changes the motion unless its value is one of these words; the text says what to do about it.
     Unless(&'static [&'static str], &'static str),
 }
 
-/// Attributes and elements of an element.
+/// Attributes and child elements of an element.
 pub(super) struct Level {
     /// Names of attributes.
     pub(super) attributes: &'static [&'static str],
-    /// Elements by name; a `*` at the end stands for any ending.
+    /// Child elements by name; a `*` at the end of a name matches any ending.
     pub(super) elements: &'static [(&'static [&'static str], Element)],
-    /// What to do about attributes and elements that are not on the list.
+    /// Advice for attributes and elements that are not on the list.
     pub(super) help: &'static str,
 }
 
 impl Level {
-    /// The element of a name.
+    /// Finds an element by name.
     pub(super) fn find(&self, name: &str) -> Option<&'static Element> {
         let same = |listed: &&str| match listed.strip_suffix('*') {
             Some(start) => name.starts_with(start),
@@ -34,7 +34,7 @@ impl Level {
             .map(|(_, element)| element)
     }
 
-    /// Names of elements that are read, and of the others.
+    /// Returns the names of all child elements on the list, without patterns.
     pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
         let names = self.elements.iter().flat_map(|(names, _)| names.iter());
         names.copied().filter(|name| !name.ends_with('*'))

@@ -1,4 +1,4 @@
-//! `<link>` and `<inertial>`.
+//! Reads `<link>` and `<inertial>`.
 
 use super::xml::{Reader, tag};
 use crate::robot::{Inertial, Link};
@@ -7,7 +7,7 @@ use roxmltree::Node;
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 
 impl<'a> Reader<'a, '_, '_> {
-    /// A link; `None` without a name.
+    /// Reads a link; `None` if it has no name.
     pub(super) fn link(&mut self, node: &Node<'_, 'a>) -> Option<Link> {
         let name = self.name(node, "name");
         let inertial = self

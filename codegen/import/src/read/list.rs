@@ -1,20 +1,21 @@
-//! The closed list: what may stand in a URDF file, the dialects of Drake, Gazebo, Bullet, MuJoCo and ROS included.
+//! The closed list of elements and attributes of URDF files, with the dialects of Drake, Gazebo, Bullet, MuJoCo and
+//! ROS.
 
 use super::known::Element::{Apart, Read, Unless};
 use super::known::Level;
 
-/// What to do about everything else.
+/// Advice for everything that is not on the list.
 const ADD: &str = "if it changes the motion, add it to the description";
-/// What to do about gravity that does not act on a link.
+/// Advice for links on which gravity does not act.
 const GRAVITY: &str =
     "`gravity` of a description acts on all bodies; add a `force` that balances it";
-/// What to do about joints that close loops, in the words of a simulation.
+/// Advice for joints of a simulator that close loops.
 const CLOSE: &str = "a joint that closes a loop is a `loop` in the description";
-/// Words for yes and for no, as in files of Gazebo.
+/// Words for yes and for no in Gazebo's files.
 const YES: &[&str] = &["true", "1"];
 const NO: &[&str] = &["false", "0"];
 
-/// An element of attributes alone.
+/// Makes the level of an element that has attributes and no child elements.
 const fn leaf(attributes: &'static [&'static str], help: &'static str) -> Level {
     Level {
         attributes,
@@ -207,7 +208,7 @@ const MIMIC: Level = leaf(
     "it is `multiplier` · source + `offset`",
 );
 
-/// `<transmission>`: ratios alone change nothing, inertias of rotors are armatures.
+/// `<transmission>`: gear ratios alone change nothing; rotor inertias become armatures.
 const TRANSMISSION: Level = Level {
     attributes: &["name", "type"],
     elements: &[
@@ -269,7 +270,7 @@ const DRIVE: Level = Level {
 
 const PAIRED: Level = leaf(&["name", "mechanicalReduction"], ADD);
 
-/// Inertias of rotors, Drake's name first.
+/// Elements for rotor inertias, Drake's name first.
 pub(super) const ROTORS: [&str; 5] = [
     "drake:rotor_inertia",
     "rotor_inertia",
@@ -277,7 +278,7 @@ pub(super) const ROTORS: [&str; 5] = [
     "motorInertia",
     "motor_inertia",
 ];
-/// Ratios of gears, Drake's name first.
+/// Elements for gear ratios, Drake's name first.
 pub(super) const RATIOS: [&str; 5] = [
     "drake:gear_ratio",
     "gear_ratio",
@@ -296,7 +297,7 @@ const CONTROL: Level = Level {
     help: ADD,
 };
 
-/// `<mujoco>`: how the compiler of MuJoCo reads the file.
+/// `<mujoco>`: settings of MuJoCo's compiler.
 const MUJOCO: Level = Level {
     attributes: &["model"],
     elements: &[
@@ -322,7 +323,7 @@ const COMPILER: Level = leaf(
     ADD,
 );
 
-/// `<gazebo>`: what Gazebo's simulation adds to a link, to a joint or to the robot.
+/// `<gazebo>`: additions of Gazebo to a link, a joint or the robot.
 const GAZEBO: Level = Level {
     attributes: &["reference"],
     elements: &[

@@ -1,4 +1,4 @@
-//! From XML to links and joints: what a robot is, with the place of everything that may be wrong.
+//! Reads links and joints from XML, with the place of everything that may be wrong.
 
 mod drive;
 mod joint;
@@ -19,7 +19,7 @@ use xml::Reader;
 const XACRO: &str = "this is a xacro file, whose macros are not part of URDF";
 const EXPAND: &str = "expand them first: `xacro FILE > robot.urdf`";
 
-/// Whether what is not well-formed is a macro without its namespace.
+/// Whether a parse error is at a xacro macro whose namespace is not declared.
 fn is_xacro(text: &str, range: &Range<usize>) -> bool {
     let rest = text.get(range.start..).unwrap_or("");
     ["xacro:", "<xacro:"]
@@ -27,7 +27,7 @@ fn is_xacro(text: &str, range: &Range<usize>) -> bool {
         .any(|start| rest.starts_with(start))
 }
 
-/// Reads the file; `None` where there is no robot in it. Parts with errors are left out.
+/// Reads the file; `None` if there is no robot in it. Parts with errors are left out.
 pub(crate) fn robot<'t>(
     text: &str,
     options: &Options,

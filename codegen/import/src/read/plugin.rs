@@ -1,10 +1,10 @@
-//! Plugins of Gazebo: programs, which URDF does not contain. Those that move joints or push links are named.
+//! Notes plugins of Gazebo that move joints or push links: they are programs, which cannot be imported.
 
 use super::xml::{Reader, tag, written};
 use crate::robot::Joint;
 use roxmltree::Node;
 
-/// Parts of the names of plugins that act with forces of their own.
+/// Parts of the names of plugins that apply forces.
 const FORCES: [&str; 14] = [
     "lift",
     "drag",
@@ -21,11 +21,11 @@ const FORCES: [&str; 14] = [
     "spring",
     "damper",
 ];
-/// Elements that name a joint which a plugin ties to another one.
+/// Elements naming a joint that a plugin couples to another one.
 const TIED: [&str; 2] = ["mimicJoint", "virtualJoint"];
 
 impl<'a> Reader<'a, '_, '_> {
-    /// Notes the plugins that change the motion, by their names and by the joints that they tie.
+    /// Notes the plugins that change the motion, recognized by their names and by the joints that they couple.
     pub(super) fn plugins(&mut self, root: &Node<'_, 'a>, joints: &[Joint]) {
         let text = self.text;
         let named =

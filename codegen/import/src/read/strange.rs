@@ -1,5 +1,5 @@
-//! What is legal XML and is not understood, or is not what was meant: words that are not on the closed list, numbers in
-//! other units.
+//! Warnings about legal XML that is not understood or probably not meant: names that are not on the closed list,
+//! numbers in other units.
 
 use super::known::{Element, Level};
 use super::xml::{Reader, property, tag, written};
@@ -8,14 +8,14 @@ use crate::tree::near;
 use roxmltree::Node;
 use std::ops::Range;
 
-/// The namespace of attributes that say where the schema of a file is.
+/// Namespace of attributes that locate the schema of a file.
 const SCHEMA: &str = "http://www.w3.org/2001/XMLSchema-instance";
-/// Angles above a turn (rad), with room for roundings.
+/// Largest plausible angle (rad): a full turn, with room for rounding.
 const TURN: f64 = 6.5;
-/// Lengths that no robot has (m).
+/// Largest plausible length (m).
 const FAR: f64 = 100.0;
 
-/// A word that is not on the closed list: what was said of it, its first place, how often it stands.
+/// A note about something that is not on the closed list: message, first place, and number of occurrences.
 #[derive(Debug)]
 pub(super) struct Strange {
     message: String,
@@ -25,7 +25,7 @@ pub(super) struct Strange {
 }
 
 impl<'a> Reader<'a, '_, '_> {
-    /// Notes what stands in an element and is not on the list, at every level of it.
+    /// Notes attributes and child elements that are not on the list, recursively.
     pub(super) fn compare(&mut self, node: &Node<'_, 'a>, level: &'static Level) {
         let element = written(self.text, node);
         for attribute in node.attributes() {
@@ -71,7 +71,7 @@ impl<'a> Reader<'a, '_, '_> {
         }
     }
 
-    /// Notes what has to be said, once for all places of the same message.
+    /// Adds a note, once for all places with the same message.
     pub(super) fn note(&mut self, range: Range<usize>, message: String, help: String) {
         let mut noted = self.strange.iter_mut();
         match noted.find(|strange| strange.message == message) {
@@ -85,7 +85,7 @@ impl<'a> Reader<'a, '_, '_> {
         }
     }
 
-    /// Warns of everything that was noted.
+    /// Turns all notes into warnings.
     pub(super) fn tell(&mut self) {
         for strange in std::mem::take(&mut self.strange) {
             let more = match strange.count {
@@ -122,7 +122,8 @@ impl<'a> Reader<'a, '_, '_> {
     }
 }
 
-/// Whether an element says one of the words, or the same numbers: by its text, or else by all of its attributes.
+/// Whether the value of an element equals one of the words, as text or as numbers. The value is its text, or else all
+/// of its attributes.
 fn is_idle(node: &Node<'_, '_>, words: &[&str]) -> bool {
     let same = |said: &str| {
         let numbers = numbers(said);
@@ -139,7 +140,7 @@ fn is_idle(node: &Node<'_, '_>, words: &[&str]) -> bool {
     }
 }
 
-/// The numbers that a text is; `None` of another text.
+/// Parses a text of numbers; `None` if it has anything else.
 fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split_whitespace()
         .map(|word| word.parse().ok())

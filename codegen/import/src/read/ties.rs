@@ -1,4 +1,4 @@
-//! What ties links beside the joints of the tree: closing joints, springs between points.
+//! Reads connections between links outside the tree: loop-closing joints, and springs between points.
 
 use super::xml::{Reader, tag, written};
 use crate::decimal::Decimal;
@@ -6,19 +6,19 @@ use crate::robot::{Closing, End, Link, Loop, Named, Origin, Spring};
 use crate::tree::unknown;
 use roxmltree::Node;
 
-/// Drake's names of both.
+/// Drake's elements for a ball joint that closes a loop, and for a spring with damper between points.
 const BALL: &str = "drake:ball_constraint";
 const SPRING: &str = "drake:linear_spring_damper";
 
 impl<'a> Reader<'a, '_, '_> {
-    /// `<loop_joint>`: of the kinds whose equations are known.
+    /// Reads a `<loop_joint>` of a supported type.
     pub(super) fn loop_joint(&mut self, node: &Node<'_, 'a>, links: &[Link]) -> Option<Loop> {
         let range = tag(self.text, node);
         let ends = ["link1", "link2"].map(|end| self.child(node, end));
         let written = node.attribute("type").map_or("revolute", str::trim);
         let axis = match self.child(node, "axis") {
             Some(element) => self.direction(&element)?,
-            // The default of URDF.
+            // URDF's default.
             None => [Decimal::one(), Decimal::zero(), Decimal::zero()],
         };
         let closing = match written {
@@ -65,7 +65,7 @@ impl<'a> Reader<'a, '_, '_> {
         })
     }
 
-    /// `<drake:ball_constraint>`: two points coincide.
+    /// Reads a `<drake:ball_constraint>`: two points coincide.
     pub(super) fn ball(&mut self, node: &Node<'_, 'a>, links: &[Link]) -> Option<Loop> {
         let ends = self.points(node, BALL, links)?;
         let range = tag(self.text, node);
@@ -82,7 +82,7 @@ impl<'a> Reader<'a, '_, '_> {
         })
     }
 
-    /// `<drake:linear_spring_damper>`: a spring and a damper between two points.
+    /// Reads a `<drake:linear_spring_damper>`: a spring and a damper between two points.
     pub(super) fn spring(&mut self, node: &Node<'_, 'a>, links: &[Link]) -> Option<Spring> {
         let ends = self.points(node, SPRING, links);
         let [length, stiffness, damping] = ["free_length", "stiffness", "damping"].map(|name| {
@@ -106,7 +106,7 @@ impl<'a> Reader<'a, '_, '_> {
         })
     }
 
-    /// Two points of links, by Drake's names.
+    /// Reads the points on two links that Drake's elements name.
     fn points(&mut self, node: &Node<'_, 'a>, element: &str, links: &[Link]) -> Option<[End; 2]> {
         let ends = [("body_A", "p_AP"), ("body_B", "p_BQ")].map(|(body, point)| {
             let (body, point) = (format!("{element}_{body}"), format!("{element}_{point}"));
@@ -130,7 +130,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some([first?, second?])
     }
 
-    /// The name of a link of this robot.
+    /// Reads the name of a link, which must belong to this robot.
     fn linked(&mut self, node: &Node<'_, 'a>, attribute: &str, links: &[Link]) -> Option<Named> {
         let link = self.name(node, attribute)?;
         let names = || links.iter().map(|link| link.name.name.as_str());
@@ -141,7 +141,7 @@ impl<'a> Reader<'a, '_, '_> {
         None
     }
 
-    /// `<axis xyz>` of a closing joint.
+    /// Reads the `<axis xyz>` of a loop-closing joint.
     fn direction(&mut self, element: &Node<'_, 'a>) -> Option<[Decimal; 3]> {
         let attribute = self.attribute(element, "xyz")?;
         let axis = self.vector(&attribute)?;
@@ -156,7 +156,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some(axis)
     }
 
-    /// Reads what ties links, and what the dialects say of joints.
+    /// Reads the connections outside the tree, and the joint properties that dialects keep outside `<joint>`.
     pub(super) fn beside(&mut self, root: &Node<'_, 'a>, robot: &mut crate::robot::Robot) {
         for element in root.children().filter(Node::is_element) {
             match written(self.text, &element) {

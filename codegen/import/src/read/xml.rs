@@ -1,4 +1,4 @@
-//! Elements, attributes and numbers of XML, with the place of what is missing or unreadable.
+//! Reads elements, attributes and numbers of XML, with the place of whatever is missing or unreadable.
 
 use super::strange::Strange;
 use crate::angle::{Angle, Rotation};
@@ -8,22 +8,23 @@ use crate::robot::{Cleaned, Named, Origin};
 use roxmltree::{Attribute, Document, Error, Node, ParsingOptions, TextPos};
 use std::ops::Range;
 
-/// A length that stands alone in its vector is judged absolutely, by so much of the tolerance: 1e-15 m.
+/// Largest length that is read as 0 on its own, as a fraction of the tolerance: 1e-15 m by default. It matters for
+/// positions whose entries are all tiny.
 const ALONE: f64 = 1e-6;
 
-/// Text that is not XML: its place, what is wrong with it, what to do.
+/// Text that is not XML: its place, the message and the remedy.
 pub(super) type Malformed = (Range<usize>, String, String);
 
-/// Parses XML; an error has its place.
+/// Parses XML; an error comes with its place.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, Malformed> {
     let options = ParsingOptions {
-        // Some exporters write a document type; its entities are not read from anywhere.
+        // Some exporters write a document type declaration; external entities are not read.
         allow_dtd: true,
         ..ParsingOptions::default()
     };
     Document::parse_with_options(text, options).map_err(|error| {
         let begin = match error {
-            // What is missing at the end has no place of its own: the last sign stands for it.
+            // An error at the end of the text has no place of its own, so it is shown at the last character.
             Error::UnexpectedEndOfStream | Error::UnclosedRootNode | Error::NoRootNode => {
                 let last = text.trim_end().char_indices().next_back();
                 last.map_or(0, |(offset, _)| offset)
@@ -53,7 +54,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Malformed> {
                 "write `&amp;` for the sign `&` itself".into(),
             ),
             _ => {
-                // The place is said by its own means.
+                // The place is reported separately.
                 let message = error.to_string();
                 let message = match message.rfind(" at ") {
                     Some(end) if message.ends_with(|c: char| c.is_ascii_digit()) => &message[..end],
@@ -69,7 +70,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Malformed> {
     })
 }
 
-/// The namespace that a prefix usually stands for; every text would do.
+/// Returns the usual namespace of a prefix, to suggest it; any other text would do.
 fn space(prefix: &str) -> String {
     match prefix {
         "drake" => "http://drake.mit.edu".into(),
@@ -77,7 +78,7 @@ fn space(prefix: &str) -> String {
     }
 }
 
-/// The byte at which a line and a column begin.
+/// Returns the byte offset of a line and column.
 fn offset(text: &str, place: TextPos) -> usize {
     let line = place.row.saturating_sub(1) as usize;
     let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
@@ -87,7 +88,7 @@ fn offset(text: &str, place: TextPos) -> usize {
     (start + within.map_or(0, |(offset, _)| offset)).min(text.len())
 }
 
-/// The opening `<name` of an element.
+/// Returns the range of the opening `<name` of an element.
 pub(super) fn tag(text: &str, node: &Node<'_, '_>) -> Range<usize> {
     let start = node.range().start;
     let rest = text.get(start..).unwrap_or("");
@@ -95,23 +96,23 @@ pub(super) fn tag(text: &str, node: &Node<'_, '_>) -> Range<usize> {
     start..start + length.unwrap_or(rest.len())
 }
 
-/// The name of an element as it is written, with its prefix.
+/// Returns the name of an element as it is written, with its prefix.
 pub(super) fn written<'a>(text: &'a str, node: &Node<'_, 'a>) -> &'a str {
     let name = text
         .get(tag(text, node))
         .and_then(|tag| tag.strip_prefix('<'));
-    // The elements of an entity are written elsewhere.
+    // Elements that come from an entity are written elsewhere.
     name.filter(|name| name.ends_with(node.tag_name().name()))
         .unwrap_or(node.tag_name().name())
 }
 
-/// The name of an attribute as it is written, with its prefix.
+/// Returns the name of an attribute as it is written, with its prefix.
 pub(super) fn property<'a>(text: &'a str, attribute: &Attribute<'_, 'a>) -> &'a str {
     let name = text.get(attribute.range_qname());
     name.unwrap_or(attribute.name())
 }
 
-/// Reads elements and keeps what is wrong with them.
+/// Reads elements, and collects errors and warnings about them.
 pub(super) struct Reader<'a, 'p, 't> {
     pub(super) text: &'a str,
     pub(super) tolerance: f64,
@@ -122,7 +123,7 @@ pub(super) struct Reader<'a, 'p, 't> {
 }
 
 impl<'a> Reader<'a, '_, '_> {
-    /// The only child of a name; a second one is an error.
+    /// Finds the only child of a name; a second one is an error.
     pub(super) fn child<'d>(&mut self, node: &Node<'d, 'a>, name: &str) -> Option<Node<'d, 'a>> {
         let text = self.text;
         let mut found = node
@@ -139,7 +140,7 @@ impl<'a> Reader<'a, '_, '_> {
         first
     }
 
-    /// The only child of a name; none is an error, too.
+    /// Finds the only child of a name; it is an error if there is none.
     pub(super) fn required<'d>(
         &mut self,
         node: &Node<'d, 'a>,
@@ -157,7 +158,7 @@ impl<'a> Reader<'a, '_, '_> {
         found
     }
 
-    /// An attribute that has to be there.
+    /// Finds a mandatory attribute.
     pub(super) fn attribute<'d>(
         &mut self,
         node: &Node<'d, 'a>,
@@ -175,7 +176,7 @@ impl<'a> Reader<'a, '_, '_> {
         found
     }
 
-    /// A name that is not empty.
+    /// Reads a name, which must not be empty.
     pub(super) fn name(&mut self, node: &Node<'_, 'a>, attribute: &str) -> Option<Named> {
         let found = self.attribute(node, attribute)?;
         let named = Named {
@@ -193,7 +194,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some(named)
     }
 
-    /// The robot's name, which may be empty where the system has another one.
+    /// Reads the robot's name, which may be missing if the system gets another name.
     pub(super) fn robot_name(&mut self, root: &Node<'_, 'a>, other: bool) -> Option<Named> {
         let found = root.attribute_node("name");
         let empty = found.is_none_or(|name| name.value().trim().is_empty());
@@ -209,13 +210,13 @@ impl<'a> Reader<'a, '_, '_> {
         })
     }
 
-    /// A number that has to be there.
+    /// Reads a mandatory number.
     pub(super) fn number(&mut self, node: &Node<'_, 'a>, attribute: &str) -> Option<Decimal> {
         let found = self.attribute(node, attribute)?;
         self.decimal(found.value().trim(), &found.range_value())
     }
 
-    /// A number that may be left out.
+    /// Reads an optional number.
     pub(super) fn optional(&mut self, node: &Node<'_, 'a>, attribute: &str) -> Option<Decimal> {
         let found = node.attribute_node(attribute)?;
         self.decimal(found.value().trim(), &found.range_value())
@@ -229,7 +230,7 @@ impl<'a> Reader<'a, '_, '_> {
                     format!("`{written}` is not a number"),
                     "this is a property of xacro: expand the file first, `xacro FILE > robot.urdf`",
                 ),
-                // Finite for Rust, and not for `Decimal`, whose exponents have a bound.
+                // Parsed by Rust but not by `Decimal`, whose exponents are bounded.
                 Ok(value) if value.abs() < 1.0 && !written.contains("inf") => (
                     format!("`{written}` is nearer to 0 than any quantity of a robot"),
                     "write 0 where nothing is meant; numbers that are not 0 have a size above 1e-300",
@@ -252,7 +253,7 @@ impl<'a> Reader<'a, '_, '_> {
         number
     }
 
-    /// Three numbers with blanks between.
+    /// Reads three numbers separated by blanks.
     pub(super) fn vector(&mut self, found: &Attribute<'_, 'a>) -> Option<[Decimal; 3]> {
         let range = found.range_value();
         let words: Vec<&str> = found.value().split_whitespace().collect();
@@ -271,7 +272,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some([a, b, c])
     }
 
-    /// `<origin xyz rpy>`, all of it optional; `None` where it cannot be read.
+    /// Reads `<origin xyz rpy>`, all of it optional; `None` if it cannot be read.
     pub(super) fn origin(&mut self, node: &Node<'_, 'a>) -> Option<Origin> {
         let Some(element) = self.child(node, "origin") else {
             return Some(Origin::identity());
@@ -279,7 +280,7 @@ impl<'a> Reader<'a, '_, '_> {
         self.pose(&element)
     }
 
-    /// The pose that `xyz` and `rpy` of an element are; `None` where it cannot be read.
+    /// Reads a pose from `xyz` and `rpy` or `quat_xyzw` of an element; `None` if it cannot be read.
     pub(super) fn pose(&mut self, element: &Node<'_, 'a>) -> Option<Origin> {
         let mut origin = Origin::identity();
         let mut sound = true;
@@ -313,7 +314,7 @@ impl<'a> Reader<'a, '_, '_> {
         sound.then_some(origin)
     }
 
-    /// The rotation that a quaternion is, which URDF has from version 1.1 on; it need not have length 1.
+    /// Reads a rotation from a quaternion, as URDF 1.1 has it; its length need not be 1.
     fn quaternion(&mut self, attribute: &Attribute<'_, 'a>, second: bool) -> Option<Rotation> {
         let range = attribute.range_value();
         let words = attribute.value().split_whitespace();
@@ -356,8 +357,9 @@ impl<'a> Reader<'a, '_, '_> {
         angle
     }
 
-    /// Sets entries to 0 that are nothing beside the largest one, and those that are not larger than `nothing`: a length
-    /// can be so small that no robot has it, whereas a direction has no size, and an inertia any size above 0.
+    /// Sets entries to 0 that are negligible against the largest one, and those of at most `nothing` in size. The
+    /// absolute bound `nothing` is for lengths only: a direction has no scale, and an inertia may be arbitrarily
+    /// small.
     pub(super) fn clean<const N: usize>(
         &mut self,
         entries: &mut [Decimal; N],
@@ -386,7 +388,7 @@ impl<'a> Reader<'a, '_, '_> {
     }
 }
 
-/// Roll, pitch and yaw of a quaternion; `None` of zero.
+/// Returns roll, pitch and yaw of a quaternion; `None` if it is zero.
 fn angles([x, y, z, w]: [f64; 4]) -> Option<[f64; 3]> {
     let norm = [x, y, z, w]
         .iter()
@@ -394,7 +396,7 @@ fn angles([x, y, z, w]: [f64; 4]) -> Option<[f64; 3]> {
     if norm == 0.0 {
         return None;
     }
-    // Half sum and half difference of yaw and roll, with cos(pitch/2) ± sin(pitch/2) before both.
+    // cos(pitch/2) ± sin(pitch/2) times cosine and sine of (yaw ∓ roll)/2.
     let (difference, sum) = ((w + y, z - x), (w - y, z + x));
     let (plus, minus) = (difference.0.hypot(difference.1), sum.0.hypot(sum.1));
     let (difference, sum) = (difference.1.atan2(difference.0), sum.1.atan2(sum.0));
@@ -406,7 +408,7 @@ fn angles([x, y, z, w]: [f64; 4]) -> Option<[f64; 3]> {
 mod tests {
     use super::angles;
 
-    /// Quaternions of roll, pitch and yaw, of any length and sign, those with pitch ±π/2 included.
+    /// Quaternions of any length and sign give back roll, pitch and yaw, also at pitch ±π/2.
     #[test]
     fn quaternions_are_roll_pitch_and_yaw() {
         let product = |a: [f64; 4], b: [f64; 4]| {

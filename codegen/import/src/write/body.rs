@@ -1,4 +1,4 @@
-//! `body on link { mass; com; inertia }`.
+//! Writes `body on link { mass; com; inertia }`.
 
 use super::Writer;
 use super::page::WIDTH;
@@ -7,7 +7,7 @@ use crate::decimal::{Decimal, vector};
 use crate::robot::{Inertial, Origin};
 
 impl Writer<'_> {
-    /// The body of a link; a comment where it has none.
+    /// Writes the body of a link; nothing if it has no mass.
     pub(super) fn body(&mut self, link: usize) {
         let robot = self.robot;
         let frame = self.names.links[link].clone();
@@ -17,7 +17,7 @@ impl Writer<'_> {
             .as_ref()
             .filter(|inertial| !inertial.is_zero())
         else {
-            // Frames without mass cost nothing, and say nothing that has to be explained.
+            // A frame without mass costs nothing and needs no explanation.
             return;
         };
         let mut fields = Vec::new();
@@ -59,7 +59,7 @@ impl Writer<'_> {
         self.page.line(range, "}");
     }
 
-    /// The parameters of a body.
+    /// Writes the parameters of a body.
     pub(super) fn parameters_of(&mut self, link: usize) {
         let robot = self.robot;
         let frame = self.names.links[link].clone();
@@ -76,13 +76,13 @@ impl Writer<'_> {
     }
 }
 
-/// The inertia in the axes of the link: R I Rᵀ, multiplied out where R only exchanges axes.
+/// Writes the inertia in link axes: R I Rᵀ, multiplied out if R only permutes and flips axes.
 fn inertia(inertial: &Inertial) -> String {
     let [xx, xy, xz, yy, yz, zz] = &inertial.inertia;
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     match inertial.origin.rotation.exact() {
         Some(rotation) => {
-            // Row i of R has one entry, ±1, in a column.
+            // Row i of R has one nonzero entry, ±1.
             let turned = rotation.map(|row| {
                 let column = row.iter().position(|&entry| entry != 0).unwrap_or(0);
                 (column, row[column] < 0)
@@ -104,7 +104,7 @@ fn inertia(inertial: &Inertial) -> String {
     }
 }
 
-/// `R * I * transpose(R)`
+/// Writes `R * I * transpose(R)`.
 fn turned(inertia: String, rotation: &Rotation) -> String {
     match rotation.text() {
         Some(turn) => format!("{turn} * {inertia} * transpose({turn})"),
@@ -112,7 +112,7 @@ fn turned(inertia: String, rotation: &Rotation) -> String {
     }
 }
 
-/// `diag(a, b, c)`, or rows.
+/// Writes `diag(a, b, c)`, or the rows of the matrix.
 fn written(rows: &[[&Decimal; 3]; 3]) -> String {
     let diagonal = (0..3).all(|i| (0..3).all(|j| i == j || rows[i][j].is_zero()));
     if diagonal {

@@ -1,4 +1,4 @@
-//! What a reader has to know before the statements: where they are from, what was changed.
+//! Writes the header of a description: where it comes from and which numbers were changed.
 
 use super::Writer;
 use super::page::plain;
@@ -7,7 +7,7 @@ use crate::plan::Mobility;
 use crate::problem::{Problem, place};
 use crate::robot::Cleaned;
 
-/// What was changed, numbers of one spelling in one sentence, in the order of the file.
+/// Describes the changed numbers in the order of the file, one sentence for each spelling.
 pub(super) fn cleaned(xml: &str, list: &[Cleaned]) -> Vec<String> {
     let mut kinds: Vec<(&Cleaned, usize)> = Vec::new();
     for change in list {
@@ -113,7 +113,7 @@ impl Writer<'_> {
         self.page.begin(range, &format!("pub system {system} {{"));
     }
 
-    /// Masses, centres of mass and inertias that a program may change.
+    /// Writes masses, centres of mass and inertias as parameters, which a program may change.
     pub(super) fn parameters(&mut self) {
         if !self.options.params {
             return;
@@ -124,7 +124,7 @@ impl Writer<'_> {
         self.page.blank();
     }
 
-    /// Links with mass that move, in the order of the tree.
+    /// Returns the moving links with mass, in the order of the tree.
     pub(super) fn bodies(&self) -> Vec<usize> {
         let moving = self.moving();
         let order = self.tree.joints.iter().map(|edge| edge.child);
@@ -137,7 +137,7 @@ impl Writer<'_> {
             .collect()
     }
 
-    /// Whether a joint's angle is a coordinate that others follow.
+    /// Whether a joint has a coordinate of its own that other joints follow.
     pub(super) fn is_followed(&self, joint: usize) -> bool {
         self.plan.followed[joint] && self.plan.motions[joint] == Mobility::Free
     }

@@ -1,4 +1,4 @@
-//! `joint j: kind AXIS on f at POSE moves g { … };`.
+//! Writes `joint j: kind AXIS on f at POSE moves g { … };`.
 
 use super::Writer;
 use crate::angle::Angle;
@@ -103,7 +103,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The kind with its axis.
+    /// Returns the joint's kind with its axis.
     fn kind(&self, index: usize) -> String {
         let joint = &self.robot.joints[index];
         let axis = || vector(&axis(joint));
@@ -114,7 +114,8 @@ impl Writer<'_> {
             Kind::Universal => "universal [1, 0, 0], [0, 1, 0]".into(),
             Kind::Planar => format!("planar {}", axis()),
             Kind::Prismatic => format!("prismatic {}", axis()),
-            // What follows an angle needs the angle.
+            // Joints that follow this one need its angle as a coordinate, which `revolute` has and `continuous` has
+            // not.
             Kind::Continuous
                 if self.plan.motions[index] == Mobility::Free && !self.is_followed(index) =>
             {
@@ -124,7 +125,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What the statement does not say.
+    /// Returns comments about properties that the statement does not express.
     fn comments(&self, joint: &Joint, motion: &Mobility) -> Vec<String> {
         let mut comments = Vec::new();
         if let Mobility::Locked(_) = motion {
@@ -157,13 +158,13 @@ impl Writer<'_> {
     }
 }
 
-/// The axis, URDF's default where none is given.
+/// Returns the axis, or URDF's default if none is given.
 fn axis(joint: &Joint) -> [Decimal; 3] {
     let default = || [Decimal::one(), Decimal::zero(), Decimal::zero()];
     joint.axis.clone().unwrap_or_else(default)
 }
 
-/// `pose(R, p)`; nothing for the identity.
+/// Writes `pose(R, p)`; `None` for the identity.
 pub(super) fn pose(
     rotation: Option<String>,
     position: &[Decimal; 3],
@@ -180,7 +181,7 @@ pub(super) fn pose(
     Some(format!("pose({rotation}, {place})"))
 }
 
-/// The pose of a joint that stands at an angle or a length.
+/// Writes the pose of a joint that is locked at an angle or a length.
 fn locked(joint: &Joint, value: &Linear) -> Option<String> {
     let axis = axis(joint);
     let own = joint.origin.rotation.text();
@@ -230,7 +231,7 @@ fn locked(joint: &Joint, value: &Linear) -> Option<String> {
     pose(Some(product(own, turn)), position, None)
 }
 
-/// `b + a * q`, step after step.
+/// Writes `a * q + b` for each step in turn.
 fn linear(start: String, steps: &[(Decimal, Decimal)]) -> String {
     let mut text = start;
     let mut sum = false;
@@ -253,7 +254,7 @@ fn linear(start: String, steps: &[(Decimal, Decimal)]) -> String {
     text
 }
 
-/// What stands in the braces.
+/// Returns the fields in the braces of the statement.
 fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
     let one = joint.kind.is_single();
     let damped = one || matches!(joint.kind, Kind::Spherical | Kind::Universal);
@@ -265,7 +266,7 @@ fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
     if free && joint.kind != Kind::Universal {
         fields.push(format!("force {name}_tau;"));
     }
-    // What follows is damped by its leader, below.
+    // Damping of a joint that follows another acts on the leader's rate, see `Writer::joint`.
     if let (Some(damping), true) = (&joint.damping, free) {
         fields.push(format!("damping {};", damping.text));
     }
@@ -287,7 +288,7 @@ fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
     {
         bounds.push(format!("limit {} to {};", lower.text, upper.text));
     }
-    // A bound of 0 says that nothing is known.
+    // A bound of 0 means that it is unknown.
     let positive = |bound: &Option<Decimal>| bound.clone().filter(|bound| bound.value > 0.0);
     if let Some(velocity) = positive(&joint.velocity) {
         bounds.push(format!("max_speed {};", velocity.text));
@@ -301,7 +302,7 @@ fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
     fields
 }
 
-/// Σ inertia · ratio² of the rotors.
+/// Writes the armature, Σ inertia · ratio² of the rotors.
 fn armature(joint: &Joint) -> Option<String> {
     let terms = joint.rotors.iter().map(|(inertia, ratio)| {
         let size = ratio.text.trim_start_matches('-');
@@ -314,7 +315,7 @@ fn armature(joint: &Joint) -> Option<String> {
     (!terms.is_empty()).then(|| terms.join(" + "))
 }
 
-/// Both limits, the one that is left out being 0; none where they leave nothing between.
+/// Returns both limits; a missing one is 0. Returns none if the interval would be empty.
 fn limits(joint: &Joint) -> (Option<Decimal>, Option<Decimal>) {
     let (lower, upper) = match (&joint.lower, &joint.upper) {
         (None, None) => return (None, None),

@@ -1,4 +1,4 @@
-//! The description: joints and bodies in the order of the tree.
+//! Writes the description: joints and bodies in the order of the tree.
 
 mod body;
 mod header;
@@ -15,19 +15,20 @@ use crate::tree::{Edge, Tree};
 use page::Page;
 use std::collections::BTreeMap;
 
-/// What the statements are written from.
+/// Writer of the statements.
 struct Writer<'a> {
     robot: &'a Robot,
     tree: &'a Tree,
     plan: &'a Plan,
     options: &'a Options,
     names: Names,
-    /// The lines of equations of closing joints.
+    /// Line numbers of the equations of loop-closing joints.
     equations: Vec<usize>,
     page: Page,
 }
 
-/// Writes the description of a robot that was read and checked, without equations of closing joints that are idle.
+/// Writes the description of a robot that was read and checked, without the redundant equations `idle` of
+/// loop-closing joints.
 pub(crate) fn write(
     xml: &str,
     read: &Read,
@@ -89,7 +90,7 @@ pub(crate) fn write(
 }
 
 impl Writer<'_> {
-    /// Whether each link moves in the world.
+    /// Returns whether each link moves relative to the world.
     fn moving(&self) -> Vec<bool> {
         let mut moving = vec![self.options.floating; self.robot.links.len()];
         for edge in &self.tree.joints {
@@ -100,7 +101,7 @@ impl Writer<'_> {
         moving
     }
 
-    /// Joints with coordinates of their own, in the order of the tree.
+    /// Returns the joints with coordinates of their own, in the order of the tree.
     fn free(&self) -> impl Iterator<Item = &Edge> {
         let free = |edge: &&Edge| self.plan.motions[edge.joint] == Mobility::Free;
         self.tree.joints.iter().filter(free)
@@ -117,7 +118,7 @@ impl Writer<'_> {
                 joint.name.name.clone(),
                 self.names.joints[edge.joint].clone(),
             );
-            // Each of two angles has its own name.
+            // A universal joint has one name for each of its two angles.
             match joint.kind {
                 Kind::Universal => ["_1", "_2"]
                     .map(|angle| (pair.0.clone() + angle, pair.1.clone() + angle))
@@ -128,7 +129,7 @@ impl Writer<'_> {
         root.into_iter().chain(joints).collect()
     }
 
-    /// One input for each freedom.
+    /// Declares inputs for the forces and torques of all free joints.
     fn inputs(&mut self) {
         let mut inputs = Vec::new();
         if self.options.floating {
@@ -155,7 +156,7 @@ impl Writer<'_> {
         self.page.list("input", &inputs);
     }
 
-    /// The root link: free, or the world.
+    /// Writes the root link: a free body, or part of the world.
     fn base(&mut self) {
         let link = &self.robot.links[self.tree.root];
         let (name, range) = (link.name.name.clone(), link.name.range.clone());

@@ -1,16 +1,16 @@
-//! Lines of the description, each with the place in the URDF that it is made from.
+//! Lines of the description, each with the range of the URDF that it was made from.
 
 use std::ops::Range;
 
-/// Lines up to this width.
+/// Largest width of a line.
 pub(super) const WIDTH: usize = 110;
 
-/// Names and paths as a comment quotes them: as they are, without what would end its line.
+/// Prepares a name or path for a comment: control characters, which could end the line, become blanks.
 pub(super) fn plain(text: &str) -> String {
     text.replace(|c: char| c.is_control(), " ")
 }
 
-/// The text so far.
+/// The text written so far.
 #[derive(Default)]
 pub(super) struct Page {
     pub(super) text: String,
@@ -18,14 +18,14 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// A line at the left margin.
+    /// Writes a line at the left margin.
     pub(super) fn top(&mut self, text: &str) {
         self.text.push_str(text);
         self.text.push('\n');
         self.origins.push(None);
     }
 
-    /// The line that begins the system, of the element `<robot>`.
+    /// Writes the line that begins the system, with the place of `<robot>`.
     pub(super) fn begin(&mut self, origin: &Range<usize>, text: &str) {
         self.top(text);
         if let Some(last) = self.origins.last_mut() {
@@ -33,12 +33,12 @@ impl Page {
         }
     }
 
-    /// A comment in the braces of the system, which may quote names of the file.
+    /// Writes a comment inside the system, which may quote names of the file.
     pub(super) fn comment(&mut self, origin: &Range<usize>, text: &str) {
         self.line(Some(origin), &format!("// {}", plain(text)));
     }
 
-    /// A statement in the braces of the system.
+    /// Writes a statement inside the system.
     pub(super) fn line(&mut self, origin: Option<&Range<usize>>, text: &str) {
         self.text.push_str("    ");
         self.text.push_str(text);
@@ -46,7 +46,7 @@ impl Page {
         self.origins.push(origin.cloned());
     }
 
-    /// An empty line, unless there is one.
+    /// Writes an empty line, unless there is one already.
     pub(super) fn blank(&mut self) {
         if !self.text.ends_with("\n\n") && !self.text.ends_with("{\n") {
             self.text.push('\n');
@@ -54,12 +54,12 @@ impl Page {
         }
     }
 
-    /// The end of the system.
+    /// Writes the end of the system.
     pub(super) fn close(&mut self) {
         self.top("}");
     }
 
-    /// `word a, b, c;`, over several lines where one is too long.
+    /// Writes `word a, b, c;`, over several lines if it is too long for one.
     pub(super) fn list(&mut self, word: &str, items: &[String]) {
         let Some((last, rest)) = items.split_last() else {
             return;

@@ -1,4 +1,4 @@
-//! `loop` and `spring` statements: what ties links beside the joints of the tree.
+//! Writes `loop` and `spring` statements, the connections between links outside the tree.
 
 use super::Writer;
 use super::joint::pose;
@@ -7,19 +7,19 @@ use crate::options::Idle;
 use crate::robot::{Closing, End};
 use std::collections::BTreeMap;
 
-/// Unit vectors.
+/// Unit vectors of the axes.
 const UNITS: [&str; 3] = ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"];
 
-/// An equation of a closing joint.
+/// One equation of a loop-closing joint.
 struct Row {
     left: String,
     right: String,
-    /// What it stops: `along` or `about` a direction, of the world or of the first frame.
+    /// The motion that the equation prevents: `along` or `about` a direction of the world or of the first frame.
     stops: String,
 }
 
 impl Writer<'_> {
-    /// Closing joints, each with a frame at either end.
+    /// Writes the loop-closing joints, each with a frame at both ends.
     pub(super) fn loops(&mut self, idle: &BTreeMap<usize, Idle>) {
         let mut before = 0;
         for index in 0..self.robot.loops.len() {
@@ -42,7 +42,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The frames of a closing joint and its equations, where there are any.
+    /// Writes the frames and equations of a loop-closing joint, if it has any equations.
     fn closing(&mut self, index: usize, names: &[String; 2], rows: &[&Row]) {
         let Some((last, others)) = rows.split_last() else {
             return;
@@ -67,7 +67,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Equations that say nothing, with the reason.
+    /// Writes redundant equations as comments, with the reason.
     fn left_out(&mut self, index: usize, rows: &[(&Row, Idle)]) {
         let name = &self.robot.loops[index].name;
         let range = &name.range;
@@ -88,7 +88,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Springs and dampers between points.
+    /// Writes springs and dampers between points.
     pub(super) fn springs(&mut self) {
         let robot = self.robot;
         for spring in &robot.springs {
@@ -110,7 +110,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The frame of the link at an end; `None` where the link stands in the world.
+    /// Returns the frame of the link at an end; `None` if the link is fixed to the world.
     fn carrier(&self, end: &End) -> Option<String> {
         let mut links = self.robot.links.iter();
         let link = links.position(|link| link.name.name == end.link.name)?;
@@ -119,7 +119,7 @@ impl Writer<'_> {
     }
 }
 
-/// What holds where two frames are closed.
+/// Returns the equations that hold when two frames are joined.
 fn rows(closing: &Closing, [a, b]: &[String; 2]) -> Vec<Row> {
     let gap = |axis: usize| Row {
         left: format!("position({a})[{axis}]"),
@@ -157,7 +157,8 @@ fn rows(closing: &Closing, [a, b]: &[String; 2]) -> Vec<Row> {
     }
 }
 
-/// Two directions across another one: its product with the unit vector that is farthest from it, and the product of both.
+/// Returns two directions orthogonal to an axis: its cross product with the unit vector farthest from it, and the
+/// cross product of the axis with that.
 fn normals(axis: &[Decimal; 3]) -> [String; 2] {
     let least = (0..3).min_by(|&i, &j| axis[i].value.abs().total_cmp(&axis[j].value.abs()));
     let least = least.unwrap_or(0);
@@ -167,7 +168,7 @@ fn normals(axis: &[Decimal; 3]) -> [String; 2] {
     first[last] = axis[next].negated();
     let nonzero: Vec<usize> = (0..3).filter(|&i| !axis[i].is_zero()).collect();
     let second = match nonzero.as_slice() {
-        // The unit vector itself.
+        // For a coordinate axis this unit vector is the second direction itself.
         [_] => {
             let mut unit: [Decimal; 3] = std::array::from_fn(|_| Decimal::zero());
             unit[least] = Decimal::one();

@@ -1,28 +1,28 @@
-//! Functions that are linear in some variables but for a term without them: f = Σ fᵢ vᵢ + f₀.
+//! Splits functions that are affine in some variables: f = Σ fᵢ vᵢ + f₀.
 
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::substitute;
 
-/// A function taken apart by variables. Where it is linear in them, neither the slopes nor the rest depend on them;
-/// the caller looks at what they depend on, and says what is wrong in his own words.
+/// A function split by variables. If the function is affine in them, neither the slopes nor the rest depend on them;
+/// the caller checks that with [`classes`](Self::classes) and reports errors in its own words.
 pub struct Affine {
     /// fᵢ = ∂f/∂vᵢ.
     pub slopes: Vec<Edge>,
-    /// Σ fᵢ vᵢ.
+    /// Linear part Σ fᵢ vᵢ.
     pub linear: Edge,
-    /// f − Σ fᵢ vᵢ.
+    /// Rest f − Σ fᵢ vᵢ.
     pub rest: Edge,
 }
 
 impl Affine {
-    /// Of a function, by symbols of its graph.
+    /// Splits a function by symbols of its graph.
     pub fn of(graph: &mut Graph, function: Edge, variables: &[Edge]) -> Affine {
         let mut one = Affine::of_each(graph, &[function], variables);
         one.remove(0)
     }
 
-    /// Of several functions, which share their derivatives.
+    /// Splits several functions, which share their derivatives.
     pub fn of_each(graph: &mut Graph, functions: &[Edge], variables: &[Edge]) -> Vec<Affine> {
         let mut slopes = vec![Vec::new(); functions.len()];
         for variable in variables {
@@ -44,16 +44,16 @@ impl Affine {
         all
     }
 
-    /// The classes of symbols in the slopes and in the rest.
+    /// Returns the classes of the symbols in the slopes and of those in the rest.
     pub fn classes(&self, graph: &Graph) -> (u8, u8) {
         let class = |edges: &[Edge]| (edges.iter()).fold(0, |all, e| all | graph.class(e.node()));
         (class(&self.slopes), class(&[self.rest]))
     }
 }
 
-/// f − Σ fᵢ vᵢ, which is f at v = 0 where f is linear. In the difference as it stands the variables may be left, each
-/// against itself, as in q (v + c) − q v; and as equal values share one form in a graph, f at v = 0 has to be there
-/// before it.
+/// Returns f − Σ fᵢ vᵢ, as f at v = 0 if that is equal. The difference itself may still contain the variables,
+/// cancelling one another, as in q (v + c) − q v. Equal values share the node that was built first, so f at v = 0 has
+/// to be built before the difference.
 fn rest(graph: &mut Graph, function: Edge, linear: Edge, variables: &[Edge]) -> Edge {
     let symbols = graph.symbols().iter().enumerate();
     let variable = |node| variables.iter().any(|variable| variable.node() == node);

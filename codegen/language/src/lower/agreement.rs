@@ -1,4 +1,4 @@
-//! Y A = I on X where a description gives both, KR18 (6); the residual shows what differs.
+//! Checks Y A = I on X if a description gives both Y and A, KR18 (6); an error shows the residual.
 
 use super::declare::Declared;
 use super::definitions::Row;
@@ -11,7 +11,7 @@ use crate::syntax::ast::System;
 /// Longest residual that is shown as an expression.
 const MOST: usize = 60;
 
-/// Whether every given row of Y has Y A = I; the first entry that differs is reported for each.
+/// Returns whether every given row of Y satisfies Y A = I; reports the first entry that differs in each row.
 pub fn check(
     system: &System,
     graph: &mut Graph,

@@ -9,11 +9,11 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Expr, Function, Span};
 use std::collections::BTreeMap;
 
-/// The most calls of functions that a description writes out.
+/// Largest number of function calls that are expanded in a description.
 const MOST_CALLS: usize = 100_000;
 
 impl Evaluator<'_> {
-    /// The value of a call of a function of the description.
+    /// Returns the value of a call of a function of the description.
     pub fn applied(
         &mut self,
         function: &Function,
@@ -27,8 +27,8 @@ impl Evaluator<'_> {
         self.written_out(names.zip(values).collect(), &function.value, span)
     }
 
-    /// The value of a function's expression, where its parameters have these values. An error in it is reported there,
-    /// with a note at the call.
+    /// Returns the value of a function's expression for given values of its parameters. An error in the expression is
+    /// reported there, with a note at the call.
     pub fn written_out(
         &mut self,
         parameters: BTreeMap<&str, Value>,
@@ -38,7 +38,7 @@ impl Evaluator<'_> {
         let calls = self.scope.calls.get() + 1;
         self.scope.calls.set(calls);
         if calls > MOST_CALLS {
-            // Reported where it was crossed.
+            // Reported only once, when the limit is crossed.
             return match calls == MOST_CALLS + 1 {
                 true => self.error(
                     Diagnostic::new(span, "functions call one another too often here")

@@ -13,9 +13,9 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 
 /// Largest size in bits of an exact number.
 const LARGEST_NUMBER: u64 = 20_000;
-/// Largest power of two that a number may have, for floating point to hold it.
+/// Largest power of two of a number, so that floating point can hold it.
 const LARGEST_POWER: u64 = 1023;
-/// Largest whole exponent.
+/// Largest size of an exponent.
 const LARGEST_EXPONENT: u64 = 1000;
 
 impl Evaluator<'_> {
@@ -73,7 +73,7 @@ impl Evaluator<'_> {
         })
     }
 
-    /// The value, unless one of its numbers has grown beyond all use.
+    /// Returns the value, unless one of its numbers has become too large or too long.
     pub(super) fn bounded(&mut self, value: Value, span: Span) -> Option<Value> {
         for edge in value.entries() {
             let Some(number) = self.graph.as_rational(edge) else {
@@ -127,9 +127,9 @@ impl Evaluator<'_> {
         })
     }
 
-    /// aʳ where r is no whole number: aᵏ √a, or aᵏ exp(f log a) with 0 < f < 1, so that as many derivatives are finite at a = 0
-    /// as there are; of max(a, 0) and other choices between an expression and a number that of each. `None` where something is
-    /// divided by 0.
+    /// Returns aʳ for an r that is not an integer: aᵏ √a, or aᵏ exp(f log a) with 0 < f < 1, so that as many
+    /// derivatives as possible are finite at a = 0. For a choice between an expression and a number, such as
+    /// max(a, 0), it takes the power of each branch. Returns `None` on division by 0.
     fn fractional_power(&mut self, base: Edge, exponent: &BigRational) -> Option<Edge> {
         let graph = &mut *self.graph;
         if base == graph.one() {
@@ -155,7 +155,7 @@ impl Evaluator<'_> {
             let root = functions::root(graph, base);
             return graph.powi(root, twice.to_integer().to_i64()?);
         }
-        // Of a norm as a power of its square.
+        // A power of a norm is written as a power of its square.
         let half = exponent / BigRational::from_integer(2.into());
         if let (Node::Apply(Function::Sqrt | Function::Norm, square), false, true) = (
             graph.node(base.node()),

@@ -1,4 +1,4 @@
-//! Axes and places of joints: exact unit vectors.
+//! Axes and places of joints, with exact unit vectors.
 
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{Mat3, Vec3, identity3};
@@ -10,21 +10,21 @@ use crate::syntax::ast::Span;
 use num_rational::BigRational;
 use num_traits::Signed;
 
-/// What joints call.
+/// Functions that expanded joints call.
 pub const CALLS: [&str; 3] = [AXIS, PLACE, PLANE];
 
-/// Why a joint cannot have an axis or place: a reason, and what to do.
+/// Why an axis or place of a joint is refused: the reason, and what to do.
 #[derive(Debug)]
 pub struct Refused(&'static str, &'static str);
 
 impl Refused {
-    /// The error at a place of the description.
+    /// Returns the error at a place of the description.
     pub fn at(self, span: Span) -> Diagnostic {
         Diagnostic::new(span, self.0).help(self.1)
     }
 }
 
-/// The value of one of the [`CALLS`]; `None` where its argument is in error.
+/// Evaluates one of the [`CALLS`]; `None` if its argument is in error.
 pub fn call(graph: &mut Graph, name: &str, value: &Value) -> Option<Result<Value, Refused>> {
     if name == PLACE {
         return place(graph, value);
@@ -36,7 +36,7 @@ pub fn call(graph: &mut Graph, name: &str, value: &Value) -> Option<Result<Value
     }))
 }
 
-/// A pose that does not depend on the motion.
+/// Checks that a pose does not depend on the motion.
 fn place(graph: &Graph, value: &Value) -> Option<Result<Value, Refused>> {
     let place = match (value, value.as_vec3()) {
         (Value::Pose(..), _) => value.clone(),
@@ -56,7 +56,7 @@ fn class_of(graph: &Graph, value: &Value) -> u8 {
     entries.iter().fold(0, |all, e| all | graph.class(e.node()))
 }
 
-/// The unit vector of a constant direction.
+/// Returns the unit vector of a constant direction.
 pub fn unit(graph: &mut Graph, axis: Vec3) -> Result<Vec3, Refused> {
     if class_of(graph, &Value::Vector(axis.to_vec())) != 0 {
         return Err(Refused(
@@ -89,17 +89,18 @@ pub fn unit(graph: &mut Graph, axis: Vec3) -> Result<Vec3, Refused> {
     Ok([a, b, c])
 }
 
-/// √ of a rational number that is a square.
+/// Returns the square root of a rational number if that is rational.
 fn exact_root(number: &BigRational) -> Option<BigRational> {
     let root = BigRational::new(number.numer().sqrt(), number.denom().sqrt());
     (&root * &root == *number).then_some(root)
 }
 
-/// Two unit vectors that with the normal are a right-handed frame: the images of the coordinate
-/// axes after the one nearest to the normal, in the shortest turn that takes that one to it.
+/// Returns two unit vectors that form a right-handed frame with the normal, as columns: the images of the two
+/// coordinate axes after the one nearest to the normal, under the shortest rotation that takes that axis to the
+/// normal.
 fn plane(graph: &mut Graph, normal: Vec3) -> Value {
     let sizes = normal.map(|entry| graph.as_rational(entry).map(|number| number.abs()));
-    // A symbolic root has no size here; its order follows from its square.
+    // A symbolic root has no size here; the order follows from its square.
     let size = |k: usize, graph: &mut Graph| {
         sizes[k].clone().map(|s| &s * &s).or_else(|| {
             let square = graph.mul(normal[k], normal[k]);
@@ -125,7 +126,7 @@ fn plane(graph: &mut Graph, normal: Vec3) -> Value {
     )
 }
 
-/// The shortest turn from ±eₖ to n: I + ŵ + ŵ²/(1 + c) with w = ±eₖ × n and c = ±nₖ.
+/// Returns the shortest rotation from ±eₖ to n: I + ŵ + ŵ²/(1 + c) with w = ±eₖ × n and c = ±nₖ.
 fn shortest(graph: &mut Graph, k: usize, negative: bool, n: Vec3) -> Mat3 {
     use crate::algebra::linear::{cross, multiply3};
     use crate::model::rotations::hat;

@@ -100,7 +100,7 @@ impl Reader<'_, '_> {
         Some(Particle { mass, position })
     }
 
-    /// T = ½ ξᵀ M(x) ξ.
+    /// Reads a kinetic energy T = ½ ξᵀ M(x) ξ.
     pub fn kinetic(&mut self, expr: &Expr) -> Option<Edge> {
         let energy = self.evaluator.scalar(expr)?;
         let class = self.evaluator.graph.class(energy.node());
@@ -143,7 +143,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Θ_origin = Θ_com + m (s·s I − s sᵀ), or back.
+/// Shifts an inertia by the parallel axis theorem, Θ_origin = Θ_com + m (s·s I − s sᵀ), or back.
 fn shifted(graph: &mut Graph, inertia: &Mat3, mass: Edge, com: Vec3, back: bool) -> Mat3 {
     let square = graph.dot(&com, &com);
     let steiner: Mat3 = std::array::from_fn(|i| {

@@ -1,20 +1,20 @@
-//! The branch of the start: of a constraint that is a product, the factor that vanishes there.
+//! Chooses the branch of the start: of a constraint that is a product, the factor that vanishes there.
 //!
-//! Where f g = 0, f = 0 at the start and g ≠ 0, X is {f = 0} as far as the motion gets without a point at which
-//! both vanish, and there is no A at such a point: ∂(f g) = 0. So points of {f = 0} are points of X, on the
-//! branch that matters. Emitted is the constraint as it was written.
+//! If f g = 0 with f = 0 and g ≠ 0 at the start, X is {f = 0} up to points where both factors vanish. The motion
+//! cannot pass through such points: ∂(f g) = 0 there, so that A does not exist. Hence points of {f = 0} are points of
+//! X on the branch that matters. The generated code contains the constraint as it was written.
 
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::numeric::evaluate;
 use crate::model::class;
 
-/// A factor that is smaller at the start vanishes there.
+/// Value at the start below which a factor vanishes.
 const ZERO: f64 = 1e-7;
-/// A factor that is larger does not.
+/// Value at the start above which a factor does not vanish.
 const APART: f64 = 1e-3;
 
-/// The one factor with coordinates that vanishes at the numbers of the start; the edge itself where it is no
-/// product, or none or several vanish.
+/// Returns the only factor with coordinates that vanishes at the start; returns the edge itself if it is not a
+/// product, or if not exactly one factor vanishes.
 pub fn at_start(graph: &Graph, edge: Edge, start: &[f64]) -> Edge {
     let factors = factors(graph, edge);
     let values = evaluate(graph, &factors, start);
@@ -29,7 +29,7 @@ pub fn at_start(graph: &Graph, edge: Edge, start: &[f64]) -> Edge {
     vanishing.unwrap_or(edge)
 }
 
-/// What is multiplied, each once, without what has no coordinate in it.
+/// Returns the distinct factors that contain a coordinate.
 fn factors(graph: &Graph, edge: Edge) -> Vec<Edge> {
     let mut open = vec![edge];
     let mut all: Vec<Edge> = Vec::new();
@@ -37,7 +37,7 @@ fn factors(graph: &Graph, edge: Edge) -> Vec<Edge> {
         let edge = edge.abs();
         match graph.node(edge.node()) {
             Node::Mul(a, b) => open.extend([a, b]),
-            // A constraint divides by what has no coordinate in it.
+            // The denominator of a constraint contains no coordinate.
             Node::Div(a, _) => open.push(a),
             _ if graph.class(edge.node()) & class::COORD == 0 || all.contains(&edge) => {}
             _ => all.push(edge),

@@ -1,4 +1,4 @@
-//! The order in which a description is read, with its checkpoints.
+//! Reads a description: the order of the steps, and the checks between them.
 
 use super::ground::Ground;
 use super::motion::TimeDerivative;
@@ -20,24 +20,30 @@ use crate::syntax::ast::{ItemKind, Origins, System};
 use crate::{shapes, symbols};
 use std::collections::BTreeSet;
 
-/// Points are chosen anew this often when a square root has no value there.
+/// Number of times that points are chosen anew because a square root has no value.
 const ATTEMPTS: u64 = 8;
 
-/// After so many points at which square roots are not told apart with certainty, they are kept apart.
+/// Number of points at which square roots may be confused before they are kept apart.
 const DOUBTS: usize = 3;
 
-/// How often real values are drawn, eight of each symbol, to tell square roots apart.
+/// Number of draws of real values, eight of each symbol, to tell square roots apart.
 const DRAWN: u64 = 16;
 
 /// Seed of the points: fixed, so that builds repeat.
 const SEED: u64 = 0x4a6d_656c;
 
 /// Reads a description; all its independent errors are reported together.
+///
+/// # Errors
+/// Returns the errors of the description.
 pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
     build_at(system, 0)
 }
 
-/// The same at other points of the variety, by their number.
+/// Reads a description as [`build`] does, at other points of the variety, chosen by a number.
+///
+/// # Errors
+/// Returns the errors of the description.
 pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
     let written = reuse::expand(system)?;
     let origins = &written.system.origins;
@@ -49,7 +55,7 @@ pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> 
     Ok(model)
 }
 
-/// Reads a description without components and repetition; `used` are names that these mention.
+/// Reads a description whose components and repetitions are expanded; `used` are the names that these mention.
 fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, Vec<Diagnostic>> {
     let own = SEED + number * ATTEMPTS;
     let mut first = Report::new();
@@ -130,7 +136,8 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
     Err(errors)
 }
 
-/// Whether an expression was taken for another one that it is only at some real points, such as √(e²) for e.
+/// Returns whether an expression was identified with another one that it equals only at some real points, such as
+/// √(e²) with e.
 fn is_doubtful(variety: &Variety, model: &Model) -> bool {
     let near = variety.near.as_deref();
     let samples =
@@ -138,10 +145,10 @@ fn is_doubtful(variety: &Variety, model: &Model) -> bool {
     model.graph.is_doubtful(samples)
 }
 
-/// What failed, and the graph where there is one.
+/// The errors, and the graph if there is one.
 type Failure = (Vec<Diagnostic>, Option<Box<Graph>>);
 
-/// Reads a description at a point of its variety, from what it says before anything moves.
+/// Reads a description at a point of its variety, given its motion-independent part.
 fn read_at(
     system: &System,
     variety: &Variety,
@@ -159,7 +166,7 @@ fn read_at(
     } = &mut ground;
     let errors = &mut report;
     variety.check(written, graph, errors);
-    // The start is needed to choose pivots; what is wrong with it is said last.
+    // The start is needed to choose pivots; its errors are reported last.
     let mut last = Report::new();
     let mut starts = start::read(system, graph, scope, declared, defaults, &mut last);
     start::guess::check(system, declared, &mut last);
@@ -242,7 +249,8 @@ fn read_at(
         .into_iter()
         .for_each(|error| report.push(error));
     if let Err(mut errors) = report.finish() {
-        // Without other errors it is said of what is derived, which may be less than what the description asks for.
+        // Without other errors, missing inertia is reported later, for the functions that are derived; these may be
+        // fewer than those that the description asks for.
         let claims = invariants.iter().map(|claim| claim.name.as_str());
         errors.extend(inertia::lacking(
             system.name.span,

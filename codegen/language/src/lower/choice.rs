@@ -1,4 +1,4 @@
-//! Choices between values: `if a < b { … } else { … }`, the lesser and the greater of two.
+//! Choices between values: `if a < b { … } else { … }`, minimum and maximum.
 
 use super::expression::Evaluator;
 use crate::algebra::graph::{Edge, Graph, NodeId};
@@ -9,7 +9,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Choice, Comparison, Span};
 
 impl Evaluator<'_> {
-    /// Both branches have a value; which of the two it is turns out where the program runs, or here where numbers
+    /// Returns the value of an `if`. Both branches have a value; the choice is made at run time, or here if numbers
     /// are compared.
     pub(super) fn choice(&mut self, choice: &Choice) -> Option<Value> {
         let (left, right) = (self.scalar(&choice.left), self.scalar(&choice.right));
@@ -19,7 +19,7 @@ impl Evaluator<'_> {
             return None;
         }
         let graph = &mut *self.graph;
-        // a <= b is where a > b is not.
+        // a <= b is true where a > b is false.
         let (positive, turned) = match choice.comparison {
             Comparison::Less => (graph.sub(right, left), false),
             Comparison::Greater => (graph.sub(left, right), false),
@@ -32,8 +32,8 @@ impl Evaluator<'_> {
         }))
     }
 
-    /// Whether a value does not jump where it changes from one branch to another, as far as that is found; reports it
-    /// where not. What is derived from the slopes of a function is true of a jump nowhere.
+    /// Reports an error if a value may jump where it changes from one branch to another, as far as that can be found.
+    /// Anything that is derived from the slopes of a function is wrong at a jump.
     pub(super) fn continuous(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
         self.inside(value, span, what)?;
         let graph = &*self.graph;
@@ -53,16 +53,16 @@ impl Evaluator<'_> {
     }
 }
 
-/// Longer expressions are not shown.
+/// Largest length of an expression that is shown.
 const LONGEST: usize = 40;
 
-/// The lesser of two; the second where they are equal.
+/// Returns the lesser of two values; the second if they are equal.
 pub(super) fn lesser(graph: &mut Graph, a: Edge, b: Edge) -> Edge {
     let more = graph.sub(b, a);
     graph.select(more, a, b)
 }
 
-/// The greater of two; the second where they are equal.
+/// Returns the greater of two values; the second if they are equal.
 pub(super) fn greater(graph: &mut Graph, a: Edge, b: Edge) -> Edge {
     let more = graph.sub(a, b);
     graph.select(more, a, b)

@@ -1,8 +1,7 @@
-//! A from the definitions of velocities and from φ: [A Ψ] = [Y; Φ]⁻¹, KR18 after (5).
+//! Computes A from the definitions of velocities and from φ: `[A Ψ] = [Y; Φ]⁻¹`, KR18 after (5).
 //!
-//! Coordinates without a `rate` move along the tangents K of their kinds, ẋ = K η, which leaves
-//! Y K η = ξ and Φ K η = 0 for the constraints of the description. Where some rates are given, these
-//! are taken to the right-hand side.
+//! Coordinates without a `rate` move along the tangents K of their kinds, ẋ = K η, which leaves Y K η = ξ and, for
+//! the constraints of the description, Φ K η = 0. Rates that are given are moved to the right-hand side.
 
 use super::declare::{Declared, size};
 use super::definitions::Row;
@@ -19,17 +18,17 @@ use crate::model::completion::Completion;
 use crate::model::layout::{Block, blocks};
 use crate::syntax::ast::{Span, System};
 
-/// What is known before A is.
+/// Quantities that are known before A is computed.
 pub struct Given<'a> {
-    /// The rows of A that are given; empty for coordinates without a rate.
+    /// Rows of A that are given; empty for coordinates without a rate.
     pub a: &'a [Vec<Edge>],
-    /// Rows of Y.
+    /// Rows of Y that are given.
     pub rows: &'a [Option<Row>],
     /// ∂φ/∂x.
     pub jacobian: &'a [Vec<Edge>],
-    /// The rows of Φ among them.
+    /// Indices of the rows of Φ in ∂φ/∂x.
     pub independent: &'a [usize],
-    /// Numbers at the start.
+    /// Evaluates expressions at the start.
     pub start: &'a AtStart<'a>,
 }
 
@@ -39,7 +38,7 @@ struct Equation<'a> {
     velocity: Option<usize>,
 }
 
-/// The rows of A that are missing.
+/// Computes the missing rows of A.
 pub fn complete(
     system: &System,
     graph: &mut Graph,
@@ -146,7 +145,7 @@ pub fn complete(
     Some((a, completion))
 }
 
-/// The first definition that follows from the constraints and the definitions before it.
+/// Returns the first definition that depends on the constraints and the definitions before it.
 fn dependent(
     graph: &Graph,
     equations: &[Equation],
@@ -195,7 +194,7 @@ fn no_new_velocity(
     )
 }
 
-/// Coordinates that neither rates nor definitions nor constraints move.
+/// Reports coordinates that no rate, definition or constraint determines.
 fn undetermined(
     declared: &Declared,
     given: &Given,

@@ -1,10 +1,11 @@
-//! The component of X on which the start is, where the user's constraints have several and no factor tells them
-//! apart: a parallelogram of bars folds into a crossed one, x² = y² are two lines.
+//! Finds the component of X that contains the start, if the user's constraints have several and no factor tells them
+//! apart. For example, a parallelogram of bars folds into a crossed one, and x² = y² are two lines.
 //!
-//! Points of X are followed from the start in small steps, parameters moving along. Newton of low degree that
-//! hold at all of them, but not everywhere on X, join the constraints, so that the points of the proofs are on that
-//! component. What holds near the start alone, as x = 2 y where x = 2 y + z²⁰, ceases to hold little by little on the
-//! way from there; at a crossing of components it ceases at once. Emitted are the constraints as they were written.
+//! Points of X are followed from the start in small steps, while the parameters vary, too. Equations of low degree
+//! that hold at all of these points, but not everywhere on X, are added to the constraints, so that the points used
+//! in proofs lie on that component. An equation that holds only near the start, such as x = 2 y where x = 2 y + z²⁰,
+//! ceases to hold gradually on the way from there; at a crossing of components it ceases at once. The generated code
+//! contains the constraints as they were written.
 
 use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Function, Graph};
@@ -15,37 +16,39 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Signed;
 
-/// Length of a step, of coordinates and relative of parameters.
+/// Length of a step: absolute for coordinates, relative for parameters.
 const STEP: f64 = 0.12;
-/// Farther from where a step led, another component may have been met.
+/// Largest deviation from the predicted point; beyond it, another component may have been reached.
 const JUMP: f64 = 0.3;
-/// More terms than this are not fitted.
+/// Largest number of terms that are fitted.
 const MOST_TERMS: usize = 120;
-/// What is left of a column that depends on others, and what is left of one that does not.
+/// Bounds for what elimination leaves of a column: below the first the column depends on others, above the second it
+/// does not.
 const DEPENDENT: (f64, f64) = (1e-8, 1e-6);
-/// Error of a coefficient.
+/// Largest error of a coefficient.
 const CLOSE: f64 = 1e-6;
 /// Largest denominator of a coefficient.
 const DENOMINATORS: i64 = 64;
-/// Value of an equation at a point of X where it does not hold.
+/// Smallest value of an equation at a point of X where it does not hold.
 const APART: f64 = 1e-3;
-/// Points of X that are looked at elsewhere.
+/// Number of points of X that are looked at elsewhere.
 const ELSEWHERE: usize = 24;
-/// Walks away from the start, and the steps of each.
+/// Number of walks away from the start, and number of steps of each.
 const WALKS: usize = 16;
 const STEPS: usize = 40;
-/// A walk ends where the rows of φ are nearer to depending on one another than so many times less at the start: there
-/// components meet.
+/// A walk ends where the volume of the rows of φ falls below this fraction of its value at the start: the rows become
+/// dependent where components meet.
 const MEETING: f64 = 0.05;
-/// The largest residual, on such a walk, of an equation that holds; and the residual just before, from which on an equation
-/// ceases to hold gradually and not at once.
+/// Largest residual, on such a walk, of an equation that holds; and the residual one step before above which an
+/// equation counts as ceasing gradually rather than at once.
 const HOLDS: f64 = 1e-7;
 const CEASING: f64 = 1e-10;
 
-/// A term: a product of symbols, by their numbers.
+/// A term: a product of symbols, given by their indices.
 type Term = Vec<usize>;
 
-/// Adds the equations that tell the component of the start from others; `near` are the numbers of the start.
+/// Adds equations that distinguish the component of the start from others; `near` are the values of all symbols at
+/// the start.
 pub fn separate(points: &mut Points, phi: &[(Edge, String)], near: &[f64]) {
     let equations = points.equations(phi);
     let (coordinates, parameters) = symbols(points);
@@ -92,7 +95,7 @@ pub fn separate(points: &mut Points, phi: &[(Edge, String)], near: &[f64]) {
     }
 }
 
-/// The coordinates and the parameters in the constraints, by the numbers of their symbols.
+/// Returns the coordinates and the parameters in the constraints, as indices of symbols.
 fn symbols(points: &Points) -> (Vec<usize>, Vec<usize>) {
     let graph = &points.free;
     let mut all: Vec<usize> = graph
@@ -102,12 +105,12 @@ fn symbols(points: &Points) -> (Vec<usize>, Vec<usize>) {
         .filter_map(|id| graph.as_symbol(Edge::of(id)))
         .collect();
     all.sort_unstable();
-    // π is the first symbol, parameters stand before coordinates.
+    // π is the first symbol, and parameters come before coordinates.
     all.retain(|&index| index > 0);
     all.into_iter().partition(|&index| index >= points.first)
 }
 
-/// 1, coordinates, and their products with a parameter.
+/// Returns the terms 1, each coordinate and parameter, and the products of a coordinate and a parameter.
 fn linear(coordinates: &[usize], parameters: &[usize]) -> Vec<Term> {
     let single = coordinates.iter().chain(parameters).map(|&a| vec![a]);
     let pairs = coordinates
@@ -119,7 +122,7 @@ fn linear(coordinates: &[usize], parameters: &[usize]) -> Vec<Term> {
         .collect()
 }
 
-/// 1, coordinates, and products of two of them.
+/// Returns the terms 1, each coordinate, and the products of two coordinates.
 fn quadratic(coordinates: &[usize]) -> Vec<Term> {
     let single = coordinates.iter().map(|&a| vec![a]);
     let pairs = coordinates.iter().enumerate();
@@ -135,22 +138,22 @@ fn values(terms: &[Term], at: &[f64]) -> Vec<f64> {
     terms.iter().map(product).collect()
 }
 
-/// Steps on X.
+/// Takes steps on X.
 struct Walk<'a> {
     equations: &'a Newton,
-    /// The first of the coordinates, and how many there are.
+    /// Index of the first coordinate, and number of coordinates.
     coordinates: (usize, usize),
     parameters: &'a [usize],
     random: Random,
 }
 
 impl Walk<'_> {
-    /// A number in ±1.
+    /// Returns a random number between −1 and 1.
     fn number(&mut self) -> f64 {
         (self.random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// The point of X near some numbers.
+    /// Returns the point of X near the given values.
     fn close(&self, mut numbers: Vec<f64>) -> Option<Vec<f64>> {
         let (first, count) = self.coordinates;
         let x = self.equations.near(&numbers)?;
@@ -158,7 +161,7 @@ impl Walk<'_> {
         numbers.iter().all(|a| a.is_finite()).then_some(numbers)
     }
 
-    /// So many points from the start on; none where steps fail too often.
+    /// Returns a path of `count` points from the start; `None` if steps fail too often.
     fn follow(&mut self, start: &[f64], count: usize) -> Option<Vec<Vec<f64>>> {
         let (first, dimension) = self.coordinates;
         let mut at = self.close(start.to_vec())?;
@@ -187,7 +190,7 @@ impl Walk<'_> {
         None
     }
 
-    /// Walks on X from the start towards points that may be off it.
+    /// Walks on X from the start towards random points, which need not lie on X.
     fn away(&mut self, start: &[f64]) -> Vec<Vec<Vec<f64>>> {
         let (first, dimension) = self.coordinates;
         let least = MEETING * self.equations.volume(start);
@@ -216,7 +219,7 @@ impl Walk<'_> {
         (0..WALKS).map(|_| walk(self)).collect()
     }
 
-    /// Points of X anywhere.
+    /// Returns points of X found from random guesses.
     fn elsewhere(&mut self, start: &[f64]) -> Vec<Vec<f64>> {
         let (first, dimension) = self.coordinates;
         let mut found = Vec::new();
@@ -231,7 +234,8 @@ impl Walk<'_> {
     }
 }
 
-/// Coefficients of columns whose sum is 0 in all rows, by elimination; none where it is not clear which depend.
+/// Returns coefficients with which the columns sum to 0 in all rows, by elimination; none if it is not clear which
+/// columns depend on others.
 fn dependent(mut rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     let size = |k: usize| {
         rows.iter()
@@ -281,7 +285,7 @@ fn dependent(mut rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     open.iter().map(fit).collect()
 }
 
-/// ±√(n/d), or n/d.
+/// A number n/d or ±√(n/d).
 #[derive(Clone, Copy)]
 struct Number {
     ratio: (i64, i64),
@@ -298,7 +302,7 @@ impl Number {
         }
     }
 
-    /// The simplest number that is close.
+    /// Returns the simplest such number that is close.
     fn near(value: f64) -> Option<Number> {
         let ratio = |value: f64| {
             let found = (1..=DENOMINATORS).find(|&d| {
@@ -312,7 +316,7 @@ impl Number {
     }
 }
 
-/// A fit with numbers that people write; `None` where one is none.
+/// Replaces the coefficients of a fit by simple numbers; `None` if one of them is not close to any.
 fn recognised<'a>(fit: &[f64], terms: &'a [Term]) -> Option<Vec<(Number, &'a Term)>> {
     let pairs = fit.iter().zip(terms).filter(|(a, _)| a.abs() > CLOSE);
     pairs
@@ -327,7 +331,7 @@ fn value(equation: &[(Number, &Term)], at: &[f64]) -> f64 {
         .sum()
 }
 
-/// Whether an equation ceases to hold little by little on a walk, and not at once, as it does beyond a crossing.
+/// Returns whether an equation ceases to hold gradually on a walk, rather than at once, as it does beyond a crossing.
 fn ceases(equation: &[(Number, &Term)], walk: &[Vec<f64>]) -> bool {
     let sizes: Vec<f64> = walk.iter().map(|at| value(equation, at).abs()).collect();
     let first = sizes.windows(2).find(|pair| pair[1] > HOLDS);

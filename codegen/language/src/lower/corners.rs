@@ -1,7 +1,7 @@
-//! Motions over time with corners, as a table has them that is `linear` between its points: the speed jumps there, and
-//! what would be an impulse is in no acceleration.
+//! Warns of motions over time with corners, such as those of a table that is `linear` between its points: the speed
+//! jumps at a corner, and no acceleration contains the impulse there.
 //!
-//! Such a description is legal, as what is prescribed is continuous, so these are warnings.
+//! Such a description is legal, since the prescribed motion itself is continuous, so these are warnings.
 
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, NodeId};
@@ -12,11 +12,11 @@ use crate::model::{Model, class};
 use crate::syntax::ast::{ItemKind, Span, System};
 use crate::syntax::written::target as written;
 
-/// Longer expressions are not shown.
+/// Largest length of an expression that is shown.
 const LONGEST: usize = 40;
 
-/// A warning for every coordinate and frame whose speed was not found to be continuous in time, in the order of the
-/// text.
+/// Returns a warning for every coordinate and frame whose speed could not be shown to be continuous in time, in the
+/// order of the text.
 pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     let Some(clock) = model.clock else {
         return Vec::new();
@@ -59,7 +59,7 @@ pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     moved.filter_map(one).collect()
 }
 
-/// Where the rates of expressions along time may jump, in words; none where they do not.
+/// Describes where the time derivatives of expressions may jump; `None` if they do not.
 fn corner(model: &Model, edges: &[Edge], time: NodeId) -> Option<String> {
     let reached = model.graph.reachable(edges);
     let chosen = reached

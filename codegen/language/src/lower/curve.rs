@@ -1,9 +1,9 @@
-//! A table of numbers as an expression of its argument.
+//! Turns a table of numbers into an expression of its argument.
 //!
-//! A table is a choice between polynomials of t = a − xₖ, exact at its points: on both sides of xₖ the value there is
-//! yₖ to the bit, as the piece that begins at xₖ has it. The slopes of `pchip` are those of Fritsch and Butland (1984),
-//! with one-sided ones of three points at the ends, as SciPy and Matlab have them: harmonic means, weighted by the
-//! lengths of the intervals, and 0 where the table turns.
+//! A table selects between polynomials in t = a − xₖ and is exact at its points: at xₖ the piece that begins there
+//! applies, which gives yₖ to the last bit. The slopes of `pchip` are those of Fritsch and Butland (1984), with
+//! one-sided three-point slopes at the ends, as in SciPy and Matlab: harmonic means weighted by the lengths of the
+//! intervals, and 0 at local extrema.
 
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::syntax::ast::{Between, Beyond};
@@ -14,11 +14,11 @@ use std::cmp::Ordering;
 /// A table of numbers.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// The arguments, increasing.
+    /// Arguments, increasing.
     knots: Vec<BigRational>,
-    /// The values there.
+    /// Values at the arguments.
     values: Vec<BigRational>,
-    /// The slopes at both ends of every piece, and what bends it: c₂, c₃ of t², t³.
+    /// Pieces, each with its slopes at both ends and its coefficients c₂, c₃ of t², t³.
     pieces: Vec<Piece>,
     between: Between,
     beyond: Beyond,
@@ -33,7 +33,7 @@ struct Piece {
 }
 
 impl Curve {
-    /// Arguments that increase, at least two.
+    /// Makes a table of at least two points with increasing arguments.
     pub(super) fn new(
         knots: Vec<BigRational>,
         values: Vec<BigRational>,
@@ -79,7 +79,7 @@ impl Curve {
         }
     }
 
-    /// Whether it has a value at a number.
+    /// Returns whether the table has a value at a number.
     pub(super) fn reaches(&self, number: &BigRational) -> bool {
         let within = Some(number) >= self.knots.first() && Some(number) <= self.knots.last();
         within || self.beyond != Beyond::Error
@@ -92,7 +92,7 @@ impl Curve {
             graph.sub(at, knot)
         };
         let mut pieces: Vec<Edge> = Vec::new();
-        // Where each piece but the first begins.
+        // The beginning of each piece but the first.
         let mut bounds: Vec<Edge> = Vec::new();
         for (k, piece) in self.pieces.iter().enumerate() {
             let t = from(graph, k);
@@ -106,7 +106,7 @@ impl Curve {
             ));
         }
         let whole = match (self.between, self.beyond) {
-            // The outermost lines go on.
+            // The outermost lines are extended.
             (Between::Linear, Beyond::Linear) => return choose(graph, &bounds, &pieces),
             (_, Beyond::Error) => choose(graph, &bounds, &pieces),
             _ => {
@@ -127,7 +127,7 @@ impl Curve {
                 return choose(graph, &bounds, &pieces);
             }
         };
-        // Beyond its points there is no number, and neither is there a slope: log² of what is negative.
+        // Beyond the points there is neither a value nor a slope: log² of a negative number.
         let (first, end) = (from(graph, 0), from(graph, last));
         [-first, end].into_iter().fold(whole, |whole, outside| {
             let nothing = graph.apply(Function::Log, -outside);
@@ -137,7 +137,7 @@ impl Curve {
     }
 }
 
-/// The first piece where the first bound is negative, and so on: by halves.
+/// Selects a piece by bisection: the first one if the first bound is negative, and so on.
 fn choose(graph: &mut Graph, bounds: &[Edge], pieces: &[Edge]) -> Edge {
     if bounds.is_empty() {
         return pieces.first().copied().unwrap_or(graph.zero());
@@ -148,7 +148,7 @@ fn choose(graph: &mut Graph, bounds: &[Edge], pieces: &[Edge]) -> Edge {
     graph.select(-bounds[middle], left, right)
 }
 
-/// c₀ + t (c₁ + t (c₂ + t c₃)).
+/// Returns c₀ + t (c₁ + t (c₂ + t c₃)).
 fn polynomial(graph: &mut Graph, t: Edge, coefficients: [&BigRational; 4]) -> Edge {
     let mut sum = graph.zero();
     for number in coefficients.into_iter().rev() {
@@ -159,7 +159,7 @@ fn polynomial(graph: &mut Graph, t: Edge, coefficients: [&BigRational; 4]) -> Ed
     sum
 }
 
-/// The slopes of a pchip at its points, from the lengths and rises of its intervals.
+/// Returns the slopes of a pchip at its points, from the lengths and slopes of its intervals.
 fn slopes(lengths: &[BigRational], rises: &[BigRational]) -> Vec<BigRational> {
     let number = |n: i64| BigRational::from_integer(n.into());
     let side = |a: &BigRational| a.cmp(&BigRational::zero());

@@ -9,10 +9,10 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Expr, ItemKind, Source, System, Table};
 use num_rational::BigRational;
 
-/// The most points of a table.
+/// Largest number of points of a table.
 const MOST_POINTS: usize = 200;
 
-/// Reads all tables of a description; the values of those in error are `None`.
+/// Reads all tables of a description; those in error are stored as `None`.
 pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &mut Report) {
     for item in &system.items {
         if let ItemKind::Table(table) = &item.kind
@@ -77,7 +77,7 @@ impl Evaluator<'_> {
         Some(Curve::new(knots, values, table.between, table.beyond))
     }
 
-    /// An entry of a table.
+    /// Reads an entry of a table.
     fn number_of(&mut self, expr: &Expr) -> Option<BigRational> {
         let edge = self.scalar(expr)?;
         match self.graph.as_rational(edge) {
@@ -94,7 +94,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// The value of a table at an argument.
+    /// Returns the value of a table at an argument.
     pub(super) fn table(
         &mut self,
         name: &str,

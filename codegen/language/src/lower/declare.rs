@@ -1,4 +1,4 @@
-//! Declarations: every symbol of the description, with values at points of X.
+//! Declares every symbol of a description, with values at points of X.
 
 use super::expression::Evaluator;
 use super::scope::Scope;
@@ -12,7 +12,8 @@ use crate::model::{Clock, Coordinate, Group, class, samples};
 use crate::symbols::Kind;
 use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, Span, System};
 
-/// Makes the next symbol of a graph: free points draw a random value, constrained ones read it.
+/// Function that returns the value of the next symbol: drawn at random for free points, read from the point for those
+/// on X.
 pub type NextValue<'a> = dyn FnMut(&mut Graph) -> Fp + 'a;
 
 /// All declared symbols.
@@ -25,21 +26,21 @@ pub struct Declared {
     pub xi: Vec<Edge>,
     pub velocity_spans: Vec<Span>,
     pub inputs: Vec<Group>,
-    /// Inputs, and after them the states z, which act on motions as inputs do.
+    /// Inputs, followed by the states z, which act on the motion like inputs.
     pub u: Vec<Edge>,
-    /// States of first order, by their places in z.
+    /// First-order states, with their offsets in z.
     pub states: Vec<Group>,
     pub z: Vec<Edge>,
     pub xi_dot: Vec<Edge>,
     pub momenta: Vec<Edge>,
-    /// Where the time is, where it is declared.
+    /// Place of the time, if it is declared.
     pub clock: Option<Clock>,
-    /// Whether a coordinate or velocity is missing here because its name was taken: there is no
-    /// point in counting then.
+    /// Whether a coordinate or velocity is missing because its name was taken; then there is no point in counting
+    /// them.
     pub faulty: bool,
 }
 
-/// Declares everything, in the order pi, parameters, x, ξ, u, z, ξ̇, p, and defines the constants.
+/// Declares everything in the order pi, parameters, x, ξ, u, z, ξ̇, p, and defines the constants.
 pub fn declare(
     system: &System,
     graph: &mut Graph,
@@ -141,7 +142,7 @@ struct Declarer<'a, 'b, 's> {
 }
 
 impl Declarer<'_, '_, '_> {
-    /// Declares groups of symbols; whether all their names were free.
+    /// Declares groups of symbols, and returns whether all their names were free.
     fn groups(
         &mut self,
         list: &[Declaration],
@@ -221,7 +222,7 @@ fn define_const(
     scope.define(name, Kind::Const, value);
 }
 
-/// The value that a declaration has to have, if it fits the declared shape.
+/// Returns the mandatory value of a declaration, if it fits the declared shape.
 pub fn declared_value(
     declaration: &Declaration,
     missing: &str,
@@ -239,8 +240,8 @@ pub fn declared_value(
     value.filter(|value| shape_fits(declaration, value, report))
 }
 
-/// Whether a value has the declared shape, and is symmetric where that is declared; reports it where it is not. A
-/// declaration without a shape takes any.
+/// Returns whether a value has the declared shape and is symmetric if so declared; reports an error if it is not
+/// symmetric. A declaration without a shape accepts any value.
 pub fn shape_fits(declaration: &Declaration, value: &Value, report: &mut Report) -> bool {
     let (name, shape) = (&declaration.name.name, declaration.shape);
     let fits = match shape.kind {
@@ -319,7 +320,7 @@ fn symbols_of(
     (value, symbols)
 }
 
-/// The value of a coordinate in expressions.
+/// Returns the value of a coordinate in expressions.
 pub fn coordinate_value(kind: CoordKind, entries: &[Edge]) -> Value {
     let matrix = |e: &[Edge]| Value::Matrix(e.chunks(3).map(<[Edge]>::to_vec).collect());
     match kind {
@@ -333,7 +334,7 @@ pub fn coordinate_value(kind: CoordKind, entries: &[Edge]) -> Value {
     }
 }
 
-/// Number of entries of x.
+/// Returns the number of entries in x.
 pub fn size(kind: CoordKind) -> usize {
     blocks(kind).iter().map(|block| block.len()).sum()
 }

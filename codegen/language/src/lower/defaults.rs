@@ -1,4 +1,4 @@
-//! Default values of the parameters.
+//! Reads the default values of parameters.
 
 use super::declare::{Declared, shape_fits};
 use super::expression::Evaluator;
@@ -9,7 +9,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
 use crate::syntax::ast::{Declaration, ItemKind, ShapeKind, System};
 
-/// The numbers of all parameters' symbols; not a number where there is an error.
+/// Returns the values of all parameters' symbols; NaN where there is an error.
 pub fn read(
     system: &System,
     graph: &mut Graph,
@@ -25,7 +25,7 @@ pub fn read(
     let mut numbers = Vec::new();
     for group in &declared.params {
         let before = numbers.len();
-        // The first of a name is the one that was declared.
+        // Of several declarations of a name, the first one counts.
         if let Some(declaration) = declarations.iter().find(|d| d.name.name == group.name) {
             numbers.extend(default_of(declaration, graph, scope, report).unwrap_or_default());
         }
@@ -84,7 +84,7 @@ fn default_of(
     Some(numbers)
 }
 
-/// Numbers for symbols where only π can occur.
+/// Returns values of all symbols for expressions that contain no symbol but π.
 fn symbol_numbers(graph: &Graph) -> Vec<f64> {
     let mut numbers = vec![f64::NAN; graph.symbols().len()];
     if let Some(first) = numbers.first_mut() {

@@ -1,4 +1,4 @@
-//! Velocities defined by rates: rows of Y with ξ = Y(x) ẋ, KR18 (5).
+//! Reads velocities defined by rates: rows of Y with ξ = Y(x) ẋ, KR18 (5).
 
 use super::affine::Affine;
 use super::declare::{Declared, shape_fits};
@@ -14,23 +14,23 @@ use crate::model::class;
 use crate::model::value::Value;
 use crate::syntax::ast::{Declaration, Expr, ItemKind, ShapeKind, Span, System};
 
-/// Seed of the values that stand for ẋ.
+/// Seed of the values of the symbols for ẋ.
 const SEED: u64 = 0x7261_7465;
 
-/// A row of Y, and the expression that gives it.
+/// A row of Y, and where it comes from.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// ν entries.
+    /// Entries of the row, one for each of the ν coordinates.
     pub entries: Vec<Edge>,
-    /// Where it was written.
+    /// Place of the expression that gives it.
     pub span: Span,
 }
 
-/// The definitions of a description.
+/// The definitions of velocities in a description.
 pub struct Definitions {
-    /// For every ξⁱ its row of Y, where it has one.
+    /// Row of Y for each ξⁱ that is defined by rates.
     pub rows: Vec<Option<Row>>,
-    /// Whether a velocity is defined by rates, be it in error.
+    /// Whether any velocity is defined by rates, even in error.
     pub any: bool,
     /// Whether all definitions could be read.
     pub complete: bool,
@@ -84,7 +84,7 @@ pub fn read(
     definitions
 }
 
-/// Symbols for ẋ, and a scope in which d/dt is along them.
+/// Adds symbols for ẋ to a graph; returns them with a scope in which d/dt is taken along them.
 fn rates<'a>(graph: &mut Graph, scope: &Scope<'a>, x: &[Edge]) -> (Scope<'a>, Vec<Edge>) {
     let mut random = Random::new(SEED);
     let mut x_dot = Vec::new();
@@ -97,7 +97,7 @@ fn rates<'a>(graph: &mut Graph, scope: &Scope<'a>, x: &[Edge]) -> (Scope<'a>, Ve
     (scope, x_dot)
 }
 
-/// The rows of Y of one definition.
+/// Reads the rows of Y of one definition.
 fn define(
     declaration: &Declaration,
     mut evaluator: Evaluator,
@@ -116,7 +116,7 @@ fn define(
     let graph = &mut *evaluator.graph;
     let mut rows = Vec::new();
     for mut affine in Affine::of_each(graph, &entries, x_dot) {
-        // ξ = Y ẋ + y(x, t): the term without a rate goes with ṫ.
+        // ξ = Y ẋ + y(x, t): the term without a rate is multiplied by ṫ.
         if let (Some(clock), Some((_, given))) =
             (declared.clock, time::with_time(graph, declared, &affine))
         {
@@ -134,7 +134,7 @@ fn define(
     Some(rows)
 }
 
-/// Why a definition is no row of Y.
+/// Explains why a definition is not a row of Y.
 fn not_linear(name: &str, expr: &Expr, found: u8) -> Diagnostic {
     const HELP: &str = "a definition is a row of Y(x) ẋ: every term has exactly one `rate(…)` as a factor, times coordinates and parameters";
     let message = if found & class::INPUT != 0 {

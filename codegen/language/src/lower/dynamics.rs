@@ -1,4 +1,4 @@
-//! Inertia, energies, loads, outputs: everything but the kinematics.
+//! Reads inertia, energies, loads and outputs: everything but the kinematics.
 
 use super::declare::Declared;
 use super::expression::Evaluator;
@@ -132,7 +132,7 @@ fn name_of(item: &crate::syntax::ast::Item) -> Option<String> {
     }
 }
 
-/// The names of the outputs; those that are taken are reported.
+/// Returns the names of the outputs, and reports those that are taken.
 fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
     let mut outputs: Vec<&Ident> = Vec::new();
     let described: Vec<String> = system.items.iter().filter_map(name_of).collect();
@@ -167,7 +167,7 @@ fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
     outputs
 }
 
-/// What the statements `generate` ask for, everything where there are none; unknown names are reported.
+/// Returns what the `generate` statements ask for, or everything if there are none; reports unknown names.
 fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
     let statements = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Generate(all) => Some(all),
@@ -219,7 +219,7 @@ fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
     asked
 }
 
-/// A function by its name.
+/// Finds a function to generate by its name.
 fn function(
     name: &Ident,
     (system, outputs): (&System, &[&Ident]),
@@ -245,7 +245,7 @@ fn function(
         && described().any(|known| known == output)
     {
         asked.slopes.push(output.to_string());
-        // They are of use along with [A B], and follow it where they depend on ξ̇.
+        // They are used together with the linearization [A B], and come after it if they depend on ξ̇.
         asked.functions.push(FunctionId::Linearize);
         return;
     }

@@ -1,10 +1,9 @@
 //! Springs, dampers, inerters, forces along a line, and dissipation.
 //!
-//! Between two points with difference d and distance ℓ = |d|: a spring has V = ½ k (ℓ − l)², which
-//! is ½ k d·d for l = 0; a damper has D = ½ c ℓ̇²; a force F drives the points apart. All of these act
-//! as wrenches on the frames of the two points. On a scalar e: V = ½ k (e − l)², D = ½ c e². An inerter has
-//! T = ½ b ℓ̇² or ½ b e² (Smith 2002), a part of the kinetic energy. What is
-//! left of D acts by Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
+//! Between two points with difference d and distance ℓ = |d|, a spring has V = ½ k (ℓ − l)², which is ½ k d·d for
+//! l = 0; a damper has D = ½ c ℓ̇²; a force F pushes the points apart. All of these act as wrenches on the frames of
+//! the two points. On a scalar e, V = ½ k (e − l)² and D = ½ c e². An inerter has T = ½ b ℓ̇² or ½ b e² (Smith 2002),
+//! a part of the kinetic energy. The remaining part of D acts through Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
 
 use super::functions::angle_from;
 use super::line::{Line, is_root};
@@ -20,8 +19,8 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Acting, Expr, ExprKind, ItemKind, Span};
 
 impl Reader<'_, '_> {
-    /// Reads a statement into energies and forces, where it is one of these; `start` are the numbers of all
-    /// symbols at the start.
+    /// Adds a statement about one of these elements to energies and forces; ignores other statements. `start` are the
+    /// values of all symbols at the start.
     pub fn element(
         &mut self,
         kind: &ItemKind,
@@ -127,7 +126,7 @@ impl Reader<'_, '_> {
         let (from, to) = match acting {
             Acting::On(expr) => {
                 let (scalar, rest) = match self.circle(expr) {
-                    // Of a circle the angle from where the spring is at rest.
+                    // For an S1 coordinate, the angle is measured from where the spring is relaxed.
                     Some(point) => {
                         let graph = &mut *self.evaluator.graph;
                         let angle = rest.map(|rest| angle_from(graph, point, Some(rest)));
@@ -177,7 +176,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The cosine and sine of an S1 coordinate, where an expression is the name of one.
+    /// Returns cosine and sine of an S1 coordinate if the expression is the name of one.
     fn circle(&mut self, expr: &Expr) -> Option<[Edge; 2]> {
         let ExprKind::Name(name) = &expr.kind else {
             return None;
@@ -208,7 +207,7 @@ impl Reader<'_, '_> {
         Some(scalar)
     }
 
-    /// V = ½ k (ℓ − l)².
+    /// Returns the potential energy V = ½ k (ℓ − l)².
     fn stored(&mut self, spring: &Spring) -> Edge {
         let graph = &mut *self.evaluator.graph;
         let square = match spring.along {
@@ -234,7 +233,7 @@ impl Reader<'_, '_> {
         graph.mul(half, square)
     }
 
-    /// A damper along a line, D = ½ c (d·ḋ)²/(d·d), with the force −c (d·ḋ)/(d·d) d.
+    /// Adds a damper along a line, D = ½ c (d·ḋ)²/(d·d), with the force −c (d·ḋ)/(d·d) d.
     fn damp(
         &mut self,
         line: &Line,
@@ -268,7 +267,7 @@ impl Reader<'_, '_> {
         Some(())
     }
 
-    /// A rate that an element acts on, whose statement begins with `written`.
+    /// Reads a rate that an element acts on; `written` is the beginning of its statement, for the help text.
     fn acted_rate(&mut self, what: &str, written: &str, expr: &Expr) -> Option<Edge> {
         let on = format!("what {what} acts on");
         let rate = self.evaluator.scalar(expr)?;
@@ -292,7 +291,7 @@ impl Reader<'_, '_> {
         )
     }
 
-    /// ½ c e² of a rate e.
+    /// Returns ½ c e² for a rate e.
     fn half_square(&mut self, coefficient: Edge, rate: Edge) -> Edge {
         let graph = &mut *self.evaluator.graph;
         let square = graph.mul(rate, rate);
@@ -301,7 +300,7 @@ impl Reader<'_, '_> {
         graph.mul(half, square)
     }
 
-    /// Adds to D what acts by −∂D/∂ξⁱ.
+    /// Adds a term to D that acts through −∂D/∂ξⁱ.
     fn resist(&mut self, energy: Edge, dynamics: &mut Dynamics) {
         let graph = &mut *self.evaluator.graph;
         dynamics.dissipation = graph.add(dynamics.dissipation, energy);

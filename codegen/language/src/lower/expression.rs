@@ -1,4 +1,4 @@
-//! Expressions become shaped values of the graph.
+//! Evaluates expressions to shaped values of the graph.
 
 use super::scope::Scope;
 use crate::algebra::graph::{Edge, Graph};
@@ -10,26 +10,25 @@ use crate::syntax::ast::{Expr, ExprKind, Ident};
 use num_traits::ToPrimitive;
 use std::collections::BTreeMap;
 
-/// Largest graph of one description: what grows beyond is a mistake, such as products of large
-/// matrices of parameters.
+/// Largest graph of a description; more is a mistake, such as products of large matrices of parameters.
 const MOST_NODES: usize = 200_000;
 
 /// Evaluates expressions whose shapes are checked; `None` means that an error has been reported, here or before.
 pub struct Evaluator<'a> {
-    /// The graph that values live in.
+    /// Graph of the values.
     pub graph: &'a mut Graph,
-    /// The names.
+    /// Values of names.
     pub scope: &'a Scope<'a>,
-    /// Where errors go.
+    /// Destination of errors.
     pub report: &'a mut Report,
-    /// Values of the parameters of the function whose value is wanted; none outside of functions.
+    /// Values of the parameters of the function that is being evaluated; empty outside of functions.
     locals: BTreeMap<&'a str, Value>,
-    /// How deep expressions are nested here, those of the functions around included.
+    /// Nesting depth of expressions, including those of the calling functions.
     level: usize,
 }
 
 impl<'a> Evaluator<'a> {
-    /// An evaluator outside of functions.
+    /// Creates an evaluator outside of functions.
     pub fn new(graph: &'a mut Graph, scope: &'a Scope<'a>, report: &'a mut Report) -> Self {
         Evaluator {
             graph,
@@ -40,7 +39,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// An evaluator of the value of a function, where its parameters have these values.
+    /// Creates an evaluator for the expression of a function with given values of its parameters.
     pub fn within<'b>(
         &'b mut self,
         report: &'b mut Report,
@@ -54,23 +53,23 @@ impl<'a> Evaluator<'a> {
             level: self.level,
         }
     }
-    /// The value of an expression.
+    /// Evaluates an expression.
     pub fn value(&mut self, expr: &Expr) -> Option<Value> {
         let value = self.limited(expr);
         value.or_else(|| self.miss())
     }
 
-    /// No value where there has to be one. Where no error says why, the description is refused all the same: nothing
-    /// of it is left out in silence.
+    /// Returns `None` where a value is required. The description is then refused even if no error explains why, so
+    /// that nothing is left out silently.
     pub fn miss<T>(&self) -> Option<T> {
         self.scope.missed.set(true);
         None
     }
 
-    /// The value, unless expressions are nested too deeply or the graph has grown too large.
+    /// Evaluates an expression, unless it is nested too deeply or the graph has become too large.
     fn limited(&mut self, expr: &Expr) -> Option<Value> {
         if self.graph.len() > MOST_NODES {
-            // Reported where it was crossed.
+            // Reported once, where the limit was crossed.
             return None;
         }
         if self.level >= MOST_LEVELS {
@@ -113,17 +112,17 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// The value of an expression that is a scalar.
+    /// Evaluates an expression that has to be a scalar.
     pub fn scalar(&mut self, expr: &Expr) -> Option<Edge> {
         self.value(expr)?.as_scalar().or_else(|| self.miss())
     }
 
-    /// The value of an expression that is a vector of three.
+    /// Evaluates an expression that has to be a vector of three entries.
     pub fn vec3(&mut self, expr: &Expr) -> Option<[Edge; 3]> {
         self.value(expr)?.as_vec3().or_else(|| self.miss())
     }
 
-    /// Whether an expression is the name of an S1 coordinate.
+    /// Returns whether an expression is the name of an S1 coordinate.
     pub fn is_circle(&self, expr: &Expr) -> bool {
         matches!(&expr.kind, ExprKind::Name(name) if self.scope.symbols.is_circle(name) && !self.locals.contains_key(name.as_str()))
     }
@@ -134,7 +133,7 @@ impl<'a> Evaluator<'a> {
         None
     }
 
-    /// The pose of the world in itself.
+    /// Returns the pose of the world in itself.
     pub fn world(&self) -> Value {
         Value::Pose(identity3(self.graph), [self.graph.zero(); 3])
     }
@@ -153,7 +152,7 @@ impl<'a> Evaluator<'a> {
                 let pi = symbols.find(|symbol| symbol.name == "pi")?;
                 Some(Value::Scalar(Edge::of(pi.node)))
             }
-            // A name that stands for nothing is an error already.
+            // An undefined name has been reported already.
             _ => None,
         }
     }
@@ -183,7 +182,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// The place of an index, from 0.
+    /// Evaluates an index, and converts it to one that counts from 0.
     fn place(&mut self, index: &Expr) -> Option<usize> {
         let edge = self.scalar(index)?;
         let number = self.graph.as_rational(edge)?;

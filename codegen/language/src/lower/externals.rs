@@ -1,7 +1,8 @@
 //! Functions in Rust: `extern fn lift(alpha, mach) -> 2;`.
 //!
-//! Here they have no values, only names: what they give is any number that belongs to their arguments. Loads, outputs
-//! and rates of states may depend on them; what proofs take slopes of more than once may not.
+//! Here they have names and no values: a result is treated as an unknown number that the arguments determine. Loads,
+//! outputs and rates of states may depend on such functions; anything that proofs differentiate more than once may
+//! not.
 
 use super::expression::Evaluator;
 use super::scope::Scope;
@@ -19,13 +20,13 @@ fn all(system: &System) -> impl Iterator<Item = &External> {
     })
 }
 
-/// Makes the functions known to the graph; those in error are known by name alone.
+/// Registers the functions with the graph; those in error are known by name only.
 pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &mut Report) {
     let mut known = Vec::new();
     for function in all(system) {
         let name = &function.name;
         if scope.externals.contains_key(&name.name) {
-            // Its name is taken, and refused.
+            // The name is taken, which is reported elsewhere.
             continue;
         }
         check(function, report);
@@ -49,7 +50,7 @@ pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &m
     graph.set_externals(known);
 }
 
-/// Where they are declared, in order.
+/// Returns where the functions are declared, in order of their indices.
 pub fn places(scope: &Scope) -> Vec<Span> {
     let mut all: Vec<(usize, Span)> = scope
         .externals
@@ -105,7 +106,7 @@ fn check(function: &External, report: &mut Report) {
 }
 
 impl Evaluator<'_> {
-    /// What a function in Rust gives: a number, or a vector where it has several components.
+    /// Returns the result of a function in Rust: a number, or a vector if it has several components.
     pub(super) fn external(
         &mut self,
         place: usize,
@@ -146,7 +147,7 @@ impl Evaluator<'_> {
         })
     }
 
-    /// Whether a value depends on no function in Rust; reports it where it does.
+    /// Reports an error if a value depends on a function in Rust.
     pub(super) fn inside(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
         let Some((component, _)) = self.graph.find_external(&value.entries(), 0) else {
             return Some(());
@@ -158,10 +159,10 @@ impl Evaluator<'_> {
     }
 }
 
-/// Where functions in Rust may be called.
+/// Help text: where functions in Rust may be called.
 const PLACES: &str = "forces, torques, outputs and rates of states may depend on it; energies, places, constraints and prescribed motions have to be expressions";
 
-/// What is wrong where something other than a load, an output or the rate of a state depends on a function in Rust.
+/// Returns an error if anything but a load, an output or the rate of a state depends on a function in Rust.
 pub fn misplaced(model: &Model, called: &[(Edge, Span)]) -> Option<Diagnostic> {
     if called.is_empty() {
         return None;

@@ -1,4 +1,4 @@
-//! One named expression; the pose that one `frame` statement gives.
+//! Reads single `let` statements, and the poses that `frame` statements give.
 
 use super::declare::declared_value;
 use super::expression::Evaluator;
@@ -11,7 +11,7 @@ use crate::model::value::Value;
 use crate::symbols::{Kind, Relation};
 use crate::syntax::ast::{Declaration, Ident};
 
-/// Defines a `let`; its value, where it has one.
+/// Defines a named expression, and returns its value if it has one.
 pub fn define_let(
     declaration: &Declaration,
     graph: &mut Graph,
@@ -25,7 +25,7 @@ pub fn define_let(
     value.filter(|_| free)
 }
 
-/// The world pose of f from that of g: f = g P.
+/// Returns the world pose of f from that of g: f = g P.
 pub fn ahead(graph: &mut Graph, parent: &Value, pose: &Value) -> Value {
     match (parent, pose) {
         (Value::Pose(r, p), Value::Pose(rotation, position)) => {
@@ -37,7 +37,7 @@ pub fn ahead(graph: &mut Graph, parent: &Value, pose: &Value) -> Value {
     }
 }
 
-/// P⁻¹, the pose of g in f.
+/// Returns P⁻¹, the pose of g in f.
 pub fn inverse(graph: &mut Graph, pose: &Value) -> Value {
     match pose {
         Value::Pose(rotation, position) => {
@@ -49,7 +49,7 @@ pub fn inverse(graph: &mut Graph, pose: &Value) -> Value {
     }
 }
 
-/// P, checked: a rotation and a position that depend on the configuration alone.
+/// Reads P and checks that it is a rotation and a position that depend on the configuration alone.
 pub fn relative_pose(
     relation: &Relation,
     graph: &mut Graph,
@@ -98,7 +98,7 @@ pub fn relative_pose(
                 .help("use an SO3 coordinate, `rot(q)`, `rotx(angle)` and their products"),
         );
     }
-    // The determinant of an orthogonal matrix is 1 or -1, also of its values modulo p.
+    // An orthogonal matrix has determinant 1 or −1, and so have its values modulo p.
     let [x, y, z] = rotation.map(|row| row.map(|entry| graph.value(entry)));
     let minor = |i: usize, j: usize| y[i] * z[j] - y[j] * z[i];
     let determinant = x[0] * minor(1, 2) - x[1] * minor(0, 2) + x[2] * minor(0, 1);
@@ -115,7 +115,7 @@ pub fn relative_pose(
     Some(Value::Pose(rotation, position))
 }
 
-/// The pose of the frame after `on`.
+/// Returns the world pose of the frame after `on`.
 pub fn parent_pose(parent: &Ident, graph: &Graph, scope: &Scope) -> Option<Value> {
     match scope.symbols.kind(&parent.name) {
         Some(Kind::Frame) => scope.value(&parent.name).cloned(),

@@ -15,7 +15,7 @@ use num_traits::Signed;
 use rustc_hash::FxHashSet;
 
 impl Evaluator<'_> {
-    /// The value of a call.
+    /// Evaluates a call.
     pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
         let scope = self.scope;
         if let Some(own) = scope.symbols.functions.get(function.name.as_str()) {
@@ -53,7 +53,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// Why a call has no value: a mathematical reason, and what to do; nothing where the arguments are in error.
+/// Why a call has no value: a mathematical reason, and what to do; `None` if the arguments are in error.
 type Fault = Option<(&'static str, &'static str)>;
 
 const ZERO_DIVISOR: Fault = Some((
@@ -61,7 +61,7 @@ const ZERO_DIVISOR: Fault = Some((
     "this is 0 for every configuration that satisfies the constraints",
 ));
 
-/// The value of a call; `free` where points are off the variety.
+/// Evaluates a call of a built-in function; `free` is true at points off the variety.
 fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {
     use Value::{Matrix, Pose, Scalar, Vector};
     let value = match (name, values) {
@@ -73,7 +73,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             Scalar(graph.div(s, c).ok_or(ZERO_DIVISOR)?)
         }
         ("asin" | "acos", [Scalar(a)]) => {
-            // The angle of (√(1 − a²), a) or (a, √(1 − a²)); (1 − a)(1 + a) keeps its digits near ±1.
+            // The angle of (√(1 − a²), a) or (a, √(1 − a²)); (1 − a)(1 + a) keeps its precision near ±1.
             let one = graph.one();
             let (less, more) = (graph.sub(one, *a), graph.add(one, *a));
             let square = graph.mul(less, more);
@@ -180,7 +180,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
         ("axis_angle", [axis, turn @ ..]) => {
             let given = axis.as_vec3().ok_or(None)?;
             let (c, s) = cosine_sine(graph, turn).ok_or(None)?;
-            // A direction in numbers has an exact unit vector.
+            // A numeric direction has an exact unit vector.
             let axis = axes::unit(graph, given).unwrap_or(given);
             if !free && graph.dot(&axis, &axis) != graph.one() {
                 return Err(Some((
@@ -242,7 +242,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
     Ok(value)
 }
 
-/// Cosine and sine of an angle, of themselves, or of an S1 coordinate.
+/// Returns cosine and sine: of an angle, of an S1 coordinate, or as they are given.
 fn cosine_sine(graph: &mut Graph, values: &[Value]) -> Option<(Edge, Edge)> {
     match values {
         [Value::Scalar(a)] => Some((
@@ -255,7 +255,7 @@ fn cosine_sine(graph: &mut Graph, values: &[Value]) -> Option<(Edge, Edge)> {
     }
 }
 
-/// The angle of (c, s) beyond that of a turn by `rest`, from −π to π.
+/// Returns the angle of (c, s) relative to the angle `rest`, from −π to π.
 pub(super) fn angle_from(graph: &mut Graph, [c, s]: [Edge; 2], rest: Option<Edge>) -> Edge {
     let Some(rest) = rest else {
         return graph.atan2(s, c);
@@ -271,8 +271,8 @@ pub(super) fn angle_from(graph: &mut Graph, [c, s]: [Edge; 2], rest: Option<Edge
     graph.atan2(across, along)
 }
 
-/// The length of a vector. At rest that of a velocity has slopes of both signs and counts as level: so drag
-/// |v| v has the derivative 0 there.
+/// Returns the length of a vector. That of a velocity has a kink at rest and is given slope 0 there, so that drag
+/// |v| v has derivative 0.
 fn length(graph: &mut Graph, a: &[Edge]) -> Edge {
     let square = graph.dot(a, a);
     let moves = graph.class(square.node()) & class::VELOCITY != 0;
@@ -296,7 +296,7 @@ fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
     Ok(root(graph, square))
 }
 
-/// √a. Of a sum of squares of velocities, and of a length, it is a length: at rest it counts as level, too.
+/// Returns √a. If a is a sum of squares of velocities, or a length, the root is a length, too, with slope 0 at rest.
 pub fn root(graph: &mut Graph, a: Edge) -> Edge {
     let moves = graph.class(a.node()) & class::VELOCITY != 0;
     let function = match moves && is_length(graph, a) {
@@ -306,7 +306,7 @@ pub fn root(graph: &mut Graph, a: Edge) -> Edge {
     graph.apply(function, a)
 }
 
-/// Whether the root of an expression is a length as it is written, `v^2 + w^2`, or that of one.
+/// Returns whether an expression is written as the square of a length, `v^2 + w^2`, or is itself a length.
 fn is_length(graph: &Graph, edge: Edge) -> bool {
     if matches!(graph.node(edge.node()), Node::Apply(Function::Norm, _)) {
         return !edge.is_negative();
@@ -315,7 +315,7 @@ fn is_length(graph: &Graph, edge: Edge) -> bool {
     while let Some(edge) = open.pop() {
         match graph.node(edge.node()) {
             _ if edge.is_negative() => return false,
-            // Sums are shared: each is looked at once.
+            // Sums are shared, so each is visited once.
             Node::Add(a, b) if seen.insert(edge.node()) => open.extend([a, b]),
             Node::Add(..) => {}
             Node::Mul(a, b) if a == b => {}

@@ -1,8 +1,9 @@
-//! A description in a graph, as far as it needs no motion: its symbols, defaults, names, and both sides of constraints.
+//! The motion-independent part of a description in a graph: its symbols, defaults, names, and both sides of
+//! constraints.
 //!
-//! Every graph is grounded in this way. First one whose symbols have values of their own, where φ itself can be
-//! seen and points of X are found; then one with the values of such a point, where expressions that are equal on X are
-//! one node. The rest of a description is read in the latter alone.
+//! Every graph starts with this part. The first graph has symbols with independent values: there φ itself can be
+//! seen, and points of X are found. The second has the values of such a point, so that expressions that are equal on
+//! X are one node. The rest of a description is read only in the second.
 
 use super::declare::{Declared, NextValue, declare};
 use super::defaults;
@@ -20,22 +21,22 @@ use crate::syntax::ast::{ItemKind, Span, System};
 
 /// A constraint that the user wrote.
 pub struct Constraint {
-    /// Its statement.
+    /// Index of its statement.
     pub item: usize,
-    /// Both sides.
+    /// Range of both sides.
     pub span: Span,
-    /// Left side less right side; absent where a side is in error.
+    /// Left side minus right side; `None` if a side is in error.
     pub difference: Option<Value>,
-    /// What is wrong with the sides.
+    /// Errors in the sides.
     pub errors: Vec<Diagnostic>,
 }
 
-/// A description in a graph, before anything moves.
+/// The motion-independent part of a description, in a graph.
 pub struct Ground<'a> {
     pub graph: Graph,
     pub scope: Scope<'a>,
     pub declared: Declared,
-    /// The numbers of all parameters' symbols; not a number where there is an error.
+    /// Values of all parameters' symbols; NaN where there is an error.
     pub defaults: Vec<f64>,
     /// Names whose values need no rates.
     pub names: Names,
@@ -43,7 +44,7 @@ pub struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    /// Where every symbol has a value of its own.
+    /// Reads the description with independent values of all symbols.
     pub fn free(
         system: &'a System,
         names: &'a Resolved<'a>,
@@ -60,7 +61,7 @@ impl<'a> Ground<'a> {
         Ground::read(system, names, true, graph, &mut next, reals, report)
     }
 
-    /// At a point of X.
+    /// Reads the description at a point of X.
     pub fn on(
         variety: &Variety,
         point: &[Fp],
@@ -109,7 +110,7 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// Systems have coordinates and velocities.
+/// Reports a system without coordinates or velocities.
 fn check_present(system: &System, declared: &Declared, report: &mut Report) {
     let span = system.name.span;
     if declared.faulty {

@@ -1,23 +1,23 @@
-//! Φ: rows of ∂φ/∂x that are independent on X and at the start, KR18 (4). φ may be redundant, as
-//! RᵀR = I with det R = 1 is; all its rows stay in φ.
+//! Chooses Φ: rows of ∂φ/∂x that are independent on X and at the start, KR18 (4). φ may be redundant, as RᵀR = I with
+//! det R = 1 is; all its rows stay in φ.
 
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::rank;
 
-/// A row counts as dependent at the start where what is new in it is smaller, relative to the row.
+/// Relative size of the new part of a row below which the row counts as dependent at the start.
 const SMALL: f64 = 1e-7;
 
 /// A choice of rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Independent {
-    /// Indices of the rows of φ.
+    /// Indices of the chosen rows of φ.
     pub rows: Vec<usize>,
-    /// The first of them that depends on the others at the start, where one does.
+    /// The first chosen row that depends on others at the start, if there is one.
     pub singular: Option<usize>,
 }
 
-/// Chooses rows in their order; `numbers` are those of the entries at the start.
+/// Chooses rows in their order; `numbers` are the values of the entries at the start.
 pub fn choose(graph: &Graph, jacobian: &[Vec<Edge>], numbers: Option<&[Vec<f64>]>) -> Independent {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let new_at_start = |basis: &mut Vec<Vec<f64>>, row: usize| {
@@ -52,7 +52,7 @@ pub fn choose(graph: &Graph, jacobian: &[Vec<Edge>], numbers: Option<&[Vec<f64>]
             rows.push(row);
         }
     }
-    // Where the start is singular, rows that are independent in general complete the choice.
+    // If the start is singular, rows that are independent in general complete the choice.
     let regular = rows.len();
     for row in 0..jacobian.len() {
         if !rows.contains(&row) && adds(&rows, row) {

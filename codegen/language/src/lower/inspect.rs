@@ -1,4 +1,4 @@
-//! Expressions one at a time: what the text says of their shapes, and what they are in a graph.
+//! Inspects single expressions, for tests: the shape that inference gives, and the value in a graph.
 
 use super::declare::declare;
 use super::expression::Evaluator;
@@ -17,21 +17,21 @@ use num_rational::BigRational;
 
 pub use super::axes::CALLS;
 
-/// What is found about one expression.
+/// Result of inspecting one expression.
 #[derive(Debug)]
 pub struct Found {
-    /// What the text says: its shape in words, and its numbers where they are known; `None` where something is wrong.
+    /// Inferred shape in words, with the values of the entries if they are known; `None` if something is wrong.
     pub inferred: Option<(String, Option<Vec<BigRational>>)>,
-    /// Whether the text says that something is wrong.
+    /// Whether inference reports an error.
     pub refused: bool,
-    /// What the graph says, with the entries that are numbers.
+    /// Value in the graph, with those of its entries that are numbers.
     pub value: Option<(Value, Vec<Option<BigRational>>)>,
-    /// Whether there is a mathematical reason against a value.
+    /// Whether evaluation fails for a mathematical reason.
     pub failed: bool,
 }
 
-/// Looks at expressions in a description, whose joints and time are written out for that: the closure is given that
-/// description, and what finds out about an expression.
+/// Inspects expressions in a description whose joints and time are expanded: `look` receives the expanded description
+/// and a function that inspects an expression.
 pub fn inspect<R>(
     system: &System,
     look: impl FnOnce(&System, &dyn Fn(&Expr) -> Found) -> R,
@@ -47,7 +47,7 @@ pub fn inspect<R>(
     Ok(look(&system, &|expr| setting.find(expr)))
 }
 
-/// A description with a graph in which all that its expressions can mention has a value.
+/// A description, with a graph in which everything that its expressions can mention has a value.
 struct Setting<'a> {
     system: &'a System,
     names: &'a symbols::Resolved<'a>,

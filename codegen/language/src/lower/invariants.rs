@@ -1,4 +1,4 @@
-//! Claims that something is constant along the motion, as far as they can be read without deriving.
+//! Reads claims that something is constant along the motion, as far as possible without derivation.
 
 use super::declare::Declared;
 use super::expression::Evaluator;
@@ -14,7 +14,7 @@ use crate::symbols::Kind;
 use crate::syntax::ast::{Condition, Conserved, Expr, ExprKind, Ident, ItemKind, Span, System};
 use crate::syntax::written;
 
-/// The names of all invariants but of the energy, which has a function anyway.
+/// Returns the names of all invariants, except for the energy, which has a function anyway.
 pub fn names(system: &System) -> Vec<&Ident> {
     let mut names = Vec::new();
     for item in &system.items {
@@ -78,7 +78,7 @@ pub fn read(
     all
 }
 
-/// Every invariant becomes a function, whose name must be free.
+/// Reports names that are taken: every invariant becomes a function.
 fn check_names(system: &System, report: &mut Report) {
     let outputs = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Output { name, .. } => Some(name),
@@ -154,7 +154,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The frame whose momentum is meant; `kinetic` tells where masses stay unknown.
+    /// Finds the frame whose momentum is meant; `kinetic` is a statement whose masses have unknown places.
     fn bodies(
         &mut self,
         of: Option<&Ident>,
@@ -181,7 +181,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A vector in world axes that depends on the configuration at most.
+    /// Reads a vector in world axes that depends at most on the configuration.
     fn place(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
         let value = self.evaluator.vec3(expr)?;
         let help = "it is given in world axes; an axis fixed in a body is `R * [0, 0, 1]`";
@@ -189,7 +189,7 @@ impl Reader<'_, '_> {
         Some(value)
     }
 
-    /// The symbols that the conditions set, with their values.
+    /// Returns the symbols that the conditions set, with their values.
     fn conditions(&mut self, when: &[Condition]) -> Option<Vec<(usize, Edge)>> {
         let mut set: Vec<(usize, Edge)> = Vec::new();
         let mut complete = true;
@@ -235,7 +235,7 @@ impl Reader<'_, '_> {
         let symbols = self.evaluator.scope.symbols;
         match set {
             ExprKind::Name(name) if symbols.kind(name).is_some_and(Kind::is_settable) => {}
-            // An error already.
+            // Reported already.
             _ => return None,
         }
         let (target, value) = (

@@ -1,4 +1,4 @@
-//! Rates: ẋ = A ξ, read statement by statement.
+//! Reads the rates ẋ = A ξ, statement by statement.
 
 use super::declare::{Declared, size};
 use super::definitions;
@@ -26,7 +26,7 @@ pub fn read(
     report: &mut Report,
 ) -> Option<Kinematics> {
     let mut rates: Vec<Option<Rate>> = vec![None; declared.x.len()];
-    // Coordinates with a statement, be it in error.
+    // Coordinates with a statement, even if it is in error.
     let mut tried: Vec<&str> = Vec::new();
     for (item, statement) in system.items.iter().enumerate() {
         let ItemKind::Rate { target, value } = &statement.kind else {

@@ -1,7 +1,7 @@
-//! The line between two points of frames: d = r₂ − r₁, its length ℓ = |d|, and forces along it.
+//! The line between two points of frames, d = r₂ − r₁, with its length ℓ = |d| and forces along it.
 //!
-//! Where d·d is a perfect square on X, such as that of points on one straight line, ℓ is its root
-//! with the sign that makes it positive at the start: smooth, and as in textbooks.
+//! If d·d is a perfect square on X, such as for points on one straight line, ℓ is its root with the sign that makes
+//! it positive at the start: smooth, and as in textbooks.
 
 use super::reader::Reader;
 use crate::algebra::graph::{Edge, Function, Graph, Node};
@@ -11,37 +11,37 @@ use crate::diagnostics::Diagnostic;
 use crate::model::Wrench;
 use crate::syntax::ast::{Axes, End, Span};
 
-/// Lengths below this (m) at the start are none.
+/// Length (m) below which two points coincide at the start.
 const COINCIDENT: f64 = 1e-12;
 
-/// Two points of frames, and how they are called in messages.
+/// Two points of frames, with the words for them in messages.
 pub struct Line<'a> {
     what: &'a str,
     span: Span,
     ends: (&'a End, &'a End),
-    /// The first point.
+    /// First point.
     pub from: Point,
-    /// The second point.
+    /// Second point.
     pub to: Point,
-    /// d.
+    /// Difference d.
     pub difference: Vec3,
-    /// d·d.
+    /// Square d·d.
     pub square: Edge,
 }
 
 /// A point of a frame.
 #[derive(Clone, Copy)]
 pub struct Point {
-    /// The frame, `None` for the world.
+    /// Index of the frame; `None` for the world.
     frame: Option<usize>,
-    /// In the frame's axes.
+    /// Position in frame axes.
     at: Vec3,
-    /// In the world.
+    /// Position in the world.
     pub world: Vec3,
 }
 
 impl Reader<'_, '_> {
-    /// Reads two points, whose distance has to vary.
+    /// Reads two points, and reports an error if their distance does not vary.
     pub fn line<'a>(
         &mut self,
         what: &'a str,
@@ -82,7 +82,7 @@ impl Reader<'_, '_> {
         )
     }
 
-    /// d/dt of an expression; `None` where the rates are in error.
+    /// Returns d/dt of an expression; `None` if the rates are in error.
     pub fn rate(&mut self, edge: Edge) -> Option<Edge> {
         let motion = self.evaluator.scope.motion.as_ref()?;
         let [rate] = motion.rates(self.evaluator.graph, [edge]);
@@ -114,7 +114,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// ℓ, positive at the start; a root of what varies only where none can be spared.
+    /// Returns ℓ, positive at the start. It contains the square root of a varying expression only if that cannot be
+    /// avoided.
     pub fn length(&mut self, line: &Line, start: &[f64]) -> Option<Edge> {
         let length = match self.smooth_length(line) {
             Some(length) => length,
@@ -124,8 +125,8 @@ impl Reader<'_, '_> {
         Some(length.signed(now < 0.0))
     }
 
-    /// ±ℓ without a root of what varies: where d·d is the square of something known, or d has a
-    /// fixed direction.
+    /// Returns ±ℓ without the square root of a varying expression, if d·d is the square of a known expression or d
+    /// has a fixed direction.
     pub fn smooth_length(&mut self, line: &Line) -> Option<Edge> {
         let graph = &mut *self.evaluator.graph;
         if let Some(known) = graph.known_root(line.square) {
@@ -144,7 +145,7 @@ impl Reader<'_, '_> {
         Some(graph.mul(first, factor))
     }
 
-    /// A measure of the distance at the start, where it is not 0; NaN where it is not known.
+    /// Returns a measure of the distance at the start, NaN if it is unknown; reports an error if it is 0.
     pub fn apart_at_start(&mut self, line: &Line, measure: Edge, start: &[f64]) -> Option<f64> {
         let now = evaluate(self.evaluator.graph, &[measure], start)
             .first()
@@ -168,7 +169,7 @@ impl Reader<'_, '_> {
         )
     }
 
-    /// The wrenches of a force on the second point and its opposite on the first.
+    /// Returns the wrenches of a force on the second point and of its reaction on the first.
     pub fn pair(&mut self, line: &Line, force: Vec3) -> Vec<Wrench> {
         let zero = zero3(self.evaluator.graph);
         let opposite = force.map(|entry| -entry);
@@ -186,7 +187,7 @@ impl Reader<'_, '_> {
             .collect()
     }
 
-    /// The wrenches of a force along the line, positive apart.
+    /// Returns the wrenches of a force along the line; a positive force pushes the points apart.
     pub fn along_line(&mut self, line: &Line, length: Edge, force: Edge) -> Option<Vec<Wrench>> {
         let graph = &mut *self.evaluator.graph;
         let force = if is_root(graph, length) {
@@ -203,7 +204,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Whether this is a square root as it stands.
+/// Returns whether an expression is a square root as it stands.
 pub fn is_root(graph: &Graph, edge: Edge) -> bool {
     matches!(graph.node(edge.node()), Node::Apply(Function::Sqrt, _))
 }

@@ -12,8 +12,8 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Axes, Components, Expr, Ident, Load, Target};
 
 impl Reader<'_, '_> {
-    /// The wrench on a frame, and with `from` its reaction on the frame that exerts it: the opposite
-    /// wrench at the same place of the world.
+    /// Returns the wrench on a frame and, with `from`, its reaction on the frame that exerts it: the opposite wrench
+    /// at the same point in space.
     pub fn load(
         &mut self,
         load: &Load,
@@ -123,7 +123,7 @@ impl Reader<'_, '_> {
         Some(point)
     }
 
-    /// The place in ξ of a generalised force, and its entries.
+    /// Returns the index in ξ of a generalised force, and its entries.
     pub fn generalized(&mut self, target: &Target, value: &Expr) -> Option<(usize, Vec<Edge>)> {
         let force = self.evaluator.value(value)?;
         let mut groups = self.declared.velocities.iter();

@@ -1,7 +1,7 @@
-//! From the description as written to the mechanical system that it means.
+//! Lowers a description to the model of the mechanical system that it means.
 //!
-//! Names are resolved and shapes are checked already; what is wrong with them is no further error here. Every other
-//! semantic error is found here, where arithmetic tells: stages after this one cannot fail on user input.
+//! Names have been resolved and shapes checked before; errors in them are not repeated here. Every other semantic
+//! error is found here, where arithmetic can tell: later stages cannot fail on user input.
 
 mod affine;
 mod agreement;

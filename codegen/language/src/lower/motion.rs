@@ -9,10 +9,9 @@
 //! | `angular_velocity(f)` | ω with ω̂ = Ṙ Rᵀ | rad/s |
 //! | `angular_acceleration(f)` | ω̇ | rad/s² |
 //!
-//! The point p is fixed in f and given in its axes, the origin where absent; components are in world
-//! axes. With a frame g as last argument (r, R) is the pose f has in g: the motion as g sees it, in
-//! the axes of g. Time derivatives are those along ẋ = A ξ, and of ξ along ξ̇: accelerations are
-//! functions of ξ̇.
+//! The point p is fixed in f and given in its axes; without it, p is the origin. Components are in world axes. With a
+//! frame g as last argument, (r, R) is the pose of f in g: the motion as g sees it, in the axes of g. Time
+//! derivatives of x are taken along ẋ = A ξ, and those of ξ along ξ̇, so that accelerations are functions of ξ̇.
 
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
@@ -21,16 +20,16 @@ use crate::model::motion::Observed;
 use crate::model::motion::Quantity;
 use std::cell::RefCell;
 
-/// ẋ and ξ̇: what d/dt does to x and ξ.
+/// The operator d/dt, given by ẋ and ξ̇.
 #[derive(Clone, Debug)]
 pub struct TimeDerivative {
     seeds: Vec<(u32, Edge)>,
-    /// What was asked for so far.
+    /// Motions that were asked for so far.
     pub seen: RefCell<Vec<Observed>>,
 }
 
 impl TimeDerivative {
-    /// Along ẋ = `rate` and the symbols ξ̇.
+    /// Creates the derivative along ẋ = `rate` and the symbols ξ̇.
     pub fn new(x: &[Edge], rate: &[Edge], xi: &[Edge], xi_dot: &[Edge]) -> Self {
         let pairs = x.iter().zip(rate).chain(xi.iter().zip(xi_dot));
         TimeDerivative {
@@ -39,12 +38,12 @@ impl TimeDerivative {
         }
     }
 
-    /// d/dt of expressions.
+    /// Returns d/dt of expressions.
     pub fn along(&self, graph: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
         Derivation::new(self.seeds.iter().copied()).all(graph, edges)
     }
 
-    /// d/dt of several expressions.
+    /// Returns d/dt of several expressions.
     pub fn rates<const N: usize>(&self, graph: &mut Graph, edges: [Edge; N]) -> [Edge; N] {
         let mut along = Derivation::new(self.seeds.iter().copied());
         edges.map(|edge| along.of(graph, edge))
@@ -78,8 +77,8 @@ impl TimeDerivative {
         add3(graph, origin, moved)
     }
 
-    /// Makes the same in the axes of the frame, v = Rᵀṙ + ω × p and v̇ + ω × v, known to the graph:
-    /// `f.R.T * velocity(f, p)` is then that, and not computed in the world and turned back.
+    /// Registers the same motion in frame axes with the graph, v = Rᵀṙ + ω × p and v̇ + ω × v, so that
+    /// `f.R.T * velocity(f, p)` becomes this instead of a world vector that is rotated back.
     pub(super) fn note_in_frame(
         &self,
         graph: &mut Graph,
@@ -107,8 +106,8 @@ impl TimeDerivative {
         }
     }
 
-    /// ṙ + R (ω × p) and R ω with ω̂ the skew part of RᵀṘ, KR18 (36): what velocities are where ẋ is any vector.
-    /// The same in the axes of the frame is known to the graph, too.
+    /// Returns ṙ + R (ω × p) and R ω, where ω̂ is the skew part of RᵀṘ, KR18 (36): the velocities for an arbitrary
+    /// vector ẋ. Registers them in frame axes with the graph, too.
     pub(super) fn defining(
         &self,
         graph: &mut Graph,
@@ -138,7 +137,7 @@ impl TimeDerivative {
         rotation.map(|row| row.map(|entry| along.of(graph, entry)))
     }
 
-    /// ω with ω̂ = Ṙ Rᵀ.
+    /// Returns ω with ω̂ = Ṙ Rᵀ.
     pub(super) fn spin(&self, graph: &mut Graph, rotation: &Mat3) -> Vec3 {
         let turned = self.turning(graph, rotation);
         let skew = multiply3(graph, &turned, &transpose3(rotation));

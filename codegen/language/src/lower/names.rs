@@ -1,4 +1,4 @@
-//! The values of named expressions and frames, in the order in which they become known.
+//! Evaluates named expressions and frames, in the order in which they become known.
 
 use super::frames::{self, define_let, parent_pose, relative_pose};
 use super::scope::Scope;
@@ -8,7 +8,7 @@ use crate::model::Frame;
 use crate::model::value::Value;
 use crate::symbols::{Kind, Relation, Step};
 
-/// What the `let` and `frame` statements say.
+/// Values of the `let` and `frame` statements.
 #[derive(Default)]
 pub struct Names {
     /// Named expressions, in the order in which they became known.
@@ -18,7 +18,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// Reads these statements, whose names are all known by then.
+    /// Reads statements in an order in which all names that they mention are known.
     pub fn read(
         &mut self,
         steps: &[Step],
@@ -38,7 +38,7 @@ impl Names {
         }
     }
 
-    /// f = g P, or where it leads back g = f P⁻¹.
+    /// Reads a frame f = g P, or g = f P⁻¹ if the statement is used backwards.
     fn frame(
         &mut self,
         relation: &Relation,

@@ -1,4 +1,4 @@
-//! Masses of particles and coefficients of dampers that are negative: legal, and hardly meant.
+//! Warns of negative masses of particles and negative damping coefficients, which are legal but hardly meant.
 
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
@@ -6,7 +6,7 @@ use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::syntax::ast::{Expr, ItemKind, System};
 
-/// Warnings about a description whose joints are written out, in the order of the text.
+/// Returns warnings about a description whose joints are expanded, in the order of the text.
 pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     let mut particles = model.particles.iter().map(|particle| particle.mass);
     let mut dampers = model.elements.dampers.iter().map(|it| it.coefficient);
@@ -35,7 +35,7 @@ pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
             _ => continue,
         };
         let warning = edge.and_then(|edge| negative(model, &numbers, (text, edge), what));
-        // A joint with several velocities has a damper for each.
+        // A joint with several velocities has a damper for each of them.
         let twice = |warning: &Diagnostic| {
             let place = warning.span.range();
             warnings.iter().any(|known| known.span.range() == place)

@@ -1,4 +1,5 @@
-//! Calls of `position`, `velocity`, `acceleration`, `angular_velocity` and `angular_acceleration` in expressions.
+//! Evaluates calls of `position`, `velocity`, `acceleration`, `angular_velocity` and `angular_acceleration` in
+//! expressions.
 
 use super::expression::Evaluator;
 use crate::algebra::graph::Edge;
@@ -10,7 +11,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Span};
 
 impl Evaluator<'_> {
-    /// A call of one of these functions; `None` where the function is another.
+    /// Evaluates a call of one of these functions; returns the outer `None` for other functions.
     pub fn motion(
         &mut self,
         function: &Ident,
@@ -92,7 +93,7 @@ impl Evaluator<'_> {
             (Some(motion), Quantity::Acceleration) => {
                 motion.acceleration(graph, &rotation, position, point)
             }
-            // `rate(e)` is read by itself.
+            // `rate(e)` is evaluated elsewhere.
             (Some(_), Quantity::Rate) => return None,
             (Some(motion), Quantity::AngularVelocity) => motion.spin(graph, &rotation),
             (Some(motion), Quantity::AngularAcceleration) => {
@@ -112,7 +113,7 @@ impl Evaluator<'_> {
         Some(Value::Vector(value.to_vec()))
     }
 
-    /// A motion in the definition of a velocity, by symbols for ẋ.
+    /// Evaluates a motion in the definition of a velocity, with symbols for ẋ.
     fn defining(
         &mut self,
         quantity: Quantity,
@@ -131,7 +132,8 @@ impl Evaluator<'_> {
         }
     }
 
-    /// `velocity(f, p) in g`: the components of a motion in the axes of a frame; `in body` are those of f itself.
+    /// Evaluates `velocity(f, p) in g`: the components of a motion in the axes of a frame; `in body` means the axes
+    /// of f itself.
     pub fn in_axes(&mut self, call: &Expr, frame: &Expr) -> Option<Value> {
         let ExprKind::Call(_, arguments) = &call.kind else {
             return None;
@@ -146,7 +148,7 @@ impl Evaluator<'_> {
         let Value::Pose(axes, _) = axes else {
             return None;
         };
-        // Where it is seen from another frame, its components are in the axes of that one.
+        // If the motion is relative to another frame, its components are in the axes of that frame.
         let seen = arguments.last().filter(|_| arguments.len() > 1);
         let seen = match seen.map(|seen| self.value(seen)) {
             Some(Some(Value::Pose(rotation, _))) => Some(rotation),

@@ -1,5 +1,5 @@
-//! Constraints B(x) ξ = 0 on the velocities of a frame: inactive velocities, nonholonomic
-//! constraints, and the rates of closed loops.
+//! Reads constraints B(x) ξ = 0 on the velocities of a frame: inactive velocities, nonholonomic constraints, and the
+//! rates of closed loops.
 
 use super::affine::Affine;
 use super::declare::Declared;
@@ -17,7 +17,8 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Expr, ExprKind, ItemKind, Span, System};
 use crate::syntax::written::{equation, written};
 
-/// Reads all rows, in the order of the text, the points that loops bring together, and warnings about rows that say nothing.
+/// Reads all rows in the order of the text, the pairs of points that loops bring together, and warnings about rows
+/// that always hold.
 pub fn read(
     system: &System,
     graph: &mut Graph,
@@ -80,14 +81,14 @@ pub fn read(
     (all, closures, idle)
 }
 
-/// Two points of space, of which loops bring together some of the components.
+/// Two points in space, and which of their components loops make equal.
 struct Sides {
     points: (Vec3, Vec3),
     closed: [bool; 3],
 }
 
 impl Sides {
-    /// Whether the other components are equal anyway, as in a plane.
+    /// Returns whether the other components are equal anyway, as in a plane.
     fn meet(&self) -> bool {
         let (left, right) = &self.points;
         (0..3).all(|k| self.closed[k] || left[k] == right[k])
@@ -98,14 +99,14 @@ struct Reader<'a> {
     evaluator: Evaluator<'a>,
     declared: &'a Declared,
     kinematics: Option<&'a Kinematics>,
-    /// Both sides of the equation that was read last, where they are points of space or the same component of two.
+    /// Both sides of the last equation, if they are points in space or the same component of two points.
     sides: Option<Sides>,
-    /// Warnings about rows that say nothing.
+    /// Warnings about rows that always hold.
     idle: Vec<Diagnostic>,
 }
 
 impl Reader<'_> {
-    /// Velocities that stay zero.
+    /// Reads velocities that stay zero.
     fn inactive(&mut self, expr: &Expr, before: &[Pfaffian]) -> Option<Vec<Pfaffian>> {
         let value = self.evaluator.value(expr)?;
         let mut rows = Vec::new();
@@ -154,7 +155,7 @@ impl Reader<'_> {
         let graph = &mut *self.evaluator.graph;
         let (mut rows, mut idle) = (Vec::new(), Vec::new());
         for (edge, entry) in difference.entries().into_iter().zip(names(&difference)) {
-            // B ξ = b(x, t): the term without a velocity goes with ξ⁰.
+            // B ξ = b(x, t): the term without a velocity is multiplied by ξ⁰.
             let edge = time::linear(graph, self.declared, edge);
             let affine = Affine::of(graph, edge, &self.declared.xi);
             let (class, rest) = affine.classes(graph);
@@ -265,7 +266,7 @@ impl Reader<'_> {
         Some(rows)
     }
 
-    /// The place, left − right, and λ of a constraint.
+    /// Reads a constraint: its place, left − right, and λ.
     fn equation(
         &mut self,
         left: &Expr,
@@ -277,13 +278,13 @@ impl Reader<'_> {
         Some((left.span.to(right.span), difference?, stabilized))
     }
 
-    /// left − right, entry by entry.
+    /// Returns left − right, entry by entry.
     fn difference(&mut self, left: &Expr, right: &Expr) -> Option<Value> {
         let (a, b) = (self.evaluator.value(left), self.evaluator.value(right));
         let (a, b) = (a?, b?);
         self.sides = self.component(left, right, (&a, &b));
         let graph = &mut *self.evaluator.graph;
-        // `… = 0` is meant entry by entry.
+        // `… = 0` means that every entry is 0.
         let is_zero = matches!(b, Value::Scalar(edge) if edge.abs() == graph.zero());
         if is_zero {
             return Some(a);
@@ -300,7 +301,7 @@ impl Reader<'_> {
         Some(a.zip(&b, |x, y| graph.sub(x, y)))
     }
 
-    /// The points of `a[1] = b[1]`, where both have three components.
+    /// Returns the points of `a[1] = b[1]`, if both have three components.
     fn component(&mut self, left: &Expr, right: &Expr, of: (&Value, &Value)) -> Option<Sides> {
         let (ExprKind::Index(left, _), ExprKind::Index(right, _)) = (&left.kind, &right.kind)
         else {
@@ -317,7 +318,7 @@ impl Reader<'_> {
         Some(Sides { points, closed })
     }
 
-    /// λ, constant at run time. The outer `None` is an error.
+    /// Reads λ, which is constant at run time. The outer `None` means an error.
     fn rate_of_decay(&mut self, expr: Option<&Expr>) -> Option<Option<Edge>> {
         let Some(expr) = expr else { return Some(None) };
         let edge = self.evaluator.scalar(expr)?;
@@ -331,7 +332,7 @@ impl Reader<'_> {
     }
 }
 
-/// The names of all entries of the difference of two sides, in their order; that of a single one is empty.
+/// Returns the labels of all entries of a difference of two sides, in order; the label of a single entry is empty.
 fn names(difference: &Value) -> Vec<String> {
     let matrix = |rows: usize, columns: usize, of: &str| -> Vec<String> {
         let places = (0..rows).flat_map(|i| (0..columns).map(move |j| (i + 1, j + 1)));
@@ -348,7 +349,7 @@ fn names(difference: &Value) -> Vec<String> {
     }
 }
 
-/// The warning about entries of an equation whose sides are equal by their form.
+/// Returns the warning about entries of an equation whose sides are identical.
 fn holding(span: Span, what: &str, entries: &[String], all: bool) -> Diagnostic {
     if all {
         return Diagnostic::new(span, format!("this {what} always holds, and is left out"))

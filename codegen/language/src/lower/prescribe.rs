@@ -1,9 +1,9 @@
-//! Prescribed motion: `prescribe q = f(t);` for a coordinate, `prescribe v = w(t);` for a velocity, `prescribe
-//! rate(v) = a;` for the rate of one.
+//! Reads prescribed motion: `prescribe q = f(t);` for a coordinate, `prescribe v = w(t);` for a velocity, and
+//! `prescribe rate(v) = a;` for the rate of a velocity.
 //!
-//! A coordinate that is given has the rate ḟ, which is the row A_q ξ − ḟ ξ⁰ = 0; a velocity that is given is the row
-//! v − w ξ⁰ = 0. Their multipliers are the forces of the drives. Where a rate is given, the velocity stays one of the
-//! state, and inverse dynamics takes the place of forward dynamics for it (Featherstone 2008, 9.2); the rate may be an
+//! A prescribed coordinate has the rate ḟ, which is the row A_q ξ − ḟ ξ⁰ = 0; a prescribed velocity is the row
+//! v − w ξ⁰ = 0. Their multipliers are the forces of the drives. If a rate is prescribed, the velocity remains part
+//! of the state, and inverse dynamics replaces forward dynamics for it (Featherstone 2008, 9.2); the rate may be an
 //! input, or any expression of the state.
 
 use super::declare::Declared;
@@ -21,7 +21,7 @@ use crate::model::{Coordinate, class};
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 use crate::syntax::written::{target as written, written as shown};
 
-/// The rows, the coordinates whose values are given, and the velocities whose rates are.
+/// The rows, the coordinates with prescribed values, and the velocities with prescribed rates.
 type Prescribed = (Vec<Pfaffian>, Vec<(usize, Edge)>, Vec<(usize, Edge)>);
 
 /// Reads all `prescribe` statements, in the order of the text.
@@ -77,7 +77,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The rate of a velocity.
+    /// Reads the prescribed rate of a velocity.
     fn rate(&mut self, target: &Target, expr: &Expr, all: &mut Prescribed) -> Option<()> {
         let value = self.evaluator.value(expr);
         let name = &target.name.name;
@@ -110,7 +110,7 @@ impl Reader<'_> {
         Some(())
     }
 
-    /// The value of a coordinate or of a velocity.
+    /// Reads the prescribed value of a coordinate or of a velocity.
     fn motion(&mut self, target: &Target, expr: &Expr, all: &mut Prescribed) -> Option<()> {
         let value = self.evaluator.value(expr);
         let name = &target.name.name;
@@ -164,7 +164,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Only plain coordinates and angles have values that an expression gives without a redundancy.
+    /// Checks that a coordinate is real or an angle: only these have values that an expression gives without
+    /// redundancy.
     fn can_be_given(&mut self, target: &Target, coordinate: &Coordinate) -> Option<()> {
         let error = Diagnostic::new(
             target.span(),
@@ -209,7 +210,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What is given depends on time and parameters alone.
+    /// Checks that a prescribed value depends on time and parameters alone.
     fn known_ahead(&mut self, name: &str, span: Span, value: &Value) -> Option<()> {
         let graph = &*self.evaluator.graph;
         let clock = self.declared.clock?;
@@ -295,7 +296,7 @@ impl Reader<'_> {
     }
 }
 
-/// The row of what is driven; with φ where it is a coordinate.
+/// Returns the row of a drive, with residual φ if a coordinate is driven.
 fn driven(
     graph: &Graph,
     row: Vec<Edge>,

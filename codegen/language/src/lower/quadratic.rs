@@ -1,4 +1,4 @@
-//! Whether an energy is quadratic in the velocities.
+//! Decides whether an energy is quadratic in the velocities.
 
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Random;
@@ -6,9 +6,9 @@ use crate::algebra::graph::{Edge, Graph, NodeId};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-/// Whether a function of ξ is homogeneous of degree two, ξ · ∂T/∂ξ = 2 T, and has no third
-/// derivative: none along a random direction, and no branch in the second one that ξ chooses, as |v| v has it.
-/// In a graph of its own, to leave no trace.
+/// Returns whether a function of ξ is homogeneous of degree two, ξ · ∂T/∂ξ = 2 T, and has no third derivative: that
+/// along a random direction is 0, and the second one has no branches selected by ξ, as |v| v has. The check works on
+/// its own copy of the graph, so that it leaves no trace.
 pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
     let graph = &mut graph;
     let twice = Derivation::new(xi.iter().map(|xi| (xi.node(), *xi))).of(graph, energy);

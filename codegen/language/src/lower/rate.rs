@@ -1,4 +1,4 @@
-//! The rates of coordinates: ẋ = A ξ, the coordinates and parts that statements name, and how a rate is written.
+//! Rates of coordinates, ẋ = A ξ; the coordinates and parts that statements name; and how a rate is written.
 
 use super::declare::{Declared, coordinate_value, size};
 use crate::algebra::graph::{Edge, Graph};
@@ -17,14 +17,14 @@ pub struct Kinematics {
     pub completion: Completion,
 }
 
-/// The rate of one entry of x, and the statement that gives it.
+/// Rate of one entry of x, and index of the statement that gives it.
 #[derive(Clone, Copy)]
 pub struct Rate {
     pub edge: Edge,
     pub item: usize,
 }
 
-/// Numbers of parameters and of x at the start, which satisfy φ = 0.
+/// Values of the parameters and of x at the start, which satisfy φ = 0.
 #[derive(Clone, Copy)]
 pub struct At<'a> {
     pub defaults: &'a [f64],
@@ -32,7 +32,7 @@ pub struct At<'a> {
 }
 
 impl At<'_> {
-    /// Numbers of expressions of parameters and coordinates.
+    /// Evaluates expressions of parameters and coordinates.
     pub fn evaluate(&self, graph: &Graph, edges: &[Edge]) -> Vec<f64> {
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend(self.defaults.iter().chain(self.x));
@@ -41,7 +41,7 @@ impl At<'_> {
     }
 }
 
-/// The entries of x that a target names, and its value.
+/// Returns the range of entries of x that a target names, and its value.
 pub fn part(target: &Target, declared: &Declared) -> Option<(Range<usize>, Value)> {
     let name = &target.name;
     let mut coordinates = declared.coordinates.iter();
@@ -60,7 +60,7 @@ pub fn part(target: &Target, declared: &Declared) -> Option<(Range<usize>, Value
     Some(entry(target, range, value))
 }
 
-/// What a target names of a vector in these places: all of it or an entry.
+/// Returns the part of a vector in a range that a target names: all of it, or one entry.
 pub fn entry(target: &Target, range: Range<usize>, value: Value) -> (Range<usize>, Value) {
     match &value {
         Value::Vector(entries) => match target.place(entries.len()) {
@@ -74,7 +74,7 @@ pub fn entry(target: &Target, range: Range<usize>, value: Value) -> (Range<usize
     }
 }
 
-/// How the rate of a coordinate is written, with the name of the velocity that probably moves it.
+/// Returns how the rate of a coordinate is written, with the velocity that probably moves it.
 pub fn advised(coordinate: &Coordinate, rate: Option<&Expr>, declared: &Declared) -> String {
     let velocities = declared.velocities.iter();
     let velocities = velocities.map(|group| (group.name.as_str(), group.shape));

@@ -1,5 +1,5 @@
-//! `rate(e)`: d/dt of an expression. In the definition of a velocity it is a row of Y ẋ, anywhere else a function of
-//! x, ξ and, where e depends on velocities, of ξ̇.
+//! Evaluates `rate(e)`, d/dt of an expression. In the definition of a velocity it is a row of Y ẋ; anywhere else it
+//! is a function of x, ξ and, if e depends on velocities, of ξ̇.
 //!
 //! | `rate(…)` of | is |
 //! |---|---|
@@ -17,7 +17,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Expr, Span};
 
 impl Evaluator<'_> {
-    /// `rate(…)` of an expression.
+    /// Evaluates `rate(…)` of an expression.
     pub fn rate(&mut self, argument: &Expr, span: Span) -> Option<Value> {
         let value = self.value(argument)?;
         let scope = self.scope;
@@ -80,7 +80,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// What is to be derived once more: three entries at a time.
+/// Records the derivatives for an independent check, three entries at a time.
 fn noted(evaluator: &Evaluator, entries: &[Edge], rates: &[Edge]) -> Vec<Observed> {
     let graph = &*evaluator.graph;
     let three = |list: &[Edge]| -> [Edge; 3] {

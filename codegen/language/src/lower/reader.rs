@@ -1,4 +1,4 @@
-//! What the statements about inertia and loads are read with, and into.
+//! Reader for the statements about inertia and loads, and its results.
 
 use super::declare::Declared;
 use super::expression::Evaluator;
@@ -11,10 +11,10 @@ use crate::model::value::Value;
 use crate::model::{Body, Frame, Particle, Wrench, class};
 use crate::syntax::ast::{Expr, Ident, Span};
 
-/// What stands in `generate` for everything that a description without it gets.
+/// Word in `generate` for everything that a description without `generate` gets.
 pub const ALL: &str = "all";
 
-/// What the statements about inertia and loads say.
+/// Contents of the statements about inertia and loads.
 pub struct Dynamics {
     pub bodies: Vec<Body>,
     pub particles: Vec<Particle>,
@@ -31,7 +31,7 @@ pub struct Dynamics {
     pub has_inertia: bool,
 }
 
-/// Whether a name is that of a function, which no output or invariant can have.
+/// Returns whether a name is that of a generated function, which outputs and invariants cannot have.
 pub fn is_taken(name: &str) -> bool {
     name == ALL || FunctionId::named(name).is_some()
 }
@@ -51,7 +51,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Whether a value is made of parameters and constants alone; reports it where not.
+    /// Reports an error unless a value consists of parameters and constants alone.
     pub fn constant(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
         if self.class_of(value) & !class::PARAM == 0 {
             return Some(());
@@ -74,7 +74,7 @@ impl Reader<'_, '_> {
         Some(value)
     }
 
-    /// Whether a load is free of accelerations; reports it where not.
+    /// Reports an error if a load depends on accelerations.
     pub fn no_acceleration(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
         if self.class_of(value) & class::ACCEL == 0 {
             return Some(());
@@ -85,7 +85,7 @@ impl Reader<'_, '_> {
         )
     }
 
-    /// Whether a value is a function of the configuration; reports it where not.
+    /// Reports an error unless a value is a function of the configuration.
     pub fn configuration(
         &mut self,
         value: &Value,
@@ -101,7 +101,7 @@ impl Reader<'_, '_> {
             .error(Diagnostic::new(span, message).help(help))
     }
 
-    /// The frame of a name, unless its own definition was in error.
+    /// Finds a frame by name; `None` if its own definition was in error.
     pub fn frame(&self, name: &Ident) -> Option<usize> {
         self.frames.iter().position(|frame| frame.name == name.name)
     }

@@ -1,5 +1,5 @@
-//! How A, Y and φ belong together: A completed where it is not given, then Φ A = 0, n = dim X,
-//! rank A = n and Y A = I on X, KR18 (6).
+//! Relates A, Y and φ: completes A if it is not given, and checks Φ A = 0, n = dim X, rank A = n and Y A = I on X,
+//! KR18 (6).
 
 use super::completion::{Given, complete};
 use super::declare::Declared;
@@ -14,14 +14,14 @@ use crate::model::charts::jacobian;
 use crate::model::completion::Completion;
 use crate::syntax::ast::System;
 
-/// What the statements give: ẋ with the statement of each entry, the rows of A, the rows of Y.
+/// Contents of the statements: the rate of each entry of x with its statement, the rows of A, and the rows of Y.
 pub type Statements<'a> = (
     &'a [Option<Rate>],
     Option<Vec<Vec<Edge>>>,
     &'a [Option<Row>],
 );
 
-/// All that relates A, Y and φ, as far as they are known.
+/// Completes A and checks all relations between A, Y and φ, as far as they are known.
 pub fn relate(
     system: &System,
     graph: &mut Graph,
@@ -63,7 +63,7 @@ pub fn relate(
         if !checker(graph, report, |checks| checks.count()) {
             return None;
         }
-        // A start that is in error has been reported.
+        // Errors in the start have been reported.
         let at = at?;
         if let Some(row) = independent.singular {
             let span = match variety.origins[row] {

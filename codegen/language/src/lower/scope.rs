@@ -1,4 +1,4 @@
-//! The values of names in one graph.
+//! Values of names in one graph.
 
 use super::curve::Curve;
 use super::motion::TimeDerivative;
@@ -9,37 +9,37 @@ use crate::syntax::ast::{CoordKind, External, Ident, ItemKind, Span, System};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
-/// The names of a description, with their values as far as they are known.
+/// The names of a description, with those values that are known so far.
 #[derive(Clone, Debug)]
 pub struct Scope<'a> {
-    /// What the names stand for.
+    /// Meaning of each name.
     pub symbols: &'a Symbols<'a>,
-    /// By the numbers of the symbols: whether it is defined here, and its value unless its definition was in error.
+    /// For each symbol by index: whether it is defined here, and its value unless the definition was in error.
     values: Vec<Option<Option<Value>>>,
-    /// Whether the user wrote constraints, so that no coordinate moves alone.
+    /// Whether the user wrote constraints, so that coordinates do not move independently.
     constrained: bool,
-    /// Whether values are those at points off the variety: what holds on it alone is not checked.
+    /// Whether values are taken off the variety, so that properties that hold only on it are not checked.
     pub free: bool,
-    /// How x and ξ move, once the rates are known.
+    /// Derivatives of x and ξ, once the rates are known.
     pub motion: Option<TimeDerivative>,
-    /// Whether the rates are in error: what needs them is no further error.
+    /// Whether the rates are in error, so that expressions that need them are not reported again.
     pub unmoved: bool,
-    /// How x moves along symbols that stand for ẋ, in definitions of velocities.
+    /// Derivatives of x along the symbols for ẋ, in definitions of velocities.
     pub rates: Option<TimeDerivative>,
-    /// The tables of the description; `None` where they are in error.
+    /// Tables of the description; `None` if they are in error.
     pub tables: BTreeMap<String, Option<Curve>>,
-    /// The functions in Rust, in the order of the text, each with its place among those of the graph.
+    /// Functions in Rust by name, each with its index in the graph; the indices follow the order of the text.
     pub externals: BTreeMap<String, (usize, External)>,
-    /// Where functions in Rust are called, by the lists of their arguments.
+    /// Calls of functions in Rust: the edge of the first component, and the place of the call.
     pub called: RefCell<Vec<(Edge, Span)>>,
-    /// How many calls of them have been written out.
+    /// Number of function calls that have been expanded.
     pub calls: Cell<usize>,
-    /// Whether a value was wanted that is not known, which is an error somewhere.
+    /// Whether a required value was missing, which is an error somewhere.
     pub missed: Cell<bool>,
 }
 
 impl<'a> Scope<'a> {
-    /// No values yet.
+    /// Creates a scope without values.
     pub fn new(system: &System, symbols: &'a Symbols<'a>, free: bool) -> Self {
         let mut items = system.items.iter();
         Scope {
@@ -58,7 +58,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The coordinates that are a chart by themselves: plain numbers, where no constraint was written.
+    /// Returns the coordinates that form a chart by themselves: real ones, if there are no constraints.
     pub fn plain(&self) -> Vec<NodeId> {
         let plain = |kind| matches!(kind, Kind::Coord(CoordKind::Real | CoordKind::Euclidean(_)));
         let symbols = self.symbols.iter();
@@ -68,8 +68,8 @@ impl<'a> Scope<'a> {
         entries.map(Edge::node).collect()
     }
 
-    /// Defines a name, its value to follow. Whether it can have one: the first of its declarations can, unless its
-    /// name is a word of the language.
+    /// Claims a name whose value follows later. Returns whether the declaration counts: only the first of a name
+    /// does, and not if the name is a word of the language.
     pub fn claim(&mut self, name: &Ident, kind: Kind) -> bool {
         let Some(symbol) = self.symbols.get(&name.name) else {
             return false;
@@ -89,7 +89,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Defines a name; whether it was free.
+    /// Defines a name, and returns whether it was free.
     pub fn define(&mut self, name: &Ident, kind: Kind, value: Option<Value>) -> bool {
         let free = self.claim(name, kind);
         if free {
@@ -98,7 +98,7 @@ impl<'a> Scope<'a> {
         free
     }
 
-    /// The value of a name, where it is known.
+    /// Returns the value of a name, if it is known.
     pub fn value(&self, name: &str) -> Option<&Value> {
         let symbol = self.symbols.get(name)?;
         self.values[symbol.id.index()].as_ref()?.as_ref()

@@ -1,8 +1,8 @@
-//! States of first order: `state i = 0;` with `rate i = (u - R * i - k * w) / L;`.
+//! Reads first-order states: `state i = 0;` with `rate i = (u - R * i - k * w) / L;`.
 //!
 //! Forces, outputs, rates of states and prescribed rates may depend on z; energies, frames and constraints may not.
-//! So a motion knows z as it knows an input, and nothing of its derivation changes. ż is any expression, accelerations
-//! included.
+//! So z acts on the motion like an input, and the derivation of the equations of motion is unchanged. ż may be any
+//! expression, even of accelerations.
 
 use super::declare::Declared;
 use super::expression::Evaluator;
@@ -13,22 +13,22 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::Group;
 use crate::syntax::ast::{Expr, ItemKind, Span, System, Target};
 
-/// ż and z at the start.
+/// Rates ż, and values of z at the start.
 #[derive(Clone, Debug, Default)]
 pub struct States {
     pub rates: Vec<Edge>,
     pub start: Vec<f64>,
-    /// Those starts that depend on parameters.
+    /// Initial values that depend on parameters.
     pub formulas: Vec<(usize, Edge)>,
 }
 
-/// Whether the target of a `rate` is a state.
+/// Returns whether the target of a `rate` is a state.
 pub fn is_one(declared: &Declared, target: &Target) -> bool {
     let mut states = declared.states.iter();
     states.any(|group| group.name == target.name.name)
 }
 
-/// Reads the starts and the rates of all states.
+/// Reads initial values and rates of all states.
 pub fn read(
     system: &System,
     graph: &mut Graph,
@@ -94,7 +94,7 @@ pub fn read(
     }
 }
 
-/// One `rate` statement of a state.
+/// Reads one `rate` statement of a state.
 fn rate(
     target: &Target,
     expr: &Expr,

@@ -1,4 +1,4 @@
-//! `independent u, w[1];`: velocities that no constraint is solved for, so that they stay in ξ.
+//! Reads `independent u, w[1];`: velocities that no constraint is solved for, so that they stay in ξ.
 
 use super::declare::Declared;
 use super::expression::Evaluator;
@@ -8,7 +8,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::syntax::ast::{Expr, ItemKind, Span, System};
 
-/// The places of these velocities in ξ, and where each was named.
+/// Returns the indices of these velocities in ξ, and where each was named.
 pub fn read(
     system: &System,
     graph: &mut Graph,

@@ -1,5 +1,5 @@
-//! What is legal and cannot be meant: inertia that no body has, a start beyond a joint's limits, loads that never do
-//! work. All of it is looked at in numbers, at the start and at states beside it.
+//! Warns of legal input that cannot be meant: inertias that no body has, a start beyond a joint's limits, loads that
+//! never do work. All of this is checked numerically, at the start and at some other states.
 
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
@@ -9,10 +9,10 @@ use crate::model::twists::{Moving, Placed, apply, back, cross, dot};
 use crate::model::{Model, Wrench};
 use crate::syntax::ast::{self, Axes, Ident, ItemKind, Span, System};
 
-/// Smaller parts of what they are compared with are roundings.
+/// Relative size below which a number counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Warnings about a description that is correct, in the order of the text.
+/// Returns warnings about a description that is correct, in the order of the text.
 pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     let wanted = |item: &ast::Item| matches!(item.kind, ItemKind::Body(_) | ItemKind::Load { .. });
     let mut warnings = limits(system, model);
@@ -39,7 +39,7 @@ pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     warnings
 }
 
-/// Starts of joints beyond their limits.
+/// Warns of joints that start beyond their limits.
 fn limits(system: &System, model: &Model) -> Vec<Diagnostic> {
     let joints = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Joint(joint) => Some(&joint.name),
@@ -75,7 +75,7 @@ fn limits(system: &System, model: &Model) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A system at some states.
+/// A system at some states, with the motion of its frames.
 struct Seen<'a> {
     model: &'a Model,
     states: Vec<(Vec<f64>, Vec<Placed>)>,
@@ -90,7 +90,7 @@ impl<'a> Seen<'a> {
             velocity: model.points.first + model.nu(),
             n: model.n(),
         };
-        // On an open loop bodies move as they may, too.
+        // Constraints are dropped, so that states with open loops count, too.
         let mut free = model.clone();
         free.constraints.clear();
         let at = |numbers: Vec<f64>| {
@@ -143,7 +143,7 @@ impl<'a> Seen<'a> {
         };
         let (message, help) = match axes {
             Turns::None => return None,
-            // Of a body that turns about one axis, only the moment about it takes part.
+            // For a body that turns about one axis, only the moment about that axis matters.
             Turns::One(axis) => {
                 let moment = dot(&axis, &apply(&inertia, axis));
                 let positive = moment >= -ROUNDING * largest(&inertia);
@@ -177,7 +177,7 @@ impl<'a> Seen<'a> {
         Some(Diagnostic::new(place, format!("{message}{with}")).help(help))
     }
 
-    /// A load whose virtual work is 0 in every state, though it is not 0 itself.
+    /// Warns of a load whose virtual work is 0 in every state, though the load itself is not 0.
     fn load(&self, wrenches: &[Wrench], frame: &Ident, span: Span) -> Option<Diagnostic> {
         let mut size = 0.0;
         let mut work = 0.0;
@@ -207,7 +207,7 @@ impl<'a> Seen<'a> {
             }
             work += all.iter().map(|v| v.abs()).sum::<f64>();
         }
-        // What is no number says nothing.
+        // With NaN nothing is known.
         if !(size > 0.0 && work <= ROUNDING * size) {
             return None;
         }
@@ -219,7 +219,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The axes that a body turns about, in its own axes.
+/// The axes about which a body turns, in its own axes.
 enum Turns {
     None,
     One([f64; 3]),
@@ -249,7 +249,7 @@ impl Turns {
     }
 }
 
-/// Whether there is a moment about one axis alone, as of a wheel or a drum whose other moments are left out.
+/// Returns whether there is a moment about one axis alone, as for a wheel or drum whose other moments are left out.
 fn is_rotor(m: &[[f64; 3]; 3]) -> bool {
     let size = largest(m);
     let pairs = [(0, 1), (0, 2), (1, 2)];
@@ -267,7 +267,7 @@ fn largest(m: &[[f64; 3]; 3]) -> f64 {
         .fold(0.0, |most, entry| most.max(entry.abs()))
 }
 
-/// Whether a symmetric matrix has no negative eigenvalue, but for roundings: no principal minor is negative.
+/// Returns whether a symmetric matrix has no negative eigenvalue, up to rounding: no principal minor is negative.
 fn not_negative(m: &[[f64; 3]; 3]) -> bool {
     let size = largest(m);
     let second = |i: usize, j: usize| m[i][i] * m[j][j] - m[i][j] * m[j][i];

@@ -1,4 +1,4 @@
-//! What ẋ = A ξ has to satisfy: linear in ξ, tangent to φ = 0, and A a basis of the tangent space.
+//! Checks ẋ = A ξ: that it is linear in ξ and tangent to φ = 0, and that A is a basis of the tangent space.
 
 use super::affine::Affine;
 use super::declare::Declared;
@@ -13,10 +13,11 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System};
 
-/// Longest residual that is shown.
+/// Largest length of a residual that is shown.
 const LONGEST: usize = 60;
 
-/// A = ∂ẋ/∂ξ, with ẋ − A ξ = 0 and A free of ξ and u; rows without a rate are empty.
+/// Returns A = ∂ẋ/∂ξ, after checking that ẋ − A ξ = 0 and that A does not depend on ξ and u; rows without a rate are
+/// empty.
 pub fn linear_part(
     system: &System,
     graph: &mut Graph,
@@ -24,14 +25,14 @@ pub fn linear_part(
     declared: &Declared,
     report: &mut Report,
 ) -> Option<Vec<Vec<Edge>>> {
-    // ẋ = A ξ + a(x, t): the term without a velocity goes with ξ⁰.
+    // ẋ = A ξ + a(x, t): the term without a velocity is multiplied by ξ⁰.
     for rate in rates.iter_mut().flatten() {
         rate.edge = time::linear(graph, declared, rate.edge);
     }
     let edges: Vec<Edge> = rates.iter().flatten().map(|rate| rate.edge).collect();
     let mut parts = Affine::of_each(graph, &edges, &declared.xi).into_iter();
     let mut a = vec![Vec::new(); rates.len()];
-    // One error a statement.
+    // At most one error is reported for a statement.
     let mut bad: Vec<usize> = Vec::new();
     for (row, rate) in a.iter_mut().zip(rates.iter()) {
         let Some(rate) = rate else { continue };
@@ -73,7 +74,7 @@ fn value_of(system: &System, item: usize) -> Option<&Expr> {
     }
 }
 
-/// Where a constraint stands.
+/// Returns the place of a constraint.
 pub fn constraint_span(system: &System, item: usize) -> Span {
     match &system.items[item].kind {
         ItemKind::Constraint { left, right } => left.span.to(right.span),
@@ -81,7 +82,7 @@ pub fn constraint_span(system: &System, item: usize) -> Span {
     }
 }
 
-/// What relates A, ξ and φ, checked piece by piece.
+/// Checks the relations between A, ξ and φ one by one.
 pub struct Checker<'a> {
     pub system: &'a System,
     pub graph: &'a Graph,
@@ -93,14 +94,14 @@ pub struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// ∂φ/∂x at the first point.
+    /// Returns ∂φ/∂x at the first point.
     fn slopes(&self) -> Vec<Vec<Fp>> {
         let value = |&edge: &Edge| self.graph.value(edge);
         let rows = self.jacobian.iter();
         rows.map(|row| row.iter().map(value).collect()).collect()
     }
 
-    /// No constraint of the user is singular on all of X.
+    /// Checks that no constraint of the user is singular on all of X.
     pub fn regular(&mut self) -> bool {
         let zero = self.graph.zero();
         let mut regular = true;
@@ -125,7 +126,7 @@ impl Checker<'_> {
         regular
     }
 
-    /// (∂φ/∂x) A = 0 on X.
+    /// Checks (∂φ/∂x) A = 0 on X.
     pub fn tangent(&mut self, rates: &[Option<Rate>], a: &[Vec<Edge>]) -> bool {
         let mut tangent = true;
         let mut reported: Vec<usize> = Vec::new();
@@ -145,7 +146,7 @@ impl Checker<'_> {
         tangent
     }
 
-    /// Whether a motion along ξⁱ changes a row of φ.
+    /// Returns whether a motion along ξⁱ changes a row of φ.
     fn leaves(&self, a: &[Vec<Edge>], row: usize, i: usize) -> bool {
         let terms = a.iter().zip(&self.jacobian[row]);
         let change = terms.fold(Fp::ZERO, |sum, (entries, &slope)| {
@@ -154,7 +155,7 @@ impl Checker<'_> {
         !change.is_zero()
     }
 
-    /// The statement to blame: the first rate that takes part in the change.
+    /// Returns the statement to blame: the first rate that takes part in the change.
     fn culprit(
         &self,
         rates: &[Option<Rate>],
@@ -171,7 +172,7 @@ impl Checker<'_> {
         given.next().map(|rate| rate.item)
     }
 
-    /// (∂φ/∂x) A of a row and a velocity, where it is short.
+    /// Returns (∂φ/∂x) A of a row and a velocity as text, if it is short.
     fn residual(&self, a: &[Vec<Edge>], row: usize, i: usize) -> Option<String> {
         let mut graph = self.graph.clone();
         let column: Vec<Edge> = a.iter().map(|row| row[i]).collect();
@@ -231,7 +232,7 @@ impl Checker<'_> {
         self.report.push(error);
     }
 
-    /// n = dim X = ν − rank ∂φ/∂x.
+    /// Checks n = dim X = ν − rank ∂φ/∂x.
     pub fn count(&mut self) -> bool {
         let n = self.declared.xi.len();
         let nu = self.declared.x.len();
@@ -260,7 +261,7 @@ impl Checker<'_> {
         false
     }
 
-    /// A has rank n.
+    /// Checks that A has rank n.
     pub fn independent(&mut self, a: &[Vec<Edge>]) -> bool {
         let n = self.declared.xi.len();
         let value = |edge: &Edge| self.graph.value(*edge);
@@ -283,7 +284,7 @@ impl Checker<'_> {
         false
     }
 
-    /// From the first velocity of the first statement to the last of it.
+    /// Returns the range from the first to the last velocity of the first such statement.
     fn velocities_span(&self) -> Span {
         let spans = self.system.items.iter().find_map(|item| match &item.kind {
             ItemKind::Velocity(list) => Some(list.first()?.name.span.to(list.last()?.name.span)),

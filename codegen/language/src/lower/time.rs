@@ -1,9 +1,9 @@
-//! Time as a coordinate whose velocity is known: the frame of KR18 extended by ∂₀ with ξ⁰ = 1.
+//! Treats time as a coordinate with a known velocity: the frame of KR18 extended by ∂₀ with ξ⁰ = 1.
 //!
-//! `time t;` is written out as a coordinate `t` with a velocity `t_dot` and `rate t = t_dot`. What a description says
-//! without a velocity, as in `rate x = u + 3 * t`, gets ξ⁰ for a factor: in x' = (t, x), ξ' = (ξ⁰, ξ) everything is
-//! linear or quadratic as it is without time, and γ, M and Γ of the extended frame follow from KR18 (12), (20) and
-//! (23). ξ⁰ = 1 is put in when the system is reduced to the velocities that are free.
+//! `time t;` expands to a coordinate `t` with a velocity `t_dot` and `rate t = t_dot`. Terms without a velocity, as
+//! in `rate x = u + 3 * t`, are multiplied by ξ⁰: in x' = (t, x), ξ' = (ξ⁰, ξ) everything is linear or quadratic as
+//! it is without time, and γ, M and Γ of the extended frame follow from KR18 (12), (20) and (23). ξ⁰ = 1 is
+//! substituted when the system is reduced to its free velocities.
 
 use super::affine::Affine;
 use super::declare::Declared;
@@ -19,7 +19,7 @@ use crate::syntax::ast::{
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-/// The name of the velocity of time.
+/// Returns the name of the velocity of time.
 fn velocity_of(time: &Ident) -> Ident {
     Ident {
         name: format!("{}_dot", time.name),
@@ -27,7 +27,7 @@ fn velocity_of(time: &Ident) -> Ident {
     }
 }
 
-/// The name of the time, where it is declared.
+/// Returns the name of the time, if it is declared.
 pub fn name(system: &System) -> Option<&Ident> {
     system.items.iter().find_map(|item| match &item.kind {
         ItemKind::Time(name) => Some(name),
@@ -35,7 +35,7 @@ pub fn name(system: &System) -> Option<&Ident> {
     })
 }
 
-/// The system with the time written out as a coordinate.
+/// Returns the system with the time expanded to a coordinate.
 pub fn expand(system: &System, report: &mut Report) -> System {
     let mut items = Vec::new();
     let mut first: Option<&Ident> = None;
@@ -65,7 +65,7 @@ pub fn expand(system: &System, report: &mut Report) -> System {
     }
 }
 
-/// `coord t; velocity t_dot; rate t = t_dot; start t_dot = 1;`
+/// Returns `coord t; velocity t_dot; rate t = t_dot; start t_dot = 1;`
 fn written(time: &Ident) -> [ItemKind; 4] {
     let (velocity, span) = (velocity_of(time), time.span);
     let target = |name: &Ident| Target {
@@ -93,7 +93,7 @@ fn written(time: &Ident) -> [ItemKind; 4] {
     ]
 }
 
-/// The places of the time in x and of ξ⁰ in ξ.
+/// Returns the index of the time in x and that of ξ⁰ in ξ.
 pub fn clock(system: &System, declared: &Declared) -> Option<Clock> {
     let time = name(system)?;
     let velocity = velocity_of(time).name;
@@ -105,16 +105,16 @@ pub fn clock(system: &System, declared: &Declared) -> Option<Clock> {
     })
 }
 
-/// What a function that is linear in ξ has without a velocity, which then goes with ξ⁰, by the place of ξ⁰. `None`
-/// where there is no time, or the rest depends on more than coordinates and parameters.
+/// Returns the term without a velocity of a function that is affine in ξ, with the index of ξ⁰, by which it is to be
+/// multiplied. Returns `None` if there is no time, or if the term depends on more than coordinates and parameters.
 pub fn with_time(graph: &Graph, declared: &Declared, affine: &Affine) -> Option<(usize, Edge)> {
     let clock = declared.clock?;
     let (_, found) = affine.classes(graph);
     (found & !(class::PARAM | class::CONFIGURATION) == 0).then_some((clock.xi, affine.rest))
 }
 
-/// A function that is linear in ξ but for a term without a velocity, as a linear one: that term goes with ξ⁰. Without
-/// time, and where it is of another kind, the function itself.
+/// Makes a function that is affine in ξ linear, by multiplying the term without a velocity by ξ⁰. Returns the
+/// function itself if there is no time or if it has another form.
 pub fn linear(graph: &mut Graph, declared: &Declared, rate: Edge) -> Edge {
     if declared.clock.is_none() {
         return rate;
@@ -129,8 +129,8 @@ pub fn linear(graph: &mut Graph, declared: &Declared, rate: Edge) -> Edge {
     }
 }
 
-/// A function of degree two in ξ, such as T₂ + T₁ + T₀, as a quadratic one: T₂ + T₁ ξ⁰ + T₀ (ξ⁰)². Without time, and
-/// where it is of another kind, the function itself.
+/// Makes a function of degree two in ξ, such as T₂ + T₁ + T₀, quadratic: T₂ + T₁ ξ⁰ + T₀ (ξ⁰)². Returns the function
+/// itself if there is no time or if it has another form.
 pub fn homogeneous(graph: &mut Graph, declared: &Declared, energy: Edge) -> Edge {
     let Some(clock) = declared.clock else {
         return energy;

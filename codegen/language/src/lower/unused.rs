@@ -1,14 +1,15 @@
-//! Declarations that nothing uses: parameters, constants, named expressions, functions, inputs and frames.
+//! Warns of declarations that nothing uses: parameters, constants, named expressions, functions, inputs and frames.
 //!
-//! Such a description is correct, so these are warnings. What is looked at are declarations as written, before joints
-//! are written out: a frame that a joint moves is used by the joint. Names that begin with `_` are left alone.
+//! Such a description is correct, so these are warnings. Declarations are examined as written, before joints are
+//! expanded: a frame that a joint moves is used by the joint. Names that begin with `_` are ignored.
 
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Ident, Item, ItemKind, Origins, Span, System};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A warning for every declaration whose name occurs nowhere else, in the order of the text; `used` are the names
-/// that are used. What stands in several copies is used where one of them is, and what is included need not be.
+/// Returns a warning for every declaration whose name occurs nowhere else, in the order of the text; `used` are the
+/// names that are used. A declaration that occurs in several copies is used if one copy is; included declarations
+/// need not be used.
 pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
     let uses = Uses {
         names: used,
@@ -27,7 +28,7 @@ pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
             ItemKind::Let(list) => (list, "named expression"),
             ItemKind::Input(list) => (list, "input"),
             ItemKind::Frame { name, .. } => {
-                // A frame of two statements is the one that relates them.
+                // A frame with two statements is used: it relates them.
                 let statements = frames.get(name.name.as_str());
                 if !system.shows_frames && statements == Some(&1) && placed.insert(&name.name) {
                     found.push(uses.unused(name, "frame"));
@@ -63,7 +64,7 @@ pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
     unused.filter(first).collect()
 }
 
-/// The name on the left of a `frame` statement.
+/// Returns the name on the left of a `frame` statement.
 fn frame(item: &Item) -> Option<&str> {
     match &item.kind {
         ItemKind::Frame { name, .. } => Some(&name.name),
@@ -71,15 +72,15 @@ fn frame(item: &Item) -> Option<&str> {
     }
 }
 
-/// The names that statements mention, but for what they declare.
+/// The names that statements mention, other than those that they declare.
 struct Uses<'a> {
     names: &'a BTreeSet<String>,
-    /// How names are written.
+    /// Origins of names, which tell how they are written.
     origins: &'a Origins,
 }
 
 impl Uses<'_> {
-    /// A warning, or the place of what is used.
+    /// Returns a warning, or the place of the declaration if it is used.
     fn unused(&self, name: &Ident, kind: &str) -> Result<Diagnostic, Span> {
         let Ident { name, span } = name;
         let written = self.origins.written(name);

@@ -1,4 +1,4 @@
-//! Geometric constraints: φ in a graph with unconstrained points, and points that satisfy it.
+//! The variety X of the geometric constraints: φ in a graph with unconstrained points, and points that satisfy it.
 
 use super::declare::{Declared, size};
 use super::ground::{Constraint, Ground};
@@ -16,43 +16,43 @@ use crate::symbols::Resolved;
 use crate::syntax::ast::{ItemKind, Span, System};
 use std::collections::BTreeMap;
 
-/// What a start that satisfies its constraints may be off by, beside their sizes.
+/// Largest residual, relative to its size, of a start that satisfies its constraints.
 const ROUNDING: f64 = 1e-9;
 
-/// What a row of φ says.
+/// Origin of a row of φ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// That a coordinate is of its kind, by the coordinate's index.
+    /// The kind of the coordinate of this index.
     Coordinate(usize),
-    /// What the user wrote, by the statement's index.
+    /// The user's constraint in the statement of this index.
     Statement(usize),
 }
 
-/// X, as far as the constraints could be read.
+/// The variety X, as far as the constraints could be read.
 pub struct Variety {
     pub points: Points,
-    /// φ in the graph with unconstrained points, and how each row reads.
+    /// Rows of φ in the graph with unconstrained points, each with its text.
     pub phi: Vec<(Edge, String)>,
-    /// Where each row of φ comes from.
+    /// Origin of each row of φ.
     pub origins: Vec<Origin>,
-    /// Whether all constraints take part: only then is dim X known.
+    /// Whether all constraints are included; only then is dim X known.
     pub complete: bool,
     /// Seed of the graph whose points were chosen last.
     pub seed: u64,
-    /// The numbers of all symbols at the start, for variety whose branch matters: those with constraints
-    /// of the user's.
+    /// Values of all symbols at the start, if the user wrote constraints, so that the branch of the start matters.
     pub near: Option<Vec<f64>>,
-    /// x at the start, where guesses were solved for the constraints.
+    /// x at the start, if it was solved for from guesses so that it satisfies the constraints.
     pub assembled: Option<Vec<f64>>,
-    /// What kept constraints from having a value off X, by their statements. What is wrong on X too is reported
-    /// there; the rest is the reason that [`Variety::check`] gives.
+    /// For each statement, the errors that kept a constraint from having a value off X. Those that occur on X, too,
+    /// are reported there; [`Variety::check`] gives the others as the reason.
     unread: BTreeMap<usize, Vec<Diagnostic>>,
 }
 
 impl Variety {
-    /// X of a description, from a graph whose symbols have values of their own.
+    /// Creates X of a description, from a graph whose symbols have independent values.
     ///
-    /// What is wrong with names is kept for [`Variety::check`]: it is said on X, where what is equal modulo φ is one node.
+    /// Errors in names are kept for [`Variety::check`], which reports them on X, where expressions that are equal
+    /// modulo φ are one node.
     pub fn of(system: &System, names: &Resolved, seed: u64, report: &mut Report) -> Self {
         let mut before = Report::new();
         let ground = Ground::free(system, names, seed, &mut before);
@@ -90,7 +90,7 @@ impl Variety {
         let constraints: Vec<Edge> = rows.iter().map(|(edge, _)| *edge).collect();
         let mut assembled = None;
         let near = (!constraints.is_empty()).then(|| {
-            // What is wrong with these is said on X, where they are read for the model.
+            // Errors in these are reported on X, where they are read for the model.
             let again = &mut Report::new();
             let mut start = start::read(system, &mut graph, &scope, &declared, &defaults, again);
             if let Some(start) = start.as_mut().filter(|start| start.guesses_coordinates()) {
@@ -129,7 +129,7 @@ impl Variety {
         variety
     }
 
-    /// φ of every block and of the user, in the free graph, with the text of each row.
+    /// Collects φ of every block and of the user, in the free graph, with the text of each row.
     fn collect(&mut self, declared: &Declared, rows: &[(Edge, usize)]) {
         for (index, coordinate) in declared.coordinates.iter().enumerate() {
             let mut place = coordinate.offset;
@@ -153,7 +153,7 @@ impl Variety {
         }
     }
 
-    /// The rows of φ that the user wrote; those of the coordinate kinds stand before them.
+    /// Returns the rows of φ that the user wrote; they follow those of the coordinates' kinds.
     pub fn user_rows(&self) -> std::ops::Range<usize> {
         let kinds = self
             .origins
@@ -162,7 +162,7 @@ impl Variety {
         kinds.count()..self.origins.len()
     }
 
-    /// Whether the start satisfies the user's constraints, but for rounding.
+    /// Returns whether the start satisfies the user's constraints, up to rounding.
     fn holds_at_start(&self) -> bool {
         let rows: Vec<Edge> = self.phi.iter().map(|(edge, _)| *edge).collect();
         self.near.as_ref().is_some_and(|near| {
@@ -171,8 +171,8 @@ impl Variety {
         })
     }
 
-    /// A point of X. Where there is none, the statement that is to blame is reported and
-    /// the user's constraints are left out, so that the rest can still be read.
+    /// Returns a point of X. If there is none, reports the statement to blame and drops the user's constraints, so
+    /// that the rest can still be read.
     pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Fp> {
         self.seed = seed;
         let mut random = Random::new(seed ^ 0x5eed);
@@ -180,7 +180,7 @@ impl Variety {
         if let Some(point) = point(&self.points) {
             return point;
         }
-        // Only roots have no values: the graph will say so, and more of them are allowed next.
+        // Only roots lack values: the graph will tell, and more kinds of roots are allowed then.
         if let Some(point) = point(&self.points.without_roots()) {
             return point;
         }
@@ -213,8 +213,8 @@ impl Variety {
         point(&self.points).unwrap_or_else(|| vec![Fp::ONE; self.points.symbols])
     }
 
-    /// Reports what is wrong with the constraints in the graph with points on X, and why a constraint has a value there
-    /// and nowhere else.
+    /// Reports errors in constraints in the graph with points on X, and why a constraint has a value there but not
+    /// elsewhere.
     pub fn check(&self, constraints: &[Constraint], graph: &Graph, report: &mut Report) {
         for constraint in constraints {
             let errors = constraint.errors.iter().cloned();
@@ -249,7 +249,7 @@ impl Variety {
     }
 }
 
-/// The rows of a constraint, where it is one.
+/// Returns the rows of a constraint, or an error if it is not a valid one.
 fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Diagnostic> {
     let rows: Vec<Edge> = difference
         .entries()
@@ -289,7 +289,7 @@ fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Dia
     Ok(rows)
 }
 
-/// What to write instead of the function that a constraint cannot have.
+/// Suggests what to write instead of a function that a constraint cannot contain.
 fn polynomial_help(graph: &Graph, edge: Edge) -> &'static str {
     let of_coordinates = |id: &u32| graph.class(*id) & class::COORD != 0;
     let nodes = graph.reachable(&[edge]);
@@ -316,7 +316,7 @@ fn polynomial_help(graph: &Graph, edge: Edge) -> &'static str {
     }
 }
 
-/// A bound of the degree in the coordinates.
+/// Returns an upper bound of the degree in the coordinates.
 fn degree(graph: &Graph, edge: Edge) -> u32 {
     let mut degrees = vec![0u32; graph.len()];
     for id in graph.reachable(&[edge]) {
@@ -332,7 +332,8 @@ fn degree(graph: &Graph, edge: Edge) -> u32 {
     degrees[edge.node() as usize]
 }
 
-/// No point was found once this statement joined those before it: they contradict one another, or are too large for the search.
+/// Returns the error for a statement with which no point was found: it contradicts those before it, or they are too
+/// large for the search.
 fn contradiction(
     system: &System,
     item: usize,

@@ -1,7 +1,7 @@
-//! The tangent space of each coordinate kind, ẋ = K(x) η, and ∂φ/∂x.
+//! Tangent vectors of each kind of coordinate, ẋ = K(x) η, and the Jacobian ∂φ/∂x.
 //!
-//! K has closed forms with C K = I for the canonical quasi-velocities η = C ẋ of `layout`, so that
-//! φ of the coordinate kinds is eliminated without a division.
+//! K has closed forms with C K = I for the canonical quasi-velocities η = C ẋ of `layout`, so that the constraints φ
+//! of the coordinates themselves are eliminated without a division.
 
 use super::layout::Block;
 use super::points::Points;
@@ -9,7 +9,8 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
 
-/// The columns of K of one block: unit vectors, (−s, c), ½ q ⊗ (0, eₖ), R êₖ.
+/// Returns the columns of K for one block: unit vectors for flat coordinates, (−s, c) for a circle, ½ q ⊗ (0, eₖ) for
+/// a quaternion and R êₖ for a rotation matrix.
 pub fn tangents(graph: &mut Graph, block: Block, x: &[Edge]) -> Vec<Vec<Edge>> {
     let zero = graph.zero();
     match block {
@@ -53,7 +54,8 @@ pub fn tangents(graph: &mut Graph, block: Block, x: &[Edge]) -> Vec<Vec<Edge>> {
     }
 }
 
-/// The columns of K of all blocks, each with ν entries; `keep` chooses blocks by their place in x.
+/// Returns the columns of K for all blocks, each with ν entries; `keep` selects blocks by the index of their first
+/// entry in x.
 pub fn all_tangents(
     graph: &mut Graph,
     blocks: &[Block],
@@ -77,7 +79,8 @@ pub fn all_tangents(
     columns
 }
 
-/// ∂φ/∂x, a row for every row of φ: taken with free coordinates, then rebuilt in a graph on X.
+/// Returns ∂φ/∂x, with one row for each row of φ. The derivatives are taken in the graph with free coordinates and
+/// then rebuilt in `graph`, whose points lie on X.
 pub fn jacobian(
     points: &Points,
     phi: &[(Edge, String)],

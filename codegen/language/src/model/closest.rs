@@ -1,5 +1,7 @@
-//! Configurations nearest to a guess: of loops in the metric of M, of the description's own constraints in that of
-//! the coordinates, where velocities are not yet known.
+//! Finds configurations nearest to a guess.
+//!
+//! For loops the distance is measured in the metric of M; for the description's own constraints, where velocities are
+//! not known yet, in that of the coordinates.
 
 use super::closure::{Closure, normalise};
 use super::layout::Block;
@@ -13,25 +15,28 @@ use crate::algebra::numeric::evaluate;
 use crate::algebra::sizes::{beside, sizes};
 use crate::algebra::slopes::slopes;
 
-/// What a pivot of M has of its entry at least; else it has so much of the largest entry.
+/// Smallest pivot of M relative to its diagonal entry; a smaller one is replaced by this fraction of the largest
+/// diagonal entry.
 const LEAST: f64 = 1e-9;
 
-/// Loops to be closed near a guess.
+/// The equations of loops that are to be closed near a guess.
 pub struct Loops<'c, 'a> {
     closure: &'c Closure<'a>,
     guess: &'c [f64],
     given: Vec<usize>,
-    /// Which entries they are.
+    /// For each entry of x, whether it is given.
     fixed: Vec<bool>,
     free: Vec<usize>,
-    /// What residuals of the loops are measured by.
+    /// Scales of the loop residuals.
     sizes: Vec<f64>,
-    /// S with |S δ|² the square of the distance, δ that in the charts of the coordinates.
+    /// S, where |S δ|² is the squared distance and δ the difference in the charts of the coordinates; `None` if M has
+    /// no Cholesky factor.
     weight: Option<Vec<Vec<f64>>>,
 }
 
 impl<'c, 'a> Loops<'c, 'a> {
-    /// The loops of a description, measured by these sizes; what is given stays as it is in the guess.
+    /// Sets up the loops of a description with residuals scaled by `sizes`; the entries of x that are given stay as
+    /// in the guess.
     pub fn new(
         closure: &'c Closure<'a>,
         mass: &[Vec<f64>],
@@ -53,7 +58,7 @@ impl<'c, 'a> Loops<'c, 'a> {
         loops
     }
 
-    /// S = Lᵀ (CᵀC)⁻¹ Cᵀ with M = L Lᵀ and the rates C ξ of the charts at the guess.
+    /// Computes S = Lᵀ (CᵀC)⁻¹ Cᵀ, where M = L Lᵀ and C ξ are the chart rates at the guess.
     fn weights(&self, mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let n = self.closure.n;
         let factor = root(mass)?;
@@ -77,7 +82,7 @@ impl<'c, 'a> Loops<'c, 'a> {
         )
     }
 
-    /// How the velocities change the charts, row by row.
+    /// Returns C by rows: the chart rates that each velocity causes.
     fn chart_rates(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let (a, n) = (self.a(x), self.closure.n);
         let columns: Vec<Vec<f64>> = (0..n)
@@ -161,27 +166,27 @@ impl Equations for Loops<'_, '_> {
     }
 }
 
-/// Constraints φ(x) = 0 of a description to be satisfied near a guess.
+/// The constraints φ(x) = 0 of a description, which are to be satisfied near a guess.
 pub struct Constraints<'a> {
-    /// The graph of φ.
+    /// Graph of φ.
     pub graph: &'a Graph,
-    /// φ, those of the kinds of coordinates among them.
+    /// Rows of φ, including the constraints of the coordinates' own kinds.
     pub phi: Vec<Edge>,
-    /// The symbol of the first coordinate.
+    /// Index of the symbol of the first coordinate.
     pub first: usize,
-    /// The numbers of all symbols.
+    /// Values of all symbols.
     pub numbers: &'a [f64],
-    /// The blocks of x.
+    /// Blocks of x.
     pub blocks: &'a [Block],
-    /// The guess.
+    /// Guess for x.
     pub guess: &'a [f64],
-    /// Entries that stay as they are in the guess.
+    /// Indices of the entries of x that stay as in the guess.
     pub given: Vec<usize>,
-    /// What residuals of φ are measured by.
+    /// Scales of the residuals of φ.
     pub sizes: Vec<f64>,
 }
 
-/// How far an entry that stays is from its guess, beside its length.
+/// Returns how far a given entry has moved from its guess, relative to its size or to 1 if that is larger.
 fn kept(entry: f64, guess: f64) -> f64 {
     (entry - guess) / length_of(guess)
 }
@@ -191,7 +196,7 @@ fn length_of(entry: f64) -> f64 {
 }
 
 impl Constraints<'_> {
-    /// Measured by the sizes of their terms at the guess.
+    /// Sets the scales of the residuals from the sizes of their terms at the guess.
     pub fn measured(self) -> Self {
         let places = self.first..self.first + self.guess.len();
         Constraints {
@@ -255,7 +260,7 @@ impl Equations for Constraints<'_> {
     }
 }
 
-/// The ξ nearest to a guess with B ξ + b = 0, some of it given, in the metric of M.
+/// Returns the ξ nearest to a guess, in the metric of M, with B ξ + b = 0 and the given entries kept.
 pub fn velocities(
     rows: &[Vec<f64>],
     shifts: &[f64],
@@ -281,7 +286,8 @@ pub fn velocities(
     Some(xi)
 }
 
-/// L with M = L Lᵀ; pivots of what is without mass, or as good as that, and of the time are raised.
+/// Returns L with M = L Lᵀ. Pivots that vanish, or nearly so, belong to the time or to directions without mass; they
+/// are raised.
 fn root(mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let scale = (0..mass.len()).map(|i| mass[i][i]).fold(0.0, f64::max);
     let raised = LEAST * if scale > 0.0 { scale } else { 1.0 };
@@ -291,7 +297,7 @@ fn root(mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     })
 }
 
-/// A list of what each block gives at its place.
+/// Concatenates the results of `of` for each block and its place.
 fn each(blocks: &[Block], mut of: impl FnMut(Block, usize) -> Vec<f64>) -> Vec<f64> {
     let mut place = 0;
     let mut all = Vec::new();

@@ -1,7 +1,7 @@
-//! A state that closes all loops and keeps all constraints on the velocities.
+//! Finds states that close all loops and satisfy all constraints on the velocities.
 //!
-//! What is given is kept; what is not is solved for, as close as possible to what stands there: for the
-//! start of a description the identity and rest. Where everything is given it only has to hold, but for
+//! Given values are kept; the others are solved for, as near as possible to their current values: at the start of a
+//! description these are the identity and rest. If everything is given, it has to satisfy the equations up to
 //! rounding.
 
 use super::closest::{Loops, velocities};
@@ -16,43 +16,44 @@ use crate::algebra::numeric::evaluate;
 use crate::algebra::sizes::{beside, sizes};
 use crate::algebra::slopes::slopes;
 
-/// Steps of Newton's method.
+/// Largest number of steps of Newton's method.
 const STEPS: usize = 60;
-/// How often a closed loop is looked for with the sizes that its equations have where the last search ended.
+/// Number of searches in `Closure::assemble`; each scales the equations by their sizes where the last one ended.
 const JUDGED: usize = 3;
-/// Steps that constraints on velocities take at least: rounding is refined away.
+/// Smallest number of steps for constraints on velocities, so that rounding is refined away.
 const LEAST_ROUNDS: usize = 3;
-/// Largest residual of a solution, beside its [size](sizes).
+/// Largest residual of a solution, relative to its [size](sizes).
 const SOLVED: f64 = 1e-12;
-/// Largest residual that counts as rounding of the numbers given, which are then polished; beside the size of its terms, too.
+/// Largest residual, relative to the size of its terms, that counts as rounding of the given numbers; those are then
+/// corrected.
 const ROUNDING: f64 = 1e-6;
 
-/// The equations φ(x) = 0 of loops and B(x) ξ = 0, with numbers for the parameters.
+/// The equations φ(x) = 0 of loops and B(x) ξ = 0, with numeric parameters.
 pub struct Closure<'a> {
     pub(super) graph: &'a Graph,
     pub(super) blocks: Vec<Block>,
-    /// φ of the coordinates, where the description has constraints of its own, in the graph with free points.
+    /// φ of the coordinates, in the graph with free points, if the description has constraints of its own.
     phi: Option<(&'a Graph, Vec<Edge>)>,
     pub(super) a: Vec<Edge>,
     pub(super) n: usize,
-    /// The place of ξ⁰ among the velocities: the time is always given.
+    /// Index of ξ⁰ among the velocities; the velocity of time is always given.
     pub(super) time: Option<usize>,
     pub(super) constraints: &'a [Pfaffian],
     params: &'a [f64],
     inputs: Option<&'a [f64]>,
 }
 
-/// A constraint that could not be kept.
+/// A constraint that could not be satisfied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Open {
-    /// Its place among the constraints.
+    /// Index of the constraint.
     pub constraint: usize,
-    /// By how much it is violated.
+    /// Size of its violation.
     pub residual: f64,
 }
 
 impl<'a> Closure<'a> {
-    /// The equations of a description that is being read, with φ where it has constraints of its own.
+    /// Sets up the equations of a description that is being read, with φ if it has constraints of its own.
     pub fn new(
         graph: &'a Graph,
         coordinates: &[Coordinate],
@@ -76,7 +77,7 @@ impl<'a> Closure<'a> {
         }
     }
 
-    /// The equations of a model, whose loops are those of all its constraints.
+    /// Sets up the equations of a model, with the loops among all its constraints.
     pub fn of(model: &'a Model, params: &'a [f64]) -> Self {
         let rows = || model.phi.iter().map(|(edge, _)| *edge).collect();
         let constrained = !model.points.constraints.is_empty();
@@ -93,20 +94,23 @@ impl<'a> Closure<'a> {
         }
     }
 
-    /// The same where inputs are not zero; prescribed motion may depend on them.
+    /// Sets inputs that are not zero, since prescribed motion may depend on them.
     pub fn with_inputs(mut self, inputs: &'a [f64]) -> Self {
         self.inputs = Some(inputs);
         self
     }
 
-    /// The loops, by their places among the constraints.
+    /// Returns the indices of the loops among the constraints.
     pub(super) fn loops(&self) -> Vec<usize> {
         let is_loop = |&place: &usize| self.constraints[place].is_holonomic();
         (0..self.constraints.len()).filter(is_loop).collect()
     }
 
-    /// Closes all loops by the coordinates that are not given; those given are polished where rounding
-    /// alone leaves loops open. An error leaves x as it was.
+    /// Closes all loops by the coordinates that are not given. If the loops are open by rounding alone, given
+    /// coordinates are corrected, too.
+    ///
+    /// # Errors
+    /// Returns the worst constraint; x is unchanged then.
     pub fn close_loops(&self, x: &mut Vec<f64>, given: &[bool]) -> Result<(), Open> {
         let before = self.residuals(x);
         let sizes = self.sizes(x);
@@ -127,14 +131,16 @@ impl<'a> Closure<'a> {
         })
     }
 
-    /// Closes all loops as near to x as possible in the metric of M, by the coordinates that are not given. An error
-    /// leaves x as it was.
+    /// Closes all loops as near to x as possible in the metric of M, by the coordinates that are not given.
+    ///
+    /// # Errors
+    /// Returns the constraint that is worst at the guess; x is unchanged then.
     pub fn assemble(&self, x: &mut [f64], given: &[bool], mass: &[Vec<f64>]) -> Result<(), Open> {
         let before = self.residuals(x);
         let Some((which, _)) = worst(&relative(&before, &self.sizes(x))) else {
             return Ok(());
         };
-        // Sizes at the guess say little of what is far from it.
+        // Sizes at the guess say little about points far from it.
         let mut sizes = self.sizes(x);
         let mut found = None;
         for _ in 0..JUDGED {
@@ -158,8 +164,11 @@ impl<'a> Closure<'a> {
         Ok(())
     }
 
-    /// Keeps all constraints on the velocities as near to ξ as possible in the metric of M, by those that are not
-    /// given. An error leaves ξ as it was.
+    /// Satisfies all constraints on the velocities as near to ξ as possible in the metric of M, by the velocities
+    /// that are not given.
+    ///
+    /// # Errors
+    /// Returns the constraint that cannot be satisfied; ξ is unchanged then.
     pub fn settle_near(
         &self,
         x: &[f64],
@@ -180,14 +189,14 @@ impl<'a> Closure<'a> {
         let mut settled = xi.clone();
         self.drive(&mut settled, &b, &shifts, &fixed);
         let near = velocities(&b, &shifts, mass, &fixed, &settled);
-        // What contradicts what is given is found, and said, by the other way.
+        // Contradictions with given velocities are found and reported by `settle`.
         let mut settled = near.unwrap_or(settled);
         self.settle(x, &mut settled, given)?;
         *xi = settled;
         Ok(())
     }
 
-    /// Gives velocities that are prescribed their values: they are no guesses, as coordinates are none.
+    /// Sets prescribed velocities to their values: like prescribed coordinates, they are not guesses.
     fn drive(&self, xi: &mut [f64], b: &[Vec<f64>], shifts: &[f64], fixed: &[bool]) {
         let drives =
             (0..b.len()).filter(|&row| matches!(self.constraints[row].kind, Kind::Drive { .. }));
@@ -207,7 +216,8 @@ impl<'a> Closure<'a> {
         }
     }
 
-    /// x with all loops closed, moved along A where not fixed; `None` where Newton's method fails.
+    /// Returns x with all loops closed, moved along A without changing fixed entries; `None` if Newton's method
+    /// fails.
     fn newton(&self, from: &[f64], fixed: &[bool], sizes: &[f64]) -> Option<Vec<f64>> {
         let mut x = from.to_vec();
         let n = self.n;
@@ -254,7 +264,8 @@ impl<'a> Closure<'a> {
         (size <= SOLVED).then_some(x)
     }
 
-    /// Back to φ = 0 of the coordinates, which a step along A leaves by its square; entries that are fixed stay.
+    /// Projects x back to φ = 0 of the coordinates, which a step along A violates to second order; fixed entries
+    /// stay.
     pub(super) fn lead_back(&self, x: &mut [f64], fixed: &[bool]) {
         normalise(&self.blocks, x);
         let Some((free, phi)) = &self.phi else {
@@ -297,14 +308,17 @@ impl<'a> Closure<'a> {
         x.copy_from_slice(&best);
     }
 
-    /// Whether a velocity is given, beside that of time.
+    /// Returns whether any velocity is given, apart from that of time.
     pub fn any_speed(&self, given: &[bool]) -> bool {
         let mut given = given.iter().enumerate();
         given.any(|(i, &given)| given && self.time != Some(i))
     }
 
-    /// Keeps all constraints on the velocities by those that are not given; those given are polished
-    /// where rounding alone violates them. An error leaves ξ as it was.
+    /// Satisfies all constraints on the velocities by those that are not given. If the constraints are violated by
+    /// rounding alone, given velocities are corrected, too.
+    ///
+    /// # Errors
+    /// Returns the worst constraint; ξ is unchanged then.
     pub fn settle(&self, x: &[f64], xi: &mut Vec<f64>, given: &[bool]) -> Result<(), Open> {
         let n = self.n;
         let rows = self.constraints.iter().flat_map(|c| c.row.iter().copied());
@@ -316,7 +330,7 @@ impl<'a> Closure<'a> {
             let rows = b.chunks(n.max(1)).zip(&shifts);
             rows.map(|(row, shift)| dot(row, xi) + shift).collect()
         };
-        // A speed of 1, or those that there are.
+        // Relative to a speed of 1, or to the largest speed if that is more.
         let sizes = |xi: &[f64]| -> Vec<f64> {
             let most = xi.iter().fold(1.0f64, |most, v| most.max(v.abs()));
             let length = |row: &[f64]| row.iter().map(|b| b.abs()).sum::<f64>();
@@ -343,7 +357,7 @@ impl<'a> Closure<'a> {
             let mut before = f64::INFINITY;
             for round in 0..STEPS {
                 let target: Vec<f64> = speeds(&settled).iter().map(|r| -r).collect();
-                // Rows that are short beside others are kept step by step.
+                // Rows that are much shorter than others need several steps.
                 let left = worst(&relative(&target, &sizes(&settled)));
                 let left = left.map_or(0.0, |(_, left)| left);
                 if left == 0.0 || round >= LEAST_ROUNDS && left >= 0.5 * before {
@@ -367,13 +381,13 @@ impl<'a> Closure<'a> {
         })
     }
 
-    /// Whether all loops are closed, beside their sizes here.
+    /// Returns whether all loops are closed, relative to their sizes at x.
     fn is_closed(&self, x: &[f64]) -> bool {
         let left = relative(&self.residuals(x), &self.sizes(x));
         worst(&left).is_none_or(|(_, left)| left <= 2.0 * SOLVED)
     }
 
-    /// The sizes beside which the residuals of the loops are large or small.
+    /// Returns the sizes relative to which residuals of the loops are judged.
     pub(super) fn sizes(&self, x: &[f64]) -> Vec<f64> {
         let loops = self.loops();
         let edges: Vec<Edge> = (loops.iter())
@@ -384,7 +398,7 @@ impl<'a> Closure<'a> {
         self.shared(loops.iter().copied(), sizes)
     }
 
-    /// Rows of one equation between vectors share the largest of their sizes.
+    /// Gives all rows of one vector equation the largest of their sizes.
     fn shared(&self, rows: impl Iterator<Item = usize>, sizes: Vec<f64>) -> Vec<f64> {
         let texts: Vec<&str> = rows
             .map(|row| self.constraints[row].written.as_str())
@@ -420,19 +434,20 @@ impl<'a> Closure<'a> {
     }
 }
 
-/// Residuals as parts of the sizes of their terms.
+/// Divides residuals by the sizes of their terms.
 fn relative(residuals: &[f64], sizes: &[f64]) -> Vec<f64> {
     let parts = residuals.iter().zip(sizes);
     parts.map(|(&left, &size)| beside(left, size)).collect()
 }
 
-/// The largest entry by size, and where it is; what is not a number is larger than all.
+/// Returns index and absolute value of the largest entry; NaN counts as larger than any number.
 fn worst(values: &[f64]) -> Option<(usize, f64)> {
     let sizes = values.iter().map(|v| v.abs()).enumerate();
     sizes.rev().max_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
-/// Puts x back on its blocks: unit norm, or Newton's polar iteration for a rotation.
+/// Projects x onto its blocks: scales to unit norm, or iterates Newton's method for the polar factor of a rotation
+/// matrix.
 pub fn normalise(blocks: &[Block], x: &mut [f64]) {
     let mut place = 0;
     for &block in blocks {
@@ -453,7 +468,7 @@ pub fn normalise(blocks: &[Block], x: &mut [f64]) {
     }
 }
 
-/// R ← R (3 I − RᵀR) / 2.
+/// Performs one polar step, R ← R (3 I − RᵀR) / 2.
 fn polar_step(r: &mut [f64]) {
     let old: Vec<f64> = r.to_vec();
     for i in 0..3 {

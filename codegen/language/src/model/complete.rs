@@ -1,31 +1,30 @@
-//! What follows from the start as it is given. What is exact stays; coordinates and velocities that are prescribed follow;
-//! loops are closed and constraints kept by the rest. A description and a state from outside are completed by the same
-//! rules.
+//! Completes a start: exact values stay, prescribed coordinates and velocities are set, and the rest closes loops and
+//! satisfies constraints. A description and a state from outside are completed by the same rules.
 
 use super::closure::{Closure, Open};
 use super::opening::Opening;
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
 
-/// A constraint that the start cannot keep.
+/// A constraint that the start cannot satisfy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refused {
-    /// By coordinates.
+    /// A constraint on the coordinates.
     Configuration(Open),
-    /// By velocities.
+    /// A constraint on the velocities.
     Velocities(Open),
 }
 
-/// M at a configuration.
+/// Function that returns M at a configuration.
 pub type Mass<'a> = &'a dyn Fn(&[f64]) -> Vec<Vec<f64>>;
 
 impl Opening {
-    /// Puts coordinates where they are prescribed to be, closes loops and keeps constraints. What is exact stays, and is
-    /// refused where it contradicts them. Near guesses of coordinates the configuration is the nearest in the metric of M;
-    /// so are velocities near guesses of velocities.
+    /// Sets prescribed coordinates, closes loops and satisfies constraints. Exact values stay; they are refused if
+    /// they contradict the constraints. If coordinates are guessed, the result is the nearest configuration in the
+    /// metric of M; likewise for guessed velocities.
     ///
     /// # Errors
-    /// The constraint that cannot be kept.
+    /// Returns the constraint that cannot be satisfied.
     pub fn complete(
         &mut self,
         closure: &Closure,
@@ -37,10 +36,10 @@ impl Opening {
         self.settle(closure, mass).map_err(Refused::Velocities)
     }
 
-    /// The part of it about x.
+    /// Completes the coordinates x, the first part of [`complete`](Self::complete).
     ///
     /// # Errors
-    /// The constraint that cannot be kept.
+    /// Returns the constraint that cannot be satisfied.
     pub fn configure(
         &mut self,
         closure: &Closure,
@@ -65,10 +64,10 @@ impl Opening {
         }
     }
 
-    /// The part of it about ξ, where x is what it has to be.
+    /// Completes the velocities ξ for an x that is complete, the second part of [`complete`](Self::complete).
     ///
     /// # Errors
-    /// The constraint that cannot be kept.
+    /// Returns the constraint that cannot be satisfied.
     pub fn settle(&mut self, closure: &Closure, mass: Mass) -> Result<(), Open> {
         match self.guessed_xi.contains(&true) {
             true => {

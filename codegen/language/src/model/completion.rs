@@ -1,16 +1,16 @@
-//! What was completed of A, Y and Φ, and what that divides by.
+//! How A was completed from Y and Φ, and the divisors in it.
 
 use crate::algebra::graph::Edge;
 
-/// Y as it was given, the rows of Φ, and what [Y; Φ]⁻¹ divides by.
+/// Y as it was given, the rows of Φ, and the divisors of `[Y; Φ]⁻¹`.
 #[derive(Clone, Debug, Default)]
 pub struct Completion {
-    /// For every ξⁱ its row of Y, where the description defines it.
+    /// Row of Y for each ξⁱ that the description defines.
     pub y: Vec<Option<Vec<Edge>>>,
-    /// The independent rows of φ: those of Φ.
+    /// Indices of the independent rows of φ, which make up Φ.
     pub independent: Vec<usize>,
-    /// Pivots that vary with x, positive at the start: where one is not, A has no value.
+    /// Pivots that vary with x. They are positive at the start; where one of them is not, A is undefined.
     pub pivots: Vec<Edge>,
-    /// Squares of pivots that are made of parameters, which have to be positive.
+    /// Squares of pivots that depend on parameters alone; they have to be positive.
     pub constants: Vec<Edge>,
 }

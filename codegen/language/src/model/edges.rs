@@ -1,6 +1,7 @@
-//! Every expression that a model holds, for what has to visit all of them: to carry a model to another graph.
+//! Visits every expression of a model, for passes that need all of them, such as moving a model to another graph.
 //!
-//! Each structure is taken apart without `..`, so that a new field has to be named here before the project compiles.
+//! Each structure is destructured without `..`, so that a new field has to be listed here before the project
+//! compiles.
 
 use super::completion::Completion;
 use super::elements::{Along, Damper, Elements, Push, Spring};
@@ -11,15 +12,15 @@ use super::value::Value;
 use super::{Body, Frame, FullFrame, Group, KineticTerms, Model, Particle, Wrench};
 use crate::algebra::graph::{Edge, Graph};
 
-/// What holds expressions of a graph.
+/// A structure that holds expressions of a graph.
 pub trait Edges {
-    /// Visits each of them, always in the same order.
+    /// Visits each expression, always in the same order.
     fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge));
 }
 
 impl Model {
-    /// The model with its expressions in another graph; `build` makes them there. φ and the points of X stay
-    /// where they are, in a graph of their own.
+    /// Returns the model with its expressions in another graph, where `build` creates them. φ and the points of X
+    /// stay in a graph of their own.
     pub fn transplanted(
         &self,
         mut graph: Graph,
@@ -39,7 +40,7 @@ impl Model {
 }
 
 impl Model {
-    /// Every expression of the model.
+    /// Returns every expression of the model.
     pub fn all_edges(&mut self) -> Vec<Edge> {
         let mut edges = Vec::new();
         self.for_each_edge(&mut |edge| edges.push(*edge));
@@ -92,7 +93,7 @@ impl Edges for Value {
     }
 }
 
-/// Expressions by their places.
+/// Expressions with their indices.
 impl Edges for (usize, Edge) {
     fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
         self.1.for_each_edge(f);
@@ -106,7 +107,8 @@ impl Edges for (String, Value) {
     }
 }
 
-/// Visits the fields that hold expressions, in the order given; those that hold none follow after `;`.
+/// Implements [`Edges`] for a structure: visits the fields before `;` in the given order; those after it hold no
+/// expressions.
 macro_rules! fields {
     ($of:ty { $($field:ident),*; $($plain:ident),* }) => {
         impl Edges for $of {

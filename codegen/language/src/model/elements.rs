@@ -4,55 +4,56 @@ use super::Wrench;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::Vec3;
 
-/// What a spring or damper acts along.
+/// The distance or scalar along which a spring, damper or force acts.
 #[derive(Clone, Debug)]
 pub enum Along {
-    /// The line between two points, world axes (m); its length where it was needed.
+    /// The line between two points, in world axes (m), with its length if that was needed.
     Line {
         /// The first point.
         from: Vec3,
         /// The second point.
         to: Vec3,
-        /// Their distance ℓ.
+        /// Distance ℓ between the points.
         length: Option<Edge>,
     },
-    /// A scalar of the configuration, or for a damper a rate.
+    /// A scalar function of the configuration; for a damper, a rate.
     Scalar(Edge),
 }
 
-/// V = ½ k (ℓ − l)².
+/// A spring, V = ½ k (ℓ − l)².
 #[derive(Clone, Debug)]
 pub struct Spring {
     /// Stiffness k (N/m, N m/rad).
     pub stiffness: Edge,
-    /// Length l without force.
+    /// Free length l.
     pub length: Edge,
-    /// What ℓ is.
+    /// Defines ℓ.
     pub along: Along,
-    /// The forces of a spring along a line.
+    /// Forces of the spring, if it acts along a line.
     pub wrenches: Vec<Wrench>,
 }
 
-/// D = ½ c ℓ̇².
+/// A damper, D = ½ c ℓ̇².
 #[derive(Clone, Debug)]
 pub struct Damper {
     /// Coefficient c (N s/m, N m s/rad).
     pub coefficient: Edge,
-    /// What ℓ is.
+    /// Defines ℓ.
     pub along: Along,
 }
 
-/// A force F along a line, positive apart.
+/// A force F along a line; positive F pushes the points apart.
 #[derive(Clone, Debug)]
 pub struct Push {
-    /// F (N).
+    /// Force F (N).
     pub force: Edge,
-    /// The line.
+    /// Line of action.
     pub along: Along,
 }
 
-/// Springs, dampers and forces along lines as they were given, and what was given beside them. The
-/// sums of all are in the fields of the model; these are for proofs on another route.
+/// Springs, dampers and forces along lines as they were given, and the other statements about energies and forces.
+/// The fields of the model hold the sums of all; these are kept so that the sums can be proved by an independent
+/// derivation.
 #[derive(Clone, Debug)]
 pub struct Elements {
     /// Springs.
@@ -61,22 +62,22 @@ pub struct Elements {
     pub dampers: Vec<Damper>,
     /// Forces along lines.
     pub pushes: Vec<Push>,
-    /// The `potential` statements alone.
+    /// Sum of the `potential` statements alone.
     pub potential: Edge,
-    /// The `dissipation` statements alone.
+    /// Sum of the `dissipation` statements alone.
     pub dissipation: Edge,
-    /// The `generalized force` statements alone.
+    /// Sums of the `generalized force` statements alone.
     pub generalized: Vec<Edge>,
     /// The `force`, `torque` and `wrench` statements on frames alone.
     pub wrenches: Vec<Wrench>,
-    /// V without springs along lines, which act by their wrenches.
+    /// V without springs along lines, which act through their wrenches.
     pub scalar_potential: Edge,
-    /// D without dampers along lines, which act by their wrenches.
+    /// D without dampers along lines, which act through their wrenches.
     pub scalar_dissipation: Edge,
 }
 
 impl Elements {
-    /// None yet.
+    /// Returns a collection without any elements.
     pub fn none(graph: &Graph, n: usize) -> Self {
         let zero = graph.zero();
         Elements {

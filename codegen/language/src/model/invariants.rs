@@ -5,25 +5,25 @@ use crate::algebra::graph::Edge;
 use crate::algebra::linear::Vec3;
 use crate::syntax::ast::Span;
 
-/// What is claimed to be constant.
+/// A quantity that is claimed to be constant.
 #[derive(Clone, Debug)]
 pub enum Quantity {
-    /// T + V (J).
+    /// Total energy T + V (J).
     Energy,
-    /// Σ m v over the bodies of a frame, or over everything (kg m/s), world axes.
+    /// Linear momentum Σ m v of the bodies of a frame, or of the whole system (kg m/s), world axes.
     LinearMomentum {
-        /// Index of the frame.
+        /// Index of the frame; `None` for the whole system.
         of: Option<usize>,
-        /// Direction, world axes.
+        /// Direction of the component, world axes; `None` for all three.
         along: Option<Vec3>,
     },
-    /// Σ m (r − p) × v and the bodies' spin (kg m²/s), world axes.
+    /// Angular momentum Σ m (r − p) × v plus the spin of the bodies (kg m²/s), world axes.
     AngularMomentum {
-        /// Index of the frame.
+        /// Index of the frame; `None` for the whole system.
         of: Option<usize>,
-        /// The point p, world axes (m).
+        /// Reference point p, world axes (m).
         about: Vec3,
-        /// Direction, world axes.
+        /// Direction of the component, world axes; `None` for all three.
         along: Option<Vec3>,
     },
     /// An expression of coordinates, velocities and parameters.
@@ -33,14 +33,14 @@ pub enum Quantity {
 /// A claim that a quantity is constant along the motion.
 #[derive(Clone, Debug)]
 pub struct Invariant {
-    /// Name of the function that watches it.
+    /// Name of the function that monitors it.
     pub name: String,
     /// Where it was claimed.
     pub span: Span,
-    /// What is constant.
+    /// The quantity that is constant.
     pub quantity: Quantity,
-    /// Symbols of parameters and inputs that the claim sets, and their values.
+    /// Parameters and inputs that the claim sets: index of the symbol, and value.
     pub set: Vec<(usize, Edge)>,
-    /// The conditions as written; empty where there are none.
+    /// Conditions as written; empty if there are none.
     pub when: String,
 }

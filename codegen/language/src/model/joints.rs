@@ -1,4 +1,4 @@
-//! Joints as they were written, and what they became.
+//! Joints of a description, with their coordinates and velocities.
 
 use crate::syntax::ast::JointKind;
 
@@ -7,20 +7,20 @@ use crate::syntax::ast::JointKind;
 pub struct Joint {
     /// Name as written.
     pub name: String,
-    /// Kind.
+    /// Type of joint.
     pub kind: JointKind,
-    /// The name of the frame that it carries.
+    /// Name of the frame that it moves.
     pub frame: String,
-    /// Unit vectors along its axes, in the axes of its place (-): none, one, or the two of a universal joint.
+    /// Unit vectors of its axes in the axes of its place (-): none, one, or the two of a universal joint.
     pub axes: Vec<[f64; 3]>,
-    /// The names of its coordinates; none where it follows others.
+    /// Names of its coordinates; none if it follows other joints.
     pub coordinates: Vec<String>,
-    /// The names of its velocities.
+    /// Names of its velocities.
     pub velocities: Vec<String>,
-    /// The smallest and the largest value of its coordinate (rad, m).
+    /// Smallest and largest value of its coordinate (rad, m).
     pub limit: Option<[f64; 2]>,
-    /// The largest size of its velocity (rad/s, m/s).
+    /// Largest speed (rad/s, m/s).
     pub max_speed: Option<f64>,
-    /// The largest size of its force (N m, N).
+    /// Largest magnitude of its torque or force (N m, N).
     pub max_force: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! Where coordinates stand in x, what their constraints are, and how they move in charts.
+//! Layout of the coordinates in x, with their constraints and canonical quasi-velocities.
 
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph};
@@ -10,18 +10,18 @@ use std::ops::{Add, Mul, Sub};
 /// A block of x with a chart of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
-    /// n plain numbers.
+    /// Vector of n real numbers.
     Flat(usize),
-    /// (c, s).
+    /// Point (c, s) of the unit circle.
     Circle,
-    /// A unit quaternion, scalar first.
+    /// Unit quaternion, scalar first.
     Quaternion,
-    /// A rotation matrix by rows.
+    /// Rotation matrix by rows.
     Rotation,
 }
 
 impl Block {
-    /// Entries in x.
+    /// Returns the number of entries in x.
     pub fn len(self) -> usize {
         match self {
             Block::Flat(n) => n,
@@ -31,12 +31,12 @@ impl Block {
         }
     }
 
-    /// Never: every block has entries.
+    /// Returns `false`: every block has entries.
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }
 
-    /// Dimension of its chart: ẋ, θ̇, or the body angular velocity.
+    /// Returns the dimension of its chart, whose rates are ẋ, θ̇, or the body angular velocity.
     pub fn dimension(self) -> usize {
         match self {
             Block::Flat(n) => n,
@@ -45,7 +45,7 @@ impl Block {
         }
     }
 
-    /// Number of its own constraints: the length, or the six of Rᵀ R = I.
+    /// Returns the number of its own constraints: one for unit length, or six for Rᵀ R = I.
     pub fn constraints(self) -> usize {
         match self {
             Block::Flat(_) => 0,
@@ -55,7 +55,7 @@ impl Block {
     }
 }
 
-/// The blocks of a coordinate.
+/// Returns the blocks of a coordinate.
 pub fn blocks(kind: CoordKind) -> Vec<Block> {
     match kind {
         CoordKind::Real => vec![Block::Flat(1)],
@@ -67,7 +67,7 @@ pub fn blocks(kind: CoordKind) -> Vec<Block> {
     }
 }
 
-/// Names of the entries of a coordinate, as they are written in the language.
+/// Returns the names of a coordinate's entries as the language writes them.
 pub fn entry_names(name: &str, kind: CoordKind) -> Vec<String> {
     let matrix = |name: &str| -> Vec<String> {
         (1..=3)
@@ -91,7 +91,7 @@ pub fn entry_names(name: &str, kind: CoordKind) -> Vec<String> {
     }
 }
 
-/// A random point of a block over F_p: rational parametrisations of the circle, the sphere S³ and SO(3).
+/// Returns a random point of a block over F_p, from rational parametrisations of the circle, the sphere S³ and SO(3).
 pub fn sample(block: Block, random: &mut Random) -> Vec<Fp> {
     match block {
         Block::Flat(n) => (0..n).map(|_| random.element()).collect(),
@@ -120,7 +120,7 @@ pub fn sample(block: Block, random: &mut Random) -> Vec<Fp> {
     }
 }
 
-/// |q|² R(q) of a quaternion, scalar first, by rows; `two` is the number 2.
+/// Returns |q|² R(q) of a quaternion, scalar first, by rows; `two` is the number 2.
 pub fn rotation<T>([w, x, y, z]: [T; 4], two: T) -> Vec<T>
 where
     T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
@@ -138,7 +138,7 @@ where
     ]
 }
 
-/// φ of a block, and how each row reads; only to be called in a graph with unconstrained points.
+/// Returns φ of a block with the text of each row. Only to be called in a graph with unconstrained points.
 pub fn constraint(graph: &mut Graph, block: Block, x: &[Edge], name: &str) -> Vec<(Edge, String)> {
     let minus_one = -graph.one();
     let sphere = |graph: &mut Graph, text: String| {
@@ -168,8 +168,8 @@ pub fn constraint(graph: &mut Graph, block: Block, x: &[Edge], name: &str) -> Ve
     }
 }
 
-/// The canonical quasi-velocity of a block as a linear function of its ẋ: rows of ẋ, c ṡ − s ċ,
-/// 2 (q̄ q̇) vector part, and ½ (R₃·Ṙ₂ − R₂·Ṙ₃) and cyclic, KR18 (36).
+/// Returns the canonical quasi-velocity of a block as a linear function of its ẋ: ẋ itself, c ṡ − s ċ, the vector
+/// part of 2 q̄ q̇, or ½ (R₃·Ṙ₂ − R₂·Ṙ₃) and cyclic, KR18 (36).
 pub fn chart_rate(graph: &mut Graph, block: Block, x: &[Edge], rate: &[Edge]) -> Vec<Edge> {
     match block {
         Block::Flat(_) => rate.to_vec(),
@@ -206,7 +206,7 @@ pub fn chart_rate(graph: &mut Graph, block: Block, x: &[Edge], rate: &[Edge]) ->
     }
 }
 
-/// The identity of a block: zeros, angle 0, no rotation.
+/// Returns the identity of a block: zeros, angle 0, or no rotation.
 pub fn identity(block: Block) -> Vec<f64> {
     match block {
         Block::Flat(n) => vec![0.0; n],

@@ -1,5 +1,6 @@
-//! A mechanical system in terms of a graph: configuration, kinematics, inertia, loads, as expressions with their
-//! points on X. What a description means, once it is read.
+//! The model of a mechanical system: what a description means once it is read.
+//!
+//! Configuration, kinematics, inertia and loads are expressions of a graph whose points lie on X.
 
 pub mod charts;
 pub mod closest;
@@ -46,36 +47,36 @@ pub mod class {
     pub const COORD: u8 = 2;
     /// Velocity coordinates ξ.
     pub const VELOCITY: u8 = 4;
-    /// Inputs u, and states of first order z: what forces may depend on that no motion changes by itself.
+    /// Inputs u, and first-order states z: forces may depend on both, but the motion does not change them by itself.
     pub const INPUT: u8 = 8;
     /// Accelerations ξ̇, the argument of inverse dynamics.
     pub const ACCEL: u8 = 16;
-    /// Momenta p, the argument of what is a function of them.
+    /// Momenta p, arguments of the functions of momenta.
     pub const MOMENTUM: u8 = 32;
     /// The time, which is a coordinate, too.
     pub const TIME: u8 = 64;
-    /// What a configuration is given by: coordinates and time.
+    /// Coordinates and time, which determine the configuration.
     pub const CONFIGURATION: u8 = COORD | TIME;
-    /// Rates ẋ, while definitions of velocities are read; never in a model's graph.
+    /// Rates ẋ, used while definitions of velocities are read; never in a model's graph.
     pub const RATE: u8 = 128;
 }
 
-/// A named group of symbols: a parameter, a velocity, an input.
+/// A named group of symbols, such as a parameter, a velocity or an input.
 #[derive(Clone, Debug)]
 pub struct Group {
     /// Name as written.
     pub name: String,
     /// Shape as written.
     pub shape: ShapeKind,
-    /// Its value, in symbols.
+    /// Value in terms of its symbols.
     pub value: Value,
-    /// Place of its first entry among those of its class.
+    /// Index of its first entry among those of its class.
     pub offset: usize,
     /// Number of its symbols.
     pub len: usize,
 }
 
-/// The name of an entry of groups as the language writes it: `q_dot`, `w[2]`.
+/// Returns the name of an entry of the groups, as the language writes it: `q_dot`, `w[2]`.
 pub fn entry(groups: &[Group], place: usize) -> String {
     match groups.iter().rev().find(|group| group.offset <= place) {
         Some(group) if group.len == 1 => group.name.clone(),
@@ -89,22 +90,22 @@ pub fn entry(groups: &[Group], place: usize) -> String {
 pub struct Coordinate {
     /// Name as written.
     pub name: String,
-    /// Kind.
+    /// Kind of coordinate.
     pub kind: CoordKind,
-    /// Place of its first entry in x.
+    /// Index of its first entry in x.
     pub offset: usize,
     /// Where it was declared.
     pub span: Span,
 }
 
-/// A frame: its pose in the world, and in the frame that it was placed on.
+/// A frame, with its pose in the world and in its parent frame.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Name as written.
     pub name: String,
-    /// Index of the frame that it was placed on, which stands before it; the world where absent.
+    /// Index of the parent frame, which comes before this one; `None` for the world.
     pub parent: Option<usize>,
-    /// Its pose in that frame: axes by columns, origin (m).
+    /// Pose in the parent frame: axes by columns, and origin (m).
     pub relative: (Mat3, Vec3),
     /// Frame axes in world axes, by columns.
     pub rotation: Mat3,
@@ -136,62 +137,62 @@ pub struct Particle {
     pub position: Vec3,
 }
 
-/// A wrench on a frame, acting at a point of it.
+/// A wrench on a frame, acting at a point fixed to it.
 #[derive(Clone, Debug)]
 pub struct Wrench {
     /// Index of the frame.
     pub frame: usize,
-    /// Point of attack, frame axes (m).
+    /// Point of application, frame axes (m).
     pub at: Vec3,
     /// Force (N).
     pub force: Vec3,
     /// Torque (N m).
     pub torque: Vec3,
-    /// Axes of force and torque.
+    /// Axes in which force and torque are given.
     pub axes: Axes,
 }
 
-/// What a kinetic energy that the user wrote contributes where ξ does not span the tangent space.
+/// Contribution of a kinetic energy that the user wrote, if ξ does not span the tangent space.
 #[derive(Clone, Debug)]
 pub struct KineticTerms {
-    /// Its metric.
+    /// Its mass matrix.
     pub mass: Vec<Vec<Edge>>,
-    /// Its bias, derived before the constraints were put in.
+    /// Its bias forces, derived before the constraints were substituted.
     pub bias: Vec<Edge>,
 }
 
-/// Where the time is: a coordinate whose velocity is ξ⁰ = 1.
+/// Place of the time, a coordinate whose velocity is ξ⁰ = 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clock {
-    /// Its place in x.
+    /// Index of the time in x.
     pub x: usize,
-    /// The place of ξ⁰ in ξ of the full frame.
+    /// Index of ξ⁰ in ξ of the full frame.
     pub xi: usize,
 }
 
-/// The full frame of a system whose other velocities are all given: by the time, or prescribed.
+/// The full frame of a system whose other velocities are all given, by the time or by prescribed motion.
 #[derive(Clone, Debug)]
 pub struct FullFrame {
     /// The system in the full frame, in a graph of its own.
     pub full: Arc<Model>,
-    /// What every symbol of that graph becomes, in the graph of the system.
+    /// For each symbol of that graph, its expression in the graph of the system.
     pub images: Vec<Edge>,
-    /// Places of the system's velocities in the full frame.
+    /// Indices of the system's velocities in the full frame.
     pub active: Vec<usize>,
 }
 
-/// A mechanical system: configuration, kinematics, inertia, loads.
+/// A mechanical system with its configuration, kinematics, inertia and loads.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Name of the generated type.
     pub name: String,
-    /// Whether that type is `pub`.
+    /// Whether the generated type is `pub`.
     pub public: bool,
-    /// Its documentation.
+    /// Documentation of the generated type.
     pub docs: Vec<String>,
     /// The graph, with points on X.
     pub graph: Graph,
-    /// How to find further points of X, and φ itself.
+    /// The variety X: φ itself, and a way to find further points.
     pub points: Points,
     /// Run-time parameters.
     pub params: Vec<Group>,
@@ -199,81 +200,81 @@ pub struct Model {
     pub defaults: Vec<f64>,
     /// Configuration coordinates.
     pub coordinates: Vec<Coordinate>,
-    /// Their blocks.
+    /// Blocks of the coordinates.
     pub blocks: Vec<Block>,
-    /// x.
+    /// Symbols of x.
     pub x: Vec<Edge>,
-    /// φ, in the graph with unconstrained points, and how each row reads.
+    /// Rows of φ in the graph with unconstrained points, each with its text.
     pub phi: Vec<(Edge, String)>,
     /// Velocity coordinates.
     pub velocities: Vec<Group>,
-    /// ξ.
+    /// Symbols of ξ.
     pub xi: Vec<Edge>,
-    /// Where each ξⁱ was declared, for errors found later.
+    /// Where each ξⁱ was declared, for errors that are found later.
     pub velocity_spans: Vec<Span>,
-    /// ξ̇ as symbols.
+    /// Symbols of ξ̇.
     pub xi_dot: Vec<Edge>,
-    /// p as symbols.
+    /// Symbols of p.
     pub momenta: Vec<Edge>,
     /// Inputs.
     pub inputs: Vec<Group>,
-    /// u, and after it z: both act on a motion as what is given from outside.
+    /// Inputs u followed by the states z: both act on the motion like inputs.
     pub u: Vec<Edge>,
-    /// States of first order, by their places in z.
+    /// First-order states, with their offsets in z.
     pub states: Vec<Group>,
-    /// ż.
+    /// Rates ż of the states.
     pub state_rates: Vec<Edge>,
-    /// ẋ = A ξ.
+    /// Rates ẋ = A ξ.
     pub rate: Vec<Edge>,
-    /// A, ν rows of n.
+    /// Matrix A, ν rows of n entries.
     pub a: Vec<Vec<Edge>>,
-    /// Constraints B(x) ξ = 0 beyond the choice of ξ.
+    /// Constraints B(x) ξ = 0 in addition to the choice of ξ.
     pub constraints: Vec<Pfaffian>,
-    /// The time, where the description declares it.
+    /// Place of the time, if the description declares it.
     pub clock: Option<Clock>,
-    /// Coordinates whose value is given, by their places in x.
+    /// Coordinates with prescribed values, by index in x.
     pub prescribed: Vec<(usize, Edge)>,
-    /// Velocities whose rates ξ̇ⁱ are given, by their places in ξ.
+    /// Velocities with prescribed rates ξ̇ⁱ, by index in ξ.
     pub accelerated: Vec<(usize, Edge)>,
-    /// Velocities that constraints are not solved for, by their places in ξ, and where that was said.
+    /// Velocities that the constraints must not be solved for, by index in ξ, and where that was stated.
     pub independent: Vec<(usize, Span)>,
-    /// The full frame, where all that was solved for is given ahead.
+    /// The full frame, if all velocities that were solved for are known functions of the time or prescribed.
     pub full_frame: Option<FullFrame>,
-    /// Whether A spans the tangent space of X: not so where constraints have been solved.
+    /// Whether A spans the tangent space of X; it does not once constraints have been solved.
     pub spans: bool,
-    /// Whether constraints that are kept depend on one another along the whole motion.
+    /// Whether constraints that are kept are dependent along the whole motion.
     pub overconstrained: bool,
-    /// Whether M is singular at the start and constraints are kept, so that M + w BᵀB takes its place: some velocities have
-    /// inertia through constraints alone.
+    /// Whether M + w BᵀB replaces M, because M is singular at the start and constraints are kept: some velocities
+    /// have inertia only through the constraints.
     pub augmented: bool,
-    /// Whether nobody has chosen the start, so that M may be singular there if it is regular close by.
+    /// Whether the user has not chosen the start, so that M may be singular there if it is regular nearby.
     pub starts_anywhere: bool,
-    /// The user's kinetic energy where A does not span the tangent space.
+    /// The user's kinetic energy, if A does not span the tangent space.
     pub kinetic_terms: Option<KineticTerms>,
-    /// Y as it was given, the rows of Φ, and what [Y; Φ]⁻¹ divides by.
+    /// Y as it was given, the rows of Φ, and the divisors of `[Y; Φ]⁻¹`.
     pub completion: Completion,
     /// Frames.
     pub frames: Vec<Frame>,
     /// Joints, in the order of the text.
     pub joints: Vec<joints::Joint>,
-    /// Points that loops bring together, world axes (m): both sides of each loop between vectors of three, or between those of
-    /// their components that differ.
+    /// Pairs of points that loops bring together, world axes (m): the two sides of each loop equation between
+    /// 3-vectors, or between those of their components that differ.
     pub closures: Vec<(Vec3, Vec3)>,
     /// Bodies.
     pub bodies: Vec<Body>,
     /// Particles.
     pub particles: Vec<Particle>,
-    /// Kinetic energy beyond that of bodies and particles; that of armatures is a part of it.
+    /// Kinetic energy beyond that of bodies and particles; it includes that of armatures.
     pub kinetic: Edge,
-    /// Whether the description says anything of inertia; else there are kinematics and loads, and no motion.
+    /// Whether the description has any inertia; otherwise there are kinematics and loads, but no equations of motion.
     pub has_inertia: bool,
-    /// T₁ + 2 T₀ of that, by its terms of first degree and of none in the rates of coordinates: what T has beyond its part
-    /// T₂ − T₀ of the energy ẋ · ∂L/∂ẋ − L. It is known once velocities are solved for.
+    /// T₁ + 2 T₀ of `kinetic`, where Tₖ are its terms of degree k in the rates of coordinates: the difference between
+    /// T and its part T₂ − T₀ of the energy ẋ · ∂L/∂ẋ − L. It is known once velocities are solved for.
     pub gyroscopic: Edge,
-    /// J of ½ J ξⁱ², the armatures of joints, for every velocity; each of these is the rate of a
-    /// coordinate, so that they add J ξ̇ⁱ to the forces and nothing else (kg m², kg).
+    /// Armature J of each velocity, with kinetic energy ½ J ξⁱ² (kg m², kg). Such a velocity is the rate of a
+    /// coordinate, so that its armature adds J ξ̇ⁱ to the forces and nothing else.
     pub armature: Vec<Edge>,
-    /// Potential beyond that of gravity.
+    /// Potential energy beyond that of gravity.
     pub potential: Edge,
     /// Acceleration of gravity, world axes (m/s²).
     pub gravity: Vec3,
@@ -281,17 +282,17 @@ pub struct Model {
     pub wrenches: Vec<Wrench>,
     /// Generalised forces, dual to ξ.
     pub generalized: Vec<Edge>,
-    /// Rayleigh's function D(x, ξ); its force −∂D/∂ξ is part of `generalized` (W).
+    /// Rayleigh's dissipation function D(x, ξ) (W); its force −∂D/∂ξ is part of `generalized`.
     pub dissipation: Edge,
-    /// Springs, dampers and forces along lines, which are part of the energies and forces above.
+    /// Springs, dampers and forces along lines; they are included in the energies and forces above.
     pub elements: Elements,
-    /// The motions of frames that expressions asked for.
+    /// Motions of frames that expressions use.
     pub observed: Vec<Observed>,
     /// Outputs.
     pub outputs: Vec<(String, Value)>,
-    /// Where the functions in Rust are declared, by their places in the graph.
+    /// Where each external Rust function is declared, by its index in the graph.
     pub externals: Vec<Span>,
-    /// What is claimed to be constant along the motion.
+    /// Quantities that are claimed to be constant along the motion.
     pub invariants: Vec<invariants::Invariant>,
     /// Named expressions of the user.
     pub lets: Vec<(String, Value)>,
@@ -301,62 +302,61 @@ pub struct Model {
     pub start_xi: Vec<f64>,
     /// z at the start.
     pub start_z: Vec<f64>,
-    /// What the description gives of the start in the full frame; the rest follows.
+    /// The start as the description gives it, in the full frame; the rest is computed from it.
     pub opening: Opening,
     /// The functions to generate.
     pub asked: Asked,
-    /// The statements that the start is about, for errors found later.
+    /// Span for errors about the start that are found later.
     pub span: Span,
-    /// Where statements come from that do not stand in the description itself.
+    /// Origin of statements that do not come from the description itself.
     pub origins: Origins,
-    /// What is legal and looks like a mistake.
+    /// Warnings about legal statements that look like mistakes.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl Model {
-    /// n, the number of velocities.
+    /// Returns n, the number of velocities.
     pub fn n(&self) -> usize {
         self.xi.len()
     }
 
-    /// Whether not all velocities of the full frame are free: constraints or drives act on them, or one is that of
-    /// time.
+    /// Returns whether some velocities of the full frame are not free: constraints or drives act on them, or one of
+    /// them is the rate of time.
     pub fn is_constrained(&self) -> bool {
         self.has_multipliers() || self.clock.is_some()
     }
 
-    /// Whether constraints act on the velocities, or drives.
+    /// Returns whether constraints or drives act on the velocities.
     pub fn has_multipliers(&self) -> bool {
         !self.constraints.is_empty() || !self.accelerated.is_empty()
     }
 
-    /// Whether ẋ, and velocities of points with it, have terms without ξ: so it is where ξ⁰ = 1 was put in.
+    /// Returns whether ẋ, and with it the velocities of points, has terms without ξ, since ξ⁰ = 1 was substituted.
     pub fn is_affine(&self) -> bool {
         self.clock.is_some() && !self.spans
     }
 
-    /// ν, the number of coordinates.
+    /// Returns ν, the number of coordinates.
     pub fn nu(&self) -> usize {
         self.x.len()
     }
 
-    /// The number of inputs, without the states that stand behind them.
+    /// Returns the number of inputs, without the states that follow them in `u`.
     pub fn m(&self) -> usize {
         self.u.len() - self.state_rates.len()
     }
 
-    /// The states of first order, by their places behind the velocities.
+    /// Returns the first-order states with offsets that place them after the velocities.
     pub fn states_behind(&self) -> Vec<Group> {
         behind(&self.states, self.n())
     }
 
-    /// z.
+    /// Returns the symbols of z.
     pub fn z(&self) -> &[Edge] {
         &self.u[self.m()..]
     }
 
-    /// The number that every symbol stands for, given x, ξ, u and ξ̇ and the parameters; z stands behind ξ, or
-    /// behind u.
+    /// Returns the values of all symbols for given parameters, x, ξ, u and ξ̇; z follows ξ in `xi`, or u in `u`.
     pub fn numbers(
         &self,
         params: &[f64],
@@ -375,7 +375,7 @@ impl Model {
     }
 }
 
-/// Groups of symbols that stand behind n others.
+/// Returns groups of symbols with offsets that place them after n others.
 pub fn behind(groups: &[Group], n: usize) -> Vec<Group> {
     let moved = |group: &Group| Group {
         offset: n + group.offset,

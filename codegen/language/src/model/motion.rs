@@ -1,41 +1,41 @@
-//! Motions of frames that expressions asked for.
+//! Motions of frames that expressions use.
 
 use crate::algebra::linear::{Mat3, Vec3};
 
-/// A motion that an expression asked for, to be derived once more on another route.
+/// A motion that an expression uses, recorded so that it can be checked by an independent derivation.
 #[derive(Clone, Debug)]
 pub struct Observed {
-    /// The function.
+    /// Quantity that the expression asks for.
     pub quantity: Quantity,
-    /// Rotation of the frame as seen from the other, or from the world.
+    /// Rotation of the frame relative to the other frame, or to the world.
     pub rotation: Mat3,
-    /// Its origin; of a rate, three expressions.
+    /// Origin of the frame; for a rate, three expressions.
     pub position: Vec3,
-    /// The point, in the frame's axes.
+    /// Position of the point in frame axes.
     pub point: Vec3,
-    /// What the expression stands for.
+    /// Value of the expression.
     pub value: Vec3,
 }
 
-/// What is asked about a motion.
+/// A quantity of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// r + R p.
+    /// Position of a point, r + R p.
     Position,
-    /// ṙ + Ṙ p.
+    /// Velocity of a point, ṙ + Ṙ p.
     Velocity,
-    /// r̈ + R̈ p.
+    /// Acceleration of a point, r̈ + R̈ p.
     Acceleration,
-    /// ω.
+    /// Angular velocity ω.
     AngularVelocity,
-    /// ω̇.
+    /// Angular acceleration ω̇.
     AngularAcceleration,
-    /// d/dt of expressions.
+    /// Time derivative d/dt of expressions.
     Rate,
 }
 
 impl Quantity {
-    /// The one that a function of the language is about.
+    /// Returns the quantity that a function of the language computes.
     pub fn named(function: &str) -> Option<Self> {
         Some(match function {
             "position" => Quantity::Position,
@@ -47,7 +47,7 @@ impl Quantity {
         })
     }
 
-    /// Whether it is about turning.
+    /// Returns whether the quantity is an angular one.
     pub fn is_angular(self) -> bool {
         matches!(
             self,

@@ -1,24 +1,24 @@
-//! The nearest configuration to a start that violates φ, for messages.
+//! Finds the configuration nearest to a start that violates φ, for error messages.
 
 use super::points::Points;
 use crate::algebra::fp::Random;
 use crate::algebra::graph::Edge;
 
-/// Steps from one first guess.
+/// Largest number of steps from one initial guess.
 const STEPS: usize = 200;
-/// First guesses at random, beyond the start and its neighbours along each coordinate.
+/// Number of random initial guesses, in addition to the start and its neighbours along each coordinate.
 const GUESSES: usize = 12;
 
-/// What was found.
+/// Result of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Nearest {
-    /// A configuration.
+    /// A configuration that satisfies φ = 0.
     Found(Vec<f64>),
-    /// None; the smallest |φ| that was reached.
+    /// No configuration; the smallest |φ| that was reached.
     Nowhere(f64),
 }
 
-/// Looks for x with φ(x) = 0 near a start; `numbers` are those of all symbols there.
+/// Searches for x with φ(x) = 0 near a start; `numbers` are the values of all symbols there.
 pub fn nearest(points: &Points, phi: &[(Edge, String)], numbers: &[f64], x: &[f64]) -> Nearest {
     let equations = points.equations(phi);
     let mut least = f64::INFINITY;
@@ -32,7 +32,7 @@ pub fn nearest(points: &Points, phi: &[(Edge, String)], numbers: &[f64], x: &[f6
     Nearest::Nowhere(least)
 }
 
-/// The start, its neighbours along each coordinate, and some at random.
+/// Returns the start, its neighbours along each coordinate, and some random points around it.
 fn guesses(x: &[f64]) -> Vec<Vec<f64>> {
     let mut all = vec![x.to_vec()];
     for alpha in 0..x.len() {

@@ -1,46 +1,46 @@
-//! The start as it is given.
+//! The start as a description gives it.
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::evaluate;
 use std::sync::Arc;
 
-/// x and ξ as they are given: numbers, which of them are exact, and which are guesses. What is neither is at the identity
-/// and at rest.
+/// Given values of x and ξ, of which some are exact and some are guesses. Entries that are neither are at the
+/// identity or at rest.
 #[derive(Clone, Debug, Default)]
 pub struct Opening {
-    /// x.
+    /// Values of x.
     pub x: Vec<f64>,
-    /// ξ of the full frame.
+    /// Values of ξ of the full frame.
     pub xi: Vec<f64>,
-    /// z.
+    /// Values of z.
     pub z: Vec<f64>,
-    /// The entries of x that are exact.
+    /// For each entry of x, whether it is exact.
     pub exact_x: Vec<bool>,
-    /// The entries of ξ that are exact.
+    /// For each entry of ξ, whether it is exact.
     pub exact_xi: Vec<bool>,
-    /// The entries of x that are guesses.
+    /// For each entry of x, whether it is a guess.
     pub guessed_x: Vec<bool>,
-    /// The entries of ξ that are guesses.
+    /// For each entry of ξ, whether it is a guess.
     pub guessed_xi: Vec<bool>,
-    /// What of it depends on parameters.
+    /// Values that depend on parameters.
     pub formulas: Option<Arc<Formulas>>,
 }
 
-/// Starts that depend on parameters, by their places.
+/// Initial values that depend on parameters, by their indices.
 #[derive(Clone, Debug)]
 pub struct Formulas {
-    /// The graph of all expressions.
+    /// Graph of all expressions.
     pub graph: Graph,
-    /// Those of x.
+    /// Expressions for entries of x.
     pub x: Vec<(usize, Edge)>,
-    /// Those of ξ.
+    /// Expressions for entries of ξ.
     pub xi: Vec<(usize, Edge)>,
-    /// Those of z.
+    /// Expressions for entries of z.
     pub z: Vec<(usize, Edge)>,
 }
 
 impl Opening {
-    /// The same where the parameters have these values.
+    /// Returns the start for given values of the parameters.
     pub fn at(&self, params: &[f64]) -> Opening {
         let mut opening = self.clone();
         let Some(formulas) = &self.formulas else {
@@ -63,7 +63,7 @@ impl Opening {
         opening
     }
 
-    /// Whether coordinates are guessed: then loops are closed as near to the guesses as possible.
+    /// Returns whether coordinates are guessed, so that loops are closed as near to the guesses as possible.
     pub fn guesses_coordinates(&self) -> bool {
         self.guessed_x.contains(&true)
     }

@@ -3,18 +3,18 @@
 use crate::algebra::graph::{Edge, Graph};
 use crate::syntax::ast::Span;
 
-/// What a row of B says.
+/// Origin of a row of B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A velocity of an adapted frame is zero.
+    /// A velocity of an adapted frame that is zero.
     Inactive,
-    /// A constraint that is linear in ξ.
+    /// A nonholonomic constraint, linear in ξ.
     Nonholonomic,
-    /// The rate of a closed loop, ∂ᵢφ.
+    /// The time derivative of a loop equation φ = 0: ∂ᵢφ.
     Loop,
-    /// A velocity that is given; with a residual, that of a coordinate that is.
+    /// A prescribed velocity, or the velocity of a prescribed coordinate; the latter has a residual.
     Drive {
-        /// Whether it is a coordinate that is given.
+        /// Whether it is a coordinate that is prescribed.
         position: bool,
     },
 }
@@ -22,29 +22,29 @@ pub enum Kind {
 /// One row of B ξ = 0.
 #[derive(Clone, Debug)]
 pub struct Pfaffian {
-    /// What it says.
+    /// Origin of the row.
     pub kind: Kind,
-    /// B, n entries.
+    /// Row of B, n entries.
     pub row: Vec<Edge>,
-    /// b in B ξ + b = 0 where ξ⁰ = 1 was put in; 0 in the full frame.
+    /// Term b of B ξ + b = 0 after substituting ξ⁰ = 1; 0 in the full frame.
     pub shift: Edge,
-    /// φ(x) of a loop, in units of the description; 0 otherwise.
+    /// φ(x) of a holonomic constraint, in units of the description; 0 otherwise.
     pub residual: Edge,
-    /// λ (1/s), at which a violation decays: d/dt (B ξ) = −λ B ξ, or −2 λ B ξ − λ² φ of a loop. Nothing is added where
-    /// absent.
+    /// Rate λ (1/s) at which a violation decays: d/dt (B ξ) = −λ B ξ, or −2 λ B ξ − λ² φ for a loop. `None` adds no
+    /// stabilization.
     pub stabilized: Option<Edge>,
-    /// The equation that it is of, as it was written.
+    /// Equation that the row belongs to, as it was written.
     pub written: String,
-    /// Which entry of that equation it is, such as `[3]` or `[1, 2]`; empty where there is a single one.
+    /// Entry of that equation, such as `[3]` or `[1, 2]`; empty if there is only one.
     pub entry: String,
-    /// Whether it follows from the others everywhere, so that it says nothing and has no multiplier.
+    /// Whether the row follows from the others everywhere, so that it adds nothing and has no multiplier.
     pub redundant: bool,
     /// Where it was written.
     pub span: Span,
 }
 
 impl Pfaffian {
-    /// The row by its equation and its entry.
+    /// Returns the equation with the entry, as a label of the row.
     pub fn label(&self) -> String {
         match self.entry.as_str() {
             "" => self.written.clone(),
@@ -52,13 +52,13 @@ impl Pfaffian {
         }
     }
 
-    /// B ξ + b.
+    /// Returns B ξ + b.
     pub fn speed(&self, graph: &mut Graph, xi: &[Edge]) -> Edge {
         let moved = graph.dot(&self.row, xi);
         graph.add(moved, self.shift)
     }
 
-    /// Whether it is the rate of an equation of coordinates, φ(x) = 0.
+    /// Returns whether the row is the rate of an equation between coordinates, φ(x) = 0.
     pub fn is_holonomic(&self) -> bool {
         matches!(self.kind, Kind::Loop | Kind::Drive { position: true })
     }

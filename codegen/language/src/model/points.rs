@@ -1,4 +1,4 @@
-//! Points of X in both fields: random values of all symbols that satisfy φ = 0.
+//! Random points of X over both prime fields: values of all symbols that satisfy φ = 0.
 
 use super::class;
 use super::layout::{Block, sample};
@@ -15,13 +15,14 @@ use crate::algebra::transplant::copy;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
 
-/// Points tried until all square roots have values; each root halves the chance.
+/// Largest number of points tried until all square roots have values; each root halves the chance.
 const TRIES: usize = 4000;
-/// Those after which roots of non-squares are allowed.
+/// Number of tries after which roots of non-squares are allowed.
 const STRICT_TRIES: usize = 300;
-/// With more independent roots the tries would be too many.
+/// Largest number of independent roots for which all have to be roots of squares; with more, too many tries would be
+/// needed.
 const MOST_STRICT: usize = 6;
-/// Systems of constraints without a solution before giving up.
+/// Number of constraint systems without a solution after which the search gives up.
 const FAILURES: usize = 3;
 /// Largest degree of a constraint in the coordinates.
 pub const HIGHEST_DEGREE: u32 = 32;
@@ -31,24 +32,24 @@ const MOST_TERMS: usize = 2000;
 /// The variety X as the generator samples it.
 #[derive(Clone, Debug)]
 pub struct Points {
-    /// Graph whose points are unconstrained; `constraints` live here.
+    /// Graph with unconstrained points, in which `constraints` live.
     pub free: Graph,
-    /// Constraints that the user wrote, = 0.
+    /// Constraints that the user wrote, each to be 0.
     pub constraints: Vec<Edge>,
     /// Blocks of x.
     pub blocks: Vec<Block>,
-    /// Index of the symbol of x₁.
+    /// Index of the symbol of the first coordinate x₁.
     pub first: usize,
-    /// Number of symbols before and after creation of the model's own ones.
+    /// Number of symbols that get values at a point.
     pub symbols: usize,
-    /// Square roots that need values at every point, in `free`.
+    /// Square roots, in `free`, that need values at every point.
     radicals: Vec<Edge>,
-    /// Which roots have values: more than those in F_p where points with them were too rare.
+    /// Which roots have values: more than those of squares of F_p if points with such roots were too rare.
     pub roots: Roots,
 }
 
 impl Points {
-    /// The variety of constraints that live in a graph with unconstrained points.
+    /// Creates the variety of constraints that live in a graph with unconstrained points.
     pub fn new(free: Graph, constraints: Vec<Edge>, blocks: Vec<Block>, first: usize) -> Self {
         let symbols = free.symbols().len();
         Points {
@@ -62,23 +63,23 @@ impl Points {
         }
     }
 
-    /// φ(x) = 0, to be solved in numbers.
+    /// Returns φ(x) = 0 as a system for numerical solution.
     pub fn equations(&self, phi: &[(Edge, String)]) -> Newton {
         let rows: Vec<Edge> = phi.iter().map(|(row, _)| *row).collect();
         Newton::new(&self.free, &rows, self.first, self.dimension())
     }
 
-    /// The places of the symbols of x.
+    /// Returns the range of the symbols of x.
     pub fn places(&self) -> Range<usize> {
         self.first..self.first + self.dimension()
     }
 
-    /// Number of entries of x.
+    /// Returns the number of entries of x.
     pub fn dimension(&self) -> usize {
         self.blocks.iter().map(|block| block.len()).sum()
     }
 
-    /// Values of all symbols at a random point of X; `None` where no point was found.
+    /// Returns values of all symbols at a random point of X; `None` if no point was found.
     pub fn choose(&self, random: &mut Random) -> Option<Vec<Fp>> {
         self.choose_where(
             random,
@@ -87,8 +88,8 @@ impl Points {
         )
     }
 
-    /// The same where values are changed before the coordinates are solved for, and after that; either may
-    /// find a point unfit.
+    /// Does the same, but changes values before and after the coordinates are solved for; either change may reject
+    /// the point.
     fn choose_where(
         &self,
         random: &mut Random,
@@ -96,7 +97,7 @@ impl Points {
         [before, after]: &[&Change<'_>; 2],
     ) -> Option<Vec<Fp>> {
         let mut failures = 0;
-        // The parts of a point in the two fields are found apart: each root halves the chance of both.
+        // The values in the two fields are searched for separately: each root halves the chance in both.
         let mut found: [Option<Vec<Fp>>; 2] = [None, None];
         for _ in 0..tries {
             let mut values = self.unconstrained(random);
@@ -135,7 +136,7 @@ impl Points {
         None
     }
 
-    /// A point of the blocks of x.
+    /// Returns a random point of the blocks of x, with random values of all other symbols.
     fn unconstrained(&self, random: &mut Random) -> Vec<Fp> {
         let mut values: Vec<Fp> = (0..self.symbols).map(|_| random.element()).collect();
         // π is the first symbol, and the same everywhere.
@@ -152,7 +153,7 @@ impl Points {
         values
     }
 
-    /// In which of the fields square roots have no value.
+    /// Returns in which of the two fields a square root has no value.
     fn stuck(&self, values: &[Fp]) -> [bool; 2] {
         if self.radicals.is_empty() {
             return [false; 2];
@@ -165,7 +166,7 @@ impl Points {
         }
     }
 
-    /// From now on, chooses points at which the square roots of another graph have values.
+    /// Restricts the points chosen from now on to those at which the square roots of another graph have values.
     pub fn require_roots(&mut self, graph: &Graph) {
         let is_root = |&id: &u32| graph.node(id).is_root();
         let roots: Vec<Edge> = (0..graph.len() as u32)
@@ -173,7 +174,7 @@ impl Points {
             .map(Edge::of)
             .collect();
         let radicals = copy(graph, &mut self.free, &roots);
-        // The same roots once more: a graph tells |e| from e by another sign, which is no square.
+        // The same roots are stuck once more: to tell |e| from e, a graph takes another sign, which is no square.
         let again = !self.radicals.is_empty() && graph.is_stuck();
         self.radicals = radicals;
         let (varying, fixed): (Vec<Edge>, Vec<Edge>) =
@@ -201,8 +202,8 @@ impl Points {
         self.roots = Roots::Anything;
     }
 
-    /// Whether roots of numbers have values. No choice of a point helps where log 9 is no square: its root is outside of F_p,
-    /// and x + √log 9 is no square of F_p for any x.
+    /// Returns whether the roots of constants have values. If log 9, say, is not a square, no choice of a point
+    /// helps: its root lies outside of F_p, and x + √log 9 is not a square of F_p for any x.
     fn keeps(&self, fixed: &[Edge]) -> bool {
         let values = self.unconstrained(&mut Random::new(0));
         let mut lane = self.lane_of(&values);
@@ -211,7 +212,8 @@ impl Points {
         found.is_some_and(|found| self.roots != Roots::OfSquares || found.iter().all(inside))
     }
 
-    /// The same variety with roots of squares of F_p(i), which every number of F_p is; `None` where they have values already.
+    /// Returns the same variety with roots in F_p(i), where every number of F_p is a square; `None` if it has these
+    /// already.
     pub fn extended(&self) -> Option<Self> {
         (self.roots == Roots::OfSquares).then(|| Points {
             roots: Roots::Extended,
@@ -219,7 +221,7 @@ impl Points {
         })
     }
 
-    /// The same variety where roots need no values.
+    /// Returns the same variety without the requirement that roots have values.
     pub(crate) fn without_roots(&self) -> Self {
         Points {
             radicals: Vec::new(),
@@ -227,7 +229,7 @@ impl Points {
         }
     }
 
-    /// The user's constraints as polynomials in the coordinates.
+    /// Returns the user's constraints as polynomials in the coordinates.
     fn system(&self, values: &[Fp]) -> Option<Vec<Poly<Fp>>> {
         let constraints = self.constraints.iter();
         constraints
@@ -235,7 +237,7 @@ impl Points {
             .collect()
     }
 
-    /// Coordinates that satisfy the user's constraints.
+    /// Finds coordinates that satisfy the user's constraints, in both fields.
     fn solve(&self, generators: &[Poly<Fp>], random: &mut Random) -> Option<Vec<(Var, Fp)>> {
         let one = self.solve_in(part(generators, |c| c.0), random)?;
         let other = self.solve_in(part(generators, |c| c.1), random)?;
@@ -243,7 +245,7 @@ impl Points {
         Some(pairs.map(|((var, a), (_, b))| (var, Fp(a, b))).collect())
     }
 
-    /// The same in one field, by elimination.
+    /// Finds such coordinates in one field, by elimination.
     fn solve_in<const K: usize>(
         &self,
         mut generators: Vec<Poly<Residue<K>>>,
@@ -252,7 +254,7 @@ impl Points {
         let mut variables: Vec<Var> = generators.iter().flat_map(|g| g.variables()).collect();
         variables.sort_unstable();
         variables.dedup();
-        // A constrained block that takes part brings its own φ.
+        // A constrained block that takes part adds its own φ.
         let mut place = self.first as Var;
         for &block in &self.blocks {
             let range: Vec<Var> = (place..place + block.len() as Var).collect();
@@ -276,8 +278,8 @@ impl Points {
         poly::solve::point(&generators, &variables, random)
     }
 
-    /// The polynomial in the coordinates that a constraint is, all other symbols having values;
-    /// what is free of coordinates is evaluated, functions of parameters included.
+    /// Returns a constraint as a polynomial in the coordinates, all other symbols having values; subexpressions
+    /// without coordinates are evaluated, including functions of parameters.
     fn polynomial(&self, edge: Edge, values: &[Fp]) -> Option<Poly<Fp>> {
         let graph = &self.free;
         let nodes = graph.reachable(&[edge]);
@@ -319,13 +321,14 @@ impl Points {
         })
     }
 
-    /// A lane at a fresh point where symbols have the values of expressions of `graph`; `None` where
-    /// no point was found.
+    /// Returns a lane at a fresh point where some symbols have the values of expressions of `graph`; `None` if no
+    /// point was found.
     pub fn lane_where(&self, seed: u64, graph: &Graph, set: &[(usize, Edge)]) -> Option<Lane> {
         self.lane_moved(seed, graph, set, &|_| Some(Vec::new()))
     }
 
-    /// The same where, once the coordinates are those of a point of X, symbols get values that follow.
+    /// Does the same; once the coordinates are those of a point of X, `moved` gives further symbols values that
+    /// depend on them.
     pub fn lane_moved(
         &self,
         seed: u64,
@@ -352,7 +355,7 @@ impl Points {
         Some(self.lane_of(&values))
     }
 
-    /// A lane at a fresh point.
+    /// Returns a lane at a fresh point.
     pub fn lane(&self, seed: u64) -> Option<Lane> {
         let values = self.choose(&mut Random::new(seed ^ 0x0b5e))?;
         Some(self.lane_of(&values))
@@ -360,7 +363,7 @@ impl Points {
 
     fn lane_of(&self, values: &[Fp]) -> Lane {
         let mut lane = Lane::new();
-        // What follows from other values may lie outside F_p, and what is added to it is no square there.
+        // Values derived from others may lie outside F_p; then sums with them are not squares of F_p.
         let outside = |value: &Fp| !(value.0.is_prime() && value.1.is_prime());
         lane.roots = match self.roots {
             Roots::OfSquares if values.iter().any(outside) => Roots::Extended,
@@ -373,13 +376,13 @@ impl Points {
     }
 }
 
-/// What changes the values of symbols, or finds them unfit.
+/// A function that changes the values of symbols; `None` rejects them.
 type Change<'a> = dyn Fn(&mut Vec<Fp>) -> Option<()> + 'a;
 
-/// Symbols with the values that they get.
+/// Symbols, by index, with their new values.
 pub type Moved = Vec<(usize, Fp)>;
 
-/// The symbols that get the values of expressions.
+/// Evaluates expressions to the values of the symbols that they are assigned to.
 pub fn imposed(mut lane: Lane, graph: &Graph, set: &[(usize, Edge)]) -> Option<Moved> {
     let edges: Vec<Edge> = set.iter().map(|(_, edge)| *edge).collect();
     let values = evaluate_at(graph, &edges, &mut lane)?;
@@ -387,7 +390,7 @@ pub fn imposed(mut lane: Lane, graph: &Graph, set: &[(usize, Edge)]) -> Option<M
     Some(symbols.zip(values).collect())
 }
 
-/// The polynomials in one of the fields.
+/// Returns the polynomials with coefficients in one of the fields.
 fn part<const K: usize>(
     polynomials: &[Poly<Fp>],
     of: fn(Fp) -> Residue<K>,

@@ -1,16 +1,16 @@
-//! Rotation matrices.
+//! Rotation matrices and the hat map.
 
 use super::value::Value;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, identity3, multiply3};
 
-/// ŵ, with ŵ a = w × a.
+/// Returns ŵ, with ŵ a = w × a.
 pub fn hat(graph: &Graph, w: Vec3) -> Mat3 {
     let o = graph.zero();
     [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
 }
 
-/// Rotation about a coordinate axis.
+/// Returns the rotation about a coordinate axis by the angle with cosine c and sine s.
 pub fn turn(graph: &Graph, axis: usize, c: Edge, s: Edge) -> Mat3 {
     let mut m = identity3(graph);
     let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -21,7 +21,7 @@ pub fn turn(graph: &Graph, axis: usize, c: Edge, s: Edge) -> Mat3 {
     m
 }
 
-/// I + s n̂ + (1 − c) n̂² for a unit vector n, c and s being the cosine and sine of the angle.
+/// Returns the rotation I + s n̂ + (1 − c) n̂² about a unit vector n, where c and s are cosine and sine of the angle.
 pub fn axis_angle(graph: &mut Graph, axis: Vec3, c: Edge, s: Edge) -> Value {
     let versine = graph.sub(graph.one(), c);
     let n = hat(graph, axis);
@@ -37,7 +37,7 @@ pub fn axis_angle(graph: &mut Graph, axis: Vec3, c: Edge, s: Edge) -> Value {
     Value::from_mat3(&m)
 }
 
-/// Rotation matrix of a unit quaternion (w, v): (w² − v·v) I + 2 v vᵀ + 2 w v̂.
+/// Returns the rotation matrix (w² − v·v) I + 2 v vᵀ + 2 w v̂ of a unit quaternion (w, v).
 pub fn quaternion_matrix(graph: &mut Graph, q: [Edge; 4]) -> Mat3 {
     let [w, v @ ..] = q;
     let (ww, vv) = (graph.mul(w, w), graph.dot(&v, &v));

@@ -1,4 +1,4 @@
-//! Real points of X, at which expressions with square roots are told apart.
+//! Real points of X, at which expressions with square roots are distinguished.
 
 use super::layout::Block;
 use super::points::Points;
@@ -8,25 +8,26 @@ use crate::algebra::reals::{Real, Reals, SAMPLES};
 
 /// Error of coordinates that solve the user's constraints numerically.
 const SOLVED: f64 = 1e-9;
-/// The same near the start, where parts of the constraints may hardly decide.
+/// Error of coordinates near the start, which may be poorly determined by parts of the constraints.
 const BLURRED: f64 = 1e-7;
-/// How far from the start those near it are.
+/// How far points near the start are from it.
 const NEAR: f64 = 0.05;
-/// Error of the others.
+/// Error of all other values.
 const ROUNDED: f64 = 1e-14;
 
-/// π alone: all that numbers need.
+/// Returns the values of π alone, which is all that numbers need.
 pub fn pi() -> Vec<Reals> {
     vec![[Real::new(std::f64::consts::PI, ROUNDED); SAMPLES]]
 }
 
-/// The values of all symbols at random real points with φ = 0. At every other all symbols but coordinates
-/// are positive, at the others of either sign; at half of them of sizes about 1, at the others of sizes
-/// from 1/100 to 1000. Coordinates of a constraint that was not
-/// solved have no value.
+/// Returns the values of all symbols at random real points with φ = 0.
 ///
-/// Constraints may have several branches. With the numbers of the start, the first half of the points is
-/// near it, at the parameters that it has: on the branch that matters.
+/// At every other point all symbols but coordinates are positive; at the rest they have either sign. At the first
+/// half of the points their sizes are about 1, at the second half from 1/100 to 1000. Coordinates are unknown where
+/// the constraints could not be solved.
+///
+/// Constraints may have several branches. If the values of the start are given, the first half of the points lies
+/// near the start, with its parameters, and so on the branch that matters.
 pub fn sample(
     points: &Points,
     phi: &[(Edge, String)],
@@ -64,7 +65,7 @@ pub fn sample(
     all
 }
 
-/// Random values of symbols that are under no constraint.
+/// Returns random values of symbols that are under no constraint.
 pub fn anywhere(count: usize, seed: u64) -> Vec<Reals> {
     let mut random = Random::new(seed ^ 0x7ea1);
     let mut all = vec![[Real::UNKNOWN; SAMPLES]; count];
@@ -77,7 +78,7 @@ pub fn anywhere(count: usize, seed: u64) -> Vec<Reals> {
     all
 }
 
-/// Random values of all symbols, with φ = 0 of the coordinates' kinds.
+/// Returns random values of all symbols, with φ = 0 of the coordinates' own kinds.
 fn one(points: &Points, random: &mut Random, sample: usize) -> Vec<f64> {
     let mut values = numbers(points.symbols, random, sample);
     let mut place = points.first;
@@ -90,7 +91,7 @@ fn one(points: &Points, random: &mut Random, sample: usize) -> Vec<f64> {
     values
 }
 
-/// π, and random values of the symbols after it.
+/// Returns π, followed by random values of the symbols after it.
 fn numbers(count: usize, random: &mut Random, sample: usize) -> Vec<f64> {
     let mut values: Vec<f64> = (0..count)
         .map(|_| {
@@ -109,17 +110,17 @@ fn numbers(count: usize, random: &mut Random, sample: usize) -> Vec<f64> {
     values
 }
 
-/// A number in ½…3/2.
+/// Returns a random number between ½ and 3/2.
 fn size(random: &mut Random) -> f64 {
     0.5 + (random.bits() >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// A number in 1/100…1000, on a logarithmic scale.
+/// Returns a random number between 1/100 and 1000, on a logarithmic scale.
 fn wide(random: &mut Random) -> f64 {
     10f64.powf(5.0 * (size(random) - 0.5) - 2.0)
 }
 
-/// A number of size about 1 and either sign.
+/// Returns a random number of size about 1 and either sign.
 fn number(random: &mut Random) -> f64 {
     let size = size(random);
     if random.bits() & 1 == 0 { size } else { -size }

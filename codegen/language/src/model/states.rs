@@ -1,22 +1,23 @@
-//! Real states at which programs are measured: the start, and a few at random with φ = 0; of closed
-//! loops the start with several velocities.
+//! Real states at which programs are measured: the start and a few random states with φ = 0, or, with closed loops,
+//! the start with several velocities.
 
 use super::Model;
 use super::layout::Block;
 use crate::algebra::fp::Random;
 
-/// States at random.
+/// Number of random states.
 const RANDOM: usize = 2;
-/// Coordinates under constraints are looked for so near the start, on its branch.
+/// Distance from the start within which coordinates under constraints are searched for, so that they are on its
+/// branch.
 const NEAR: f64 = 0.3;
 
-/// The values of all symbols, parameters at their defaults, at the start and at a few states beside it.
+/// Returns the values of all symbols at the start and at a few other states, with parameters at their defaults.
 pub fn states(model: &Model) -> Vec<Vec<f64>> {
     let mut random = Random::new(0x57a7e);
     let mut all = vec![numbers(model, model.start_x.clone(), &mut random)];
     let equations =
         (!model.points.constraints.is_empty()).then(|| model.points.equations(&model.phi));
-    // Off a loop that is overconstrained its rows contradict one another.
+    // Where a loop is open, the rows of an overconstrained mechanism contradict one another.
     let zero = model.graph.zero();
     let looped = model
         .constraints
@@ -48,7 +49,7 @@ pub fn states(model: &Model) -> Vec<Vec<f64>> {
     all
 }
 
-/// All symbols: velocities, inputs, accelerations and momenta at random.
+/// Returns values of all symbols, with random velocities, inputs, accelerations and momenta.
 fn numbers(model: &Model, x: Vec<f64>, random: &mut Random) -> Vec<f64> {
     let mut list = |count: usize| -> Vec<f64> { (0..count).map(|_| number(random)).collect() };
     let (n, m) = (model.n(), model.u.len());
@@ -58,12 +59,12 @@ fn numbers(model: &Model, x: Vec<f64>, random: &mut Random) -> Vec<f64> {
     numbers
 }
 
-/// A number in ±1.
+/// Returns a random number between −1 and 1.
 fn number(random: &mut Random) -> f64 {
     (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// A point of a block.
+/// Returns a random point of a block.
 fn anywhere(block: Block, random: &mut Random) -> Vec<f64> {
     let mut unit = |n: usize| {
         let entries: Vec<f64> = (0..n).map(|_| number(random)).collect();

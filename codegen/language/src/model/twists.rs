@@ -1,5 +1,5 @@
-//! Motions of frames in numbers: how each velocity moves and turns them, and the mass matrix that follows. No
-//! derivative is written as an expression.
+//! Numerical motions of frames: their twists for each velocity, and the mass matrix that follows. Derivatives are
+//! evaluated numerically; none is built as an expression.
 
 use super::{Body, Frame, Particle};
 use crate::algebra::graph::{Edge, Graph};
@@ -7,41 +7,41 @@ use crate::algebra::linear::{Mat3, Vec3};
 use crate::algebra::numeric::evaluate;
 use crate::algebra::slopes::{Sloped, slopes};
 
-/// How a velocity of 1 moves a frame, world axes.
+/// Twist of a frame for a velocity of 1, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Twist {
-    /// ω (rad/s).
+    /// Angular velocity ω (rad/s).
     pub spin: [f64; 3],
-    /// The velocity of the origin (m/s).
+    /// Velocity of the origin (m/s).
     pub speed: [f64; 3],
 }
 
-/// A frame at a state.
+/// A frame at a given state.
 #[derive(Clone, Debug)]
 pub struct Placed {
-    /// Its axes in the world, by columns.
+    /// Axes of the frame in the world, by columns.
     pub rotation: [[f64; 3]; 3],
-    /// Its twist for each velocity.
+    /// Twist for each velocity.
     pub twists: Vec<Twist>,
 }
 
-/// The parts of a system that numbers of its motion are made of.
+/// The parts of a system that determine its motion numerically.
 #[derive(Clone, Copy)]
 pub struct Moving<'a> {
-    /// The graph.
+    /// Graph of all expressions.
     pub graph: &'a Graph,
-    /// A by rows.
+    /// Rows of A.
     pub a: &'a [Vec<Edge>],
-    /// The symbol of the first coordinate.
+    /// Index of the symbol of the first coordinate.
     pub first: usize,
-    /// The symbol of the first velocity.
+    /// Index of the symbol of the first velocity.
     pub velocity: usize,
-    /// The number of velocities.
+    /// Number of velocities.
     pub n: usize,
 }
 
 impl Moving<'_> {
-    /// The columns of A as directions for all symbols.
+    /// Returns the columns of A as directions in the space of all symbols.
     pub fn directions(&self, numbers: &[f64]) -> Vec<Vec<f64>> {
         let a = evaluate(self.graph, &self.a.concat(), numbers);
         let column = |i: usize| {
@@ -52,7 +52,7 @@ impl Moving<'_> {
         (0..self.n).map(column).collect()
     }
 
-    /// Frames at a state.
+    /// Returns the frames at a state.
     pub fn frames(&self, frames: &[Frame], numbers: &[f64]) -> Vec<Placed> {
         let directions = self.directions(numbers);
         let entries = frames.iter().flat_map(|f| pose(&f.rotation, f.position));
@@ -62,7 +62,7 @@ impl Moving<'_> {
         frames.map(|entries| placed(entries, self.n)).collect()
     }
 
-    /// M of bodies, particles and a kinetic energy.
+    /// Returns M of bodies, particles and a kinetic energy.
     pub fn mass(
         &self,
         frames: &[Frame],
@@ -112,7 +112,7 @@ impl Moving<'_> {
         mass
     }
 
-    /// ∂²T/∂ξⁱ∂ξʲ of a quadratic T, by its values.
+    /// Adds ∂²T/∂ξⁱ∂ξʲ of a quadratic T, computed from values of T.
     fn add_kinetic(&self, kinetic: Edge, numbers: &[f64], mass: &mut [Vec<f64>]) {
         if kinetic.abs() == self.graph.zero() {
             return;
@@ -158,23 +158,23 @@ fn placed(entries: &[Sloped], n: usize) -> Placed {
     Placed { rotation, twists }
 }
 
-/// R a.
+/// Returns R a.
 pub fn apply(rotation: &[[f64; 3]; 3], a: [f64; 3]) -> [f64; 3] {
     rotation.map(|row| dot(&row, &a))
 }
 
-/// Rᵀ a.
+/// Returns Rᵀ a.
 pub fn back(rotation: &[[f64; 3]; 3], a: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| (0..3).map(|l| rotation[l][k] * a[l]).sum())
 }
 
-/// a × b.
+/// Returns a × b.
 pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     let entry = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
     [entry(1, 2), entry(2, 0), entry(0, 1)]
 }
 
-/// ⟨a, b⟩.
+/// Returns ⟨a, b⟩.
 pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,4 +1,4 @@
-//! Shaped values: scalars, vectors, matrices and poses of graph edges.
+//! Values with a shape: scalars, vectors, matrices and poses of graph edges.
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
@@ -8,16 +8,16 @@ use crate::algebra::linear::{Mat3, Vec3};
 pub enum Value {
     /// One number.
     Scalar(Edge),
-    /// A column.
+    /// A column vector.
     Vector(Vec<Edge>),
-    /// Rows of equal length.
+    /// A matrix, as rows of equal length.
     Matrix(Vec<Vec<Edge>>),
     /// Rotation and position of a frame.
     Pose(Mat3, Vec3),
 }
 
 impl Value {
-    /// Whether two values have the same shape.
+    /// Returns whether two values have the same shape.
     pub fn same_shape(&self, other: &Value) -> bool {
         match (self, other) {
             (Value::Scalar(_), Value::Scalar(_)) | (Value::Pose(..), Value::Pose(..)) => true,
@@ -29,7 +29,7 @@ impl Value {
         }
     }
 
-    /// All entries, matrices by rows; a pose is its position, then its rotation by rows.
+    /// Returns all entries: matrices by rows, poses as position and then rotation by rows.
     pub fn entries(&self) -> Vec<Edge> {
         match self {
             Value::Scalar(edge) => vec![*edge],
@@ -39,7 +39,7 @@ impl Value {
         }
     }
 
-    /// The same shape with every entry mapped.
+    /// Maps every entry, keeping the shape.
     pub fn map(&self, mut f: impl FnMut(Edge) -> Edge) -> Value {
         match self {
             Value::Scalar(edge) => Value::Scalar(f(*edge)),
@@ -56,14 +56,14 @@ impl Value {
         }
     }
 
-    /// The entries of two values of the same shape, combined.
+    /// Combines the entries of two values of the same shape.
     pub fn zip(&self, other: &Value, mut f: impl FnMut(Edge, Edge) -> Edge) -> Value {
         let others = other.entries();
         let mut next = others.iter();
         self.map(|edge| next.next().map_or(edge, |&other| f(edge, other)))
     }
 
-    /// The value as one number.
+    /// Returns the value if it is a scalar.
     pub fn as_scalar(&self) -> Option<Edge> {
         match self {
             Value::Scalar(edge) => Some(*edge),
@@ -71,7 +71,7 @@ impl Value {
         }
     }
 
-    /// The value as three numbers.
+    /// Returns the value if it is a vector of three entries.
     pub fn as_vec3(&self) -> Option<Vec3> {
         match self {
             Value::Vector(v) => <[Edge; 3]>::try_from(v.as_slice()).ok(),
@@ -79,7 +79,7 @@ impl Value {
         }
     }
 
-    /// The value as a matrix of three rows and columns.
+    /// Returns the value if it is a matrix of three rows and columns.
     pub fn as_mat3(&self) -> Option<Mat3> {
         let Value::Matrix(m) = self else { return None };
         let rows: Vec<Vec3> = m
@@ -89,17 +89,17 @@ impl Value {
         <[Vec3; 3]>::try_from(rows.as_slice()).ok()
     }
 
-    /// A matrix of three rows and columns as a value.
+    /// Makes a value of a matrix of three rows and columns.
     pub fn from_mat3(m: &Mat3) -> Value {
         Value::Matrix(m.iter().map(|row| row.to_vec()).collect())
     }
 
-    /// Whether every entry is 0 on X.
+    /// Returns whether every entry is 0 on X.
     pub fn is_zero(&self, graph: &Graph) -> bool {
         self.entries().iter().all(|edge| edge.abs() == graph.zero())
     }
 
-    /// The same value without −0, so that what is 0 is the same edge.
+    /// Replaces −0 by 0, so that zero is always the same edge.
     pub fn unsigned_zeros(self, graph: &Graph) -> Value {
         let zero = graph.zero();
         if self.entries().contains(&-zero) {

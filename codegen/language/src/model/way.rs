@@ -1,8 +1,8 @@
-//! The way from one point of a coordinate to another in its chart, and how its rate follows from that of the chart.
+//! Differences between two points of a coordinate in its chart, and how their rates follow from those of the chart.
 
 use super::layout::Block;
 
-/// The rate of a chart: that of plain coordinates, of an angle, or the angular velocity in body axes.
+/// Returns the chart rate: ẋ of plain coordinates, the rate of an angle, or the angular velocity in body axes.
 pub fn chart_rate(block: Block, x: &[f64], rate: &[f64]) -> Vec<f64> {
     match block {
         Block::Flat(_) => rate.to_vec(),
@@ -28,8 +28,8 @@ pub fn chart_rate(block: Block, x: &[f64], rate: &[f64]) -> Vec<f64> {
     }
 }
 
-/// The way from one point of a block to another in its chart, and the factor from the rate of the chart to that of
-/// the way.
+/// Returns the difference between two points of a block in its chart, and the matrix that maps the chart rate to the
+/// rate of the difference.
 pub fn way(block: Block, from: &[f64], to: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
     match block {
         Block::Flat(n) => {
@@ -49,7 +49,7 @@ pub fn way(block: Block, from: &[f64], to: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) 
     }
 }
 
-/// p̄ q.
+/// Returns p̄ q.
 fn relative(p: &[f64], q: &[f64]) -> [f64; 4] {
     let entry = |i: usize| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -59,7 +59,7 @@ fn relative(p: &[f64], q: &[f64]) -> [f64; 4] {
     [scalar, entry(0), entry(1), entry(2)]
 }
 
-/// The unit quaternion of a rotation by rows, up to its sign.
+/// Returns the unit quaternion of a rotation matrix by rows, up to its sign.
 fn quaternion(r: &[f64]) -> [f64; 4] {
     let trace = r[0] + r[4] + r[8];
     let squares = [
@@ -72,7 +72,7 @@ fn quaternion(r: &[f64]) -> [f64; 4] {
         0,
         |best, k| if squares[k] > squares[best] { k } else { best },
     );
-    // Twice the products of the largest entry with the others.
+    // Row of twice the products of the largest entry with the others.
     let skew = [r[7] - r[5], r[2] - r[6], r[3] - r[1]];
     let sum = |i: usize, j: usize| r[3 * i + j] + r[3 * j + i];
     let row = match largest {
@@ -85,7 +85,7 @@ fn quaternion(r: &[f64]) -> [f64; 4] {
     row.map(|e| e / length)
 }
 
-/// The rotation vector δ of a unit quaternion, and 1 + δ̂/2 + κ δ̂² of δ̇ = (…) ω.
+/// Returns the rotation vector δ of a unit quaternion, and the matrix 1 + δ̂/2 + κ δ̂² that maps ω to δ̇.
 pub fn turned(q: [f64; 4]) -> (Vec<f64>, Vec<Vec<f64>>) {
     let q = if q[0] < 0.0 { q.map(|e| -e) } else { q };
     let v = [q[1], q[2], q[3]];

@@ -1,4 +1,4 @@
-//! What the braces of a joint hold: which kinds can have what, limits as numbers, armatures.
+//! The fields in the braces of a joint: which kinds may have which, numeric limits, armatures.
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::evaluate;
@@ -13,7 +13,7 @@ use crate::syntax::{joint_field, joint_kind};
 use JointField::{Armature, Damping, Force, Limit, MaxForce, MaxSpeed, Rest, Stiffness};
 use num_traits::Signed;
 
-/// The fields that a joint can have, and why no others.
+/// Returns the fields that a joint may have, and why it may have no others.
 fn allowed(joint: &Joint) -> (&'static [JointField], &'static str) {
     const OWN: &str = "a joint that follows others has no force of its own: damping, armature and force stand on the joint that it follows";
     const CIRCLE: &str =
@@ -46,12 +46,12 @@ fn allowed(joint: &Joint) -> (&'static [JointField], &'static str) {
     }
 }
 
-/// Whether a field of a joint takes part: what its kind cannot have is left out.
+/// Returns whether a field takes part; a field that the kind cannot have is ignored.
 pub(super) fn has(joint: &Joint, field: JointField) -> bool {
     allowed(joint).0.contains(&field)
 }
 
-/// Reports fields that the joint cannot have, and a joint that cannot follow.
+/// Reports fields that the joint cannot have, and joints of kinds that cannot follow others.
 pub(super) fn check(joint: &Joint, report: &mut Report) {
     let (kind, place) = joint.kind;
     let single = [
@@ -84,13 +84,13 @@ pub(super) fn check(joint: &Joint, report: &mut Report) {
     }
 }
 
-/// The expressions of a field, where the joint can have it.
+/// Returns the expressions of a field, if the joint may have it.
 fn values(joint: &Joint, wanted: JointField) -> Option<&[Expr]> {
     let field = joint.fields.iter().find(|(field, ..)| *field == wanted)?;
     has(joint, wanted).then_some(field.2.as_slice())
 }
 
-/// The numbers of a field that is documented in the generated code.
+/// Returns the values of a field that is documented in the generated code.
 pub(super) fn numbers(
     joint: &Joint,
     field: JointField,
@@ -142,7 +142,7 @@ pub(super) fn numbers(
     complete.then_some(list)
 }
 
-/// The number that an expression of numbers and constants is.
+/// Evaluates an expression of numbers and constants.
 pub(super) fn number(graph: &Graph, edge: Edge) -> Option<f64> {
     if graph.class(edge.node()) != 0 {
         return None;
@@ -155,7 +155,7 @@ pub(super) fn number(graph: &Graph, edge: Edge) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
-/// J of every velocity; ½ J ξⁱ² is added to the kinetic energy.
+/// Returns the armature J of every velocity, and adds ½ J ξⁱ² to the kinetic energy.
 pub(crate) fn armature(
     system: &System,
     graph: &mut Graph,

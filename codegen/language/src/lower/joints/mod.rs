@@ -1,4 +1,4 @@
-//! Joints, written out as coordinates, velocities, rates and frames.
+//! Expands joints into coordinates, velocities, rates and frames.
 //!
 //! | kind | coordinates | velocities | pose of the frame that it carries, at its place |
 //! |---|---|---|---|
@@ -8,12 +8,12 @@
 //! | `spherical` | `j: SO3` (`S3`) | `j_dot: vec3`, angular velocity in the axes of the frame | rotation j |
 //! | `free` | `j_r: R3`, `j_R: SO3` | `j_v: vec3`, `j_w: vec3`, its twist in its axes | rotation `j_R`, shift `j_r` |
 //! | `planar n` | `j_r: R2`, `j` | `j_r_dot: vec2`, `j_dot` | shift by `j_r` in the plane, turn by j about n |
-//! | `universal a, b` | `j_1`, `j_2` | `j_1_dot`, `j_2_dot` | turn about a, then about b that turned along |
+//! | `universal a, b` | `j_1`, `j_2` | `j_1_dot`, `j_2_dot` | turn about a, then about the turned b |
 //! | `cylindrical n` | `j`, `j_d` | `j_dot`, `j_d_dot` | turn by j about n, shift by `j_d` n |
 //! | `fixed` | | | none |
 //!
-//! What stands here is text for text what a user would write without joints; spans are those of the
-//! joint, so that every later error points at it.
+//! The result is exactly what a user would write without joints; its spans are those of the joint, so that every
+//! later error points at the joint.
 
 mod fields;
 mod written;
@@ -30,7 +30,7 @@ use written::Writer;
 
 pub(super) use fields::armature;
 
-/// The joints, and what is wrong with their fields.
+/// Reads the joints, and reports errors in their fields.
 pub fn read(system: &System, graph: &mut Graph, scope: &Scope, report: &mut Report) -> Vec<Joint> {
     let mut joints = Vec::new();
     for item in &system.items {
@@ -58,7 +58,7 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, report: &mut Repo
     joints
 }
 
-/// Unit vectors along the axes of a joint; what is wrong with one is reported where its frame is read.
+/// Returns the unit vectors of a joint's axes; errors in them are reported where the frame is read.
 fn directions(joint: &ast::Joint, graph: &mut Graph, scope: &Scope) -> Vec<[f64; 3]> {
     let mut reported = Report::default();
     let mut direction = |axis: &ast::Expr| {
@@ -71,7 +71,7 @@ fn directions(joint: &ast::Joint, graph: &mut Graph, scope: &Scope) -> Vec<[f64;
     joint.axes.iter().filter_map(&mut direction).collect()
 }
 
-/// The names of the coordinates and of the velocities of a joint.
+/// Returns the names of a joint's coordinates and velocities.
 fn names(joint: &ast::Joint) -> (Vec<String>, Vec<String>) {
     let (coordinates, velocities) = joint_endings(joint);
     let named = |endings: &[&str]| {
@@ -81,7 +81,7 @@ fn names(joint: &ast::Joint) -> (Vec<String>, Vec<String>) {
     (named(coordinates), named(velocities))
 }
 
-/// The system with every joint written out.
+/// Returns the system with every joint expanded.
 pub fn expand(system: &System, report: &mut Report) -> System {
     let mut items = Vec::new();
     let mut moved: Vec<&Ident> = Vec::new();
@@ -108,7 +108,7 @@ pub fn expand(system: &System, report: &mut Report) -> System {
         writer.loads();
         moved.push(&joint.moves);
         items.extend(writer.items);
-        // Kept for its name and its constants.
+        // The joint is kept for its name and its constants.
         items.push(item.clone());
     }
     System {
@@ -117,7 +117,7 @@ pub fn expand(system: &System, report: &mut Report) -> System {
     }
 }
 
-/// The error for a frame that is placed already.
+/// Returns the error for a frame that is placed already.
 fn twice(joint: &ast::Joint, first: &Ident) -> Diagnostic {
     let message = format!("the frame `{}` is placed twice", first.name);
     Diagnostic::new(joint.moves.span, message)

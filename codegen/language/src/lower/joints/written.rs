@@ -1,4 +1,4 @@
-//! One joint as the statements that say the same without it.
+//! Expands one joint into equivalent statements.
 
 use super::fields::has;
 use crate::symbols::words::{AXIS, PLACE, PLANE};
@@ -9,13 +9,13 @@ use crate::syntax::ast::{
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-/// One joint's statements so far.
+/// Collects the statements of one joint.
 pub(super) struct Writer<'a> {
     /// The joint.
     pub joint: &'a Joint,
-    /// Its statement.
+    /// Range of its statement.
     pub span: Span,
-    /// The statements.
+    /// Statements so far.
     pub items: Vec<Item>,
 }
 
@@ -25,7 +25,7 @@ impl Writer<'_> {
         self.items.push(Item { kind, span });
     }
 
-    /// A name that starts with that of the joint.
+    /// Returns a name that starts with that of the joint.
     fn ident(&self, ending: &str) -> Ident {
         let Ident { name, span } = &self.joint.name;
         Ident {
@@ -34,7 +34,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The same in an expression.
+    /// Returns such a name as an expression.
     fn name(&self, ending: &str) -> Expr {
         let Ident { name, span } = self.ident(ending);
         Expr {
@@ -43,7 +43,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A coordinate with its velocity and its rate.
+    /// Writes a coordinate with its velocity.
     fn moves(&mut self, ending: &str, kind: CoordKind, shape: ShapeKind) {
         let name = self.ident(ending);
         self.push(ItemKind::Coord(vec![(name, kind)]));
@@ -67,14 +67,14 @@ impl Writer<'_> {
         });
     }
 
-    /// A coordinate whose rate is its velocity.
+    /// Writes a coordinate whose rate is its velocity.
     fn simple(&mut self, ending: &str, kind: CoordKind, shape: ShapeKind) {
         self.moves(ending, kind, shape);
         let velocity = self.name(&format!("{ending}_dot"));
         self.rate(ending, velocity);
     }
 
-    /// The coordinate of a joint with one freedom, or what it follows.
+    /// Writes the coordinate of a joint with one degree of freedom, or the expression that it follows.
     fn one(&mut self, kind: CoordKind) {
         match &self.joint.follows {
             Some(value) => {
@@ -99,7 +99,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What is wrong with the pose is wrong with what the joint follows.
+    /// Returns the span for errors in the pose; for a joint that follows others, that of the expression it follows.
     fn pose_span(&self) -> Span {
         self.joint
             .follows
@@ -135,7 +135,7 @@ impl Writer<'_> {
         self.call("identity", vec![self.number(3)])
     }
 
-    /// The unit vector along an axis.
+    /// Returns a call for the unit vector of an axis.
     fn axis(&self, index: usize) -> Expr {
         let axes = &self.joint.axes;
         let axis = axes.get(index).cloned().unwrap_or_else(|| self.origin());
@@ -151,8 +151,8 @@ impl Writer<'_> {
         self.times(self.name(ending), self.axis(0))
     }
 
-    /// Writes coordinates, velocities and rates; the poses of the frames one on the other that lead
-    /// to the one that the joint carries, each with its name.
+    /// Writes coordinates, velocities and rates. Returns a chain of frames with their poses, each on the one before;
+    /// the last is the frame that the joint moves.
     pub fn motion(&mut self) -> Vec<(Ident, Expr)> {
         use CoordKind::{Euclidean, Real, S1, S3, SO3};
         use ShapeKind::{Scalar, Vector};
@@ -217,7 +217,7 @@ impl Writer<'_> {
         vec![(self.joint.moves.clone(), pose)]
     }
 
-    /// q̇ = ½ q ⊗ (0, ω).
+    /// Returns q̇ = ½ q ⊗ (0, ω).
     fn quaternion_rate(&self) -> Expr {
         let span = self.joint.kind.1;
         let spin = |index: i64| Expr {
@@ -232,7 +232,7 @@ impl Writer<'_> {
         Expr { kind, span }
     }
 
-    /// Writes the frames, the first at the place of the joint.
+    /// Writes the frames; the first is at the place of the joint.
     pub fn frames(&mut self, poses: Vec<(Ident, Expr)>) {
         let mut on = self.joint.on.clone();
         let mut place = self.joint.at.clone();
@@ -253,7 +253,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes what acts on the joint: its damping, spring and force.
+    /// Writes the loads of the joint: damping, spring and force.
     pub fn loads(&mut self) {
         let field = |wanted| {
             let of = |(field, span, values): &(JointField, Span, Vec<Expr>)| {
@@ -294,7 +294,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The velocities of the joint, one by one.
+    /// Returns the velocities of the joint, one by one.
     fn rates(&self) -> Vec<Expr> {
         let whole = self.name("_dot");
         match self.joint.kind.0 {
@@ -310,7 +310,7 @@ impl Writer<'_> {
     }
 }
 
-/// What a statement about all of something is about.
+/// Returns the target for all of a symbol.
 fn whole(name: Ident) -> Target {
     Target {
         name,

@@ -1,4 +1,4 @@
-//! Whether the start is on X, and what to write where it is not.
+//! Checks that the start is on X, and suggests what to write if it is not.
 
 use crate::algebra::graph::Node;
 use crate::algebra::numeric::evaluate;
@@ -9,10 +9,10 @@ use crate::lower::variety::{Origin, Variety};
 use crate::model::nearest::Nearest;
 use crate::syntax::ast::{CoordKind, ItemKind, Span, System};
 
-/// Largest violation of φ at the start that counts as rounding of the numbers given, beside the size of φ.
+/// Largest violation of φ at the start, relative to the size of φ, that counts as rounding of the given numbers.
 const ROUNDING: f64 = 1e-9;
 
-/// φ(x) = 0 at the start.
+/// Checks φ(x) = 0 at the start.
 pub fn check(
     system: &System,
     variety: &Variety,
@@ -57,7 +57,7 @@ pub fn check(
     }
 }
 
-/// R.T * R = 1 holds for reflections, too, which no motion leads to.
+/// Reports reflections, which satisfy R.T * R = 1, too, but are reached by no motion.
 fn reflections(system: &System, declared: &Declared, x: &[f64], report: &mut Report) {
     for coordinate in &declared.coordinates {
         let first = match coordinate.kind {
@@ -84,7 +84,7 @@ fn reflections(system: &System, declared: &Declared, x: &[f64], report: &mut Rep
     }
 }
 
-/// Where the start of one of these coordinates is given last.
+/// Returns where the start of one of these coordinates is given last.
 fn given(system: &System, names: &[&str]) -> Option<Span> {
     system.items.iter().rev().find_map(|item| match &item.kind {
         ItemKind::Start { target, value } | ItemKind::Guess { target, value } => names
@@ -141,7 +141,7 @@ fn violation(
     }
 }
 
-/// Says where the nearest configuration is, or that there seems to be none.
+/// Adds where the nearest configuration is, or that none was found.
 fn advise(
     error: &mut Diagnostic,
     found: &Nearest,
@@ -186,7 +186,7 @@ fn advise(
     }
 }
 
-/// A number with as many digits as a start needs.
+/// Writes a number with as many digits as a start needs.
 fn short(number: f64) -> String {
     let text = format!("{number:.12}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -197,7 +197,7 @@ fn short(number: f64) -> String {
     }
 }
 
-/// The coordinates that a row of φ is about.
+/// Returns the names of the coordinates in a row of φ.
 fn coordinates_of<'a>(variety: &Variety, declared: &'a Declared, row: usize) -> Vec<&'a str> {
     let free = &variety.points.free;
     let first = variety.points.first;

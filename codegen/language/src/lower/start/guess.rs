@@ -1,4 +1,4 @@
-//! Guesses, `start q ~ 1.2;`: what they may be about, and the start that is nearest to them.
+//! Guesses, `start q ~ 1.2;`: checks what they are about, and finds the start that is nearest to them.
 
 use super::Start;
 use crate::algebra::closest::closest;
@@ -15,7 +15,7 @@ use crate::model::twists::Moving;
 use crate::syntax::ast::{ExprKind, ItemKind, Span, System, Target};
 use crate::syntax::written::target as written;
 
-/// The targets of all guesses.
+/// Returns the targets of all guesses.
 fn guesses(system: &System) -> impl Iterator<Item = &Target> {
     system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Guess { target, .. } => Some(target),
@@ -23,7 +23,7 @@ fn guesses(system: &System) -> impl Iterator<Item = &Target> {
     })
 }
 
-/// Reports guesses of what is not solved for.
+/// Reports guesses of coordinates and velocities that are not solved for.
 pub fn check(system: &System, declared: &Declared, report: &mut Report) {
     for target in guesses(system) {
         let name = target.name.name.as_str();
@@ -45,7 +45,7 @@ pub fn check(system: &System, declared: &Declared, report: &mut Report) {
     }
 }
 
-/// Why a coordinate or velocity is not solved for, what to do, and where that is said.
+/// Why a coordinate or velocity is not solved for, what to do, and where that is stated.
 type Fixed = (String, String, Option<(Span, &'static str)>);
 
 fn fixed(system: &System, guess: &Target, velocity: bool) -> Option<Fixed> {
@@ -94,8 +94,8 @@ fn fixed(system: &System, guess: &Target, velocity: bool) -> Option<Fixed> {
     })
 }
 
-/// The x nearest to a start and its guesses that satisfies the user's constraints, in the metric of the coordinates;
-/// what has an exact start keeps it. `None` where no solution was found.
+/// Returns the x nearest to a start and its guesses that satisfies the user's constraints, in the metric of the
+/// coordinates; entries with an exact start keep it. Returns `None` if no solution was found.
 pub fn assembled(
     graph: &mut Graph,
     rows: &[Edge],
@@ -134,7 +134,7 @@ pub fn assembled(
     Some(found)
 }
 
-/// M at a configuration, with the numbers of the start for all else.
+/// Returns M at a configuration, with the values of the start for all other symbols.
 pub fn mass(
     graph: &Graph,
     (frames, dynamics): (&[Frame], &Dynamics),

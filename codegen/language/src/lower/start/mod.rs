@@ -1,4 +1,4 @@
-//! The start: numbers for x and ξ, on the constraint.
+//! Reads the start: values of x and ξ that satisfy the constraints.
 
 pub mod check;
 pub mod guess;
@@ -22,7 +22,7 @@ use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 use crate::syntax::written::target as written;
 use std::sync::Arc;
 
-/// x and ξ so far, where each entry was given, and where guessed.
+/// Values of x and ξ so far, and where each entry was given or guessed.
 pub struct Start {
     pub x: Vec<f64>,
     pub xi: Vec<f64>,
@@ -36,7 +36,7 @@ pub struct Start {
     formulas_xi: Vec<(usize, Edge)>,
 }
 
-/// x and ξ from the `start` statements; what is not given is at the identity and at rest.
+/// Reads x and ξ from the `start` statements; entries that are not given are at the identity and at rest.
 pub fn read(
     system: &System,
     graph: &mut Graph,
@@ -79,7 +79,7 @@ pub fn read(
 }
 
 impl Start {
-    /// What is given of the start, before anything follows from it.
+    /// Returns the start as it is given, before the rest is computed.
     pub fn opening(&self, graph: &Graph, states: &States) -> Opening {
         let is_there =
             |list: &[Option<Span>]| -> Vec<bool> { list.iter().map(Option::is_some).collect() };
@@ -101,7 +101,10 @@ impl Start {
         }
     }
 
-    /// Solves for what the description does not give, so that its loops are closed and its constraints kept.
+    /// Solves for the values that the description does not give, so that loops are closed and constraints satisfied.
+    ///
+    /// # Errors
+    /// Returns an error about the constraint that cannot be satisfied.
     pub fn complete(
         &mut self,
         mut opening: Opening,
@@ -144,7 +147,7 @@ impl Start {
         Err(Diagnostic::new(row.span, message).help(help))
     }
 
-    /// Whether coordinates are guessed.
+    /// Returns whether coordinates are guessed.
     pub fn guesses_coordinates(&self) -> bool {
         self.guessed_x.iter().any(Option::is_some)
     }
@@ -230,7 +233,7 @@ impl Start {
     }
 }
 
-/// The numbers that the start of something is, given those of all symbols; NaN where they are not known.
+/// Evaluates an initial value, given the values of all symbols, which are NaN if unknown.
 pub fn numbers(
     evaluator: &mut Evaluator,
     value: &Value,
@@ -252,7 +255,7 @@ pub fn numbers(
     let unknown =
         |(n, s): (&f64, &crate::algebra::graph::Symbol)| s.class == class::PARAM && n.is_nan();
     if class != 0 && params.into_iter().any(unknown) {
-        // A default is in error; the start cannot be known.
+        // A default is in error, so the start is unknown.
         return None;
     }
     let numbers = evaluate(evaluator.graph, &entries, symbols);
@@ -265,7 +268,7 @@ pub fn numbers(
     Some(numbers)
 }
 
-/// The numbers of all symbols as far as they are known before the start: those of parameters.
+/// Returns the values of all symbols that are known before the start: π and the parameters. The others are NaN.
 pub fn known(graph: &Graph, defaults: &[f64]) -> Vec<f64> {
     let mut symbols = vec![std::f64::consts::PI];
     symbols.extend_from_slice(defaults);
@@ -273,7 +276,7 @@ pub fn known(graph: &Graph, defaults: &[f64]) -> Vec<f64> {
     symbols
 }
 
-/// Start velocities that contradict a constraint; whether any of them is given.
+/// Returns the error for start velocities that contradict a constraint; `given` tells whether any of them was given.
 fn violated(constraints: &[Pfaffian], open: Open, given: bool) -> Diagnostic {
     if !given {
         let message = format!(
@@ -293,7 +296,7 @@ fn violated(constraints: &[Pfaffian], open: Open, given: bool) -> Diagnostic {
     )
 }
 
-/// The entries of x or ξ that a start is about, and their value; whether they are of x.
+/// Returns the entries of x or ξ that a start is about, their value, and whether they belong to x.
 fn place(target: &Target, declared: &Declared) -> Option<(std::ops::Range<usize>, Value, bool)> {
     let name = &target.name.name;
     let Some(group) = declared.velocities.iter().find(|group| group.name == *name) else {
@@ -306,7 +309,7 @@ fn place(target: &Target, declared: &Declared) -> Option<(std::ops::Range<usize>
 }
 
 impl Declared {
-    /// The numbers of all symbols at the start, inputs and accelerations 0; NaN where not known.
+    /// Returns the values of all symbols at the start, with inputs and accelerations 0; NaN where they are unknown.
     pub fn numbers(&self, defaults: &[f64], start: Option<&Start>) -> Vec<f64> {
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend_from_slice(defaults);
