@@ -1,14 +1,14 @@
-//! Systems as plain ordinary differential equations, for the solvers of other crates.
+//! Adapter that presents a system as plain ordinary differential equations, for the solvers of other crates.
 //!
-//! Stiff solvers are not rewritten here. The unknowns are y = (x, ξ), ν + n numbers in slices;
-//! [`Equations`] gives their rates, the product of the Jacobian with a vector, and states of what comes
-//! back. It depends on no solver. The one recommended is `diffsol` (MIT; BDF of variable order, ESDIRK
-//! and TR-BDF2 with dense output and events, released every few weeks, described in J. Open Source
-//! Softw. 11 (2026) 9384): `tests/diffsol` of the repository runs a heavy top and a stiff system by it.
+//! This crate does not contain general stiff solvers of its own. The unknowns are y = (x, ξ), a slice of ν + n numbers;
+//! [`Equations`] provides their rates, the product of the Jacobian with a vector, and the conversion of y back to a
+//! state. It depends on no solver. The recommended one is `diffsol` (MIT; BDF of variable order, ESDIRK and TR-BDF2
+//! with dense output and events, released every few weeks, described in J. Open Source Softw. 11 (2026) 9384):
+//! `tests/diffsol` of the repository runs a heavy top and a stiff system with it.
 //!
-//! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads
-//! back to it, and [`Equations::state`] projects what comes out. With λ far above the rates of the
-//! motion the equations are stiff, which stiff solvers handle.
+//! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads back to it, and
+//! [`Equations::state`] projects each state onto it. If λ is far above the rates of the motion, the equations are
+//! stiff, which stiff solvers handle.
 
 use core::cell::Cell;
 
@@ -23,8 +23,8 @@ use crate::system::System;
 
 /// ẏ = f(t, y): ẋ = A(x) ξ − λ Ψ φ, ξ̇ = M⁻¹ (f − c), for y = (x, ξ).
 ///
-/// Where a point has no ξ̇, the rates are NaN: the solver shortens its step or gives up, and
-/// [`failure`](Self::failure) tells the cause.
+/// At a point where ξ̇ does not exist the rates are NaN: the solver shortens its step or gives up, and
+/// [`failure`](Self::failure) returns the cause.
 #[derive(Debug)]
 pub struct Equations<'s, Sys: ?Sized, U> {
     system: &'s Sys,
@@ -38,8 +38,8 @@ where
     Sys: System + ?Sized,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    /// The equations of a system with u = `inputs(t, x, ξ)`, and with λ in 1/time: some 10/s, or 0;
-    /// negative for runs backwards in time.
+    /// Creates the equations of a system with u = `inputs(t, x, ξ)` and the stabilising rate λ in 1/time: about 10/s,
+    /// or 0; negative for runs backwards in time.
     pub fn new(system: &'s Sys, inputs: U, lambda: f64) -> Self {
         Self {
             system,
@@ -49,23 +49,23 @@ where
         }
     }
 
-    /// ν + n
+    /// Returns the number of unknowns, ν + n.
     pub fn unknowns(&self) -> usize {
         let x = self.system.zero_coordinates();
         let xi = self.system.zero_velocities();
         x.as_ref().len() + xi.as_ref().len()
     }
 
-    /// Writes (x, ξ) to y, as far as it reaches.
+    /// Writes (x, ξ) to y, up to the length of y.
     pub fn write(&self, state: &State<Sys>, y: &mut [Sys::Scalar]) {
         put(y, state.x.as_ref().iter().chain(state.xi.as_ref()).copied());
     }
 
-    /// The state of y, with x on its manifold and on the constraints that multipliers keep.
+    /// Converts y to a state, with x on its manifold and on the constraints that multipliers enforce.
     ///
     /// # Errors
-    /// [`StepError::Shape`] for a list of another length, [`StepError::NonFinite`] for one that is not
-    /// finite, [`StepError::Singular`] where constraints cannot be projected on.
+    /// [`StepError::Shape`] for a list of the wrong length, [`StepError::NonFinite`] for one that is not finite,
+    /// [`StepError::Singular`] if the state cannot be projected onto the constraints.
     pub fn state(&self, t: f64, y: &[Sys::Scalar]) -> Result<State<Sys>, StepError> {
         let (mut x, xi) = self.read(y.iter().copied())?;
         manifold::normalise(self.system.blocks(), x.as_mut());
@@ -90,9 +90,11 @@ where
         }
     }
 
-    /// Writes ∂f/∂y v by a central difference, (f(t, y + δ v) − f(t, y − δ v)) / 2δ with the largest δ that moves no
-    /// entry by more than ∛ε (1 + |yᵢ|): accurate to some 1e-10 of the rates, at two evaluations. What v does not move
-    /// may be as large as it likes.
+    /// Writes the Jacobian-vector product ∂f/∂y v, by a central difference.
+    ///
+    /// The difference is (f(t, y + δ v) − f(t, y − δ v)) / 2δ, with the largest δ that moves no entry by more than
+    /// ∛ε (1 + |yᵢ|): accurate to about 1e-10 of the rates, at two evaluations. Entries of y that v does not move may
+    /// be arbitrarily large.
     pub fn jacobian_product(
         &self,
         t: f64,
@@ -102,7 +104,7 @@ where
     ) {
         let number = Sys::Scalar::from_f64;
         let reach = number(power(Sys::Scalar::EPSILON, 1.0 / 3.0));
-        // The entry that moves most beside its own size says how far; of a direction of length zero nothing is asked.
+        // The entry that moves most relative to its own size determines δ. For v = 0, δ does not matter.
         let zero = Sys::Scalar::default();
         let fastest = y.iter().zip(v).fold(zero, |most, (y, v)| {
             Scalar::max(most, v.size() / (number(1.0) + y.size()))
@@ -124,12 +126,13 @@ where
         }
     }
 
-    /// Why a point had no ξ̇: the last singular one, if there was any.
+    /// Returns the cause of the last failed evaluation; once one was singular, the last singular one.
     pub fn failure(&self) -> Option<StepError> {
         self.failure.get()
     }
 
-    /// NaN for the solver. What follows from such NaN does not hide the cause.
+    /// Writes NaN for the solver and records the cause. Errors that follow from these NaN do not hide a singular
+    /// evaluation.
     fn fail(&self, cause: StepError, rates: &mut [Sys::Scalar]) {
         let known = matches!(self.failure.get(), Some(StepError::Singular { .. }));
         if !known || matches!(cause, StepError::Singular { .. }) {
@@ -138,7 +141,7 @@ where
         rates.fill(Sys::Scalar::from_f64(f64::NAN));
     }
 
-    /// (x, ξ) of y.
+    /// Splits y into (x, ξ).
     fn read(
         &self,
         mut y: impl ExactSizeIterator<Item = Sys::Scalar>,
@@ -158,7 +161,7 @@ where
         Ok((x, xi))
     }
 
-    /// (ẋ, ξ̇)
+    /// Returns (ẋ, ξ̇).
     fn evaluate(
         &self,
         t: f64,
@@ -178,7 +181,7 @@ where
     }
 }
 
-/// As many entries as there is room for.
+/// Writes as many entries as there is room for.
 fn put<S>(list: &mut [S], entries: impl Iterator<Item = S>) {
     for (slot, entry) in list.iter_mut().zip(entries) {
         *slot = entry;

@@ -1,14 +1,15 @@
-//! The time among the coordinates, along a run.
+//! Time as a coordinate, kept exact along a run.
 
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::system::System;
 
-/// Keeps the time that a description declares beside the time of a run: at every t it is what it was at the start of the
-/// run, and what has passed since. Steps alone would add up their lengths, and what rounding does to each of these sums.
+/// Keeps the time coordinate of a description equal to its initial value plus the time since the start of the run.
 ///
-/// [`integrate`](crate::integrate()) and the other runs of this crate keep it so; it is for those who call
-/// [`step`](crate::step()) again and again.
+/// Without a clock, each step would add its length to this coordinate, and rounding errors would accumulate.
+///
+/// [`integrate`](crate::integrate()) and the other runs of this crate use a clock themselves. Create one only for a
+/// loop of your own over [`step`](crate::step()).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock<S> {
     place: usize,
@@ -17,7 +18,7 @@ pub struct Clock<S> {
 }
 
 impl<S: Scalar> Clock<S> {
-    /// That of a run from this state; `None` where the description declares no time.
+    /// Creates the clock of a run from this state; `None` if the description declares no time.
     #[inline]
     pub fn new<Sys>(system: &Sys, start: &State<Sys>) -> Option<Self>
     where
@@ -31,13 +32,13 @@ impl<S: Scalar> Clock<S> {
         })
     }
 
-    /// The time of the description at a time of the run.
+    /// Returns the value of the time coordinate at the time t of the run.
     #[inline]
     pub fn at(&self, t: f64) -> S {
         self.begin + S::from_f64(t - self.from)
     }
 
-    /// Sets the time of the description in a state to that of the run.
+    /// Sets the time coordinate in x according to the time `state.t` of the run.
     #[inline]
     pub fn set<Sys>(&self, state: &mut State<Sys>)
     where

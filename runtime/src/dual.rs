@@ -1,10 +1,10 @@
-//! Dual numbers: a number with its slopes along N directions, which every function here and every generated one
-//! carries along exactly.
+//! Dual numbers: a number with its slopes (derivatives) along N directions, which all functions of this crate and all
+//! generated functions propagate exactly.
 //!
-//! a + Σ aᵢ εᵢ with εᵢ εⱼ = 0: f(a + Σ aᵢ εᵢ) = f(a) + f′(a) Σ aᵢ εᵢ. A system in such numbers has the slopes of
-//! whatever is computed with it: of a step ([`step_slopes`](crate::step_slopes)), of a run with respect to
-//! parameters, of an output. Source: W. K. Clifford, *Preliminary sketch of biquaternions*, Proc. London Math. Soc.
-//! 4 (1873); A. Griewank, A. Walther, *Evaluating Derivatives*, SIAM (2008), chapter 3.
+//! a + Σ aᵢ εᵢ with εᵢ εⱼ = 0: f(a + Σ aᵢ εᵢ) = f(a) + f′(a) Σ aᵢ εᵢ. A system in dual numbers yields the slopes of
+//! everything computed with it: of a step ([`step_slopes`](crate::step_slopes)), of a run with respect to parameters,
+//! of an output. Sources: W. K. Clifford, *Preliminary sketch of biquaternions*, Proc. London Math. Soc. 4 (1873); A.
+//! Griewank, A. Walther, *Evaluating Derivatives*, SIAM (2008), chapter 3.
 
 use core::array::from_fn;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -14,10 +14,10 @@ use crate::{s3, so3};
 
 /// A number and its slopes along N directions.
 ///
-/// Choices go by the value: a slope at a jump or a corner is that of the side taken. |a| has the slope 0 at 0, and so
-/// has a length √(a·a) at rest, as in generated code; √a of a number that grows from 0 has a large one. Tests of
-/// convergence ([`size`](Scalar::size), [`beside`](Scalar::beside), [`largest_lane`](Scalar::largest_lane)) see slopes
-/// and value alike.
+/// Branches are decided by the value: at a jump or a corner the slope is that of the side taken. |a| has the slope 0 at
+/// 0, and so has a length √(a·a) at a = 0, as in generated code; √a of a number that grows from 0 has a large slope.
+/// Convergence tests ([`size`](Scalar::size), [`beside`](Scalar::beside), [`largest_lane`](Scalar::largest_lane)) take
+/// slopes and value into account alike.
 ///
 /// ```
 /// use hamel::{Dual, Scalar};
@@ -30,14 +30,14 @@ use crate::{s3, so3};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<S, const N: usize> {
-    /// a
+    /// Value a.
     pub value: S,
-    /// a₁, …, a_N
+    /// Slopes a₁, …, a_N.
     pub slopes: [S; N],
 }
 
 impl<S: Scalar, const N: usize> Dual<S, N> {
-    /// A number that does not vary.
+    /// Creates a constant, whose slopes are zero.
     #[inline]
     pub fn constant(value: S) -> Self {
         Dual {
@@ -46,7 +46,7 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
         }
     }
 
-    /// A number that varies with slope 1 along one direction; a direction from N on is none.
+    /// Creates a number with slope 1 along one direction; a direction of N or more gives a constant.
     #[inline]
     pub fn along(value: S, direction: usize) -> Self {
         let (zero, one) = (S::default(), S::from_f64(1.0));
@@ -56,7 +56,7 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
         }
     }
 
-    /// f(a) of a function with this value and slope at a.
+    /// Returns f(a), given the value and the derivative of f at a (chain rule).
     #[inline]
     fn chain(self, value: S, slope: S) -> Self {
         Dual {
@@ -65,14 +65,14 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
         }
     }
 
-    /// The largest |slope|.
+    /// Returns the largest |slope|.
     #[inline]
     fn steepest(self) -> S {
         let slopes = self.slopes.into_iter();
         slopes.fold(S::default(), |largest, slope| largest.max(slope.size()))
     }
 
-    /// Each part chosen by the value.
+    /// Selects value and slopes from two numbers by `choose`.
     #[inline]
     fn chosen(choose: impl Fn(S, S) -> S, one: Self, other: Self) -> Self {
         Dual {
@@ -82,7 +82,7 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
     }
 }
 
-/// The slopes of θ = dexp(u) δu.
+/// Returns the slopes of θ = dexp(u) δu.
 #[inline(always)]
 fn turns<S: Scalar, const N: usize>(by: so3::Vector<S>, u: so3::Vector<Dual<S, N>>) -> [[S; N]; 3] {
     let dexp = so3::dexp(by);
@@ -219,7 +219,7 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
         self.chain(value, (-value).mul_add(value, S::from_f64(1.0)))
     }
 
-    /// d atan2(y, x) = (x dy − y dx)/(x² + y²), 0 at the origin.
+    /// Uses d atan2(y, x) = (x dy − y dx)/(x² + y²), 0 at the origin.
     #[inline]
     fn atan2(self, x: Self) -> Self {
         let length = (self.value * self.value + x.value * x.value).sqrt();
@@ -301,7 +301,7 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
         )
     }
 
-    /// δ(R E) = δR E + R E θ̂ for E = exp(û), θ = dexp(u) δu.
+    /// Uses δ(R E) = δR E + R E θ̂ for E = exp(û), θ = dexp(u) δu.
     #[inline]
     fn turned_matrix(r: so3::Matrix<Self>, u: so3::Vector<Self>) -> so3::Matrix<Self> {
         let (values, by) = (r.map(|entry| entry.value), u.map(|entry| entry.value));
@@ -329,7 +329,7 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
         })
     }
 
-    /// δ(q ⊗ e) = δq ⊗ e + ½ q ⊗ e ⊗ (0, θ) for e = exp(u), θ = dexp(u) δu.
+    /// Uses δ(q ⊗ e) = δq ⊗ e + ½ q ⊗ e ⊗ (0, θ) for e = exp(u), θ = dexp(u) δu.
     #[inline]
     fn turned_quaternion(q: s3::Quaternion<Self>, u: so3::Vector<Self>) -> s3::Quaternion<Self> {
         let (values, by) = (q.map(|entry| entry.value), u.map(|entry| entry.value));
@@ -398,7 +398,7 @@ mod tests {
 
     type Number = Dual<f64, 7>;
 
-    /// Numbers with slopes that are about 1, from a linear congruential generator.
+    /// Returns numbers whose slopes are about 1, from a linear congruential generator.
     fn numbers<const N: usize>(seed: &mut u64, size: f64) -> [Number; N] {
         let mut next = || {
             *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -419,8 +419,8 @@ mod tests {
         }
     }
 
-    /// Turns by the derivative of exp are those of exp in numbers with slopes, of small angles and of large ones, and
-    /// whatever the slopes of what is turned.
+    /// Retractions by the derivative of exp agree with exp evaluated in dual numbers, for small and large angles, and
+    /// whatever the slopes of the retracted rotation are.
     #[test]
     fn derivatives_of_turns_are_those_of_their_formulas() {
         let seed = &mut 7;
@@ -430,7 +430,7 @@ mod tests {
                 let (r, q, w) = (numbers(seed, 1.0), numbers(seed, 1.0), numbers(seed, 1.0));
                 agree(&so3::retract(r, u), &so3::product(r, so3::exp(u)), 2e-14);
                 agree(&s3::retract(q, u), &s3::product(q, s3::exp(u)), 2e-14);
-                // A singularity at a whole turn.
+                // dexpinv is singular at a whole turn.
                 if size < 3.0 {
                     agree(&so3::dexpinv(u, w), &so3::chart_velocity(u, w), 2e-13);
                 }

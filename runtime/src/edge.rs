@@ -1,6 +1,7 @@
-//! States as types of nalgebra; the rest of the crate works on plain arrays.
+//! Conversions of states to nalgebra types; the rest of the crate works on plain arrays.
 //!
-//! nalgebra is re-exported as [`hamel::nalgebra`](crate::nalgebra), so that a program can use another version as well.
+//! nalgebra is re-exported as [`hamel::nalgebra`](crate::nalgebra), so a program may also depend on another version of
+//! it.
 
 use nalgebra::{Matrix3, Quaternion, SVectorView, Vector3};
 
@@ -9,14 +10,14 @@ use crate::scalar::Scalar;
 use crate::so3::{self, Matrix};
 use crate::system::Block;
 
-/// The entries of block `index` in x; `None` if there is no such block or x is too short.
+/// Returns the entries of block `index` in x; `None` if there is no such block or x is too short.
 pub fn block<'x, S>(blocks: &[Block], x: &'x [S], index: usize) -> Option<&'x [S]> {
     let kind = blocks.get(index)?;
     let start: usize = blocks.iter().take(index).map(|b| b.coordinates()).sum();
     x.get(start..start.checked_add(kind.coordinates())?)
 }
 
-/// The rotation (body to world) of block `index`, a rotation or a quaternion; `None` for other kinds.
+/// Returns the rotation (body to world) of block `index`, a rotation or a quaternion; `None` for other kinds.
 pub fn rotation<S>(blocks: &[Block], x: &[S], index: usize) -> Option<Matrix3<S>>
 where
     S: Scalar + nalgebra::Scalar,
@@ -29,7 +30,7 @@ where
     }
 }
 
-/// The quaternion of block `index`; `None` for other kinds.
+/// Returns the quaternion of block `index`; `None` for other kinds.
 pub fn quaternion<S>(blocks: &[Block], x: &[S], index: usize) -> Option<Quaternion<S>>
 where
     S: Scalar + nalgebra::Scalar,
@@ -42,7 +43,7 @@ where
     }
 }
 
-/// A view of the N entries of `list` from `start` on; `None` if the list is too short.
+/// Returns a view of the N entries of `list` from `start` on; `None` if the list is too short.
 pub fn vector<S: nalgebra::Scalar, const N: usize>(
     list: &[S],
     start: usize,
@@ -51,17 +52,17 @@ pub fn vector<S: nalgebra::Scalar, const N: usize>(
     Some(SVectorView::from_slice(entries))
 }
 
-/// Nine entries, row by row, as a matrix of nalgebra, which stores columns.
+/// Converts nine entries, row by row, to an nalgebra matrix, which is stored by columns.
 pub fn matrix<S: nalgebra::Scalar + Copy>(rows: Matrix<S>) -> Matrix3<S> {
     Matrix3::from_row_slice(&rows)
 }
 
-/// A matrix of nalgebra as nine entries, row by row.
+/// Converts an nalgebra matrix to nine entries, row by row.
 pub fn rows<S: nalgebra::Scalar + Copy>(matrix: &Matrix3<S>) -> Matrix<S> {
     core::array::from_fn(|k| matrix[(k / 3, k % 3)])
 }
 
-/// Three components as a vector of nalgebra.
+/// Converts three components to an nalgebra vector.
 ///
 /// ```
 /// let axis = hamel::edge::vector3([3.0, 0.0, 4.0]).normalize();

@@ -1,16 +1,16 @@
-//! Errors of evaluations and of steps.
+//! Errors of evaluating the equations of motion and of integration steps.
 
 use core::error::Error;
 use core::fmt;
 
-/// Why ξ̇ has no value: a pivot that has to be positive is zero, negative or not finite.
+/// Reason why ξ̇ cannot be computed: a pivot that has to be positive is zero, negative or not finite.
 ///
 /// Rows and pivots are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Singular {
-    /// The mass matrix M is not positive definite: a velocity has no inertia when some of the others are free to follow
-    /// and the rest are held.
+    /// The mass matrix M is not positive definite: one velocity has no inertia left after some of the other velocities
+    /// are eliminated (they move freely) and the remaining ones are held at zero.
     Inertia {
         /// The name of the velocity in the description, such as `q_dot` or `w[2]`.
         velocity: &'static str,
@@ -31,22 +31,22 @@ pub enum Singular {
 }
 
 impl Singular {
-    /// Makes [`Inertia`](Self::Inertia); for generated code.
+    /// Creates [`Inertia`](Self::Inertia); for generated code.
     pub const fn inertia(velocity: &'static str) -> Self {
         Self::Inertia { velocity }
     }
 
-    /// Makes [`Mass`](Self::Mass); for generated code.
+    /// Creates [`Mass`](Self::Mass); for generated code.
     pub const fn mass() -> Self {
         Self::Mass
     }
 
-    /// Makes [`Constraints`](Self::Constraints); for generated code.
+    /// Creates [`Constraints`](Self::Constraints); for generated code.
     pub const fn constraints(row: usize) -> Self {
         Self::Constraints { row }
     }
 
-    /// Makes [`Kinematics`](Self::Kinematics); for generated code.
+    /// Creates [`Kinematics`](Self::Kinematics); for generated code.
     pub const fn kinematics(pivot: usize) -> Self {
         Self::Kinematics { pivot }
     }
@@ -74,26 +74,26 @@ impl fmt::Display for Singular {
 
 impl Error for Singular {}
 
-/// Why a step could not be taken. All times are those of the state at the start of the step, which is the last valid
-/// one.
+/// Reason why a step could not be taken. All times are those of the state at the start of the step, which is the last
+/// valid one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
-    /// ξ̇ has no value at one of the points that the step visits.
+    /// ξ̇ cannot be computed at one of the points that the step visits.
     Singular {
-        /// What failed.
+        /// The evaluation that failed.
         cause: Singular,
         /// Time at the start of the step.
         time: f64,
     },
-    /// The state, or the input, became infinite or NaN.
+    /// The state or an input became infinite or NaN.
     NonFinite {
         /// Time at the start of the step.
         time: f64,
     },
-    /// A list does not have the length that the blocks of the system, or its lists of zeros, require.
+    /// A list does not have the length that the blocks of the system, or its zero vectors, require.
     Shape {
-        /// Which list: `coordinates`, `velocities` or `chart`.
+        /// Which list: `coordinates`, `velocities`, `chart`, or `coordinates and velocities` for both in one list.
         part: &'static str,
         /// The length that the system requires.
         expected: usize,
@@ -104,7 +104,7 @@ pub enum StepError {
     InvalidStep {
         /// The step that was asked for.
         step: f64,
-        /// The time to be covered by such steps.
+        /// The time that steps of this length should cover.
         span: f64,
     },
     /// An iteration did not converge: the step is too long for the method.
@@ -114,8 +114,8 @@ pub enum StepError {
         /// The number of iterations.
         iterations: u32,
     },
-    /// The tolerance asks for steps below the resolution of time: it is finer than rounding allows,
-    /// or the motion has a singularity ahead.
+    /// The tolerance asks for steps below the resolution of time: it is finer than rounding allows, or the solution has
+    /// a singularity ahead.
     StepTooSmall {
         /// Time at the start of the step.
         time: f64,
@@ -124,15 +124,15 @@ pub enum StepError {
     },
     /// A tolerance is unusable: finer than rounding, infinite or NaN.
     InvalidTolerance {
-        /// The smallest tolerance that is possible.
+        /// The smallest tolerance allowed.
         least: f64,
     },
-    /// The motion is stiff: one rate is so fast that it alone keeps the steps of an explicit method short, and more steps
-    /// are still ahead than [`Adaptive::stiff`](crate::adaptive::Adaptive) allows.
+    /// The motion is stiff: stability, not accuracy, limits the steps of the explicit method, and more steps of this
+    /// length remain than [`Adaptive::stiff`](crate::adaptive::Adaptive) allows.
     Stiff {
         /// Time at the start of the step.
         time: f64,
-        /// The longest step that the method can take.
+        /// The step length to which stability limits the method.
         step: f64,
         /// The rate ρ, an estimate of the spectral radius of the equations.
         rate: f64,
@@ -160,7 +160,7 @@ impl fmt::Display for StepError {
                 found,
             } => write!(f, "{part}: {expected} entries expected, {found} found"),
             Self::InvalidStep { step, span } => {
-                // As `Debug` writes numbers: never with a long row of zeros.
+                // Numbers are formatted with `Debug`, which never writes long rows of zeros.
                 write!(
                     f,
                     "a time of {span:?} cannot be covered by steps of {step:?}: a step is a finite number with the sign of the time, and not so short that adding it changes nothing"

@@ -1,4 +1,4 @@
-//! Single steps, and runs from one time to another in equal steps.
+//! Single steps, and runs of equal steps from one time to another.
 
 use crate::clock::Clock;
 use crate::error::StepError;
@@ -9,8 +9,10 @@ use crate::store::is_finite;
 use crate::system::System;
 use core::ops::ControlFlow;
 
-/// Moves `state` by one step of length `h`, which may be negative or zero, and projects it onto the constraints that no
-/// chart keeps: those of the coordinates, and those that multipliers enforce. `inputs(t, x, ξ)` returns u.
+/// Advances `state` by one step of length `h`, which may be negative or zero.
+///
+/// The result is projected onto the constraints that no chart preserves: those among the coordinates, and those that
+/// multipliers enforce. `inputs(t, x, ξ)` returns u.
 ///
 /// # Errors
 /// [`StepError`]; `state` is then unchanged.
@@ -36,7 +38,8 @@ where
     Ok(())
 }
 
-/// Leads x back to what no chart keeps of φ(x) = 0, by one Newton step; whether there is such a constraint.
+/// Corrects x by one Newton step towards the part of φ(x) = 0 that no chart preserves; returns whether there is such a
+/// constraint.
 #[inline]
 pub(crate) fn lead_back<Sys>(system: &Sys, state: &mut State<Sys>) -> bool
 where
@@ -51,9 +54,9 @@ where
     true
 }
 
-/// Moves a state onto the constraints that multipliers keep: loops closed by one Newton step, velocities
-/// by the projection that is orthogonal in kinetic energy. Nothing is done where there are none; whether
-/// something was. In place, as states with slopes are long.
+/// Projects a state onto the constraints that multipliers enforce: closes loops by one Newton step, and projects
+/// velocities orthogonally in the kinetic-energy metric. Returns whether anything was projected; without such
+/// constraints nothing is done. Works in place, because states in dual numbers are large.
 #[inline]
 pub(crate) fn project<Sys>(system: &Sys, state: &mut State<Sys>) -> Result<bool, StepError>
 where
@@ -63,7 +66,8 @@ where
     let mut moved = false;
     let singular = |cause| StepError::Singular { cause, time };
     if let Some(step) = system.project_position(&state.x).map_err(singular)? {
-        // A alone: where the time is a coordinate, rates have terms without ξ.
+        // Subtracts the part of the rate without ξ (nonzero where time is a coordinate), which leaves A times the step
+        // alone.
         let mut chart = system.chart_rate(&state.x, &step);
         let still = system.chart_rate(&state.x, &system.zero_velocities());
         for (entry, &drift) in chart.as_mut().iter_mut().zip(still.as_ref()) {
@@ -86,13 +90,13 @@ where
     }
 }
 
-/// Moves `state` to the time `until`, forwards or backwards, in equal steps no longer than `length`.
+/// Integrates `state` to the time `until`, forwards or backwards, in equal steps no longer than `length`.
 ///
 /// The number of steps is |until − t| / |length| rounded up, where a ratio within 1e-9 of a whole number counts as that
-/// number. So all steps are equal, the method keeps its order, and the last state is at `until` exactly.
+/// number. All steps are therefore equal, the method keeps its order, and the last state is at `until` exactly.
 /// `inputs(t, x, ξ)` returns u and is called at every point that the method visits; `observe` is called with the first
-/// state and after every step. What would be evaluated both at the end of a step and at the start of the next is
-/// evaluated once ([`Method::follow`]).
+/// state and after every step. A method that evaluates the forces both at the end of a step and at the start of the
+/// next evaluates them only once ([`Method::follow`]).
 ///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
@@ -119,7 +123,8 @@ where
     integrate_while(system, method, state, length, until, inputs, observe)
 }
 
-/// As [`integrate`], as long as `observe` says so: a run that it breaks off ends in the state that it was shown last.
+/// Integrates like [`integrate`] until `observe` breaks: a run that is stopped ends in the state that `observe` saw
+/// last.
 ///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
@@ -167,7 +172,7 @@ where
     Ok(())
 }
 
-/// The equal steps that [`integrate`] takes from one time to another.
+/// Equal steps that [`integrate`] takes from one time to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     from: f64,
@@ -176,30 +181,30 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The fewest equal steps no longer than `length`; none where both times are the same.
+    /// Creates the smallest number of equal steps no longer than `length`; no steps if both times are equal.
     ///
     /// # Errors
-    /// [`StepError::InvalidStep`] where a length or a time is not finite, the length is zero, or the steps are too many
-    /// to tell their times apart.
+    /// [`StepError::InvalidStep`] if a length or a time is not finite, the length is zero, or there are too many steps
+    /// to distinguish their times.
     pub fn new(from: f64, until: f64, length: f64) -> Result<Self, StepError> {
         let count = count_steps(until - from, length)?;
         Ok(Self { from, until, count })
     }
 
-    /// How many steps there are.
+    /// Returns the number of steps.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The length of a step, negative where it leads backwards in time; NaN where there is no step.
+    /// Returns the length of a step, negative for runs backwards in time; NaN if there are no steps.
     #[inline]
     #[must_use]
     pub fn step(&self) -> f64 {
         (self.until - self.from) / self.count as f64
     }
 
-    /// The time after `index` steps, exactly `until` after the last.
+    /// Returns the time after `index` steps, exactly `until` after the last.
     #[inline]
     #[must_use]
     pub fn time(&self, index: u64) -> f64 {
@@ -211,9 +216,9 @@ impl Grid {
     }
 }
 
-/// How many equal steps, no longer than `step`, cover `span`.
+/// Returns the smallest number of equal steps, no longer than `step`, that cover `span`.
 fn count_steps(span: f64, step: f64) -> Result<u64, StepError> {
-    /// Beyond this count the time of neighbouring steps is hardly distinct.
+    /// Largest number of steps; beyond it, rounding hardly distinguishes the times of neighbouring steps.
     const MOST: f64 = (1_u64 << 52) as f64;
     let ratio = (span / step).abs();
     if span == 0.0 {
@@ -231,9 +236,9 @@ fn count_steps(span: f64, step: f64) -> Result<u64, StepError> {
     }
 }
 
-/// ξ̇ at a point of the step that starts at `time`, with the inputs of `time + offset`.
+/// Returns ξ̇ at a point of the step that starts at `time`, with the inputs at `time + offset`.
 ///
-/// A pivot that is NaN because the state is NaN is reported as such.
+/// A singular pivot is reported as [`StepError::NonFinite`] if the state itself is not finite.
 #[inline]
 pub(crate) fn acceleration<Sys, U>(
     system: &Sys,

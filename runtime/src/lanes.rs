@@ -2,12 +2,12 @@
 
 use crate::scalar::Scalar;
 
-/// A scalar of [`COUNT`](Self::COUNT) independent numbers; `f64` and `f32` are lanes of one.
+/// A scalar that holds [`COUNT`](Self::COUNT) independent numbers; `f64` and `f32` have one lane.
 ///
-/// With the feature `wide`, the vectors `f64x4`, `f64x8`, `f32x8` and `f32x16` of the crate `wide` are scalars of that
-/// many lanes; see [`wide`](crate::wide). What a lane computes does not depend on the others, except where a method has
-/// to decide for all of them by the worst: the step sizes of [`Adaptive`](crate::adaptive::Adaptive) and the iterations of
-/// implicit methods.
+/// With the feature `wide`, the vectors `f64x4`, `f64x8`, `f32x8` and `f32x16` of the crate `wide` are scalars with
+/// that many lanes; see [`wide`](crate::wide). The result in a lane does not depend on the other lanes, except where a
+/// method has to make one decision for all of them, by the worst lane: the step sizes of
+/// [`Adaptive`](crate::adaptive::Adaptive) and the iterations of implicit methods.
 ///
 /// ```
 /// use hamel::Lanes;
@@ -22,16 +22,16 @@ use crate::scalar::Scalar;
 pub trait Lanes: Scalar {
     /// The type of the number in one lane.
     type Element: Scalar;
-    /// The numbers of all lanes.
+    /// An array of the numbers in all lanes.
     type Array: AsRef<[Self::Element]> + Copy;
 
     /// The number of lanes.
     const COUNT: usize;
 
-    /// Sets every lane to the value for its index, from 0.
+    /// Creates a scalar from the value for the index of each lane, counted from 0.
     fn from_lanes(value: impl FnMut(usize) -> Self::Element) -> Self;
 
-    /// The values, lane by lane.
+    /// Returns the values, lane by lane.
     fn lanes(self) -> Self::Array;
 }
 

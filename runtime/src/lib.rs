@@ -1,10 +1,10 @@
-//! Equations of motion as specialised code, and their integration on manifolds.
+//! Equations of motion as generated, specialised code, and integrators that run them on manifolds.
 //!
 #![cfg_attr(feature = "macros", doc = include_str!("../README.md"))]
 //!
 //! # What this crate contains
 //!
-//! A generated type implements [`System`]: coordinates x, possibly redundant and of the kinds of [`Block`],
+//! A generated type implements [`System`]: coordinates x, which may be redundant and consist of the kinds of [`Block`],
 //! quasi-velocities ξ, and the equations of motion
 //!
 //! ẋ = A(x) ξ,  ξ̇ = M(x)⁻¹ (f(x, ξ, u) − Γ(x) ξ ξ − ∂V(x)).
@@ -14,16 +14,16 @@
 //! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`Sampled`] | runs in equal steps, single steps, and runs with a controller that has a period of its own |
 //! | [`methods`] | the integrators: explicit and implicit Runge-Kutta methods on Lie groups, variational and splitting methods |
 //! | [`adaptive`] | error control, events and dense output |
-//! | [`Monitor`] | how well a run keeps energy, momentum and constraints |
-//! | [`step_slopes`], [`step_slopes_into`], [`Dual`] | the derivatives of a step with respect to state and inputs |
-//! | [`flows`], [`Split`] | exact flows of free bodies, for systems that split into free motion and kicks |
+//! | [`Monitor`] | how well a run conserves energy and satisfies constraints |
+//! | [`step_slopes`], [`step_slopes_into`], [`Dual`] | derivatives of a step with respect to state and inputs |
+//! | [`flows`], [`Split`] | exact flows of force-free bodies, for systems that split into free motion and kicks |
 //! | `ensemble`, `wide` | many states at once, in SIMD lanes and on all cores |
 //! | [`adapter`] | any generated system as y′ = f(t, y), for the solvers of other crates |
 //! | [`so3`], [`s3`], [`s1`] | rotations as matrices, unit quaternions and angles |
 //!
-//! Nothing here allocates (but for `ensemble`, [`BackwardEuler`](methods::BackwardEuler) where a system is stiff, and what you
-//! store yourself), and nothing panics: whatever fails is a [`StepError`] or a [`Singular`] that says what to do. Numbers can
-//! be of any [`Scalar`] type: `f64`, `f32`, dual numbers, SIMD lanes.
+//! Nothing in this crate allocates, except `ensemble`, [`BackwardEuler`](methods::BackwardEuler) on stiff systems, and
+//! whatever you store yourself. Nothing panics: every failure is a [`StepError`] or a [`Singular`], whose message says
+//! what to do. All numbers may be of any [`Scalar`] type: `f64`, `f32`, dual numbers, SIMD lanes.
 //!
 //! # Features
 //!
@@ -31,14 +31,14 @@
 //! |---|---|---|
 //! | `std` | yes | mathematical functions of the standard library, `Vec` as a [`Store`], and differences in [`BackwardEuler`](methods::BackwardEuler). Without it the crate is `no_std` and takes them from `libm` |
 //! | `macros` | yes | [`rigid_eom!`] |
-//! | `nalgebra` | yes | states as types of nalgebra, in `edge` |
+//! | `nalgebra` | yes | conversions of states to nalgebra types, in `edge` |
 //! | `wide` | no | SIMD lanes as scalars, in `wide` |
-//! | `ensemble` | no | many states on lanes and threads, in `ensemble`; implies `std` and `wide` |
+//! | `ensemble` | no | many states at once on SIMD lanes and threads, in `ensemble`; implies `std` and `wide` |
 //!
 //! # A system written by hand
 //!
 //! The integrators work for any [`System`], whether it was generated or not.
-//! A pendulum of length l, x = (cos θ, sin θ), ξ = θ̇, l θ̈ = −g sin θ, as written by hand:
+//! This is a pendulum of length l, with x = (cos θ, sin θ), ξ = θ̇ and l θ̈ = −g sin θ:
 //!
 //! ```
 //! use hamel::methods::Rkmk4;

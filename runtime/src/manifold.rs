@@ -1,11 +1,10 @@
-//! Moving a whole x along its manifold, block by block.
+//! Retractions and related maps on a whole coordinate vector x, block by block.
 //!
-//! Lists shorter than the blocks say are treated up to the last complete block; a longer list keeps
-//! its tail. The integrators compare lengths before a step and return
-//! [`StepError::Shape`](crate::StepError::Shape).
+//! Lists shorter than the blocks require are processed up to the last complete block; longer lists keep their tail
+//! unchanged. The integrators compare lengths before a step and return [`StepError::Shape`](crate::StepError::Shape).
 //!
-//! What moves x is inlined by force, down to the entries: the kinds of blocks are constants of a generated
-//! system, and a call passes matrices through memory, which costs a step of `Rkmk4` more than its
+//! All functions that move x are `inline(always)`, down to single entries: the kinds of blocks are constants of a
+//! generated system, and a call would pass matrices through memory, which costs a step of `Rkmk4` more than its
 //! accelerations.
 
 use crate::scalar::Scalar;
@@ -13,13 +12,13 @@ use crate::store::add;
 use crate::system::Block;
 use crate::{s1, s3, so3};
 
-/// ν: the number of entries of x.
+/// Returns ν, the number of entries of x.
 #[inline]
 pub fn coordinates(blocks: &[Block]) -> usize {
     blocks.iter().map(|block| block.coordinates()).sum()
 }
 
-/// The number of entries of a chart vector.
+/// Returns the number of entries of a chart vector.
 #[inline]
 pub fn chart(blocks: &[Block]) -> usize {
     blocks.iter().map(|block| block.chart()).sum()
@@ -59,8 +58,9 @@ pub fn retract<S: Scalar>(blocks: &[Block], x: &mut [S], u: &[S]) {
     }
 }
 
-/// w ← u̇, the rate of the chart vector u at which x, moved along u, has the chart rate w:
-/// [`so3::dexpinv`] on quaternions and rotations; w itself elsewhere.
+/// Replaces the chart rate w by u̇: the rate of the chart vector u for which x, moved along u, has the chart rate w.
+///
+/// This is [`so3::dexpinv`] on quaternions and rotations, and w itself elsewhere.
 #[inline(always)]
 pub fn dexpinv<S: Scalar>(blocks: &[Block], u: &[S], w: &mut [S]) {
     let (mut u, mut w) = (u, w);
@@ -80,8 +80,8 @@ pub fn dexpinv<S: Scalar>(blocks: &[Block], u: &[S], w: &mut [S]) {
     }
 }
 
-/// Removes what rounding adds across the manifold: unit norm (circle, quaternion), one Newton polar
-/// step (rotation). Flat blocks keep their values.
+/// Removes the drift off the manifold that rounding causes: scales circles and quaternions to unit norm, and applies
+/// one Newton polar step to rotations. Flat blocks keep their values.
 #[inline(always)]
 pub fn normalise<S: Scalar>(blocks: &[Block], x: &mut [S]) {
     let mut x = x;

@@ -1,22 +1,22 @@
-//! The inertia of a torque-free rotor, and the symmetry that decides how its flow is computed.
+//! The inertia of a torque-free rotor, and its symmetry, which decides how its flow is computed.
 
 use core::array::from_fn;
 
 use crate::scalar::{Scalar, epsilon};
 use crate::so3::{self, Matrix, Vector};
 
-/// Which principal moments are equal. This decides how the torque-free flow is computed.
+/// Which principal moments of inertia are equal; this decides how the torque-free flow is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
     /// Three equal moments: the rotor turns about a fixed axis.
     Spherical,
-    /// The two moments other than that of this principal axis (0, 1, 2) are equal: two turns are exact.
+    /// The two moments other than that of this principal axis (0, 1, 2) are equal: the flow is exactly two turns.
     Axial(usize),
-    /// Three different moments: Jacobi's elliptic functions.
+    /// Three different moments: the flow needs Jacobi's elliptic functions.
     None,
 }
 
-/// One torque-free rotor.
+/// A torque-free rotor.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor<S> {
     /// The principal moments J₁, J₂, J₃.
@@ -27,16 +27,15 @@ pub struct Rotor<S> {
     pub symmetry: Symmetry,
 }
 
-/// Moments of a diagonal inertia that differ by less than this many units of rounding of the largest
-/// are equal.
+/// Moments of a diagonal inertia count as equal if they differ by less than this many rounding units of the largest.
 const ULPS_GIVEN: f64 = 4.0;
-/// The same for moments that come out of rotations.
+/// The same limit for moments computed by Jacobi rotations.
 const ULPS_COMPUTED: f64 = 16.0;
-/// Sweeps of Jacobi's method: the off-diagonal part shrinks quadratically, three sweeps are usual.
+/// Number of sweeps of Jacobi's method. The off-diagonal part shrinks quadratically; three sweeps usually suffice.
 const SWEEPS: usize = 7;
 
 impl<S: Scalar> Rotor<S> {
-    /// A rotor whose body axes are principal and whose symmetry is known from its description.
+    /// Creates a rotor whose body axes are principal and whose symmetry is known from its description.
     pub fn principal(moments: Vector<S>, symmetry: Symmetry) -> Self {
         Self {
             moments,
@@ -45,13 +44,13 @@ impl<S: Scalar> Rotor<S> {
         }
     }
 
-    /// A rotor whose body axes are principal. Moments that agree to rounding in all lanes are taken as equal.
+    /// Creates a rotor whose body axes are principal. Moments that agree to rounding in all lanes are taken as equal.
     pub fn of_moments(moments: Vector<S>) -> Self {
         Self::principal(moments, symmetry(moments, ULPS_GIVEN))
     }
 
-    /// A rotor of any inertia, of which only the symmetric part counts. Jacobi's rotations give the principal moments and
-    /// axes; moments that agree to rounding are taken as equal.
+    /// Creates a rotor from any inertia matrix, of which only the symmetric part counts. Jacobi rotations yield the
+    /// principal moments and axes; moments that agree to rounding are taken as equal.
     ///
     /// C. G. J. Jacobi 1846; W. H. Press et al., *Numerical Recipes*, 11.1.
     pub fn general(inertia: Matrix<S>) -> Self {
@@ -79,14 +78,14 @@ impl<S: Scalar> Rotor<S> {
         }
     }
 
-    /// Takes a vector from body axes to principal axes.
+    /// Transforms a vector from body axes to principal axes.
     #[inline]
     pub fn to_principal(&self, body: Vector<S>) -> Vector<S> {
         self.axes
             .map_or(body, |axes| so3::apply_transpose(axes, body))
     }
 
-    /// Takes a vector from principal axes to body axes.
+    /// Transforms a vector from principal axes to body axes.
     #[inline]
     pub fn to_body(&self, principal: Vector<S>) -> Vector<S> {
         self.axes
@@ -94,7 +93,7 @@ impl<S: Scalar> Rotor<S> {
     }
 }
 
-/// The rotation about the third axis that makes the entry (a, b) of a symmetric matrix vanish:
+/// Returns the rotation about the third axis that makes the entry (a, b) of a symmetric matrix vanish:
 /// tan θ = 2 j_ab sgn d / (|d| + √(d² + 4 j_ab²)), d = j_bb − j_aa.
 fn rotation<S: Scalar>(j: Matrix<S>, a: usize, b: usize) -> Matrix<S> {
     let (zero, one) = (S::default(), S::from_f64(1.0));
@@ -113,7 +112,8 @@ fn rotation<S: Scalar>(j: Matrix<S>, a: usize, b: usize) -> Matrix<S> {
     turn
 }
 
-/// Which moments differ by less than `ulps` units of rounding of the largest, in all lanes, and have the same slopes.
+/// Finds which moments differ by less than `ulps` rounding units of the largest, in all lanes, and have the same
+/// slopes.
 fn symmetry<S: Scalar>(moments: Vector<S>, ulps: f64) -> Symmetry {
     let [a, b, c] = moments;
     let largest = Scalar::max(Scalar::max(a.abs(), b.abs()), c.abs());

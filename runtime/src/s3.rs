@@ -9,7 +9,7 @@ use core::array::from_fn;
 use crate::scalar::{Scalar, series};
 use crate::so3::{Matrix, Vector, by_series};
 
-/// cos(t/2) in t²: (−1)ᵏ / (4ᵏ (2k)!)
+/// Coefficients of cos(t/2) in powers of t²: (−1)ᵏ / (4ᵏ (2k)!)
 const HALF_COSINE: [f64; 7] = [
     1.0,
     -1.0 / 8.0,
@@ -20,7 +20,7 @@ const HALF_COSINE: [f64; 7] = [
     1.0 / 1_961_990_553_600.0,
 ];
 
-/// sin(t/2) / t in t²: (−1)ᵏ / (2 · 4ᵏ (2k+1)!)
+/// Coefficients of sin(t/2) / t in powers of t²: (−1)ᵏ / (2 · 4ᵏ (2k+1)!)
 const HALF_SINE_RATIO: [f64; 7] = [
     0.5,
     -1.0 / 48.0,
@@ -31,7 +31,7 @@ const HALF_SINE_RATIO: [f64; 7] = [
     1.0 / 51_011_754_393_600.0,
 ];
 
-/// 2 atan(z) / z in z²: 2 (−1)ᵏ / (2k+1)
+/// Coefficients of 2 atan(z) / z in powers of z²: 2 (−1)ᵏ / (2k+1)
 const TWICE_ARCTANGENT_RATIO: [f64; 7] = [
     2.0,
     -2.0 / 3.0,
@@ -42,10 +42,10 @@ const TWICE_ARCTANGENT_RATIO: [f64; 7] = [
     2.0 / 13.0,
 ];
 
-/// Four components, scalar first.
+/// A quaternion of four components, scalar first.
 pub type Quaternion<S> = [S; 4];
 
-/// The Hamilton product p ⊗ q.
+/// Returns the Hamilton product p ⊗ q.
 #[inline(always)]
 pub fn product<S: Scalar>(p: Quaternion<S>, q: Quaternion<S>) -> Quaternion<S> {
     [
@@ -56,14 +56,14 @@ pub fn product<S: Scalar>(p: Quaternion<S>, q: Quaternion<S>) -> Quaternion<S> {
     ]
 }
 
-/// q̇ = ½ q ⊗ (0, ω), ω in body axes, rad per time.
+/// Returns q̇ = ½ q ⊗ (0, ω), ω in body axes, rad per time.
 #[inline]
 pub fn rate<S: Scalar>(q: Quaternion<S>, w: Vector<S>) -> Quaternion<S> {
     let half = S::from_f64(0.5);
     product(q, [S::default(), half * w[0], half * w[1], half * w[2]])
 }
 
-/// The rotation by t = |u| about u: (cos(t/2), sin(t/2)/t u).
+/// Returns the rotation by t = |u| about u: (cos(t/2), sin(t/2)/t u).
 #[inline(always)]
 pub fn exp<S: Scalar>(u: Vector<S>) -> Quaternion<S> {
     let t2 = u[0].mul_add(u[0], u[1].mul_add(u[1], u[2] * u[2]));
@@ -75,15 +75,15 @@ pub fn exp<S: Scalar>(u: Vector<S>) -> Quaternion<S> {
     [cosine, a * u[0], a * u[1], a * u[2]]
 }
 
-/// The rotation vector u, |u| ≤ π, with exp(u) = ±q: 2 atan(|v|/w)/|v| v for q = ±(w, v), w ≥ 0.
-/// The norm of q does not matter.
+/// Returns the rotation vector u, |u| ≤ π, with exp(u) = ±q: 2 atan(|v|/w)/|v| v for q = ±(w, v), w ≥ 0. The norm of q
+/// does not matter.
 #[inline]
 pub fn log<S: Scalar>(q: Quaternion<S>) -> Vector<S> {
     let zero = S::default();
     let [w, v @ ..] = q;
     let v2 = v[0].mul_add(v[0], v[1].mul_add(v[1], v[2] * v[2]));
     let norm = v2.sqrt();
-    // Unlike |w| it has a slope at half a turn.
+    // Unlike |w|, this has a nonzero slope at w = 0, half a turn.
     let positive = w.select_lt(zero, -w, w);
     let closed = S::from_f64(2.0) * norm.atan2(positive) / norm;
     let z2 = v2 / (w * w);
@@ -93,7 +93,7 @@ pub fn log<S: Scalar>(q: Quaternion<S>) -> Vector<S> {
     v.map(|component| factor * component)
 }
 
-/// The matrix of a unit quaternion.
+/// Returns the rotation matrix of a unit quaternion.
 #[inline(always)]
 pub fn to_matrix<S: Scalar>(q: Quaternion<S>) -> Matrix<S> {
     let (one, two) = (S::from_f64(1.0), S::from_f64(2.0));
@@ -112,10 +112,10 @@ pub fn to_matrix<S: Scalar>(q: Quaternion<S>) -> Matrix<S> {
     ]
 }
 
-/// A quaternion of a rotation matrix, of norm one whether or not R is exactly orthogonal.
+/// Returns a unit quaternion of a rotation matrix; its norm is one whether or not R is exactly orthogonal.
 ///
-/// 4 q qᵀ is linear in R; its column with the largest diagonal entry is q without cancellation
-/// (S. W. Shepperd, J. Guid. Control 1 (1978) 223).
+/// 4 q qᵀ is linear in R; its column with the largest diagonal entry is a multiple of q, without cancellation (S. W.
+/// Shepperd, J. Guid. Control 1 (1978) 223).
 #[inline]
 pub fn from_matrix<S: Scalar>(r: Matrix<S>) -> Quaternion<S> {
     let one = S::from_f64(1.0);
@@ -155,27 +155,27 @@ pub fn from_matrix<S: Scalar>(r: Matrix<S>) -> Quaternion<S> {
     normalise(best)
 }
 
-/// q ⊗ exp(u): q turned by u in its own (body) axes.
+/// Returns q ⊗ exp(u): q turned by u in its own (body) axes.
 #[inline(always)]
 pub fn retract<S: Scalar>(q: Quaternion<S>, u: Vector<S>) -> Quaternion<S> {
     S::turned_quaternion(q, u)
 }
 
-/// q / |q|; NaN for q = 0.
+/// Returns q / |q|; NaN for q = 0.
 #[inline(always)]
 pub fn normalise<S: Scalar>(q: Quaternion<S>) -> Quaternion<S> {
     let norm = squared_norm(q).sqrt();
     q.map(|component| component / norm)
 }
 
-/// −½ q (q·q − 1), the term −Ψ φ of KR18 (8) for q·q = 1.
+/// Returns −½ q (q·q − 1), the term −Ψ φ of KR18 (8) for q·q = 1.
 #[inline]
 pub fn correction<S: Scalar>(q: Quaternion<S>) -> Quaternion<S> {
     let factor = S::from_f64(0.5) * (S::from_f64(1.0) - squared_norm(q));
     q.map(|component| factor * component)
 }
 
-/// |q·q − 1|
+/// Returns |q·q − 1|.
 #[inline]
 pub fn defect<S: Scalar>(q: Quaternion<S>) -> S {
     (squared_norm(q) - S::from_f64(1.0)).abs()

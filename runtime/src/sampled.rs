@@ -1,4 +1,4 @@
-//! Digital controllers, which run at a period of their own and hold their output in between.
+//! Digital controllers, which are called at a fixed period and hold their output in between.
 
 use crate::adaptive::{Adaptive, Statistics};
 use crate::clock::Clock;
@@ -8,10 +8,12 @@ use crate::methods::Method;
 use crate::state::State;
 use crate::system::System;
 
-/// A digital controller with zero-order hold: it is called for u at the start of a run and at every multiple of a period
-/// after it, and u is constant in between. Calls come in the order of time, so that a controller can have a state.
+/// A digital controller with zero-order hold.
 ///
-/// Steps end where u jumps. So every method keeps its order, and error control never meets a jump within a step.
+/// The controller is called for u at the start of a run and at every multiple of its period after that, and u is
+/// constant in between. Calls come in order of time, so a controller may have a state of its own.
+///
+/// Steps end where u jumps. Every method therefore keeps its order, and error control never meets a jump within a step.
 ///
 /// ```
 /// # use hamel::{Block, Singular, State, System};
@@ -55,13 +57,13 @@ pub struct Sampled<C> {
 }
 
 impl<C> Sampled<C> {
-    /// A controller that is called once in every `period`, in the unit of time of the description.
+    /// Creates a controller that is called once per `period`, in the time unit of the description.
     pub const fn new(period: f64, controller: C) -> Self {
         Self { period, controller }
     }
 
-    /// Moves `state` to the time `until`, in steps no longer than `length`, as [`integrate`](integrate()) does; the steps
-    /// of a period are equal. `observe` is called with the first state and after every step.
+    /// Integrates `state` to the time `until`, in steps no longer than `length`, as [`integrate`](integrate()) does;
+    /// the steps within a period are equal. `observe` is called with the first state and after every step.
     ///
     /// # Errors
     /// [`StepError`]; `state` is then the last valid one. [`StepError::InvalidStep`] if the period is not positive and
@@ -85,7 +87,7 @@ impl<C> Sampled<C> {
         self.periods(system, state, until, |state, end, u| {
             let from = state.t;
             let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
-            // The first state was seen at the end of the period before.
+            // `observe` has already seen the first state of this period, at the end of the previous one.
             let observe = |state: &State<Sys>| {
                 if state.t != from {
                     observe(state);
@@ -95,8 +97,8 @@ impl<C> Sampled<C> {
         })
     }
 
-    /// As [`integrate`](Self::integrate), but with error control; `observe` is called with the first state and at the end
-    /// of every period.
+    /// Integrates like [`integrate`](Self::integrate), but with error control; `observe` is called with the first state
+    /// and at the end of every period.
     ///
     /// # Errors
     /// Those of [`integrate`](Self::integrate).
@@ -127,7 +129,7 @@ impl<C> Sampled<C> {
         Ok(all)
     }
 
-    /// Goes through the periods: asks the controller, and moves the state to the end of the period.
+    /// Loops over the periods: calls the controller, and moves the state to the end of the period.
     fn periods<Sys>(
         &mut self,
         system: &Sys,
@@ -142,12 +144,12 @@ impl<C> Sampled<C> {
         let from = state.t;
         let (step, span) = (self.period, until - from);
         let count = span / step;
-        // Beyond this count neighbouring times are hardly distinct; also where it is no number.
+        // Beyond this count rounding hardly distinguishes neighbouring times. The test also fails if the count is NaN.
         let few = count < (1_u64 << 52) as f64;
         if !(step > 0.0 && step.is_finite() && span >= 0.0 && few) {
             return Err(StepError::InvalidStep { step, span });
         }
-        // A ratio that is whole but for rounding is whole.
+        // A ratio within rounding of a whole number counts as that number.
         let whole = count as u64;
         let last = whole + u64::from(count - whole as f64 > 1e-9 * count.max(1.0));
         let clock = Clock::new(system, state);

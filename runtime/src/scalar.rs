@@ -1,15 +1,15 @@
-//! The numbers of generated code: `f64`, `f32`, and lanes of them.
+//! The scalar types of generated code: `f64`, `f32`, SIMD lanes and dual numbers.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::{s3, so3};
 
-/// A real number, or several computed in step (SIMD lanes).
+/// A real number, or several that are computed together (SIMD lanes).
 ///
-/// There is no ordering and no equality: a condition can differ from lane to lane, so code chooses
-/// with [`select_lt`](Scalar::select_lt) and takes both branches. `Default` is zero in every lane.
-/// Functions follow IEEE 754: outside their domain they give NaN, never a panic.
+/// There is no ordering and no equality: a condition can differ from lane to lane, so code computes both branches and
+/// selects with [`select_lt`](Scalar::select_lt). `Default` is zero in every lane. Functions follow IEEE 754: outside
+/// their domain they return NaN and never panic.
 pub trait Scalar:
     Copy
     + Debug
@@ -24,13 +24,13 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
 {
-    /// The distance from 1 to the next larger number.
+    /// Distance from 1 to the next larger number.
     const EPSILON: f64;
 
-    /// The nearest number to `value`, in every lane.
+    /// Returns the number nearest to `value`, in every lane.
     fn from_f64(value: f64) -> Self;
 
-    /// (sin self, cos self), argument in rad.
+    /// Returns (sin self, cos self), argument in rad.
     fn sin_cos(self) -> (Self, Self);
 
     /// Square root; NaN below zero.
@@ -42,7 +42,7 @@ pub trait Scalar:
     /// Natural logarithm; NaN below zero.
     fn ln(self) -> Self;
 
-    /// Hyperbolic sine, which keeps its digits near 0: x Σ x²ᵏ/(2k + 1)! there, (eˣ − e⁻ˣ)/2 elsewhere.
+    /// Hyperbolic sine, accurate near 0: x Σ x²ᵏ/(2k + 1)! there, (eˣ − e⁻ˣ)/2 elsewhere.
     fn sinh(self) -> Self {
         const TERMS: [f64; 7] = [
             1.0,
@@ -65,7 +65,7 @@ pub trait Scalar:
         (power + Self::from_f64(1.0) / power) * Self::from_f64(0.5)
     }
 
-    /// Hyperbolic tangent, which keeps its digits near 0: sinh/cosh there, 1 − 2/(e²ˣ + 1) elsewhere.
+    /// Hyperbolic tangent, accurate near 0: sinh/cosh there, 1 − 2/(e²ˣ + 1) elsewhere.
     fn tanh(self) -> Self {
         let (one, two) = (Self::from_f64(1.0), Self::from_f64(2.0));
         let far = one - two / ((two * self).exp() + one);
@@ -79,57 +79,58 @@ pub trait Scalar:
     /// Absolute value.
     fn abs(self) -> Self;
 
-    /// How large the number is for tests of convergence and estimates of errors: |self|, and for a number with slopes the
-    /// largest of |value| and |slopes|, which does not vary.
+    /// Returns the size of the number for convergence tests and error estimates: |self|. For a dual number it is the
+    /// largest of |value| and |slopes|, as a constant (with zero slopes).
     #[inline]
     fn size(self) -> Self {
         self.abs()
     }
 
-    /// The part that the number, an error, makes of two numbers, |self|/(|a| + |b|), and 0 where it is 0. Of numbers with
-    /// slopes it is the larger one of that of their values and that of their largest slopes, and does not vary.
+    /// Returns the error `self` relative to two numbers, |self|/(|a| + |b|), and 0 where `self` is 0. For dual numbers
+    /// it is the larger of this ratio for the values and for the largest slopes, as a constant.
     #[inline]
     fn beside(self, a: Self, b: Self) -> Self {
         let error = self.abs();
         Self::default().select_lt(error, error / (a.abs() + b.abs()), error)
     }
 
-    /// `self · a + b`, where numbers with slopes are vectors: the scalar product of `self` and `a`, which does not vary.
+    /// Returns `self · a + b`; for dual numbers, `self · a` is the scalar product of the vectors of value and slopes, a
+    /// constant.
     #[inline]
     fn inner_plus(self, a: Self, b: Self) -> Self {
         self.mul_add(a, b)
     }
 
-    /// 1 with the sign of the number; 0 of 0, NaN of NaN.
+    /// Returns 1 with the sign of the number; 0 for 0, NaN for NaN.
     #[inline]
     fn sign(self) -> Self {
         let (zero, one) = (Self::default(), Self::from_f64(1.0));
         zero.select_lt(self, one, self.select_lt(zero, -one, self))
     }
 
-    /// `self · a + b`: rounded once where the target has a fused instruction, twice elsewhere.
-    /// A software routine that rounds once on every target is many times slower.
+    /// Returns `self · a + b`, rounded once if the target has a fused instruction, twice otherwise. A software routine
+    /// that rounds once on every target would be many times slower.
     fn mul_add(self, a: Self, b: Self) -> Self;
 
-    /// Multiplies it by `a`.
+    /// Multiplies the number by `a` in place.
     #[inline(always)]
     fn scale(&mut self, a: f64) {
         *self *= Self::from_f64(a);
     }
 
-    /// `self · a + b`, like [`mul_add`](Scalar::mul_add).
+    /// Returns `self · a + b`, like [`mul_add`](Scalar::mul_add), for a constant `a`.
     #[inline(always)]
     fn times_plus(self, a: f64, b: Self) -> Self {
         Self::from_f64(a).mul_add(self, b)
     }
 
-    /// The larger of two numbers; NaN when either is NaN, so that a maximum cannot hide one.
+    /// Returns the larger of two numbers; NaN if either is NaN, so that a maximum cannot hide one.
     fn max(self, other: Self) -> Self;
 
-    /// `then` in the lanes with `self < limit`, `otherwise` elsewhere (also where either is NaN).
+    /// Returns `then` in the lanes with `self < limit`, `otherwise` elsewhere (also where either is NaN).
     fn select_lt(self, limit: Self, then: Self, otherwise: Self) -> Self;
 
-    /// `then` in the lanes that are positive, `otherwise` in those that are not; NaN where the lane itself is.
+    /// Returns `then` in the lanes that are positive, `otherwise` in those that are not, and NaN in those that are NaN.
     #[inline]
     fn select_positive(self, then: Self, otherwise: Self) -> Self {
         let zero = Self::default();
@@ -140,8 +141,8 @@ pub trait Scalar:
         )
     }
 
-    /// 1/self, where that is no shorter than 1e-100 (1e-12 for `f32`), else 1 over this: a large number, which times
-    /// 0 is 0. So lengths at rest have the slope 0.
+    /// Returns 1/self if |self| ≥ 1e-100 (1e-12 for `f32`), otherwise the inverse of this limit: a large finite number,
+    /// which gives 0 when multiplied by 0. The derivative of a length √(a·a) at a = 0 is therefore 0.
     #[inline]
     fn inverse_of_length(self) -> Self {
         let shortest = Self::from_f64(if Self::EPSILON < 1e-10 { 1e-100 } else { 1e-12 });
@@ -149,8 +150,8 @@ pub trait Scalar:
         one / self.abs().select_lt(shortest, shortest, self)
     }
 
-    /// self (1 + 2⁻²⁶), and self (1 + 2⁻¹⁵) for `f32`: larger by a small part that rounding does not hide. A pivot that may
-    /// be nothing but rounding becomes one that can be divided by.
+    /// Returns self (1 + 2⁻²⁶), or self (1 + 2⁻¹⁵) for `f32`: larger by a small part that exceeds rounding. This makes
+    /// a pivot that may consist of rounding alone safe to divide by.
     #[inline]
     fn raised(self) -> Self {
         let double = Self::EPSILON < 1e-10;
@@ -158,43 +159,43 @@ pub trait Scalar:
         self * Self::from_f64(1.0 + 1.0 / f64::from(parts))
     }
 
-    /// [`so3::retract`]; numbers with slopes go by the derivative of exp.
+    /// Implements [`so3::retract`]; dual numbers use the derivative of exp.
     #[inline(always)]
     fn turned_matrix(r: so3::Matrix<Self>, u: so3::Vector<Self>) -> so3::Matrix<Self> {
         so3::product(r, so3::exp(u))
     }
 
-    /// [`s3::retract`]; numbers with slopes go by the derivative of exp.
+    /// Implements [`s3::retract`]; dual numbers use the derivative of exp.
     #[inline(always)]
     fn turned_quaternion(q: s3::Quaternion<Self>, u: so3::Vector<Self>) -> s3::Quaternion<Self> {
         s3::product(q, s3::exp(u))
     }
 
-    /// [`so3::dexpinv`]; numbers with many slopes go by its six derivatives.
+    /// Implements [`so3::dexpinv`]; dual numbers with many slopes use its six partial derivatives.
     #[inline(always)]
     fn chart_velocity(u: so3::Vector<Self>, w: so3::Vector<Self>) -> so3::Vector<Self> {
         so3::chart_velocity(u, w)
     }
 
-    /// Whether all lanes are positive, finite and not subnormal: a pivot that can be divided by.
+    /// Returns whether all lanes are positive, finite and not subnormal: a pivot that can be divided by.
     fn is_positive(self) -> bool;
 
-    /// The nearest whole number, as long as whole numbers are exact; it has no slope.
+    /// Returns the nearest whole number, for numbers in the range where whole numbers are exact; its slopes are zero.
     #[inline]
     fn nearest_whole(self) -> Self {
         let large = Self::from_f64(1.5 / Self::EPSILON);
         self + large - large
     }
 
-    /// Whether no lane is infinite or NaN.
+    /// Returns whether no lane is infinite or NaN.
     fn is_finite(self) -> bool;
 
-    /// The largest lane, NaN when one is NaN: lanes that are stepped together take the step that the
-    /// worst of them needs.
+    /// Returns the largest lane, or NaN if one is NaN. Lanes that are stepped together take the step that the worst of
+    /// them needs.
     fn largest_lane(self) -> f64;
 }
 
-/// Whether `mul_add` of the standard library is one instruction on this target.
+/// Whether `mul_add` of the standard library is a single instruction on this target.
 pub(crate) const FUSED: bool =
     cfg!(feature = "std") && cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
@@ -280,8 +281,8 @@ macro_rules! scalar {
 
             #[inline]
             fn is_positive(self) -> bool {
-                // By bits, from those of the smallest normal number to those below infinity: a compiler
-                // makes three times as many instructions of two comparisons.
+                // Compares bit patterns, from that of the smallest normal number to that of infinity: for two
+                // comparisons of numbers the compiler generates three times as many instructions.
                 const LEAST: $float = $float::MIN_POSITIVE;
                 self.to_bits().wrapping_sub(LEAST.to_bits())
                     < $float::INFINITY.to_bits() - LEAST.to_bits()
@@ -312,7 +313,7 @@ scalar!(
 );
 scalar!(f32, |_| None, sincosf, sqrtf, expf, logf, atan2f, fabsf);
 
-/// The spacing of numbers at 1: of `f64`, or of `f32` where that of `f64` is lost beside 1.
+/// Returns the spacing of numbers at 1: that of `f64`, or that of `f32` if the scalar cannot resolve the former.
 #[inline]
 pub(crate) fn epsilon<S: Scalar>() -> S {
     let (one, double) = (S::from_f64(1.0), S::from_f64(f64::EPSILON));
@@ -323,11 +324,11 @@ pub(crate) fn epsilon<S: Scalar>() -> S {
     }
 }
 
-/// Σ cᵢ zⁱ, the first term apart (it carries the rounding) and the others in pairs, which halves the
-/// chain of dependent operations of Horner's rule.
+/// Returns Σ cᵢ zⁱ. The first term is added last (it carries the rounding), the others are summed in pairs, which
+/// halves the chain of dependent operations of Horner's rule.
 #[inline]
 pub(crate) fn series<S: Scalar>(z: S, coefficients: [f64; 7]) -> S {
-    // Not `map`, which is a call for lanes.
+    // Written out instead of `map`, which compiles to a call for SIMD lanes.
     let of = S::from_f64;
     let [c0, c1, c2, c3, c4, c5, c6] = coefficients;
     let z2 = z * z;

@@ -1,26 +1,26 @@
 //! Rotations as matrices R (body to world), Ṙ = R ω̂ with ω in body axes.
 //!
-//! Rotation vectors u are in rad. The functions of t = |u| are series in t² below half a radian: the
-//! closed forms divide by zero there or cancel, and a step of an integrator rarely turns further, so
-//! that it takes neither a root nor a sine. Their truncation is below 5e-17. Sources: H. Munthe-Kaas, *High order Runge-Kutta methods on
-//! manifolds*, Appl. Numer. Math. 29 (1999) 115; E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical
-//! Integration* (2006), IV.7-8.
+//! Rotation vectors u are in rad. Below half a radian the functions of t = |u| are evaluated by series in t²: the
+//! closed forms divide by zero or cancel there. A step of an integrator rarely turns further, so it usually needs
+//! neither a square root nor a sine. The truncation error of the series is below 5e-17. Sources: H. Munthe-Kaas, *High
+//! order Runge-Kutta methods on manifolds*, Appl. Numer. Math. 29 (1999) 115; E. Hairer, C. Lubich, G. Wanner,
+//! *Geometric Numerical Integration* (2006), IV.7-8.
 
 use core::array::from_fn;
 
 use crate::s3;
 use crate::scalar::{Scalar, series};
 
-/// Three components.
+/// A vector of three components.
 pub type Vector<S> = [S; 3];
 
-/// Nine entries, row by row.
+/// A 3 × 3 matrix, nine entries row by row.
 pub type Matrix<S> = [S; 9];
 
-/// t² from which on the closed forms are used.
+/// Value of t² from which on the closed forms are used.
 const SERIES_BELOW: f64 = 0.25;
 
-/// sin t / t: (−1)ᵏ / (2k+1)!
+/// Coefficients of sin t / t in powers of t²: (−1)ᵏ / (2k+1)!
 pub(crate) const SINE_RATIO: [f64; 7] = [
     1.0,
     -1.0 / 6.0,
@@ -31,7 +31,7 @@ pub(crate) const SINE_RATIO: [f64; 7] = [
     1.0 / 6_227_020_800.0,
 ];
 
-/// (1 − cos t) / t²: (−1)ᵏ / (2k+2)!
+/// Coefficients of (1 − cos t) / t² in powers of t²: (−1)ᵏ / (2k+2)!
 pub(crate) const VERSINE_RATIO: [f64; 7] = [
     0.5,
     -1.0 / 24.0,
@@ -42,7 +42,7 @@ pub(crate) const VERSINE_RATIO: [f64; 7] = [
     1.0 / 87_178_291_200.0,
 ];
 
-/// (t − sin t) / t³: (−1)ᵏ / (2k+3)!
+/// Coefficients of (t − sin t) / t³ in powers of t²: (−1)ᵏ / (2k+3)!
 const SINE_DEFECT: [f64; 7] = [
     1.0 / 6.0,
     -1.0 / 120.0,
@@ -53,7 +53,7 @@ const SINE_DEFECT: [f64; 7] = [
     1.0 / 1_307_674_368_000.0,
 ];
 
-/// (1 − (t/2) cot(t/2)) / t²: |B₂ₖ₊₂| / (2k+2)!, Bernoulli numbers.
+/// Coefficients of (1 − (t/2) cot(t/2)) / t² in powers of t²: |B₂ₖ₊₂| / (2k+2)!, Bernoulli numbers.
 const COTANGENT_RATIO: [f64; 7] = [
     1.0 / 12.0,
     1.0 / 720.0,
@@ -64,8 +64,8 @@ const COTANGENT_RATIO: [f64; 7] = [
     1.0 / 74_724_249_600.0,
 ];
 
-/// Functions of t² by their series where all lanes allow it; elsewhere by `closed`, whose value is
-/// replaced by the series in the lanes with small t².
+/// Evaluates functions of t² by their series if all lanes allow it; otherwise by `closed`, whose value is replaced by
+/// the series in the lanes with small t².
 #[inline(always)]
 pub(crate) fn by_series<S: Scalar, const N: usize>(
     t2: S,
@@ -82,7 +82,7 @@ pub(crate) fn by_series<S: Scalar, const N: usize>(
     }
 }
 
-/// The matrix I, a rotation by zero.
+/// Returns the identity matrix, a rotation by zero.
 #[inline]
 pub fn identity<S: Scalar>() -> Matrix<S> {
     let mut r = [S::default(); 9];
@@ -92,13 +92,13 @@ pub fn identity<S: Scalar>() -> Matrix<S> {
     r
 }
 
-/// a · b
+/// Returns the scalar product a · b.
 #[inline(always)]
 pub fn dot<S: Scalar>(a: Vector<S>, b: Vector<S>) -> S {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }
 
-/// a × b = â b
+/// Returns the vector product a × b = â b.
 #[inline(always)]
 pub fn cross<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
     [
@@ -108,14 +108,15 @@ pub fn cross<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
     ]
 }
 
-/// â, the matrix with â b = a × b.
+/// Returns the skew-symmetric matrix â with â b = a × b.
 #[inline]
 pub fn hat<S: Scalar>(a: Vector<S>) -> Matrix<S> {
     let zero = S::default();
     [zero, -a[2], a[1], a[2], zero, -a[0], -a[1], a[0], zero]
 }
 
-/// The entries of a product, row by row. With vectors in registers, a loop is the fastest for numbers with slopes.
+/// Evaluates the entries of a matrix product, row by row, in a loop: with vector registers this is the fastest form for
+/// dual numbers.
 #[cfg(feature = "std")]
 macro_rules! entries {
     ($entry:ident) => {
@@ -125,15 +126,15 @@ macro_rules! entries {
         })
     };
 }
-/// The same written out: no index is left to be checked, which could panic, and microcontrollers take a seventh fewer
-/// instructions for a step with slopes, as they copy less.
+/// The same, written out: no index remains to be checked, which could panic, and on microcontrollers a step in dual
+/// numbers takes a seventh fewer instructions, since less is copied.
 #[cfg(not(feature = "std"))]
 macro_rules! entries {
     ($entry:ident: $([$i:literal $j:literal])+) => { [$($entry!($i, $j)),+] };
     ($entry:ident) => { entries!($entry: [0 0] [0 1] [0 2] [1 0] [1 1] [1 2] [2 0] [2 1] [2 2]) };
 }
 
-/// A B
+/// Returns the product A B.
 #[inline(always)]
 pub fn product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
     macro_rules! entry {
@@ -147,7 +148,7 @@ pub fn product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
     entries!(entry)
 }
 
-/// Aᵀ B
+/// Returns the product Aᵀ B.
 #[inline(always)]
 pub fn transpose_product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
     macro_rules! entry {
@@ -158,27 +159,27 @@ pub fn transpose_product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
     entries!(entry)
 }
 
-/// A b; for a rotation, a vector of body axes in world axes.
+/// Returns A b; for a rotation, this transforms a vector from body axes to world axes.
 #[inline(always)]
 pub fn apply<S: Scalar>(a: Matrix<S>, b: Vector<S>) -> Vector<S> {
     from_fn(|i| dot([a[3 * i], a[3 * i + 1], a[3 * i + 2]], b))
 }
 
-/// Aᵀ b; for a rotation, a vector of world axes in body axes.
+/// Returns Aᵀ b; for a rotation, this transforms a vector from world axes to body axes.
 #[inline(always)]
 pub fn apply_transpose<S: Scalar>(a: Matrix<S>, b: Vector<S>) -> Vector<S> {
     from_fn(|i| dot([a[i], a[3 + i], a[6 + i]], b))
 }
 
-/// Ṙ = R ω̂ (KR18 (38)), ω in body axes, rad per time.
+/// Returns Ṙ = R ω̂ (KR18 (38)), ω in body axes, rad per time.
 #[inline]
 pub fn rate<S: Scalar>(r: Matrix<S>, w: Vector<S>) -> Matrix<S> {
     product(r, hat(w))
 }
 
-/// The rotation by |u| about u: exp(û) = I + a û + b û², a = sin t / t, b = 2 sin²(t/2) / t².
+/// Returns the rotation by |u| about u: exp(û) = I + a û + b û², a = sin t / t, b = 2 sin²(t/2) / t².
 ///
-/// b is not formed as (1 − cos t) / t², which cancels.
+/// b is not computed as (1 − cos t) / t², which suffers from cancellation.
 #[inline(always)]
 pub fn exp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
     let t2 = dot(u, u);
@@ -191,16 +192,16 @@ pub fn exp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
     of_parts(a, b, u)
 }
 
-/// cay(f) = I + 2/(1 + f·f) (f̂ + f̂²), the rotation by 2 atan|f| about f.
+/// Returns cay(f) = I + 2/(1 + f·f) (f̂ + f̂²), the rotation by 2 atan|f| about f.
 #[inline(always)]
 pub fn cayley<S: Scalar>(f: Vector<S>) -> Matrix<S> {
     let factor = S::from_f64(2.0) / (S::from_f64(1.0) + dot(f, f));
     of_parts(factor, factor, f)
 }
 
-/// I + a û + b û².
+/// Returns I + a û + b û².
 ///
-/// û² = u uᵀ − t² I, with the diagonal written out: no difference of nearly equal squares.
+/// û² = u uᵀ − t² I, with the diagonal written out, so that there is no difference of nearly equal squares.
 #[inline(always)]
 fn of_parts<S: Scalar>(a: S, b: S, [x, y, z]: Vector<S>) -> Matrix<S> {
     let one = S::from_f64(1.0);
@@ -220,22 +221,22 @@ fn of_parts<S: Scalar>(a: S, b: S, [x, y, z]: Vector<S>) -> Matrix<S> {
     ]
 }
 
-/// The rotation vector u, |u| ≤ π, of a rotation: exp(u) = R. At |u| = π either sign may come out.
+/// Returns the rotation vector u, |u| ≤ π, of a rotation: exp(û) = R. At |u| = π either sign is possible.
 ///
-/// Computed by the quaternion of R, so that it is accurate near 0 and near π alike.
+/// Computed from the quaternion of R, so that it is accurate both near 0 and near π.
 #[inline]
 pub fn log<S: Scalar>(r: Matrix<S>) -> Vector<S> {
     s3::log(s3::from_matrix(r))
 }
 
-/// u̇ of R = R₀ exp(û) when R turns with ω (body axes):
-/// u̇ = ω + ½ u × ω + c u × (u × ω), c = (1 − (t/2) cot(t/2)) / t². Singular at t = 2π.
+/// Returns u̇ for R = R₀ exp(û) when R turns with the angular velocity ω (body axes): u̇ = ω + ½ u × ω + c u × (u × ω),
+/// c = (1 − (t/2) cot(t/2)) / t². Singular at t = 2π.
 #[inline(always)]
 pub fn dexpinv<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
     S::chart_velocity(u, w)
 }
 
-/// The same for numbers of any kind.
+/// Evaluates the formula of [`dexpinv`] for scalars of any type.
 #[inline(always)]
 pub(crate) fn chart_velocity<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
     let t2 = dot(u, u);
@@ -250,14 +251,14 @@ pub(crate) fn chart_velocity<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S>
     from_fn(|i| c.mul_add(uuw[i], half.mul_add(uw[i], w[i])))
 }
 
-/// R exp(û): R turned by u in its own (body) axes.
+/// Returns R exp(û): R turned by u in its own (body) axes.
 #[inline(always)]
 pub fn retract<S: Scalar>(r: Matrix<S>, u: Vector<S>) -> Matrix<S> {
     S::turned_matrix(r, u)
 }
 
-/// The turn θ in body axes that exp(û) makes where u varies by δu: θ = (I − b û + c û²) δu, by rows, with
-/// b = (1 − cos t) / t² and c = (t − sin t) / t³.
+/// Returns the matrix I − b û + c û², by rows, that maps δu to the rotation θ of exp(û) in body axes when u varies by
+/// δu, with b = (1 − cos t) / t² and c = (t − sin t) / t³.
 #[inline(always)]
 pub(crate) fn dexp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
     let t2 = dot(u, u);
@@ -273,7 +274,8 @@ pub(crate) fn dexp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
     of_parts(-b, c, u)
 }
 
-/// One Newton step towards the nearest rotation, R (3 I − RᵀR) / 2: squares the defect RᵀR − I.
+/// Returns the result of one Newton step towards the nearest rotation, R (3 I − RᵀR) / 2; it squares the defect
+/// RᵀR − I.
 #[inline(always)]
 pub fn polar<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
     let d = gram_defect(r).map(|entry| S::from_f64(-0.5) * entry);
@@ -287,14 +289,14 @@ pub fn polar<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
     entries!(entry)
 }
 
-/// −R (RᵀR − I) / 2, the term −Ψ φ of KR18 (8) for RᵀR = I.
+/// Returns −R (RᵀR − I) / 2, the term −Ψ φ of KR18 (8) for RᵀR = I.
 #[inline(always)]
 pub fn correction<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
     let half = S::from_f64(0.5);
     product(r, gram_defect(r)).map(|entry| -(half * entry))
 }
 
-/// max |RᵀR − I| over the entries.
+/// Returns max |RᵀR − I| over the entries.
 #[inline]
 pub fn defect<S: Scalar>(r: Matrix<S>) -> S {
     let mut largest = S::default();
@@ -304,7 +306,7 @@ pub fn defect<S: Scalar>(r: Matrix<S>) -> S {
     largest
 }
 
-/// RᵀR − I
+/// Returns RᵀR − I.
 #[inline(always)]
 fn gram_defect<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
     let mut gram = transpose_product(r, r);

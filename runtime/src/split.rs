@@ -1,9 +1,9 @@
-//! Systems that move in closed form between kicks of the forces: rigid bodies in potentials.
+//! Systems whose motion splits into free motion in closed form and kicks by forces: rigid bodies in potentials.
 //!
-//! The Hamiltonian is T(p) + V(x): without forces, every rotor turns as a torque-free body and everything else moves
-//! uniformly. Methods that alternate between this flow and kicks of the forces keep the energy without drift, with one
-//! evaluation of the forces for each kick. The generator recognises systems of this form, whatever coordinates and
-//! velocities they are described in, and implements [`Split`] for them.
+//! The Hamiltonian is T(p) + V(x). Without forces, every rotor turns as a torque-free body and everything else moves
+//! uniformly. Methods that alternate between this flow and kicks by the forces have no energy drift, at one evaluation
+//! of the forces per kick. The generator recognises systems of this form, whatever coordinates and velocities describe
+//! them, and implements [`Split`] for them.
 
 use crate::rotor::Rotor;
 use crate::system::System;
@@ -24,25 +24,26 @@ pub trait Split: System {
     /// Storage of the rotors.
     type Rotors: Clone + AsRef<[Rotor<Self::Scalar>]>;
 
-    /// Whether no force acts, whatever the inputs: the closed form then gives the motion at any time.
+    /// Whether no force can act, whatever the inputs: the closed form then gives the motion at any time.
     const FREE: bool;
 
-    /// The rotors, with the inertia that follows from the current parameters: one for every quaternion and rotation block,
-    /// in the order of the blocks.
+    /// Returns the rotors, with the inertia that follows from the current parameters: one for every quaternion and
+    /// rotation block, in the order of the blocks.
     fn rotors(&self) -> Self::Rotors;
 
-    /// The centred coordinates y of x.
+    /// Converts x to the centred coordinates y.
     fn centre(&self, x: &Self::Coordinates) -> Self::Coordinates;
 
-    /// The coordinates x of y: the inverse of [`centre`](Self::centre).
+    /// Converts y to x: the inverse of [`centre`](Self::centre).
     fn uncentre(&self, y: &Self::Coordinates) -> Self::Coordinates;
 
-    /// The momenta p of (x, ξ), linear in ξ.
+    /// Returns the momenta p of (x, ξ), linear in ξ.
     fn split_momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart;
 
-    /// The velocities ξ of (x, p): the inverse of [`split_momenta`](Self::split_momenta).
+    /// Returns the velocities ξ of (x, p): the inverse of [`split_momenta`](Self::split_momenta).
     fn split_velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities;
 
-    /// ṗ by the forces alone: ÿ for plain coordinates, θ̈ for circles, the torque in body axes for quaternions and rotations.
+    /// Returns ṗ due to the forces alone: ÿ for plain coordinates, θ̈ for circles, the torque in body axes for
+    /// quaternions and rotations.
     fn kick(&self, x: &Self::Coordinates, u: &Self::Inputs) -> Self::Chart;
 }

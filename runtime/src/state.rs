@@ -7,10 +7,10 @@ use crate::manifold;
 use crate::store::is_finite;
 use crate::system::System;
 
-/// Time, coordinates and velocities.
+/// State of a system: time, coordinates and velocities.
 ///
-/// Time is an `f64` whatever the scalar: it is common to all lanes, and a clock of `f32` stops
-/// advancing by 1 ms steps after some hours.
+/// Time is an `f64` whatever the scalar type: it is common to all lanes, and an `f32` clock would stop advancing in
+/// steps of 1 ms after some hours.
 pub struct State<Sys: System + ?Sized> {
     /// Time, in the unit of the description (s in SI).
     pub t: f64,
@@ -21,22 +21,23 @@ pub struct State<Sys: System + ?Sized> {
 }
 
 impl<Sys: System + ?Sized> State<Sys> {
-    /// The initial state of the description, at t = 0.
+    /// Returns the initial state of the description, at t = 0.
     pub fn start(system: &Sys) -> Self {
         let (x, xi) = system.start();
         Self { t: 0.0, x, xi }
     }
 
-    /// Whether time and every entry of x and ξ are finite.
+    /// Returns whether time and every entry of x and ξ are finite.
     #[inline]
     pub fn is_finite(&self) -> bool {
         self.t.is_finite() && is_finite(self.x.as_ref()) && is_finite(self.xi.as_ref())
     }
 
-    /// Checks that x and ξ have the lengths that the system expects, as every [`Method`](crate::Method) does before a step.
+    /// Checks that x, ξ and chart vectors have the lengths that the system expects, as every [`Method`](crate::Method)
+    /// does before a step.
     ///
     /// # Errors
-    /// [`StepError::Shape`] for the first of the two that has another length.
+    /// [`StepError::Shape`] for the first list of a wrong length.
     #[inline]
     pub fn check_shape(&self, system: &Sys) -> Result<(), StepError> {
         let blocks = system.blocks();

@@ -13,30 +13,31 @@ impl<S: Scalar, const N: usize> Store<S> for [S; N] {}
 #[cfg(feature = "std")]
 impl<S: Scalar> Store<S> for Vec<S> {}
 
-/// A matrix by rows whose size is fixed by the system: `[[S; COLUMNS]; ROWS]`.
+/// A matrix, stored by rows, whose size is fixed by the system: `[[S; COLUMNS]; ROWS]`.
 pub trait Table<S>: Clone + Debug {
-    /// Zeros.
+    /// Returns a matrix of zeros.
     fn zero() -> Self;
 
-    /// Number of rows.
+    /// Returns the number of rows.
     fn rows(&self) -> usize;
 
-    /// Row `i`; empty beyond the last.
+    /// Returns row `i`; empty beyond the last.
     fn row(&self, i: usize) -> &[S];
 
-    /// Row `i`, to be written; empty beyond the last.
+    /// Returns row `i` for writing; empty beyond the last.
     fn row_mut(&mut self, i: usize) -> &mut [S];
 
-    /// Adds to row `i` multiples of the rows of another table from row `k` on, by factors that are not 0.
+    /// Adds to row `i` the rows of `other` from row `k` on, each multiplied by its factor. Rows with the factor 0 are
+    /// skipped.
     fn follow(&mut self, i: usize, factors: &[S], other: &Self, k: usize);
 
-    /// Adds to row `i` a multiple of another row, `k`.
+    /// Adds `factor` times another row, `k`, to row `i`.
     fn add_scaled(&mut self, i: usize, factor: S, k: usize);
 
-    /// Makes row `i` a multiple of another row, `k`.
+    /// Sets row `i` to `factor` times another row, `k`.
     fn repeat(&mut self, i: usize, factor: S, k: usize);
 
-    /// Whether every entry is finite.
+    /// Returns whether every entry is finite.
     fn is_finite(&self) -> bool;
 }
 
@@ -123,14 +124,15 @@ pub(crate) fn scale<S: Scalar>(y: &mut [S], a: f64) {
     }
 }
 
-/// The largest [`size`](Scalar::size) of an element.
+/// Returns the largest [`size`](Scalar::size) of an element.
 #[inline]
 pub(crate) fn largest<S: Scalar>(x: &[S]) -> S {
     x.iter()
         .fold(S::default(), |most, x| Scalar::max(most, x.size()))
 }
 
-/// Whether every element is finite: all are asked, which a processor does several at a time.
+/// Returns whether every element is finite. There is no early exit, so the processor can test several elements at a
+/// time.
 #[inline]
 pub(crate) fn is_finite<S: Scalar>(x: &[S]) -> bool {
     x.iter().fold(true, |all, x| all & x.is_finite())

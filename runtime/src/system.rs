@@ -1,23 +1,23 @@
-//! The interface of a mechanical system, which generated code implements.
+//! The trait of a mechanical system, which generated code implements.
 
 use crate::error::Singular;
 use crate::scalar::Scalar;
 use crate::store::Store;
 
-/// The kind of a block of consecutive coordinates in x, which decides how x moves along its manifold.
+/// Kind of a block of consecutive coordinates in x; it decides how x moves along its manifold.
 ///
 /// Each kind has a *chart*: local coordinates u in which an integrator computes one step. A step starts at u = 0 and
 /// ends with a retraction, which moves x along u; see [`manifold`](crate::manifold).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Block {
-    /// This many plain coordinates; the chart is their change.
+    /// That many plain coordinates; the chart holds their changes.
     Flat(usize),
-    /// A point (c, s) = (cos θ, sin θ) of the circle; the chart is the change of θ in rad.
+    /// A point (c, s) = (cos θ, sin θ) of the unit circle; the chart is the change of θ in rad.
     Circle,
     /// A unit quaternion (w, x, y, z), scalar first, body to world; the chart is a rotation vector
     /// in rad, body axes, applied on the right.
     Quaternion,
-    /// A rotation matrix, nine entries row by row, body to world; chart as for the quaternion.
+    /// A rotation matrix, nine entries row by row, body to world; the chart is the same as for the quaternion.
     Rotation,
 }
 
@@ -47,16 +47,16 @@ impl Block {
 /// Equations of motion ẋ = A(x) ξ, M(x) ξ̇ + c(x, ξ) = f(x, ξ, u) of a mechanical system.
 ///
 /// x holds ν coordinates, possibly redundant (φ(x) = 0), in the order of [`blocks`](Self::blocks); ξ holds n
-/// quasi-velocities, and u the inputs. First-order states z, if there are any, follow the velocities in ξ, and
-/// integrators treat both alike. Notation and equation numbers: M. Konz, J. Rudolph,
-/// *Redundant configuration coordinates and nonholonomic velocity coordinates in analytical
-/// mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414 (KR18). Units are those of the description.
+/// quasi-velocities; u holds the inputs. First-order states z, if there are any, follow the quasi-velocities in the
+/// same list, and integrators treat both alike. Notation and equation numbers: M. Konz, J. Rudolph, *Redundant
+/// configuration coordinates and nonholonomic velocity coordinates in analytical mechanics*, IFAC-PapersOnLine 51-2
+/// (2018) 409-414 (KR18). Units are those of the description.
 ///
 /// Implementations are pure functions: equal arguments give equal results, and no argument causes a panic. Time is not
-/// an argument. A description that declares it has it as a coordinate of x with the rate 1, so that every method
-/// evaluates each stage at its own time; anything else that depends on time enters through u.
+/// an argument. A description that declares time has it as a coordinate of x with the rate 1, so that every method
+/// evaluates each stage at the time of that stage. Anything else that depends on time enters through u.
 pub trait System {
-    /// The type of all numbers.
+    /// Type of all numbers.
     type Scalar: Scalar;
     /// Storage of x, ν entries.
     type Coordinates: Store<Self::Scalar>;
@@ -67,40 +67,39 @@ pub trait System {
     /// Storage of u.
     type Inputs: Store<Self::Scalar>;
 
-    /// The kinds of coordinates, in the order in which they stand in x. Their
-    /// [lengths](Block::coordinates) add up to ν.
+    /// Returns the kinds of coordinates, in their order in x. Their [lengths](Block::coordinates) add up to ν.
     fn blocks(&self) -> &[Block];
 
-    /// ν zeros.
+    /// Returns ν zeros.
     fn zero_coordinates(&self) -> Self::Coordinates;
 
-    /// n zeros.
+    /// Returns a zero for each entry of ξ.
     fn zero_velocities(&self) -> Self::Velocities;
 
-    /// A chart vector of zeros.
+    /// Returns a chart vector of zeros.
     fn zero_chart(&self) -> Self::Chart;
 
-    /// Inputs that are all zero.
+    /// Returns inputs that are all zero.
     fn zero_inputs(&self) -> Self::Inputs;
 
-    /// The initial (x, ξ) of the description, with φ(x) = 0.
+    /// Returns the initial (x, ξ) of the description, with φ(x) = 0.
     fn start(&self) -> (Self::Coordinates, Self::Velocities);
 
-    /// The place in x of the time, where the description declares it. Runs set this entry to the time that has passed since
-    /// their start ([`Clock`](crate::Clock)).
+    /// Returns the index in x of the coordinate that is the time, or `None` if the description declares none. Runs set
+    /// this entry to its initial value plus the time since the start of the run ([`Clock`](crate::Clock)).
     #[inline]
     fn clock(&self) -> Option<usize> {
         None
     }
 
-    /// ẋ = A(x) ξ, KR18 (5), ν entries; ẋ = A(x) ξ + a(x) if time is among the coordinates.
+    /// Returns ẋ = A(x) ξ, KR18 (5), ν entries; ẋ = A(x) ξ + a(x) if time is among the coordinates.
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates;
 
-    /// The same motion in the chart, block by block: ẋ for plain coordinates, θ̇ for a circle, the angular velocity in
-    /// body axes for a quaternion or a rotation matrix.
+    /// Returns the same motion as [`rate`](Self::rate) in the chart, block by block: ẋ for plain coordinates, θ̇ for a
+    /// circle, the angular velocity in body axes for a quaternion or a rotation matrix.
     fn chart_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart;
 
-    /// ξ̇ = M⁻¹ (f − c), KR18 (30), n entries, followed by ż.
+    /// Returns ξ̇ = M⁻¹ (f − c), KR18 (30), n entries, followed by ż.
     ///
     /// # Errors
     /// [`Singular`] if M is not positive definite at x, or the kinematics are singular there.
@@ -111,20 +110,21 @@ pub trait System {
         u: &Self::Inputs,
     ) -> Result<Self::Velocities, Singular>;
 
-    /// −Ψ(x) φ(x), ν entries, which points back to φ = 0 and vanishes there. Along ẋ = A ξ + λ · correction, which is
-    /// KR18 (8) with Λ = λ I, φ decays like exp(−λ t).
+    /// Returns −Ψ(x) φ(x), ν entries, which points back to φ = 0 and vanishes there.
+    ///
+    /// Along ẋ = A ξ + λ · correction, which is KR18 (8) with Λ = λ I, φ decays like exp(−λ t).
     fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates;
 
-    /// −Ψ(x) φ(x) as [`correction`](System::correction) has it, by which integrators lead x back to φ = 0 after every
-    /// step; `None` where charts keep all of φ.
+    /// Returns the same −Ψ(x) φ(x) as [`correction`](System::correction), which integrators add to x after every step
+    /// to return to φ = 0; `None` if the charts preserve all of φ = 0 by themselves.
     #[inline]
     fn project_coordinates(&self, x: &Self::Coordinates) -> Option<Self::Coordinates> {
         let _ = x;
         None
     }
 
-    /// The displacement along A, in units of velocity times time, that closes to first order the loops which multipliers
-    /// enforce; `None` if there are no such loops.
+    /// Returns the displacement along A, in units of velocity times time, that closes to first order the loops that
+    /// multipliers enforce; `None` if there are no such loops.
     ///
     /// # Errors
     /// [`Singular`] if the rows of the loops are linearly dependent.
@@ -137,8 +137,8 @@ pub trait System {
         Ok(None)
     }
 
-    /// The velocities with B(x) ξ = 0 that are nearest to ξ in the metric of kinetic energy, for the constraints that
-    /// multipliers enforce; `None` if there are no such constraints.
+    /// Returns the velocities with B(x) ξ = 0 that are nearest to ξ in the kinetic-energy metric, for the constraints
+    /// that multipliers enforce; `None` if there are no such constraints.
     ///
     /// # Errors
     /// [`Singular`] if the rows of B are linearly dependent.
@@ -152,12 +152,12 @@ pub trait System {
         Ok(None)
     }
 
-    /// max |φ(x)| over the constraints.
+    /// Returns max |φ(x)| over the constraints.
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar;
 
-    /// The kinetic energy T = ½ ξᵀ M(x) ξ, or T₂ + T₁ + T₀ if ẋ has terms without ξ.
+    /// Returns the kinetic energy T = ½ ξᵀ M(x) ξ, or T₂ + T₁ + T₀ if ẋ has terms without ξ.
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar;
 
-    /// The potential energy V(x), up to a constant.
+    /// Returns the potential energy V(x), up to a constant.
     fn potential_energy(&self, x: &Self::Coordinates) -> Self::Scalar;
 }

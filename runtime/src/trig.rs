@@ -1,11 +1,11 @@
-//! Sine and cosine of one angle, in line, and of lanes.
+//! Sine and cosine of an angle, inlined, for single numbers and for SIMD lanes.
 //!
-//! Half of what the forward dynamics of a pendulum costs is a call of the C library, which nothing
-//! else overlaps. Here both come from one reduction, without branches and in parallel, by the same
-//! rounded operations with and without `std`.
+//! A call of the C library takes half of the time of the forward dynamics of a pendulum, and nothing overlaps with it.
+//! Here both functions come from one argument reduction, without branches and in parallel, by the same rounded
+//! operations with and without `std`.
 //!
-//! The operations are written once, for whatever carries them out ([`Arithmetic`]): numbers, lanes, or a
-//! compiler whose code is to have the same bits.
+//! The operations are written once, generically in [`Arithmetic`]: for numbers, for lanes, or for a compiler whose
+//! generated code must produce the same bits.
 //!
 //! Polynomials and the parts of π/2 are those of fdlibm (`k_sin.c`, `k_cos.c`, `e_rem_pio2.c`;
 //! © 1993 Sun Microsystems, Inc., permission to use, copy, modify and distribute is freely granted).
@@ -14,19 +14,19 @@ use core::marker::PhantomData;
 
 use crate::scalar::{FUSED, Scalar};
 
-/// Angles up to here, in rad, are reduced by parts of π/2.
+/// Largest |angle|, in rad, that is reduced by the parts of π/2.
 pub const FARTHEST: f64 = 1e6;
-/// 3/2 · 2⁵²: a sum with it is rounded to an integer, which its last bits are.
+/// 3/2 · 2⁵²: adding it rounds a number to an integer, which the last bits of the sum then hold.
 const ROUND: f64 = 6_755_399_441_055_744.0;
-/// π/2 − the number nearest to it.
+/// π/2 minus the `f64` nearest to it.
 const REST: f64 = f64::from_bits(0x3C91_A626_3314_5C07);
-/// π/2 in two parts of 33 bits, whose products with a number of quarter turns are exact, and the rest.
+/// π/2 in two parts of 33 bits, whose products with a number of quarter turns are exact, and the remainder.
 const QUARTER: [f64; 3] = [
     f64::from_bits(0x3FF9_21FB_5440_0000),
     f64::from_bits(0x3DD0_B461_1A60_0000),
     f64::from_bits(0x3BA3_198A_2E03_7073),
 ];
-/// (sin r − r) / r³ in r².
+/// Coefficients of (sin r − r) / r³ in powers of r².
 const SINE: [f64; 6] = [
     f64::from_bits(0xBFC5_5555_5555_5549),
     f64::from_bits(0x3F81_1111_1110_F8A6),
@@ -35,7 +35,7 @@ const SINE: [f64; 6] = [
     f64::from_bits(0xBE5A_E5E6_8A2B_9CEB),
     f64::from_bits(0x3DE5_D93A_5ACF_D57C),
 ];
-/// (cos r − 1 + r²/2) / r⁴ in r².
+/// Coefficients of (cos r − 1 + r²/2) / r⁴ in powers of r².
 const COSINE: [f64; 6] = [
     f64::from_bits(0x3FA5_5555_5555_554C),
     f64::from_bits(0xBF56_C16C_16C1_5177),
@@ -44,8 +44,8 @@ const COSINE: [f64; 6] = [
     f64::from_bits(0x3E21_EE9E_BDB4_B1C4),
     f64::from_bits(0xBDA8_FAE9_BE88_38D4),
 ];
-/// (a, b, c, d) after 0 to 3 quarter turns: sin = a sin r + b cos r, cos = c cos r + d sin r. A branch would
-/// be guessed wrong half of the time. −0 keeps the sign of sin −0.
+/// Coefficients (a, b, c, d) after 0 to 3 quarter turns: sin = a sin r + b cos r, cos = c cos r + d sin r. They replace
+/// a branch that would be mispredicted half of the time. −0 keeps the sign of sin −0.
 pub const TURNED: [[f64; 4]; 4] = [
     [1.0, -0.0, 1.0, 0.0],
     [0.0, 1.0, 0.0, -1.0],
@@ -53,31 +53,31 @@ pub const TURNED: [[f64; 4]; 4] = [
     [0.0, -1.0, 0.0, 1.0],
 ];
 
-/// What sine and cosine are made of.
+/// The arithmetic operations from which sine and cosine are computed.
 pub trait Arithmetic {
-    /// A number.
+    /// Type of a number.
     type Number: Copy;
 
-    /// Whether a b + c is rounded once.
+    /// Returns whether a b + c is rounded once.
     fn is_fused(&self) -> bool;
-    /// A number that is known.
+    /// Creates a constant.
     fn number(&mut self, number: f64) -> Self::Number;
-    /// a + b
+    /// Returns a + b.
     fn plus(&mut self, a: Self::Number, b: Self::Number) -> Self::Number;
-    /// a − b
+    /// Returns a − b.
     fn minus(&mut self, a: Self::Number, b: Self::Number) -> Self::Number;
-    /// a b
+    /// Returns a b.
     fn times(&mut self, a: Self::Number, b: Self::Number) -> Self::Number;
-    /// a b + c
+    /// Returns a b + c.
     fn times_plus(&mut self, a: Self::Number, b: Self::Number, c: Self::Number) -> Self::Number;
-    /// c − a b
+    /// Returns c − a b.
     fn less_times(&mut self, c: Self::Number, a: Self::Number, b: Self::Number) -> Self::Number;
 }
 
-/// What |x| ≤ [`FARTHEST`] is beside the nearest number n of quarter turns.
+/// An angle |x| ≤ [`FARTHEST`] after reduction by the nearest number n of quarter turns.
 #[derive(Clone, Copy, Debug)]
 pub struct Reduced<N> {
-    /// n
+    /// Number n of quarter turns.
     pub turns: N,
     /// A number whose last two bits are those of n.
     pub shifted: N,
@@ -87,7 +87,7 @@ pub struct Reduced<N> {
     pub cosine: N,
 }
 
-/// Takes quarter turns off an angle x, in rad, of |x| ≤ [`FARTHEST`].
+/// Reduces an angle x, in rad, |x| ≤ [`FARTHEST`], by whole quarter turns.
 #[inline]
 pub fn reduced<W: Arithmetic>(w: &mut W, x: W::Number) -> Reduced<W::Number> {
     let (per, round) = (w.number(core::f64::consts::FRAC_2_PI), w.number(ROUND));
@@ -104,7 +104,7 @@ pub fn reduced<W: Arithmetic>(w: &mut W, x: W::Number) -> Reduced<W::Number> {
     }
 }
 
-/// (sin x, cos x), with the row of [`TURNED`] whose number is the last two bits of `shifted`.
+/// Returns (sin x, cos x) from a reduced angle and the row of [`TURNED`] whose index is the last two bits of `shifted`.
 #[inline]
 pub fn turned<W: Arithmetic>(
     w: &mut W,
@@ -117,14 +117,13 @@ pub fn turned<W: Arithmetic>(
     [sine, w.times_plus(d, of.sine, part)]
 }
 
-/// (sin x, cos x), x in rad, of an angle up to 10⁶ rad; `None` of larger ones and of NaN.
+/// Returns (sin x, cos x), x in rad, for |x| up to 10⁶ rad; `None` for larger angles and for NaN.
 ///
-/// Errors are below one spacing of numbers at the result. Within 10⁻¹⁰ rad of a multiple of π/2, the
-/// function that vanishes there has an absolute error below 10⁻²⁶: what a last bit of x makes is 10⁻¹⁶
-/// and more.
+/// Errors are below one spacing of numbers at the result. Within 10⁻¹⁰ rad of a multiple of π/2, the function that
+/// vanishes there has an absolute error below 10⁻²⁶, while the last bit of x alone amounts to at least 10⁻¹⁶.
 #[inline]
 pub(crate) fn sin_cos(x: f64) -> Option<(f64, f64)> {
-    // Not `>`: NaN is far.
+    // Not `>`, so that NaN counts as far.
     let near = x.abs() <= FARTHEST;
     if !near {
         return None;
@@ -136,10 +135,11 @@ pub(crate) fn sin_cos(x: f64) -> Option<(f64, f64)> {
     Some((sine, cosine))
 }
 
-/// (sin x, cos x) of angles up to 10⁶ rad in all lanes, each as that of one number; of further ones it is
-/// not a number or anything.
+/// Returns (sin x, cos x) for angles up to 10⁶ rad in all lanes, bitwise as for single numbers; the result in lanes
+/// with larger angles is meaningless.
 ///
-/// Quarter turns are counted in numbers: machines without 64-bit conversions take them lane by lane.
+/// Quarter turns are counted in floating point, since machines without 64-bit integer conversions would process them
+/// lane by lane.
 #[cfg(feature = "wide")]
 #[inline]
 pub(crate) fn of_lanes<S: Scalar>(x: S) -> (S, S) {
@@ -151,7 +151,8 @@ pub(crate) fn of_lanes<S: Scalar>(x: S) -> (S, S) {
         cosine,
         ..
     } = reduced(&mut Plain(PhantomData), x);
-    // 1/2 where the number of quarter turns is odd, and where that of half turns is, else 0.
+    // `odd` is 1/2 where the number of quarter turns is odd, `half` is 1/2 where that of half turns is odd; 0
+    // elsewhere.
     let pairs = turns * of(0.5);
     let odd = (pairs - round(pairs)).abs();
     let halves = (pairs - odd) * of(0.5);
@@ -164,7 +165,7 @@ pub(crate) fn of_lanes<S: Scalar>(x: S) -> (S, S) {
     )
 }
 
-/// Numbers and lanes themselves.
+/// Direct evaluation in numbers and lanes.
 struct Plain<S>(PhantomData<S>);
 
 impl<S: Scalar> Arithmetic for Plain<S> {
@@ -206,7 +207,7 @@ impl<S: Scalar> Arithmetic for Plain<S> {
     }
 }
 
-/// (sin, cos) of r − lost, |r| ≤ π/4.
+/// Returns (sin, cos) of r − lost, |r| ≤ π/4.
 #[inline]
 fn first_quarter<W: Arithmetic>(
     w: &mut W,
@@ -220,7 +221,7 @@ fn first_quarter<W: Arithmetic>(
     let less = w.less_times(lost, cube, of_sine);
     let sine = w.minus(r, less);
     let (half, one) = (w.number(-0.5), w.number(1.0));
-    // 1 − z/2 is rounded; what that loses comes back with the small terms.
+    // 1 − z/2 is rounded; its rounding error is added back with the small terms.
     let most = w.times_plus(z, half, one);
     let (half, one) = (w.number(-0.5), w.number(1.0));
     let rounded = w.minus(one, most);
@@ -231,11 +232,11 @@ fn first_quarter<W: Arithmetic>(
     (sine, w.plus(small, most))
 }
 
-/// x − turns π/2 as r − lost, |lost| below the spacing of numbers at r.
+/// Returns x − turns π/2 as (r, lost), meaning r − lost; |lost| is below the spacing of numbers at r.
 #[inline]
 fn reduce<W: Arithmetic>(w: &mut W, x: W::Number, turns: W::Number) -> (W::Number, W::Number) {
     if w.is_fused() {
-        // Exact: a multiple of the spacing at x or at π/2, and less than 1.
+        // This product difference is exact: a multiple of the spacing at x or at π/2, and less than 1.
         let quarter = w.number(core::f64::consts::FRAC_PI_2);
         let close = w.less_times(x, turns, quarter);
         let rest = w.number(REST);
@@ -259,10 +260,10 @@ fn reduce<W: Arithmetic>(w: &mut W, x: W::Number, turns: W::Number) -> (W::Numbe
     (r, w.minus(less, back))
 }
 
-/// Σ cᵢ zⁱ, square = z², in pairs.
+/// Returns Σ cᵢ zⁱ, summed in pairs, with square = z².
 #[inline]
 fn series<W: Arithmetic>(w: &mut W, c: &[f64; 6], z: W::Number, square: W::Number) -> W::Number {
-    // Not `map`, which is a call for lanes.
+    // Written out instead of `map`, which compiles to a call for SIMD lanes.
     let (times, plus) = (w.number(c[1]), w.number(c[0]));
     let low = w.times_plus(z, times, plus);
     let (times, plus) = (w.number(c[3]), w.number(c[2]));

@@ -1,16 +1,16 @@
 //! SIMD lanes: the vectors of the crate `wide` as scalars.
 //!
-//! `FreeBody::<f64x8>` moves eight bodies at once by the text that moves one. Build with
-//! `RUSTFLAGS="-C target-cpu=native"`, or with the target features of the machine that it will run on:
-//! without them a vector is a pair of numbers on x86-64.
+//! `FreeBody::<f64x8>` moves eight bodies at once with the same code that moves one. Build with
+//! `RUSTFLAGS="-C target-cpu=native"`, or with the target features of the target machine: without them a vector is
+//! split into pairs of numbers on x86-64.
 //!
-//! Sums, products, quotients, fused products (with the feature `std`) and roots are rounded as those of
-//! the element are, and so are sine and cosine of `f64`, so that a lane without other functions is equal
-//! to the run of the element to the bit. The other functions are
-//! the polynomials of `wide` (after A. Fog's vector class library and S. Moshier's Cephes): sin and cos
-//! of `f32` to 1 ε, exp, ln and atan2 to 4 ε relative, ε the spacing of numbers at 1. Where these do not hold, the
-//! function of the element is taken in the lanes concerned: angles beyond 10⁶ rad (`f32`: 4000 rad),
-//! logarithms of subnormal numbers and of what is not positive, directions to infinite points.
+//! Sums, products, quotients, fused products (with the feature `std`) and roots are rounded exactly as for the element
+//! type, and so are sine and cosine of `f64`. A lane that uses no other functions is therefore bitwise equal to a run
+//! with the element type. The other functions are the polynomials of `wide` (after A. Fog's vector class library and S.
+//! Moshier's Cephes): sin and cos of `f32` to 1 ε, exp, ln and atan2 to 4 ε relative, where ε is the spacing of numbers
+//! at 1. Outside the range of these polynomials, the function of the element type is used in the lanes concerned:
+//! angles beyond 10⁶ rad (`f32`: 4000 rad), logarithms of subnormal and non-positive numbers, directions to infinite
+//! points.
 
 pub use wide::{f32x8, f32x16, f64x4, f64x8};
 

@@ -1,4 +1,4 @@
-//! How an estimated error becomes the length of the next step.
+//! Error tolerances, and the controller that turns an estimated error into the length of the next step.
 //!
 //! Source: E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II* (1996), IV.2; K.
 //! Gustafsson, *Control theoretic techniques for stepsize selection*, ACM TOMS 17 (1991) 533.
@@ -8,23 +8,23 @@ use crate::scalar::Scalar;
 use crate::store::{Store, largest};
 use crate::system::Block;
 
-/// The error that a step may make.
+/// Error allowed in one step.
 ///
-/// The estimate of a step is small enough when each of its entries is below the tolerance of its
-/// kind; errors at the end of a run are proportional to it.
+/// A step is accepted if each entry of its estimated error is below the tolerance of its kind. Errors at the end of a
+/// run are proportional to the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Of circles, quaternions and rotations, in rad; not below the rounding of the scalar.
+    /// Tolerance of circles, quaternions and rotations, in rad; at least the rounding unit of the scalar.
     pub angle: f64,
-    /// Of flat blocks and ξ, in their units.
+    /// Absolute tolerance of flat blocks and ξ, in their units.
     pub absolute: f64,
-    /// Of flat blocks and ξ, over the largest |entry| of the block or of ξ; zero, or not below the
-    /// rounding of the scalar.
+    /// Relative tolerance of flat blocks and ξ, with respect to the largest |entry| of the block or of ξ; zero, or at
+    /// least the rounding unit of the scalar.
     pub relative: f64,
 }
 
 impl Tolerance {
-    /// The same number for all three: rad for angles, `tolerance` · (1 + |v|) for the rest.
+    /// Creates a tolerance with the same number for all three: rad for angles, `tolerance` · (1 + |v|) for the rest.
     pub const fn new(tolerance: f64) -> Self {
         Self {
             angle: tolerance,
@@ -33,7 +33,7 @@ impl Tolerance {
         }
     }
 
-    /// Whether numbers of this scalar can be that accurate.
+    /// Checks that the scalar type can resolve these tolerances.
     pub(crate) fn check<S: Scalar>(&self) -> Result<(), StepError> {
         let between = |least: f64, value: f64| value >= least && value < f64::INFINITY;
         let relative = self.relative == 0.0 || between(S::EPSILON, self.relative);
@@ -48,8 +48,8 @@ impl Tolerance {
         }
     }
 
-    /// The largest entry of a change (u, v) over its tolerance, in the worst lane; (x, ξ) give the
-    /// sizes. Slopes count as entries. NaN where an entry is NaN.
+    /// Returns the largest entry of a change (u, v) divided by its tolerance, in the worst lane; (x, ξ) give the sizes
+    /// for the relative tolerance. Slopes of dual numbers count as entries. NaN if an entry is NaN.
     pub(crate) fn weigh<S: Scalar>(
         &self,
         blocks: &[Block],
@@ -79,14 +79,14 @@ impl Tolerance {
     }
 }
 
-/// Proportional and integral control of the step.
+/// Proportional-integral controller of the step length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Controller {
-    /// Order of the method: errors of a step grow as its power.
+    /// Order p of the method, which sets the exponents of the control law.
     order: f64,
-    /// Error of the last accepted step over its tolerance.
+    /// Error of the last accepted step divided by its tolerance.
     before: f64,
-    /// Whether the step at hand was refused before.
+    /// Whether the last attempt was rejected.
     refused: bool,
 }
 
@@ -103,10 +103,10 @@ impl Controller {
         }
     }
 
-    /// The factor of the next step after one with the error q ≤ 1:
-    /// 0.9 q^(−0.7/p) q₋₁^(0.4/p), in 0.2..5; no growth right after a refusal.
+    /// Returns the factor for the next step length after an accepted step with the scaled error q ≤ 1,
+    /// 0.9 q^(−0.7/p) q₋₁^(0.4/p), limited to 0.2..5, and to at most 1 right after a rejection.
     pub(crate) fn accept(&mut self, q: f64) -> f64 {
-        // Below this error the factor is the largest anyway, and zero has no logarithm.
+        // Below 1e-10 the factor has reached its limit anyway, and zero has no logarithm.
         let q = q.max(1e-10);
         let factor = SAFETY * power(q, -0.7 / self.order) * power(self.before, 0.4 / self.order);
         let most = if self.refused { 1.0 } else { LARGEST };
@@ -115,7 +115,7 @@ impl Controller {
         factor.clamp(SMALLEST, most)
     }
 
-    /// The factor for another attempt, after one with the error q > 1, or with none (NaN).
+    /// Returns the factor for another attempt, after one with the scaled error q > 1, or with none (NaN).
     pub(crate) fn refuse(&mut self, q: f64) -> f64 {
         self.refused = true;
         let factor = SAFETY * power(q, -1.0 / self.order);
@@ -123,7 +123,7 @@ impl Controller {
     }
 }
 
-/// base^exponent for base > 0.
+/// Returns base^exponent for base > 0.
 pub(crate) fn power(base: f64, exponent: f64) -> f64 {
     Scalar::exp(exponent * Scalar::ln(base))
 }

@@ -1,9 +1,9 @@
 //! Events: times at which a function of the state changes its sign.
 //!
-//! A change between the ends of a step is located on the step's dense output by a bracketing method of
-//! superlinear order that needs at most one evaluation more than bisection (I. F. D. Oliveira, R. H. C.
-//! Takahashi, *An enhancement of the bisection method average performance preserving minmax
-//! optimality*, ACM TOMS 47 (2020) 5).
+//! A sign change between the ends of a step is located on the step's dense output by the ITP method, a bracketing
+//! method of superlinear order that needs at most one evaluation more than bisection (I. F. D. Oliveira, R. H. C.
+//! Takahashi, *An enhancement of the bisection method average performance preserving minmax optimality*, ACM TOMS 47
+//! (2020) 5).
 
 use core::fmt;
 
@@ -12,7 +12,7 @@ use crate::error::StepError;
 use crate::state::State;
 use crate::system::System;
 
-/// Which changes of sign count, seen in the direction of the run.
+/// Which sign changes count as events, seen in the direction of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
     /// Both.
@@ -24,11 +24,11 @@ pub enum Direction {
     Falling,
 }
 
-/// A function g of the state whose change of sign is an event.
+/// A function g of the state whose sign change is an event.
 ///
-/// g is looked at in the ends of every step: two changes within one step stay unseen, so that
-/// [`Adaptive::longest`](crate::adaptive::Adaptive::longest) has to be below the time between them.
-/// A zero in the first state of a run is no event: a run may start where another one was stopped.
+/// g is evaluated at the ends of every step. Two sign changes within one step are not detected, so
+/// [`Adaptive::longest`](crate::adaptive::Adaptive::longest) has to be shorter than the time between them. A zero in
+/// the first state of a run is not an event: a run may start where another one was stopped.
 pub struct Event<'g, Sys: System + ?Sized> {
     pub(crate) function: &'g dyn Fn(&State<Sys>) -> f64,
     pub(crate) direction: Direction,
@@ -36,7 +36,7 @@ pub struct Event<'g, Sys: System + ?Sized> {
 }
 
 impl<'g, Sys: System + ?Sized> Event<'g, Sys> {
-    /// Where g changes its sign, in either direction, without end of the run.
+    /// Creates an event for sign changes of g in either direction, which does not end the run.
     pub fn new(function: &'g dyn Fn(&State<Sys>) -> f64) -> Self {
         Self {
             function,
@@ -45,19 +45,19 @@ impl<'g, Sys: System + ?Sized> Event<'g, Sys> {
         }
     }
 
-    /// Changes from negative to positive alone.
+    /// Restricts the event to changes from negative to positive.
     pub fn rising(mut self) -> Self {
         self.direction = Direction::Rising;
         self
     }
 
-    /// Changes from positive to negative alone.
+    /// Restricts the event to changes from positive to negative.
     pub fn falling(mut self) -> Self {
         self.direction = Direction::Falling;
         self
     }
 
-    /// The run ends at the event.
+    /// Makes the run end at the event.
     pub fn stopping(mut self) -> Self {
         self.stops = true;
         self
@@ -72,8 +72,8 @@ impl<'g, Sys: System + ?Sized> Event<'g, Sys> {
         }
     }
 
-    /// The time of the event within the step, if it has one: g has changed there, and has not
-    /// `precision` before.
+    /// Returns the time of the event within the step, if there is one: g has changed its sign at that time, and not yet
+    /// `precision` earlier.
     pub(crate) fn time<const D: usize>(
         &self,
         step: &Step<'_, Sys, D>,
@@ -117,7 +117,7 @@ impl<Sys: System + ?Sized> fmt::Debug for Event<'_, Sys> {
     }
 }
 
-/// A function that is below zero in a and not in b > a.
+/// An interval that brackets a root: the function is negative at a, and not negative at b > a.
 struct Bracket {
     a: f64,
     b: f64,
@@ -126,13 +126,13 @@ struct Bracket {
 }
 
 impl Bracket {
-    /// The upper end of a bracket no longer than `tolerance`.
+    /// Shrinks the bracket to at most `tolerance` and returns its upper end.
     fn narrow(
         mut self,
         tolerance: f64,
         mut value: impl FnMut(f64) -> Result<f64, StepError>,
     ) -> Result<f64, StepError> {
-        // The names of the source: κ₁ = 0.2, κ₂ = 2, n₀ = 1; `reach` is ε 2^(n_max − j).
+        // Parameters in the notation of the paper: κ₁ = 0.2, κ₂ = 2, n₀ = 1; `reach` is ε 2^(n_max − j).
         let mut reach = 0.5 * tolerance;
         while reach < self.b - self.a {
             reach *= 2.0;

@@ -1,9 +1,9 @@
-//! Runs that choose their steps: error control, dense output, events.
+//! Integration with adaptive step size: error control, dense output, events.
 //!
-//! Explicit pairs in the chart: u and ξ are advanced and their errors estimated as those of any
-//! Runge-Kutta pair, in rad for angles, relative for the rest ([`Tolerance`]). Between the ends of a
-//! step the state is known as well ([`Step::at`]), and so are the times at which a function of it
-//! changes its sign ([`Event`]).
+//! The methods are embedded explicit Runge-Kutta pairs in the chart. u and ξ are advanced and their errors estimated as
+//! in any Runge-Kutta pair; errors are measured in rad for angles, and relative to the size of the values for the rest
+//! ([`Tolerance`]). The state is also available between the ends of a step ([`Step::at`]), and so are the times at
+//! which a function of the state changes its sign ([`Event`]).
 //!
 //! ```
 //! # use hamel::{s1, Block, Singular, State, System};
@@ -75,75 +75,75 @@ use crate::scalar::Scalar;
 use crate::state::State;
 use crate::system::System;
 
-/// A method with error control, and how it chooses its steps.
+/// An embedded Runge-Kutta pair with the settings of its step-size control.
 #[derive(Clone, Copy, Debug)]
 pub struct Adaptive<const M: usize, const D: usize> {
     pair: &'static Pair<M, D>,
-    /// The error that a step may make.
+    /// Error allowed in one step.
     pub tolerance: Tolerance,
-    /// Length of the first step, in time; `None` for Hairer's rule, at one evaluation of ξ̇ more.
+    /// Length of the first step, in time; `None` for Hairer's rule, which costs one more evaluation of ξ̇.
     pub first: Option<f64>,
-    /// The longest step, in time.
+    /// Largest step, in time.
     pub longest: f64,
-    /// The accuracy of the times of events; never finer than rounding of t.
+    /// Accuracy of the times of events; never finer than the rounding of t.
     pub precision: f64,
-    /// A stiff motion that needs more steps than this is refused, [`StepError::Stiff`]; a million unless
-    /// it is set.
+    /// Largest number of remaining steps that a stiff motion may need; beyond it the run ends with
+    /// [`StepError::Stiff`]. One million by default.
     pub stiff: f64,
 }
 
 impl Adaptive<7, 1> {
-    /// [`Rkmk54`](crate::methods::Rkmk54): six evaluations of ξ̇ an accepted step, dense output of
-    /// order 4; for tolerances of 1e-3 to 1e-8.
+    /// Creates the adaptive [`Rkmk54`](crate::methods::Rkmk54): six evaluations of ξ̇ per accepted step, dense output
+    /// of order 4; for tolerances of 1e-3 to 1e-8.
     pub const fn rkmk54(tolerance: f64) -> Self {
         Self::new(&rkmk54::PAIR, Tolerance::new(tolerance))
     }
 }
 
 impl Adaptive<16, 4> {
-    /// [`Rkmk8`](crate::methods::Rkmk8): twelve evaluations of ξ̇ an accepted step, three more for
-    /// dense output of order 7; for tolerances of 1e-6 to 1e-13.
+    /// Creates the adaptive [`Rkmk8`](crate::methods::Rkmk8): twelve evaluations of ξ̇ per accepted step, three more
+    /// for dense output of order 7; for tolerances of 1e-6 to 1e-13.
     pub const fn rkmk8(tolerance: f64) -> Self {
         Self::new(&rkmk8::PAIR, Tolerance::new(tolerance))
     }
 }
 
-/// What a run has done.
+/// Numbers of steps and evaluations of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
     /// Steps taken.
     pub accepted: u64,
-    /// Attempts whose error was too large.
+    /// Attempts rejected because their error was too large or ξ̇ could not be computed.
     pub rejected: u64,
     /// Evaluations of ξ̇.
     pub evaluations: u64,
 }
 
-/// How a run ended.
+/// Result of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
-    /// What it cost.
+    /// Numbers of steps and evaluations.
     pub statistics: Statistics,
-    /// Index of the event that stopped it; `None` at the time asked for.
+    /// Index of the event that stopped the run; `None` if the run reached its end time.
     pub stopped_by: Option<usize>,
 }
 
-/// What an observer is told, in order of time: the events within a step before the step.
+/// Report to an observer. Reports come in order of time; the events within a step come before the step.
 #[derive(Debug)]
 pub enum Report<'r, Sys: System + ?Sized, const D: usize> {
     /// An event happened.
     Event {
-        /// Its place in the list of events.
+        /// Index in the list of events.
         index: usize,
-        /// The state, at the first time known at which g has changed its sign.
+        /// State at the located time of the event, where g has just changed its sign.
         state: &'r State<Sys>,
     },
-    /// A step was taken. One that an event stops ends there.
+    /// A step was taken. A step in which an event stops the run ends at that event.
     Step(&'r Step<'r, Sys, D>),
 }
 
 impl<const M: usize, const D: usize> Adaptive<M, D> {
-    /// The method of a pair.
+    /// Creates a method from a pair, with default settings.
     pub const fn new(pair: &'static Pair<M, D>, tolerance: Tolerance) -> Self {
         Self {
             pair,
@@ -155,8 +155,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         }
     }
 
-    /// Moves `state` to the time `until`, forwards or backwards, and back onto the constraints that
-    /// multipliers keep after every step. `inputs(t, x, ξ)` gives u.
+    /// Integrates `state` to the time `until`, forwards or backwards, and projects it onto the constraints that
+    /// multipliers enforce after every step. `inputs(t, x, ξ)` returns u.
     ///
     /// # Errors
     /// [`StepError`]; `state` is then the last valid one.
@@ -175,10 +175,10 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         Ok(outcome.statistics)
     }
 
-    /// As [`run`](Self::run), with events, and an observer of events and steps.
+    /// Integrates like [`run`](Self::run), with events and an observer of events and steps.
     ///
     /// # Errors
-    /// [`StepError`]; `state` is then the last valid one. An event function that gives NaN is
+    /// [`StepError`]; `state` is then the last valid one. An event function that returns NaN leads to
     /// [`StepError::NonFinite`].
     pub fn integrate<Sys, U, O>(
         &self,
@@ -201,7 +201,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         })
     }
 
-    /// Reports the events of a step in order of time. One that stops becomes the end of the step.
+    /// Reports the events of a step in order of time. An event that stops the run becomes the end of the step; its
+    /// index is returned.
     fn happen<Sys, O>(
         &self,
         step: &mut Step<'_, Sys, D>,
@@ -215,7 +216,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         let (from, to) = (step.start().t, step.end().t);
         let resolution = 2.0 * f64::EPSILON * from.abs().max(to.abs());
         let precision = self.precision.max(resolution);
-        // Elapsed time and index of the last event reported: nothing is stored but this.
+        // Elapsed time and index of the last reported event. Later events are searched for anew, so no list is stored.
         let mut last = None;
         loop {
             let mut next: Option<(f64, usize, f64)> = None;
@@ -246,8 +247,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         }
     }
 
-    /// The loop of attempts. If `dense`, `accept` sees every step, complete with its path, and may shorten it
-    /// and end the run.
+    /// Runs the loop over attempted steps. If `dense`, `accept` sees every accepted step together with its dense
+    /// output, and may shorten the step and end the run.
     fn drive<Sys, U>(
         &self,
         system: &Sys,
@@ -307,8 +308,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
                     statistics.rejected += 1;
                     length =
                         h.abs() * controller.refuse(attempt.as_ref().map_or(f64::NAN, |a| a.2));
-                    // A point without ξ̇ may be the fault of the step; when short steps do not
-                    // avoid it, it is the reason.
+                    // The step may have been so long that it hit a point where ξ̇ does not exist; if even the shortest
+                    // steps fail there, that singularity is the error to report.
                     if length < 16.0 * f64::EPSILON * state.t.abs().max(until.abs()) {
                         let (time, step) = (state.t, direction * length);
                         return Err(match attempt {
@@ -348,7 +349,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             }
             length = (h.abs() * controller.accept(q)).min(longest);
 
-            // The last stage is the first of the next step, where the state is the one it saw.
+            // The last stage of the pair is the first stage of the next step (FSAL), unless the state was projected
+            // since.
             let mut f = stages.f.get(self.pair.end).cloned();
             if moved {
                 statistics.evaluations += 1;
@@ -363,7 +365,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         Ok(outcome)
     }
 
-    /// The stages of one step: its end, its change, its error over the tolerance.
+    /// Evaluates the stages of one step; returns its end, its change, and its estimated error divided by the tolerance.
     #[inline]
     fn attempt<Sys, U>(
         &self,
@@ -395,7 +397,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         Ok((end, change, q))
     }
 
-    /// The estimated error over the tolerance.
+    /// Returns the estimated error divided by the tolerance.
     fn error<Sys: System + ?Sized>(
         &self,
         system: &Sys,

@@ -1,20 +1,20 @@
-//! Coefficients of an explicit method whose stages also tell its error and its path within a step.
+//! Coefficients of an embedded explicit Runge-Kutta pair with dense output.
 
 use crate::methods::tableau::{Row, Weights};
 
-/// An explicit tableau of M stages with error estimate and D terms of dense output beyond Hermite's.
+/// An explicit tableau of M stages, with an error estimate and D terms of dense output in addition to Hermite's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair<const M: usize, const D: usize> {
     /// The order p.
     pub order: u32,
-    /// The stage at the end of the step: its row is b, and it is the first stage of the next step.
-    /// Stages after it serve dense output alone.
+    /// Index of the stage at the end of the step: its row is b, and it is the first stage of the next step. Later
+    /// stages are only for dense output.
     pub end: usize,
     /// The stages; the first has no weights.
     pub rows: [Row; M],
-    /// e, the difference of two closing formulas: the estimate is h Σ eⱼ kⱼ. Where there are two, of
-    /// orders p₁ > p₂, they are combined as in DOP853: |e₁|² / √(|e₁|² + 0.01 |e₂|²).
+    /// Error weights e, the difference of two closing formulas: the estimate is h Σ eⱼ kⱼ. If there are two estimates,
+    /// of orders p₁ > p₂, they are combined as in DOP853: |e₁|² / √(|e₁|² + 0.01 |e₂|²).
     pub errors: &'static [Weights],
-    /// d of the terms of dense output beyond Hermite's three.
+    /// Weights d of the terms of dense output that follow Hermite's three.
     pub dense: [Weights; D],
 }

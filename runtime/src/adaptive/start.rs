@@ -1,4 +1,4 @@
-//! The first step.
+//! Choice of the length of the first step.
 
 use crate::adaptive::{Adaptive, power};
 use crate::error::StepError;
@@ -10,11 +10,11 @@ use crate::store::{add_scaled, scale};
 use crate::system::System;
 
 impl<const M: usize, const D: usize> Adaptive<M, D> {
-    /// A length whose error is likely below the tolerance, not above `longest`: from the sizes of the
-    /// state, of its rates, and of the change of rates over a trial step of Euler's.
+    /// Returns a length, at most `longest`, whose error is likely below the tolerance. It is derived from the sizes of
+    /// the state, of its rates, and of the change of the rates over a trial step of Euler's method.
     ///
     /// Source: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I* (1993),
-    /// II.4. Orientations have the size of 1 rad.
+    /// II.4. The size of an orientation is taken as 1 rad.
     pub(super) fn first_step<Sys, U>(
         &self,
         system: &Sys,

@@ -1,9 +1,9 @@
-//! One accepted step, and the motion within it.
+//! An accepted step with its dense output.
 //!
-//! u(θ) and ξ(θ) are polynomials; the orientation at θ is R₀ exp(u(θ)). With the changes Δ over the
-//! step and the rates at its ends, y(θ) = y₀ + θ (r₂ + θ' (r₃ + θ (r₄ + θ' (r₅ + …)))), θ' = 1 − θ,
-//! r₂ = Δ, r₃ = h y'₀ − Δ, r₄ = Δ − h y'₁ − r₃, and further terms h Σ dⱼ kⱼ of the method. Source: E.
-//! Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I* (1993), II.6.
+//! u(θ) and ξ(θ) are polynomials in θ ∈ (0, 1); the orientation at θ is R₀ exp(u(θ)). With the changes Δ over the step
+//! and the rates at its ends, y(θ) = y₀ + θ (r₂ + θ' (r₃ + θ (r₄ + θ' (r₅ + …)))), θ' = 1 − θ, r₂ = Δ, r₃ = h y'₀ − Δ,
+//! r₄ = Δ − h y'₁ − r₃, and further terms h Σ dⱼ kⱼ of the method. Source: E. Hairer, S. P. Nørsett, G. Wanner,
+//! *Solving Ordinary Differential Equations I* (1993), II.6.
 
 use core::fmt;
 
@@ -15,35 +15,34 @@ use crate::state::State;
 use crate::store::{add, add_scaled, scale};
 use crate::system::System;
 
-/// An accepted step.
+/// An accepted step, with the state at any time within it.
 pub struct Step<'s, Sys: System + ?Sized, const D: usize> {
     pub(crate) system: &'s Sys,
     pub(crate) start: &'s State<Sys>,
     pub(crate) end: State<Sys>,
-    /// The length for which the polynomials hold, also when the step is cut short by an event.
+    /// Length of the step for which the polynomials hold, even if an event shortens the step.
     pub(crate) h: f64,
-    /// That of the run.
+    /// Clock of the run, if the description declares time.
     pub(crate) clock: Option<Clock<Sys::Scalar>>,
     hermite: [Sums<Sys>; 3],
     further: [Sums<Sys>; D],
 }
 
 impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
-    /// The state in which the step starts.
+    /// Returns the state at the start of the step.
     pub fn start(&self) -> &State<Sys> {
         self.start
     }
 
-    /// The state in which it ends.
+    /// Returns the state at the end of the step.
     pub fn end(&self) -> &State<Sys> {
         &self.end
     }
 
-    /// The state at any time from the start to the end of the step; times beyond it give the end that
-    /// is nearer.
+    /// Returns the state at any time from the start to the end of the step; times outside give the nearer end.
     ///
-    /// Errors are of the size of the error of the step. Where multipliers keep constraints, these
-    /// hold exactly at the ends alone.
+    /// The error is of the size of the error of the step. Constraints that multipliers enforce hold exactly only at the
+    /// ends.
     pub fn at(&self, t: f64) -> State<Sys> {
         let theta = (t - self.start.t) / self.h;
         if theta.is_nan() || theta <= 0.0 {
@@ -60,7 +59,7 @@ impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
         }
     }
 
-    /// The polynomials at 0 < θ < 1.
+    /// Evaluates the polynomials at 0 < θ < 1.
     fn within(&self, theta: f64) -> State<Sys> {
         let mut sum = Sums::<Sys> {
             u: self.system.zero_chart(),
@@ -81,7 +80,7 @@ impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
         State { t, x, xi }
     }
 
-    /// The step over which the stages were taken, with the change that they add up to.
+    /// Creates the step over which the stages were evaluated; `change` is the sum of the stages, u and Δξ.
     pub(crate) fn new<'s, const M: usize>(
         system: &'s Sys,
         start: &'s State<Sys>,
@@ -111,7 +110,7 @@ impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
     }
 }
 
-/// h k and h f of one stage.
+/// Returns h k and h f of one stage.
 fn slope<Sys: System + ?Sized, const M: usize>(
     system: &Sys,
     stages: &Stages<Sys, M>,

@@ -1,9 +1,9 @@
-//! Whether the steps are short for the sake of stability alone.
+//! Detection of stiffness: whether stability, not accuracy, keeps the steps short.
 //!
-//! Two stages at the end of a step differ little, and mostly along the fastest direction, so that the
-//! change of the rates over that of the points, ρ, estimates the spectral radius. Where h ρ stays at the
-//! bound of the region of stability, the step is not chosen by the motion. Source: E. Hairer, G. Wanner,
-//! *Solving Ordinary Differential Equations II* (1996), IV.2.
+//! The last two stages of a step differ little, and mostly along the fastest direction, so the change of the rates
+//! divided by the change of the points, ρ, estimates the spectral radius. If h ρ stays at the bound of the stability
+//! region, it is stability that limits the step. Source: E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
+//! II* (1996), IV.2.
 
 use crate::adaptive::pair::Pair;
 use crate::methods::tableau::Stages;
@@ -11,18 +11,18 @@ use crate::scalar::Scalar;
 use crate::store::add_scaled;
 use crate::system::System;
 
-/// Steps at the bound, more than steps within it, after which the motion is stiff: a passage near a
-/// singularity takes fewer.
+/// Excess of steps at the stability bound over steps within it, at which the motion counts as stiff. A passage near a
+/// singularity takes fewer such steps.
 const OFTEN: u32 = 1000;
 
-/// How often the step was at the bound.
+/// Counter of steps at the stability bound.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stiffness {
     count: u32,
 }
 
 impl Stiffness {
-    /// The rate ρ where the motion is stiff, after one more step.
+    /// Records one more step; returns the rate ρ if the motion counts as stiff.
     pub(super) fn after<Sys: System + ?Sized, const M: usize, const D: usize>(
         &mut self,
         system: &Sys,
@@ -31,7 +31,7 @@ impl Stiffness {
         h: f64,
     ) -> Option<f64> {
         let rate = rate(system, stages, pair, h)?;
-        // Where h ρ is for the pairs of orders 5 and 8 when stability holds it.
+        // Values of h |ρ| at the bound of the stability region, for the pairs of orders 8 and 5.
         let bound = if pair.order > 6 { 6.1 } else { 3.25 };
         if rate * h.abs() < 0.8 * bound {
             self.count = self.count.saturating_sub(1);
@@ -42,8 +42,8 @@ impl Stiffness {
     }
 }
 
-/// The size of the change of the rates between the last two stages of a step over that of their points,
-/// in the worst lane.
+/// Returns the norm of the change of the rates between the last two stages of a step, divided by the norm of the change
+/// of their points, in the worst lane.
 fn rate<Sys: System + ?Sized, const M: usize, const D: usize>(
     system: &Sys,
     stages: &Stages<Sys, M>,

@@ -1,11 +1,11 @@
-//! Which members of an ensemble share lanes, and their states as one.
+//! Groups of members that share SIMD lanes, and conversion of their states to and from lanes.
 
 use crate::error::StepError;
 use crate::lanes::Lanes;
 use crate::state::State;
 use crate::system::System;
 
-/// The members that are computed together, one a lane.
+/// A group of members that are computed together, one per lane.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
     /// Indices in the list of states; at least one.
@@ -13,32 +13,32 @@ pub struct Group {
 }
 
 impl Group {
-    /// Members of a part by their place in it, at least one, and the index of the first of the part.
+    /// Creates a group from `chosen`, the positions of at least one member within a part that starts at index `first`.
     pub(super) fn new(first: usize, chosen: &[usize]) -> Self {
         Self {
             members: chosen.iter().map(|local| first + local).collect(),
         }
     }
 
-    /// The member in a lane, by its index in the list of states; lanes beyond the members repeat the
-    /// last, and what they compute is not used.
+    /// Returns the member in a lane, as an index in the list of states; lanes beyond the members repeat the last one,
+    /// and their results are not used.
     pub fn member(&self, lane: usize) -> usize {
         let member = self.members.get(lane).or(self.members.last());
         member.copied().unwrap_or_default()
     }
 
-    /// The members, as indices in the list of states.
+    /// Returns the members, as indices in the list of states.
     pub fn members(&self) -> &[usize] {
         &self.members
     }
 
-    /// Lanes with a value for each member.
+    /// Creates lanes from a value for each member.
     pub fn gather<L: Lanes>(&self, mut value: impl FnMut(usize) -> L::Element) -> L {
         L::from_lanes(|lane| value(self.member(lane)))
     }
 }
 
-/// The states of the chosen members of a part as one state of lanes.
+/// Combines the states of the chosen members of a part into one state of lanes.
 pub(super) fn gather<Wide, Single>(
     system: &Wide,
     states: &[State<Single>],
@@ -73,7 +73,7 @@ where
     Ok(State { t, x, xi })
 }
 
-/// The other way.
+/// Writes the lanes of a state back to the chosen members: the inverse of [`gather`].
 pub(super) fn scatter<Wide, Single>(
     from: &State<Wide>,
     states: &mut [State<Single>],

@@ -1,12 +1,12 @@
-//! Many runs of one system: lanes, filled by members of the ensemble, on all threads of rayon.
+//! Many runs of one system at once: members of the ensemble fill SIMD lanes, on all threads of rayon.
 //!
-//! Members share the method, the step and the end, and differ in their states, and by
-//! [`integrate_each`] in their parameters. Neighbours in the list that start at the same time share
-//! lanes; lanes left over repeat a member. What a member becomes does not depend on the number of threads,
-//! and not on the others but for implicit methods, which iterate until all lanes of a group have converged.
+//! Members share the method, the step and the end time, and differ in their states; with [`integrate_each`] also in
+//! their parameters. Neighbours in the list that start at the same time share the lanes of a vector; unused lanes
+//! repeat a member. The result of a member does not depend on the number of threads. It does not depend on the other
+//! members either, except with implicit methods, which iterate until all lanes of a group have converged.
 //!
-//! A member that fails does not take its group along: it is found by a step of each alone, keeps its last
-//! valid state, and the others go on without it.
+//! A member that fails does not stop its group: it is identified by stepping each member alone, and keeps its last
+//! valid state; the others continue without it.
 //!
 //! # Example
 //! A thousand pendulums from different angles, ξ = θ̇, θ̈ = −g/l sin θ, in lanes of eight:
@@ -59,7 +59,7 @@
 //! assert!(outcome.failures.is_empty());
 //! assert!(states.iter().all(|state| state.t == 2.0));
 //!
-//! // The same with another length each: g/l as a sample of the member.
+//! // The same pendulums, each with a length of its own: g/l depends on the member.
 //! let outcome = ensemble::integrate_each(
 //!     |group| Ok(Pendulum { rate: group.gather::<f64x8>(|member| 9.0 + 1e-3 * member as f64) }),
 //!     &Rkmk4, &mut states, 0.01, 4.0, |_, _, _, _| [], ensemble::quietly,
@@ -83,46 +83,46 @@ use crate::system::System;
 pub use group::Group;
 use run::{Run, Watch};
 
-/// How far an ensemble is, in steps of members.
+/// Progress of an ensemble, counted in steps of members.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Steps that are done, or that a member which failed will not do.
+    /// Steps that are done, including those that failed members will not do.
     pub done: u64,
-    /// All steps of all members.
+    /// Total number of steps of all members.
     pub total: u64,
 }
 
-/// A member that did not arrive.
+/// A member that failed before the end time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
-    /// Its index in the list of states.
+    /// Index of the member in the list of states.
     pub member: usize,
-    /// Why; its state is the last valid one.
+    /// The error; the state of the member is the last valid one.
     pub error: StepError,
 }
 
-/// What became of an ensemble.
+/// Result of an ensemble run.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[must_use]
 pub struct Outcome {
     /// The members that failed, in the order of the list.
     pub failures: Vec<Failure>,
-    /// Whether the run was cancelled: members are then at different times, which their states say.
+    /// Whether the run was cancelled; members may then be at different times, given by their states.
     pub cancelled: bool,
 }
 
-/// A progress callback that goes on and says nothing.
+/// A progress callback that reports nothing and lets the run continue.
 pub fn quietly(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Moves all states to the time `until`, in equal steps no longer than `length`, as
-/// [`integrate`](crate::integrate()) does one.
+/// Integrates all states to the time `until`, in equal steps no longer than `length`, as
+/// [`integrate`](crate::integrate()) does for one.
 ///
-/// `system` computes in lanes, the states are of the same system on the element of the lanes (or of any
-/// with as many coordinates and velocities). `inputs(group, t, x, ξ)` gives u of the lanes. `progress` is
-/// called from all threads, every few hundred steps of a group and at its end; `Break` cancels the run.
-/// The threads are those of the rayon pool that the function is called in.
+/// `system` computes in lanes; the states belong to the same system with the element type of the lanes (or to any
+/// system with as many coordinates and velocities). `inputs(group, t, x, ξ)` returns u for all lanes. `progress` is
+/// called from all threads, every few hundred steps of a group and at its end; `Break` cancels the run. The function
+/// runs on the threads of the current rayon pool.
 pub fn integrate<Wide, Single, M, U, P>(
     system: &Wide,
     method: &M,
@@ -144,8 +144,9 @@ where
     integrate_each(systems, method, states, length, until, inputs, progress)
 }
 
-/// As [`integrate`], with a system for each group of members, whose parameters are
-/// [gathered](Group::gather) from theirs. A member whose parameters make it [`Singular`] has failed.
+/// Integrates like [`integrate`], with a separate system for each group of members, whose parameters are
+/// [gathered](Group::gather) from those of the members. A member whose parameters make the system [`Singular`] has
+/// failed.
 pub fn integrate_each<Wide, Single, Sys, M, U, P>(
     systems: Sys,
     method: &M,
@@ -179,7 +180,8 @@ where
     }
 }
 
-/// Neighbours of the same time, at most `count` together, each part with the index of its first member.
+/// Divides the states into parts of at most `count` neighbours with the same time, each with the index of its first
+/// member.
 fn divide<Single: System>(
     states: &mut [State<Single>],
     count: usize,

@@ -1,4 +1,4 @@
-//! The run of one group, and what is known of all.
+//! The run of one part of an ensemble, and the progress that all parts share.
 
 use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -16,7 +16,7 @@ use crate::system::System;
 /// Steps of a group between two calls of the progress callback.
 const PACE: u64 = 256;
 
-/// What all threads share: how much is done, and whether to go on.
+/// Data shared by all threads: the steps done, and whether the run is cancelled.
 pub(super) struct Watch<'a, P> {
     done: AtomicU64,
     total: u64,
@@ -25,7 +25,7 @@ pub(super) struct Watch<'a, P> {
 }
 
 impl<'a, P: Fn(Progress) -> ControlFlow<()>> Watch<'a, P> {
-    /// For parts of members with the same time each.
+    /// Creates the shared data for parts whose members all have the same time.
     pub(super) fn new<Single: System>(
         parts: &[(usize, &mut [State<Single>])],
         length: f64,
@@ -51,7 +51,7 @@ impl<'a, P: Fn(Progress) -> ControlFlow<()>> Watch<'a, P> {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Counts steps of members and tells; `false` when the run is cancelled.
+    /// Counts steps of members and reports the progress; returns `false` if the run is cancelled.
     fn advance(&self, steps: u64) -> bool {
         let done = self
             .done
@@ -65,21 +65,21 @@ impl<'a, P: Fn(Progress) -> ControlFlow<()>> Watch<'a, P> {
     }
 }
 
-/// What the members of a part have in common.
+/// Everything that the members of a part have in common.
 pub(super) struct Run<'a, Sys, M, U, P> {
     systems: &'a Sys,
     method: &'a M,
     inputs: &'a U,
     watch: &'a Watch<'a, P>,
-    /// The index of the first member of the part.
+    /// Index of the first member of the part.
     first: usize,
 }
 
-/// How a group ended.
+/// How the run of a group ended.
 enum End {
-    /// At the end of the time, or cancelled.
+    /// The group reached the end time or was cancelled.
     Arrived,
-    /// The step after so many failed.
+    /// The step that follows this number of steps failed.
     Stopped(u64, StepError),
 }
 
@@ -107,7 +107,7 @@ where
         }
     }
 
-    /// All members of a part, which have the same time, to the end; those that fail, in order.
+    /// Runs all members of a part, which have the same time, to the end; returns the failed ones in order.
     pub(super) fn all<Single>(
         &self,
         states: &mut [State<Single>],
@@ -130,7 +130,7 @@ where
             }
         };
         let starts = states.to_vec();
-        // Groups that still have steps to do, each with the index of its next.
+        // Groups that still have steps to do, each with the number of steps done.
         let mut open = vec![(everybody, 0)];
         while let Some((chosen, index)) = open.pop() {
             let End::Stopped(index, error) = self.group((&starts, states), &chosen, &grid, index)
@@ -154,7 +154,7 @@ where
             if well.len() < chosen.len() {
                 open.push((well, index));
             } else {
-                // Nobody fails alone: they do not get on together.
+                // Each member succeeds alone, only the group fails (a common iteration, for example): split it up.
                 open.extend(well.into_iter().map(|local| (vec![local], index)));
             }
         }
@@ -169,7 +169,8 @@ where
         }
     }
 
-    /// The chosen members from the step `index` on, with the states that all of them had at the start.
+    /// Runs the chosen members from the step `index` on; `starts` are the states of all members at the start of the
+    /// run.
     fn group<Single>(
         &self,
         (starts, states): (&[State<Single>], &mut [State<Single>]),
@@ -216,7 +217,7 @@ where
         end
     }
 
-    /// Whether a member can do the step after `index` alone.
+    /// Checks whether a member can do the step after `index` alone.
     fn one_step<Single>(
         &self,
         states: &[State<Single>],
@@ -236,7 +237,7 @@ where
         step(&system, self.method, &mut state, grid.step(), &inputs)
     }
 
-    /// The system and the state of a group.
+    /// Creates the system and the state of a group.
     fn prepare<Single>(
         &self,
         group: &Group,

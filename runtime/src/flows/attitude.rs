@@ -1,4 +1,4 @@
-//! What a flow does to an attitude, whichever way it is stored.
+//! Rotations applied to an attitude, whether it is stored as a matrix or as a quaternion.
 
 use core::array::from_fn;
 
@@ -8,36 +8,37 @@ use crate::{s3, so3::SINE_RATIO, so3::VERSINE_RATIO};
 
 /// A rotation, body to world, that can be turned in its own (body) axes.
 pub trait Attitude<S: Scalar>: Copy {
-    /// Turned by nothing.
+    /// Returns the identity.
     fn identity() -> Self;
 
-    /// Turned by |u| about u.
+    /// Returns the attitude turned by |u| about u.
     fn turned(self, u: Vector<S>) -> Self;
 
-    /// Turned by a unit quaternion.
+    /// Returns the attitude turned by a unit quaternion.
     fn turned_by(self, f: s3::Quaternion<S>) -> Self;
 
-    /// Turned by a rotation matrix; of its two quaternions by the one that is near another, which need not be exact.
+    /// Returns the attitude turned by a rotation matrix. Of the two quaternions of the matrix, the one closer to `near`
+    /// is used; `near` need not be exact.
     fn turned_by_matrix(self, f: Matrix<S>, near: impl FnOnce() -> s3::Quaternion<S>) -> Self;
 
-    /// Turned by cay(f): by 2 atan|f| about f.
+    /// Returns the attitude turned by cay(f), that is, by 2 atan|f| about f.
     fn turned_by_cayley(self, f: Vector<S>) -> Self;
 
-    /// Turned about body axis `axis` by an angle in rad, with the sine and cosine of that.
+    /// Returns the attitude turned about body axis `axis` by an angle in rad, and the sine and cosine of the angle.
     fn turned_about(self, axis: usize, angle: S) -> (Self, SineCosine<S>);
 }
 
 /// Sine and cosine of an angle.
 #[derive(Clone, Copy, Debug)]
 pub struct SineCosine<S> {
-    /// sin
+    /// The sine.
     pub sine: S,
-    /// cos
+    /// The cosine.
     pub cosine: S,
 }
 
 impl<S: Scalar> SineCosine<S> {
-    /// Of an angle in rad: by series below half a radian.
+    /// Computes sine and cosine of an angle in rad, by series below half a radian.
     #[inline(always)]
     pub fn of(angle: S) -> Self {
         let t2 = angle * angle;
@@ -52,7 +53,7 @@ impl<S: Scalar> SineCosine<S> {
         }
     }
 
-    /// Of twice the angle.
+    /// Returns sine and cosine of twice the angle.
     #[inline(always)]
     pub fn doubled(self) -> Self {
         let twice = S::from_f64(2.0) * self.sine;
@@ -62,7 +63,8 @@ impl<S: Scalar> SineCosine<S> {
         }
     }
 
-    /// The vector p of body axes, at rest in the world, after the body turned by this angle about `axis`.
+    /// Updates the components p, in body axes, of a vector at rest in the world after the body has turned by this angle
+    /// about `axis`.
     #[inline(always)]
     pub fn turn_back(self, axis: usize, p: &mut Vector<S>) {
         let (b, c) = others(axis);
@@ -72,7 +74,7 @@ impl<S: Scalar> SineCosine<S> {
     }
 }
 
-/// The axes after `axis`, in cyclic order.
+/// Returns the two axes that follow `axis` in cyclic order.
 #[inline(always)]
 pub(crate) const fn others(axis: usize) -> (usize, usize) {
     match axis {

@@ -5,7 +5,7 @@
 
 use crate::scalar::{Scalar, series};
 
-/// atan(√e)/√e in e: (−1)ᵏ / (2k+1)
+/// Coefficients of atan(√e)/√e in powers of e: (−1)ᵏ / (2k+1)
 const ARCTANGENT_RATIO: [f64; 7] = [
     1.0,
     -1.0 / 3.0,
@@ -16,12 +16,12 @@ const ARCTANGENT_RATIO: [f64; 7] = [
     1.0 / 13.0,
 ];
 
-/// Each duplication divides the spread of the arguments by four, at first by much more.
+/// Largest number of duplications. Each divides the spread of the arguments by four, at first by much more.
 const DUPLICATIONS: usize = 32;
-/// The series in the spread is of order 6.
+/// Relative spread below which the series is used, whose error is of order 6 in the spread.
 const SPREAD: f64 = 1e-3;
 
-/// R_J(x, y, z, p) for 0 ≤ x, y, z ≤ p, at most one of x, y, z zero.
+/// Returns R_J(x, y, z, p) for 0 ≤ x, y, z ≤ p, where at most one of x, y, z is zero.
 pub fn third_kind<S: Scalar>(x: S, y: S, z: S, p: S) -> S {
     let [one, two, three, quarter] = [1.0, 2.0, 3.0, 0.25].map(S::from_f64);
     let mean = (x + y + z + two * p) / S::from_f64(5.0);
@@ -64,7 +64,7 @@ pub fn third_kind<S: Scalar>(x: S, y: S, z: S, p: S) -> S {
     power / (a * a.sqrt()) * value + S::from_f64(6.0) * sum
 }
 
-/// R_C(1, 1 + e) = atan(√e)/√e for e ≥ 0.
+/// Returns R_C(1, 1 + e) = atan(√e)/√e for e ≥ 0.
 fn degenerate<S: Scalar>(e: S) -> S {
     let root = e.sqrt();
     let closed = root.atan2(S::from_f64(1.0)) / root;

@@ -1,21 +1,20 @@
-//! The torque-free rotor with three different moments in closed form.
+//! Closed-form motion of the torque-free rotor with three different moments.
 //!
-//! In axes named so that the component along the third never vanishes,
-//! P/|P| = (a cn, a/√r sn, σ b dn)(u | m), and the attitude follows from the angle of P's frame about
-//! the constant R P. With κᵢ = 1/Iᵢ, r = (κ₂−κ₃)/(κ₁−κ₃), q = (κ₁−κ₂)/(κ₁−κ₃), r + q = 1 and
-//! (p₁, p₂, p₃) = P/|P| at the start
+//! The principal axes are numbered such that the component of P along the third never vanishes. Then
+//! P/|P| = (a cn, a/√r sn, σ b dn)(u | m), and the attitude follows from the angle of P's frame about the constant R P.
+//! With κᵢ = 1/Iᵢ, r = (κ₂−κ₃)/(κ₁−κ₃), q = (κ₁−κ₂)/(κ₁−κ₃), r + q = 1 and (p₁, p₂, p₃) = P/|P| at the start
 //!
 //! a² = p₁² + r p₂², b² = p₃² + q p₂², m = a² q/(b² r), 1 − m = (r p₃² − q p₁²)/(r b²),
 //! u̇ = ±|P| b √r (κ₁−κ₃).
 //!
-//! Nothing here subtracts |P|² from 2 E I: all terms are sums, or differences of inertias that are given.
-//! sn, cn, dn at the start are p₁/a, p₂ √r/a, |p₃|/b, so that no inverse function is needed; they are
-//! advanced by the addition theorem.
+//! These formulas do not subtract |P|² from 2 E I, which would cancel: all terms are sums, or differences of given
+//! inertias. At the start sn = p₂ √r/a, cn = p₁/a and dn = |p₃|/b, so that no inverse function is needed; the functions
+//! are advanced by the addition theorem.
 //!
-//! About a principal axis, at rest, and with three equal moments P stands still in the body, and the amplitudes say nothing
-//! of motions nearby: what is linear in them follows from Euler's equations there, so that numbers with slopes keep them.
-//! Sources: E. Celledoni, F. Fassò, N. Säfström, A. Zanna, SIAM J.
-//! Sci. Comput. 30 (2008) 2084; R. van Zon, J. Schofield, J. Comput. Phys. 225 (2007) 145.
+//! P is constant in the body for a rotation about a principal axis, at rest, and with three equal moments. There the
+//! amplitudes carry no information on neighbouring motions, so the first-order dependence is computed from Euler's
+//! equations instead, which gives dual numbers the right slopes. Sources: E. Celledoni, F. Fassò, N. Säfström, A.
+//! Zanna, SIAM J. Sci. Comput. 30 (2008) 2084; R. van Zon, J. Schofield, J. Comput. Phys. 225 (2007) 145.
 
 use core::array::from_fn;
 
@@ -26,60 +25,61 @@ use crate::s3;
 use crate::scalar::Scalar;
 use crate::so3::{self, Matrix, Vector};
 
-/// One torque-free motion: constants and start.
+/// Constants and initial values of one torque-free motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeRotation<S> {
-    /// P/|P|
+    /// Unit vector P/|P|, in principal axes.
     unit: Vector<S>,
-    /// |P|
+    /// Length |P|.
     length: S,
-    /// P, in principal axes.
+    /// Angular momentum P, in principal axes.
     momentum: Vector<S>,
-    /// 1/I, in principal axes.
+    /// Inverse moments 1/I, in principal axes.
     flexibility: Vector<S>,
-    /// Named axes as rows, in principal axes.
+    /// The axes numbered as in the formulas, as rows, in principal axes.
     names: [Vector<S>; 3],
-    /// κ₁, κ₃
+    /// Inverse moments κ₁, κ₃.
     inverses: [S; 2],
-    /// |P| (κ₁ − κ₃), the factor of the integral.
+    /// Factor of the integral, |P| (κ₁ − κ₃).
     pub(crate) factor: S,
-    /// a, a/√r, σ b
+    /// Amplitudes a, a/√r, σ b.
     amplitudes: Vector<S>,
-    /// 0 for a turn about a principal axis, or of equal moments about any of theirs.
+    /// 1 if P moves in the body; 0 for a rotation about a principal axis, or about any axis if the moments are equal.
     moving: S,
     pub(crate) m: S,
     pub(crate) complement: S,
     pub(crate) start: Jacobi<S>,
-    /// u̇
+    /// Rate u̇ of the argument.
     pub(crate) rate: S,
-    /// The angle about R P is |P| κ h and the integral of |P| (κ₁ − κ₃) n sn²/(1 + n sn²), n ≤ 1: added
-    /// to κ = κ₃ where the first axis gives the node, taken from κ = κ₁ where the third does.
+    /// Parameter n ≤ 1 of the integral of |P| (κ₁ − κ₃) n sn²/(1 + n sn²). The angle about R P is |P| κ h, plus this
+    /// integral with κ = κ₃ if the node is that of the first axis, or minus this integral with κ = κ₁ if it is that of
+    /// the third.
     pub(crate) n: S,
-    /// u̇ over the factor.
+    /// Rate u̇ divided by the factor of the integral.
     pub(crate) per_factor: S,
-    /// Whether the angle is that of the first axis (1) or of the third (0).
+    /// Whether the node is that of the first axis (1) or of the third (0).
     by_first: S,
     /// Whether names[0], names[1], σ names[2] are right-handed (1) or left-handed (−1).
     turning: S,
 }
 
-/// Where a motion gets.
+/// Result of a motion.
 pub(crate) struct Turned<S> {
-    /// The rotation F of the body, R₁ = R₀ F.
+    /// Rotation F of the body, R₁ = R₀ F.
     f: Matrix<S>,
-    /// P = Fᵀ P₀
+    /// Angular momentum P = Fᵀ P₀.
     momentum: Vector<S>,
-    /// P/|P|
+    /// Unit vector P/|P|.
     unit: Vector<S>,
-    /// The angle about R P.
+    /// Angle about R P.
     angle: S,
-    /// How often cn has changed its sign.
+    /// Number of sign changes of cn.
     folds: S,
-    /// The time that it takes.
+    /// Duration of the motion.
     h: S,
 }
 
-/// A principal axis with its moment.
+/// A principal axis with its moment of inertia.
 #[derive(Clone, Copy)]
 struct Named<S> {
     moment: S,
@@ -100,10 +100,10 @@ fn exchange<S: Scalar>(axes: &mut [Named<S>; 3], a: usize, b: usize, condition: 
 }
 
 impl<S: Scalar> FreeRotation<S> {
-    /// The motion with angular momentum `p` now, in principal axes.
+    /// Creates the motion that starts with the angular momentum `p`, in principal axes.
     pub(crate) fn new(moments: Vector<S>, p: Vector<S>) -> Self {
         let (zero, one) = (S::default(), S::from_f64(1.0));
-        // Scaled by its largest component, so that the square of a small P is not lost.
+        // P is scaled by its largest component, so that the square of a small P does not underflow.
         let largest = Scalar::max(Scalar::max(p[0].abs(), p[1].abs()), p[2].abs());
         let scaled: Vector<S> = from_fn(|i| {
             let rest = if i == 2 { one } else { zero };
@@ -132,7 +132,7 @@ impl<S: Scalar> FreeRotation<S> {
         let (r, q, _) = differences(&axes);
         let x = r.sqrt() * so3::dot(axes[2].axis, unit).abs();
         let y = q.sqrt() * so3::dot(axes[0].axis, unit).abs();
-        // On the separatrix either naming serves, but for one with r = 0.
+        // On the separatrix either order of the axes works, unless r = 0.
         let tie = r.select_lt(q, one, zero);
         let swap = x.select_lt(y, one, y.select_lt(x, zero, tie));
         exchange(&mut axes, 0, 2, swap);
@@ -166,7 +166,7 @@ impl<S: Scalar> FreeRotation<S> {
             amplitudes: [a, a / root, sigma * b],
             moving: circling * off_axis * zero.select_lt(whole.abs() * b2, one, zero),
             m: a2 * q / (b2 * r),
-            // Where q is 0, its root has no slope.
+            // If q is 0, its root has no finite slope.
             complement: zero.select_lt(q, (x - y) * (x + y), r * (p3 * p3) - q * (p1 * p1))
                 / (r * b2),
             start,
@@ -178,7 +178,7 @@ impl<S: Scalar> FreeRotation<S> {
         }
     }
 
-    /// The motion in time `h`.
+    /// Advances the motion by the time `h`.
     pub(crate) fn after(&self, h: S) -> Turned<S> {
         let zero = S::default();
         let Angle {
@@ -227,9 +227,11 @@ impl<S: Scalar> FreeRotation<S> {
         }
     }
 
-    /// P/|P| after `time`, |P| times the time, where P stands still in the body: but for what is linear in the slopes. With
-    /// f = p × κ p, f = 0, that is p + t f + ½ t² f′ f where two moments are equal, whose f′ f′ is 0; about axis k
-    /// ṗᵢ = pₖ (κₖ − κⱼ) pⱼ and ṗⱼ = pₖ (κᵢ − κₖ) pᵢ for i, j, k in turn.
+    /// Returns P/|P| after `time` (|P| times the physical time) if P is constant in the body: the constant value, and
+    /// its first-order dependence for dual numbers.
+    ///
+    /// With f = p × κ p, f = 0, that is p + t f + ½ t² f′ f if two moments are equal, where f′ f′ is 0; for a rotation
+    /// about axis k, ṗᵢ = pₖ (κₖ − κⱼ) pⱼ and ṗⱼ = pₖ (κᵢ − κₖ) pᵢ for i, j, k in cyclic order.
     fn still(&self, time: S) -> Vector<S> {
         let (zero, one, half) = (S::default(), S::from_f64(1.0), S::from_f64(0.5));
         let (p, flexibility) = (self.unit, self.flexibility);
@@ -269,7 +271,8 @@ impl<S: Scalar> FreeRotation<S> {
         still
     }
 
-    /// The rate of the angle about R P where P stands still, over |P|: Σ κᵢ pᵢ²/Σ pᵢ² over the axes beside that of the node.
+    /// Returns the rate of the angle about R P divided by |P|, if P is constant in the body: Σ κᵢ pᵢ²/Σ pᵢ² over the
+    /// axes other than that of the node.
     fn steady_rate(&self) -> S {
         let zero = S::default();
         let squares = self.names.map(|axis| {
@@ -286,19 +289,19 @@ impl<S: Scalar> FreeRotation<S> {
         sum(weighed) / sum(beside)
     }
 
-    /// The turn of a body that rests, in principal axes: h J⁻¹ P, which has slopes alone.
+    /// Returns the rotation vector of a body at rest, in principal axes: h J⁻¹ P, which is zero but may have slopes.
     fn turn_at_rest(&self, h: S) -> Vector<S> {
         from_fn(|i| h * (self.flexibility[i] * self.momentum[i]))
     }
 
-    /// F as a unit quaternion, where it has a sign: that of the motion, which starts at 1.
+    /// Returns F as a unit quaternion, with the sign that results from moving continuously from 1.
     ///
-    /// F = G(p₀) exp(e ψ) G(p)ᵀ with e = σ names[2], where e · p is never negative and G(p) turns e to p
-    /// on the shortest way. ψ is the angle about R P, less the azimuth about e that the node gains beside
-    /// G: a continuous one, since F and −F are the same rotation and not the same quaternion.
+    /// F = G(p₀) exp(e ψ) G(p)ᵀ with e = σ names[2], where e · p is never negative and G(p) is the shortest rotation
+    /// from e to p. ψ is the angle about R P, less the change of the azimuth of the node about e relative to G. This
+    /// azimuth must be continuous, since F and −F are the same rotation but not the same quaternion.
     fn lift(&self, turned: &Turned<S>) -> s3::Quaternion<S> {
         let (zero, half) = (S::default(), S::from_f64(0.5));
-        // α/2 goes on by a quarter of a turn where cn changes its sign.
+        // α/2, half of the azimuth, advances by a quarter turn at each sign change of cn.
         let quarters = zero.select_lt(self.moving, turned.folds, zero);
         let quarters = self.by_first.select_lt(half, quarters, zero);
         let side = nodes::side(self.start);
@@ -320,15 +323,15 @@ impl<S: Scalar> FreeRotation<S> {
         from_fn(|i| zero.select_lt(self.length, lifted[i], resting[i]))
     }
 
-    /// e = σ names[2], along which p keeps its sign.
+    /// Returns e = σ names[2]; the component of p along e keeps its sign.
     fn third(&self) -> Vector<S> {
         let zero = S::default();
         let minus = self.amplitudes[2].select_lt(zero, -S::from_f64(1.0), S::from_f64(1.0));
         self.names[2].map(|component| minus * component)
     }
 
-    /// The node of names[0] or names[2] beside the frame G(p): half its azimuth about e, as cosine and sine.
-    /// About names[2] p is taken to where cn is positive by its `side`, 1 or −1.
+    /// Returns half of the azimuth about e of the node of names[0] or names[2] relative to the frame G(p), as cosine
+    /// and sine. For names[2], `side`, 1 or −1, rotates p to where cn is positive.
     fn half_azimuth(&self, p: Vector<S>, side: S) -> [S; 2] {
         let (zero, one) = (S::default(), S::from_f64(1.0));
         let along = so3::dot(self.names[0], p);
@@ -344,7 +347,7 @@ impl<S: Scalar> FreeRotation<S> {
     }
 }
 
-/// The turn on the shortest way from one unit vector to another less than half a turn away.
+/// Returns the shortest rotation from one unit vector to another that is less than half a turn away.
 fn shortest<S: Scalar>(from: Vector<S>, to: Vector<S>) -> s3::Quaternion<S> {
     let [x, y, z] = so3::cross(from, to);
     let cosine = S::from_f64(1.0) + so3::dot(from, to);
@@ -352,13 +355,13 @@ fn shortest<S: Scalar>(from: Vector<S>, to: Vector<S>) -> s3::Quaternion<S> {
     [cosine, x, y, z].map(|entry| entry / length)
 }
 
-/// Cosine and sine of an angle in rad.
+/// Returns cosine and sine of an angle in rad.
 fn by_angle<S: Scalar>(angle: S) -> [S; 2] {
     let SineCosine { sine, cosine } = SineCosine::of(angle);
     [cosine, sine]
 }
 
-/// Cosine and sine of a whole number of quarters of a turn.
+/// Returns cosine and sine of a whole number of quarter turns.
 fn by_quarters<S: Scalar>(count: S) -> [S; 2] {
     let (one, two, four) = (S::from_f64(1.0), S::from_f64(2.0), S::from_f64(4.0));
     let turns = count / four;
@@ -367,17 +370,17 @@ fn by_quarters<S: Scalar>(count: S) -> [S; 2] {
     [one - size, four * rest * (two - size)]
 }
 
-/// The sum of two angles, given by cosine and sine.
+/// Returns the sum of two angles, each as cosine and sine.
 fn times<S: Scalar>(a: [S; 2], b: [S; 2]) -> [S; 2] {
     [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
 
-/// The opposite angle.
+/// Returns the negative of an angle.
 fn conjugate<S: Scalar>(a: [S; 2]) -> [S; 2] {
     [a[0], -a[1]]
 }
 
-/// Columns: the node reference × p, p × node, p, for a unit vector p.
+/// Returns the frame of a unit vector p, with the columns node = reference × p (normalised), p × node, and p.
 fn frame<S: Scalar>(reference: Vector<S>, p: Vector<S>) -> Matrix<S> {
     let node = so3::cross(reference, p);
     let length = so3::dot(node, node).sqrt();
@@ -390,7 +393,7 @@ fn frame<S: Scalar>(reference: Vector<S>, p: Vector<S>) -> Matrix<S> {
     })
 }
 
-/// Three different moments, any others too: the attitude and P after `h`. Exact.
+/// Flow for any moments, such as three different ones: returns the attitude after the time `h` and updates P. Exact.
 #[inline]
 pub fn exact<S: Scalar, A: Attitude<S>>(
     attitude: A,
@@ -404,8 +407,8 @@ pub fn exact<S: Scalar, A: Attitude<S>>(
     attitude.turned_by_matrix(turned.f, || motion.lift(&turned))
 }
 
-/// The time between two flips of a torque-free rotor, half a period of its angular velocity: 2K/|u̇|;
-/// for a given angular momentum in principal axes. Infinite or NaN where it does not flip.
+/// Returns the time between two flips of a torque-free rotor, half a period of its angular velocity: 2K/|u̇|, for a
+/// given angular momentum in principal axes. Infinite or NaN if the rotor does not flip.
 pub fn half_period<S: Scalar>(moments: Vector<S>, p: Vector<S>) -> S {
     let motion = FreeRotation::new(moments, p);
     let quarter = Mean::new(motion.complement).quarter_period();

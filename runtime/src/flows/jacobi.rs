@@ -1,15 +1,15 @@
-//! Jacobi's elliptic functions sn, cn, dn of (u | m), and what the torque-free rotor needs of them.
+//! Jacobi's elliptic functions sn, cn, dn of (u | m), as far as the torque-free rotor needs them.
 //!
-//! The modulus is given by m and by 1 − m, which near a separatrix carries all digits that matter.
-//! Sources: M. Abramowitz, I. Stegun, *Handbook of Mathematical Functions* (1964), 16.4, 16.17,
-//! 16.22; R. Bulirsch, Numer. Math. 7 (1965) 78.
+//! Both m and 1 − m are given, since near a separatrix only 1 − m carries all significant digits. Sources: M.
+//! Abramowitz, I. Stegun, *Handbook of Mathematical Functions* (1964), 16.4, 16.17, 16.22; R. Bulirsch, Numer. Math. 7
+//! (1965) 78.
 
 use core::array::from_fn;
 use core::f64::consts::FRAC_PI_2;
 
 use crate::scalar::{Scalar, epsilon};
 
-/// sn, cn, dn at one argument.
+/// Values of sn, cn, dn at one argument.
 #[derive(Clone, Copy, Debug)]
 pub struct Jacobi<S> {
     /// sn u
@@ -20,7 +20,7 @@ pub struct Jacobi<S> {
     pub dn: S,
 }
 
-/// sn u = Σ (−1)ᵏ cₖ(m) u²ᵏ⁺¹ / (2k+1)!, the palindromic polynomials cₖ by their coefficients.
+/// Coefficients of the palindromic polynomials cₖ in sn u = Σ (−1)ᵏ cₖ(m) u²ᵏ⁺¹ / (2k+1)!
 const SERIES: [[f64; 7]; 7] = [
     [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -39,7 +39,7 @@ const SERIES: [[f64; 7]; 7] = [
     ],
 ];
 
-/// (−1)ᵏ / (2k+1)!
+/// Factors (−1)ᵏ / (2k+1)!
 const FACTORS: [f64; 7] = [
     1.0,
     -1.0 / 6.0,
@@ -50,7 +50,7 @@ const FACTORS: [f64; 7] = [
     1.0 / 6_227_020_800.0,
 ];
 
-/// |u| below which the series of [`Series`] is exact to rounding for every m in [0, 1].
+/// Bound of |u| below which the series of [`Series`] is exact to rounding for every m in [0, 1].
 pub const SERIES_BELOW: f64 = 0.12;
 
 /// The Maclaurin series in u for one m.
@@ -61,7 +61,7 @@ pub struct Series<S> {
 }
 
 impl<S: Scalar> Series<S> {
-    /// For the parameter m.
+    /// Creates the series for the parameter m.
     #[inline]
     pub fn new(m: S) -> Self {
         let coefficients = from_fn(|k| {
@@ -74,7 +74,7 @@ impl<S: Scalar> Series<S> {
         Self { m, coefficients }
     }
 
-    /// sn, cn, dn of |u| < [`SERIES_BELOW`].
+    /// Returns sn, cn, dn for |u| < [`SERIES_BELOW`].
     #[inline]
     pub fn at(&self, u: S) -> Jacobi<S> {
         let u2 = u * u;
@@ -94,9 +94,9 @@ impl<S: Scalar> Series<S> {
 }
 
 impl<S: Scalar> Jacobi<S> {
-    /// At the sum of two arguments.
+    /// Returns the functions at the sum of two arguments, by the addition theorem.
     ///
-    /// 1 − m sn² sn² is formed as cn² + sn² dn², a sum of positive terms.
+    /// Its denominator 1 − m sn² sn² is computed as cn² + sn² dn², a sum of positive terms.
     #[inline]
     pub fn plus(self, other: Self, m: S) -> Self {
         let (a, b) = (self, other);
@@ -109,7 +109,7 @@ impl<S: Scalar> Jacobi<S> {
         }
     }
 
-    /// At this argument plus 2K j, where `sign` is (−1)ʲ.
+    /// Returns the functions at this argument plus 2K j, where `sign` is (−1)ʲ.
     #[inline]
     pub fn shifted(self, sign: S) -> Self {
         Self {
@@ -120,10 +120,10 @@ impl<S: Scalar> Jacobi<S> {
     }
 }
 
-/// Steps of the arithmetic-geometric mean that serve every 1 − m ≥ 1e-300.
+/// Largest number of steps of the arithmetic-geometric mean; sufficient for every 1 − m ≥ 1e-300.
 const MEANS: usize = 16;
 
-/// The descending arithmetic-geometric mean of 1 and √(1 − m).
+/// Arithmetic-geometric mean of 1 and √(1 − m), with its descending sequence.
 #[derive(Clone, Copy, Debug)]
 pub struct Mean<S> {
     pairs: [(S, S); MEANS],
@@ -132,10 +132,10 @@ pub struct Mean<S> {
 }
 
 impl<S: Scalar> Mean<S> {
-    /// For 1 − m > 0.
+    /// Computes the mean for 1 − m > 0.
     pub fn new(complement: S) -> Self {
         let half = S::from_f64(0.5);
-        // The next mean has the square of the relative gap.
+        // The next mean has the square of this relative gap.
         let close = epsilon::<S>().sqrt() * S::from_f64(0.25);
         let mut pairs = [(S::default(), S::default()); MEANS];
         let (mut a, mut b) = (S::from_f64(1.0), complement.sqrt());
@@ -156,16 +156,16 @@ impl<S: Scalar> Mean<S> {
         }
     }
 
-    /// K(m), a quarter of the period of sn.
+    /// Returns K(m), a quarter of the period of sn.
     #[inline]
     pub fn quarter_period(&self) -> S {
         S::from_f64(FRAC_PI_2) / self.limit
     }
 
-    /// sn, cn, dn of |u| ≤ K.
+    /// Returns sn, cn, dn for |u| ≤ K.
     pub fn at(&self, u: S) -> Jacobi<S> {
         let (zero, one) = (S::default(), S::from_f64(1.0));
-        // Below, sn u = u and cn u = dn u = 1 to rounding; the ratio cn/sn stays finite.
+        // Below this |u|, sn u = u and cn u = dn u = 1 to rounding; the ratio cn/sn stays finite.
         let small = S::from_f64(1e-9);
         let size = u.abs();
         let kept = size.select_lt(small, small, size);

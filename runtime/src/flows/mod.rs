@@ -1,4 +1,4 @@
-//! Torque-free flows of one rotor, from which methods for bodies in potentials are composed.
+//! Torque-free flows of one rotor; methods for bodies in potentials are composed of them.
 //!
 //! | flow | moments | |
 //! |---|---|---|
@@ -8,8 +8,9 @@
 //! | [`pair`] | two nearly equal | order 2 |
 //! | [`axes`] | any | order 2, five turns |
 //!
-//! They act on an [`Attitude`] (matrix or quaternion) and on the angular momentum P, in principal
-//! axes, and keep R P. [`Flow`] chooses among them and takes rotors with other body axes.
+//! The flows act on an [`Attitude`] (matrix or quaternion) and on the angular momentum P, in principal axes, and
+//! conserve R P, the angular momentum in world axes. [`Flow`] selects one of them and also handles rotors whose body
+//! axes are not principal.
 
 mod attitude;
 mod carlson;
@@ -32,19 +33,19 @@ use crate::so3::{self, Vector};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Flow {
-    /// In closed form for every rotor: turns where it is symmetric, elliptic functions elsewhere.
+    /// Closed form for every rotor: turns if it is symmetric, elliptic functions otherwise.
     #[default]
     Exact,
-    /// In closed form for symmetric rotors, [`axes`] for the others: the cheapest of order 2.
+    /// Closed form for symmetric rotors, [`axes`] for the others: the cheapest flow of order 2.
     Turns,
-    /// In closed form for symmetric rotors, [`pair`] for the others: for nearly symmetric ones.
+    /// Closed form for symmetric rotors, [`pair`] for the others: suits nearly symmetric rotors.
     Pair,
     /// [`axes`] for every rotor; for comparison.
     Axes,
 }
 
 impl Flow {
-    /// Whether the flow is exact for the rotor.
+    /// Returns whether the flow is exact for the rotor.
     pub fn is_exact<S>(self, rotor: &Rotor<S>) -> bool {
         match self {
             Self::Exact => true,
@@ -53,7 +54,7 @@ impl Flow {
         }
     }
 
-    /// Moves the attitude and P, both of body axes, by `h` without torque.
+    /// Moves the attitude and P, both with respect to body axes, by the time `h` without torque.
     #[inline(always)]
     pub fn turn<S: Scalar, A: Attitude<S>>(
         self,
@@ -65,8 +66,9 @@ impl Flow {
         let Some(axes) = rotor.axes else {
             return self.principal(rotor, attitude, p, h);
         };
-        // The increment is found as a quaternion, whose axis then goes over to body axes. P is turned
-        // back by it rather than taken over: axes orthonormal to rounding would scale it each time.
+        // The increment is computed as a quaternion in principal axes, whose vector part is then transformed to body
+        // axes. P is rotated back by it instead of being transformed: axes orthonormal only to rounding would rescale P
+        // each time.
         let mut own = rotor.to_principal(*p);
         let [w, v @ ..] = self.principal(rotor, <[S; 4]>::identity(), &mut own, h);
         let v = so3::apply(axes, v);
@@ -89,7 +91,7 @@ impl Flow {
         match (self, rotor.symmetry) {
             (Self::Axes, _) | (Self::Turns, Symmetry::None) => axes(attitude, p, moments, h),
             (_, Symmetry::Spherical) => spherical(attitude, *p, moments[0], h),
-            // Written out, so that each is compiled for its axis.
+            // Written out, so that each call is compiled for its axis.
             (_, Symmetry::Axial(0)) => axial(attitude, p, moments, 0, h),
             (_, Symmetry::Axial(1)) => axial(attitude, p, moments, 1, h),
             (_, Symmetry::Axial(_)) => axial(attitude, p, moments, 2, h),

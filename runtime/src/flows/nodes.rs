@@ -1,23 +1,23 @@
-//! How far the body turns about its angular momentum: sn, cn, dn after a time and the integral of
-//! sn²/(1 + n sn²).
+//! Advance of a free rotation: sn, cn, dn after a time, and the integral of sn²/(1 + n sn²), which gives the angle by
+//! which the body turns about its angular momentum.
 //!
-//! Short times are covered by panels, each with a series for the functions and five Gauss points:
-//! relative accuracy however short the time. Longer times take the integral of the third kind at both
-//! ends, whose absolute accuracy does not suffer from their length.
+//! Short times are covered by panels, each with a series for the functions and five Gauss points: the relative accuracy
+//! holds however short the time is. Longer times use the integral of the third kind at both ends, whose absolute
+//! accuracy does not depend on the length of the time.
 
 use crate::flows::carlson::third_kind;
 use crate::flows::exact::FreeRotation;
 use crate::flows::jacobi::{Jacobi, Mean, SERIES_BELOW, Series};
 use crate::scalar::Scalar;
 
-/// Where a motion gets.
+/// Result of advancing a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Angle<S> {
-    /// sn, cn, dn at the end.
+    /// Values sn, cn, dn at the end.
     pub(crate) end: Jacobi<S>,
-    /// |P| (κ₁ − κ₃) ∫ sn²/(1 + n sn²) dt
+    /// The integral |P| (κ₁ − κ₃) ∫ sn²/(1 + n sn²) dt.
     pub(crate) integral: S,
-    /// How often cn has changed its sign, negative for negative u.
+    /// Number of sign changes of cn, negative for negative u.
     pub(crate) folds: S,
 }
 
@@ -30,7 +30,7 @@ const GAUSS: [(f64, f64); 5] = [
     (0.953_089_922_969_332, 0.118_463_442_528_094_54),
 ];
 
-/// The motion after the time `h`.
+/// Advances the motion by the time `h`.
 #[inline]
 pub(crate) fn advance<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     let size = (motion.rate * h).abs();
@@ -53,7 +53,7 @@ pub(crate) fn advance<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     }
 }
 
-/// In `count` equal panels of |u| below the limit of the series.
+/// Advances the motion in `count` equal panels, each of |u| below the limit of the series.
 #[inline]
 fn panels<S: Scalar>(motion: &FreeRotation<S>, h: S, count: u32) -> Angle<S> {
     let one = S::from_f64(1.0);
@@ -80,8 +80,8 @@ fn panels<S: Scalar>(motion: &FreeRotation<S>, h: S, count: u32) -> Angle<S> {
     }
 }
 
-/// 1 − m below which a motion takes longer than any run from one flip to the next, and |u| beyond
-/// which it then rests.
+/// Returns the value of 1 − m below which the time between two flips is longer than any run, and the |u| beyond which
+/// such a motion then rests.
 #[inline]
 fn separatrix<S: Scalar>() -> (S, S) {
     let double = S::from_f64(1e-290);
@@ -92,7 +92,7 @@ fn separatrix<S: Scalar>() -> (S, S) {
     }
 }
 
-/// By whole periods and the integral of the third kind.
+/// Advances the motion by whole periods and the integral of the third kind.
 fn long<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     let (zero, one, two) = (S::default(), S::from_f64(1.0), S::from_f64(2.0));
     let (floor, far) = separatrix::<S>();
@@ -111,7 +111,7 @@ fn long<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     let rest = beyond.select_lt(floor, rest, sign * far);
 
     let near = motion.start.plus(mean.at(rest), motion.m);
-    // By the same sides as in `folded`, also where cn is 0 at the start.
+    // Uses the same sides as `folded`, also if cn is 0 at the start.
     let folds = periods + crossed(motion.start, near, rest);
 
     let integral = folded(near, motion.n) - folded(motion.start, motion.n);
@@ -123,14 +123,14 @@ fn long<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     }
 }
 
-/// Whether cn has another sign at the end of less than 2K, with the sign of the way u.
+/// Returns 1 if cn has changed its sign over |u| < 2K, with the sign of u; 0 otherwise.
 fn crossed<S: Scalar>(start: Jacobi<S>, end: Jacobi<S>, u: S) -> S {
     let one = S::from_f64(1.0);
     let crossed = (one - side(start) * side(end)) * S::from_f64(0.5);
     crossed * u.select_lt(S::default(), -one, one)
 }
 
-/// ∫₀ᵘ sn²/(1 + n sn²) with u moved by multiples of 2K to |u| ≤ K.
+/// Returns ∫₀ᵘ sn²/(1 + n sn²), with u shifted by multiples of 2K to |u| ≤ K.
 fn folded<S: Scalar>(at: Jacobi<S>, n: S) -> S {
     let one = S::from_f64(1.0);
     let square = at.sn * at.sn;
@@ -138,25 +138,25 @@ fn folded<S: Scalar>(at: Jacobi<S>, n: S) -> S {
     side(at) * at.sn * square * integral / S::from_f64(3.0)
 }
 
-/// (−1)ʲ for a whole number j.
+/// Returns (−1)ʲ for a whole number j.
 pub(crate) fn parity<S: Scalar>(j: S) -> S {
     let half = j * S::from_f64(0.5);
     S::from_f64(1.0) - S::from_f64(4.0) * (half - round(half)).abs()
 }
 
-/// −1 where cn is negative, else 1.
+/// Returns −1 where cn is negative, 1 elsewhere.
 pub(crate) fn side<S: Scalar>(at: Jacobi<S>) -> S {
     let one = S::from_f64(1.0);
     at.cn.select_lt(S::default(), -one, one)
 }
 
-/// The nearest whole number.
+/// Returns the nearest whole number.
 #[inline]
 pub(crate) fn round<S: Scalar>(value: S) -> S {
     value.nearest_whole()
 }
 
-/// |u| beyond which hyperbolic functions are not taken.
+/// Returns the largest |u| for which hyperbolic functions are evaluated.
 #[inline]
 pub(crate) fn farthest<S: Scalar>() -> S {
     separatrix::<S>().1

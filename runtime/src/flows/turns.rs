@@ -1,22 +1,21 @@
-//! Torque-free flows that are made of turns about fixed axes.
+//! Torque-free flows composed of turns about fixed axes.
 //!
-//! All act on the attitude and on the angular momentum P in principal axes, and keep R P. Sources:
-//! R. McLachlan 1993; S. Reich, Physica D 76 (1994) 375; J. Touma, J. Wisdom, Astron. J. 107 (1994)
-//! 1189.
+//! All act on the attitude and on the angular momentum P in principal axes, and conserve R P. Sources: R. McLachlan
+//! 1993; S. Reich, Physica D 76 (1994) 375; J. Touma, J. Wisdom, Astron. J. 107 (1994) 1189.
 
 use crate::flows::attitude::{Attitude, others};
 use crate::scalar::Scalar;
 use crate::so3::Vector;
 
-/// Three equal moments J: R exp(h P/J). Exact.
+/// Flow for three equal moments J: R exp(h P/J). Exact.
 #[inline(always)]
 pub fn spherical<S: Scalar, A: Attitude<S>>(attitude: A, p: Vector<S>, j: S, h: S) -> A {
     let factor = h / j;
     attitude.turned(p.map(|p| factor * p))
 }
 
-/// Two equal moments beside `axis`: R exp(h P/Jₐ), then a turn by h P_c (1/J_c − 1/Jₐ) about the axis
-/// c, in which P turns back. Exact.
+/// Flow for two equal moments Jₐ, those other than that of `axis`, c: R exp(h P/Jₐ), then a turn by
+/// h P_c (1/J_c − 1/Jₐ) about c, which also turns P back. Exact.
 #[inline(always)]
 pub fn axial<S: Scalar, A: Attitude<S>>(
     attitude: A,
@@ -29,7 +28,7 @@ pub fn axial<S: Scalar, A: Attitude<S>>(
     let turned = spherical(attitude, *p, equal, h);
     let before = across(*p, axis);
     let turned = about(turned, p, axis, h * (equal - own) / (equal * own));
-    // The same angle comes again at every step, and with it the same rounding of sin² + cos².
+    // The same angle recurs at every step with the same rounding error of sin² + cos², which would accumulate in P.
     let factor = S::from_f64(0.5) * (before - across(*p, axis)) / before;
     let factor = S::default().select_lt(before, factor, S::default());
     let (b, c) = others(axis);
@@ -38,14 +37,14 @@ pub fn axial<S: Scalar, A: Attitude<S>>(
     turned
 }
 
-/// The square of the part of P across an axis.
+/// Returns the square of the part of P perpendicular to an axis.
 #[inline(always)]
 fn across<S: Scalar>(p: Vector<S>, axis: usize) -> S {
     let (b, c) = others(axis);
     p[b].mul_add(p[b], p[c] * p[c])
 }
 
-/// Any moments: turns by h Pᵢ/Jᵢ about the axes 1, 2, 3, 2, 1 for h/2, h/2, h, h/2, h/2. Order 2,
+/// Flow for any moments: turns about the axes 1, 2, 3, 2, 1 at the rates Pᵢ/Jᵢ for h/2, h/2, h, h/2, h/2. Order 2,
 /// symmetric, symplectic.
 #[inline(always)]
 pub fn axes<S: Scalar, A: Attitude<S>>(
@@ -63,10 +62,10 @@ pub fn axes<S: Scalar, A: Attitude<S>>(
     about(turned, p, 0, rates[0])
 }
 
-/// Nearly equal moments Jₐ, J_b: the flow for two moments Jₐ between half turns by
+/// Flow for two nearly equal moments Jₐ, J_b: the flow for two equal moments Jₐ between two turns by
 /// (h/2) P_b (1/J_b − 1/Jₐ) about b. Order 2 with an error proportional to that difference.
 ///
-/// The pair are those of the closest 1/J.
+/// Jₐ and J_b are the two moments whose inverses are closest.
 #[inline(always)]
 pub fn pair<S: Scalar, A: Attitude<S>>(
     attitude: A,
@@ -85,7 +84,7 @@ pub fn pair<S: Scalar, A: Attitude<S>>(
     about(turned, p, b, rate)
 }
 
-/// A turn by `rate` P_axis about a principal axis.
+/// Turns the attitude by `rate` P_axis about a principal axis, and P back.
 #[inline(always)]
 fn about<S: Scalar, A: Attitude<S>>(attitude: A, p: &mut Vector<S>, axis: usize, rate: S) -> A {
     let (turned, angle) = attitude.turned_about(axis, rate * p[axis]);
@@ -93,7 +92,8 @@ fn about<S: Scalar, A: Attitude<S>>(attitude: A, p: &mut Vector<S>, axis: usize,
     turned
 }
 
-/// The axis beside the two moments whose inverses are closest, in all lanes; the third otherwise.
+/// Returns the axis other than those of the two moments whose inverses are closest, if that holds in all lanes;
+/// otherwise the third axis.
 #[inline(always)]
 fn odd_one_out<S: Scalar>(moments: Vector<S>) -> usize {
     let gap = |axis: usize| {

@@ -1,11 +1,11 @@
-//! Euler's implicit step in the chart, of order 1.
+//! Implicit Euler method in the chart, of order 1, solved by Broyden's method.
 //!
-//! u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u, solved for z = (u, ξ₁) by Broyden's method:
-//! it starts as the fixed-point iteration, learns the stiff directions from its own steps, and needs no
-//! derivatives. In numbers with slopes it learns from the values, and from the slopes once the values rest. Where that
-//! shows a system to be stiff, or does not converge, Newton's method follows, with derivatives by differences
-//! ([`implicit`](crate::methods::implicit)). Source: C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations*
-//! (1995), 7.3.
+//! u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u, solved for z = (u, ξ₁) by Broyden's method: it starts as
+//! fixed-point iteration, learns the stiff directions from its own steps, and needs no derivatives. In dual numbers it
+//! learns from the values first, and from the slopes once the values have converged. If the system turns out to be
+//! stiff, or Broyden's method does not converge, Newton's method takes over, with derivatives by finite differences
+//! ([`implicit`](crate::methods::implicit)). Source: C. T. Kelley, *Iterative Methods for Linear and Nonlinear
+//! Equations* (1995), 7.3.
 
 use core::array::from_fn;
 
@@ -21,22 +21,23 @@ use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
 
-/// Order 1, some six evaluations of ξ̇ a step and more where the system is stiff.
+/// Implicit Euler method: order 1, about six evaluations of ξ̇ per step, more if the system is stiff.
 ///
-/// Damps every oscillation; stable at any step that it can solve, and [`StepError::NotConverged`] where it cannot. Each
-/// unknown is found to rounding by itself, and in numbers with slopes so are the slopes.
+/// Damps every oscillation. It is stable at any step length for which it can solve its equations, and returns
+/// [`StepError::NotConverged`] otherwise. Each unknown is solved to rounding relative to its own size, and so are the
+/// slopes of dual numbers.
 ///
-/// It learns what is stiff from its own iterations. Where h times the stiffest rate is above about 10, or 64
-/// evaluations do not suffice, it switches to Newton's method with derivatives by differences, which takes an
-/// evaluation for each velocity, and memory (with the feature `std`; without it, it goes on with Broyden's method
-/// alone, and several stiff directions may end in the error). [`StiffEuler`](crate::methods::StiffEuler) takes the
-/// derivatives of a description that has `generate all, linearize;`: with fewer evaluations, without memory, and exact.
+/// It learns the stiff directions from its own iterations. If h times the stiffest rate is above about 10, or Broyden's
+/// method does not converge within 64 evaluations, it switches to Newton's method with finite-difference derivatives,
+/// which takes one evaluation per velocity and allocates memory. Without the feature `std` it continues with Broyden's
+/// method alone, and several stiff directions may end in the error. [`StiffEuler`](crate::methods::StiffEuler) takes
+/// exact derivatives from a description with `generate all, linearize;`: fewer evaluations, and no allocation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BackwardEuler;
 
-/// Evaluations after which what is stiff has not been learnt.
+/// Evaluation budget of Broyden's method.
 const MOST: u32 = 64;
-/// How many times farther than the explicit step the implicit one may lead while it is looked for.
+/// Largest size of an iterate relative to that of the first, explicit one; beyond it the iteration has failed.
 const FAR: f64 = 1e3;
 
 impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
@@ -73,7 +74,7 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
     }
 }
 
-/// The step by Broyden's method.
+/// Makes the step by Broyden's method.
 fn learnt<Sys, U>(
     system: &Sys,
     state: &State<Sys>,
@@ -92,7 +93,7 @@ where
         manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
         x
     };
-    // (h w, ξ + h f) − z
+    // Residual (h w, ξ + h f) − z.
     let defect = |z: &Unknowns<Sys>| {
         let x = point(&z.u);
         let mut u = system.chart_rate(&x, &z.xi);
@@ -111,7 +112,7 @@ where
     };
     scale(z.u.as_mut(), h);
     let mut steps: [Unknowns<Sys>; MEMORY] = from_fn(|_| Unknowns::zero(system));
-    // Steps that rounding hides have squares below these.
+    // A step whose square is not above this value is hidden by rounding.
     let mut rests = [Sys::Scalar::default(); MEMORY];
     let (mut known, mut farthest) = (0, zero);
     let mut progress = Progress::new(system, state);
@@ -124,7 +125,7 @@ where
             });
         }
         let length = next.length(h);
-        // next ← B⁻¹ defect, with B⁻¹ as the product of the updates that the steps define.
+        // next ← B⁻¹ defect, where B⁻¹ is the product of the updates that the previous steps define.
         let mut latest = None;
         for (index, (s, rest)) in steps.iter().zip(&rests).enumerate().take(known) {
             let along = s.along(&next, *rest);
@@ -139,7 +140,7 @@ where
             next.entries().for_each(|entry| *entry *= gain);
         }
         z.add_multiple(one, &next);
-        // Where the explicit step leads, or some way beyond: what was learnt wrong goes anywhere.
+        // Diverging iterates end the iteration: wrongly learnt directions can lead anywhere.
         let size = z.length(h);
         farthest = if iterations == 1 {
             of(FAR) * size
@@ -153,13 +154,13 @@ where
             });
         }
         if progress.is_over(&z, &next, length, h) {
-            // What was learnt of stiff directions may be wrong, and corrections small for that.
+            // If learnt stiff directions are wrong, corrections may be small for that reason, so check the residual.
             let holds = !progress.is_stiff() || progress.is_solved(&z, &defect(&z)?, h);
             if holds {
                 return arrive(system, state, h, point(&z.u), z.xi);
             }
         }
-        // Newton's method takes fewer evaluations then, and ends at the solution that is near.
+        // For stiff systems Newton's method takes fewer evaluations, and it finds the nearby solution.
         if cfg!(feature = "std") && progress.is_stiff() {
             return Err(StepError::NotConverged {
                 time: state.t,

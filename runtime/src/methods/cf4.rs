@@ -1,10 +1,9 @@
 //! The commutator-free method of order 4.
 //!
-//! With kᵢ = h wᵢ (chart rates): stages at x, x ⊕ k₁/2, x ⊕ k₂/2, (x ⊕ k₁/2) ⊕ (k₃ − k₁/2); the step
-//! ends at x ⊕ (3 k₁ + 2 k₂ + 2 k₃ − k₄)/12 ⊕ (−k₁ + 2 k₂ + 2 k₃ + 3 k₄)/12, where ⊕ moves x along
-//! its chart. Velocities follow the classical tableau; flat blocks and circles, whose moves commute,
-//! do so as well. Source: E. Celledoni, A. Marthinsen, B. Owren, *Commutator-free Lie group methods*,
-//! Future Gener. Comput. Syst. 19 (2003) 341.
+//! With kᵢ = h wᵢ (chart rates), the stages are at x, x ⊕ k₁/2, x ⊕ k₂/2, (x ⊕ k₁/2) ⊕ (k₃ − k₁/2); the step ends at
+//! x ⊕ (3 k₁ + 2 k₂ + 2 k₃ − k₄)/12 ⊕ (−k₁ + 2 k₂ + 2 k₃ + 3 k₄)/12, where ⊕ moves x along its chart. Velocities follow
+//! the classical tableau, and so do flat blocks and circles, whose moves commute. Source: E. Celledoni, A. Marthinsen,
+//! B. Owren, *Commutator-free Lie group methods*, Future Gener. Comput. Syst. 19 (2003) 341.
 
 use crate::error::StepError;
 use crate::integrate::acceleration;
@@ -14,9 +13,9 @@ use crate::state::State;
 use crate::store::{add, add_scaled, scale};
 use crate::system::System;
 
-/// Order 4, four evaluations of ξ̇ and five moves a step; for any system.
+/// Commutator-free method: order 4, four evaluations of ξ̇ and five retractions per step; for any system.
 ///
-/// No dexpinv; errors are those of [`Rkmk4`](crate::methods::Rkmk4) within a few per cent.
+/// Needs no dexpinv; its errors equal those of [`Rkmk4`](crate::methods::Rkmk4) within a few per cent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cf4;
 

@@ -1,28 +1,28 @@
-//! Systems of linear equations: Gauss' elimination, with rows exchanged so that pivots are large.
+//! Systems of linear equations: Gaussian elimination with scaled partial pivoting.
 //!
-//! P J = L U. The pivot of a column is the entry that is largest beside the other entries of its row, which are measured in
-//! such units of rows and columns that the largest of each is about 1: a row of a current in A beside one of a speed in mm/s
-//! does not decide by its unit. Every lane has its own exchanges. Source: G. H. Golub, C. F. Van Loan, *Matrix
-//! Computations* (2013), 3.4 and 3.5.2.
+//! P J = L U. The pivot of a column is the entry that is largest relative to its row, after rows and columns have been
+//! scaled so that the largest entry of each is about 1. The choice therefore does not depend on units, for example if
+//! one row is a current in A and another a speed in mm/s. Every lane has its own row exchanges. Source: G. H. Golub, C.
+//! F. Van Loan, *Matrix Computations* (2013), 3.4 and 3.5.2.
 
 use core::marker::PhantomData;
 
 use crate::scalar::Scalar;
 use crate::store::{Store, Table};
 
-/// Sweeps over rows and columns that find their units.
+/// Number of sweeps over rows and columns that determine their scales.
 const SWEEPS: u32 = 3;
 
-/// A square matrix by its rows.
+/// A square matrix, accessed by rows.
 pub(super) trait Square<S> {
-    /// Row `i`; empty beyond the last.
+    /// Returns row `i`; empty beyond the last.
     fn row(&self, i: usize) -> &[S];
 
-    /// Row `i`, to be written; empty beyond the last.
+    /// Returns row `i` for writing; empty beyond the last.
     fn row_mut(&mut self, i: usize) -> &mut [S];
 }
 
-/// The last rows and as many columns of a table, behind `first`.
+/// The square block of a table that starts at row and column `first` and ends at the last row.
 pub(super) struct Part<T> {
     pub(super) table: T,
     pub(super) first: usize,
@@ -41,16 +41,17 @@ impl<S: Scalar, T: Table<S>> Square<S> for Part<T> {
     }
 }
 
-/// L without its diagonal of ones, and U, in the place of a matrix.
+/// LU factors, stored in place of the matrix: L without its unit diagonal, and U.
 pub(super) struct Factors<S, T, V> {
     matrix: T,
-    /// For each column the row, from 0, that was brought to its place.
+    /// For each column, the index of the row that became its pivot row.
     pivots: V,
     scalar: PhantomData<S>,
 }
 
 impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
-    /// Of a matrix of as many rows as there are zeros. A singular one leads to infinite or undefined solutions.
+    /// Factorises a matrix with as many rows as `zeros` has entries. A singular matrix leads to infinite or NaN
+    /// solutions.
     pub(super) fn new(matrix: T, zeros: V) -> Self {
         let mut factors = Factors {
             matrix,
@@ -77,7 +78,8 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
         self.matrix.row(i).get(j).copied().unwrap_or_default()
     }
 
-    /// 1 over the largest entry of each row, in units of columns that make the largest of each about 1.
+    /// Returns the scale of each row: 1 over its largest entry, with columns scaled so that the largest entry of each
+    /// is about 1.
     fn units(&self, zeros: V) -> V {
         let one = S::from_f64(1.0);
         let (mut rows, mut columns) = (zeros.clone(), zeros);
@@ -97,7 +99,7 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
         rows
     }
 
-    /// Brings the pivot of a column to its place, lane by lane.
+    /// Exchanges rows so that the pivot of a column is in its place, lane by lane.
     fn exchange(&mut self, column: usize, units: &mut [S]) {
         let part = |factors: &Self, i: usize| {
             factors.entry(i, column).abs() * units.get(i).copied().unwrap_or_default()
@@ -133,7 +135,8 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
         }
     }
 
-    /// Subtracts multiples of a row, `above`, from those below it, and leaves the factors in the place of the zeros.
+    /// Subtracts multiples of the pivot row, `above`, from the rows below it, and stores the factors in place of the
+    /// zeros.
     fn eliminate(&mut self, column: usize, above: &[S]) {
         let pivot = above.get(column).copied().unwrap_or_default();
         for i in column + 1..self.size() {
@@ -153,7 +156,7 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
         }
     }
 
-    /// b ← J⁻¹ b
+    /// Solves J a = b in place: b ← J⁻¹ b.
     pub(super) fn solve(&self, b: &mut [S]) {
         for (column, pivot) in self.pivots.as_ref().iter().enumerate() {
             for i in column + 1..self.size() {
@@ -182,14 +185,14 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
     }
 }
 
-/// 1 in the lanes whose pivot is row `i` and 0 elsewhere; nothing where there is no such lane.
+/// Returns 1 in the lanes whose pivot is row `i` and 0 elsewhere; `None` if there is no such lane.
 fn chosen<S: Scalar>(pivot: S, i: usize) -> Option<S> {
     let apart = (pivot - S::from_f64(i as f64)).abs();
     let chosen = apart.select_lt(S::from_f64(0.5), S::from_f64(1.0), S::default());
     (chosen.largest_lane() != 0.0).then_some(chosen)
 }
 
-/// Exchanges two numbers in the lanes that are chosen.
+/// Exchanges two numbers in the lanes where `chosen` is 1.
 fn swap<S: Scalar>(chosen: S, a: &mut S, b: &mut S) {
     let half = S::from_f64(0.5);
     let (one, other) = (*a, *b);
@@ -205,7 +208,7 @@ mod tests {
         Part { table, first: 0 }
     }
 
-    /// The solution of J a = b, and the largest |J a − b| beside that of |J| |a|, row by row.
+    /// Returns the solution of J a = b, and the largest |J a − b| relative to |J| |a|, row by row.
     fn solved<const N: usize>(j: [[f64; N]; N], b: [f64; N]) -> ([f64; N], f64) {
         let mut a = b;
         Factors::new(whole(j), [0.0; N]).solve(&mut a);
@@ -218,7 +221,7 @@ mod tests {
         (a, worst)
     }
 
-    /// Random matrices with zeros on the diagonal, in units that differ by 1e12.
+    /// Uses random matrices with zeros on the diagonal, in units that differ by a factor of 1e12.
     #[test]
     fn solutions_are_exact_whatever_the_units() {
         let mut seed = 1_u64;
@@ -249,7 +252,7 @@ mod tests {
         }
     }
 
-    /// 1 + 1e20 a = …: the second equation would be lost beside the first, by its unit alone.
+    /// Without scaling, the large unit of the first equation would make it the pivot row, and the second would be lost.
     #[test]
     fn a_large_unit_makes_no_pivot() {
         let (a, _) = solved([[10.0, 1e20], [1.0, 1.0]], [1e20, 2.0]);
@@ -272,7 +275,7 @@ mod tests {
         }
     }
 
-    /// A part of a table whose other entries are left alone.
+    /// The factorised matrix is a part of a table whose other entries are ignored.
     #[test]
     fn the_matrix_may_stand_within_a_table() {
         let table = [[7.0; 4], [7.0, 0.0, 2.0, 7.0], [7.0, 4.0, 0.0, 7.0]];

@@ -1,7 +1,7 @@
-//! The closed form of torque-free motion: no steps at all.
+//! Force-free motion in closed form, without time steps.
 //!
-//! Where no force acts, the state at any time follows from the start: rotors by the flows of
-//! [`flows`](crate::flows), everything else uniformly. Errors do not accumulate.
+//! If no force acts, the state at any time follows from the initial state: rotors by the flows of
+//! [`flows`](crate::flows), everything else by uniform motion. Errors do not accumulate.
 
 use crate::error::StepError;
 use crate::flows::Flow;
@@ -10,16 +10,16 @@ use crate::methods::phase::Phase;
 use crate::split::Split;
 use crate::state::State;
 
-/// Exact, whatever the step; for systems of [`Split`] without forces.
+/// Exact for steps of any length; for systems of [`Split`] without forces.
 ///
-/// From one start to many times use [`at`], which accumulates no rounding.
+/// To get many states from one initial state, use [`at`], which accumulates no rounding errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Free;
 
-/// The state at the time `t`, before or after that of `start`.
+/// Returns the state at the time `t`, before or after that of `start`.
 ///
 /// # Errors
-/// [`StepError::Forces`] where forces may act; [`StepError::NonFinite`], [`StepError::Shape`].
+/// [`StepError::Forces`] if forces may act; [`StepError::NonFinite`], [`StepError::Shape`].
 pub fn at<Sys: Split + ?Sized>(
     system: &Sys,
     start: &State<Sys>,
@@ -46,7 +46,7 @@ fn after<Sys: Split + ?Sized>(
 }
 
 impl<Sys: Split + ?Sized> Method<Sys> for Free {
-    /// Of no order: 0, since there is no error to be of one.
+    /// Returns 0: the method is exact and has no order.
     fn order(&self) -> u32 {
         0
     }

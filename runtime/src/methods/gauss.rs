@@ -1,12 +1,11 @@
 //! Gauss collocation on (x, p): symplectic methods for systems with M(x).
 //!
-//! Zᵢ = z + h Σⱼ aᵢⱼ kⱼ, Pᵢ = p + h Σⱼ aᵢⱼ ṗⱼ, closed by the weights b. In every step a rotation is R₀ times
-//! an unnormalised quaternion that starts at 1 and moves by ½ z ⊗ ω, a circle likewise by a plane vector, so
-//! that |z|², the energy and |P|² of a free body are quadratic invariants, which Gauss methods keep
-//! exactly. The stages are found by fixed-point iteration to rounding, that of each entry of x and of p by itself: a
-//! large momentum beside a small one does not hide how far the small one has come. Sources: J. C. Butcher, Math.
-//! Comput. 18 (1964) 50; E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration* (2006), IV.2,
-//! VIII.6.
+//! Zᵢ = z + h Σⱼ aᵢⱼ kⱼ, Pᵢ = p + h Σⱼ aᵢⱼ ṗⱼ, and the step ends with the weights b. Within a step a rotation is R₀
+//! times an unnormalised quaternion that starts at 1 and moves by ½ z ⊗ ω; a circle is treated likewise, with a plane
+//! vector. The squares |z|² and |P|² and the energy of a free body are then quadratic invariants, which Gauss methods
+//! conserve exactly. The stages are found by fixed-point iteration to rounding. Convergence is judged for each entry of
+//! x and of p by itself, so that a large momentum does not hide the error of a small one. Sources: J. C. Butcher, Math.
+//! Comput. 18 (1964) 50; E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration* (2006), IV.2, VIII.6.
 
 use core::array::from_fn;
 
@@ -20,14 +19,14 @@ use crate::store::{Store, add, add_scaled, is_finite, largest};
 use crate::system::Block;
 use crate::{s1, s3, so3};
 
-/// Order 4, two stages; symplectic. For systems that implement [`Canonical`].
+/// Gauss collocation of order 4, two stages; symplectic. For systems that implement [`Canonical`].
 ///
-/// The iteration converges where h times the rates is below about 2; beyond,
+/// The iteration converges if h times the rates is below about 2; otherwise the step returns
 /// [`StepError::NotConverged`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gauss4;
 
-/// Order 6, three stages; otherwise as [`Gauss4`].
+/// Gauss collocation of order 6, three stages; otherwise as [`Gauss4`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gauss6;
 
@@ -38,7 +37,7 @@ struct Tableau<const N: usize> {
     b: [f64; N],
 }
 
-/// √3 and √15
+/// The roots √3 and √15.
 const ROOTS: (f64, f64) = (1.732_050_807_568_877_3, 3.872_983_346_207_417);
 
 const TWO_STAGES: Tableau<2> = Tableau {
@@ -69,11 +68,11 @@ const THREE_STAGES: Tableau<3> = Tableau {
     b: [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0],
 };
 
-/// At a contraction of one half, rounding is reached after 52.
+/// Largest number of iterations; at a contraction of one half, 52 reach rounding.
 const ITERATIONS: u32 = 100;
-/// Changes of so many units of rounding end the iteration.
+/// Change at which the iteration ends, in rounding units.
 const ULPS: f64 = 4.0;
-/// Changes that rounding may keep alive to the last iteration.
+/// Change that is accepted after the last iteration, in rounding units: rounding may sustain changes of this size.
 const ULPS_AT_LAST: f64 = 256.0;
 
 macro_rules! method {
@@ -130,7 +129,7 @@ where
     let start = unit::<Sys>(blocks, system.zero_coordinates());
     let p = system.momentum(&state.x, &state.xi);
 
-    // (ż, ṗ) at the increment z with the momentum p.
+    // Returns (ż, ṗ) at the increment z and the momentum p.
     let rates = |node: f64, z: &Sys::Coordinates, p: &Sys::Velocities| {
         let mut x = state.x.clone();
         compose(blocks, x.as_mut(), z.as_ref());
@@ -146,7 +145,7 @@ where
         slope(blocks, k.as_mut(), system.chart_rate(&x, &xi).as_ref());
         Ok((k, system.momentum_rate(&x, &xi, &u)))
     };
-    // The start moved by h times the rates with the weights of one row.
+    // Returns the start moved by h times the rates, weighted by one row of the tableau.
     let moved = |weights: &[f64; N], rates: &[(Sys::Coordinates, Sys::Velocities); N]| {
         let (mut z, mut p) = (start.clone(), p.clone());
         for (weight, (k, f)) in weights.iter().zip(rates) {
@@ -179,7 +178,7 @@ where
                 let of_z = length * largest_difference(new.0.as_ref(), old.0.as_ref()) / whole_x;
                 let of_p = length * largest_difference(new.1.as_ref(), old.1.as_ref()) / whole_p;
                 change = Scalar::max(change, Scalar::max(of_z, of_p));
-                // Not before the largest entries are there: few sweeps pay for the small ones.
+                // Small entries are tested only after the largest have converged; few extra sweeps are needed for them.
                 if is_below(change, ULPS) {
                     let of_z = (old.0.as_ref(), new.0.as_ref(), sizes.0.as_ref());
                     let of_p = (old.1.as_ref(), new.1.as_ref(), sizes.1.as_ref());
@@ -220,7 +219,7 @@ where
     }
 }
 
-/// No increment, in the storage of x: zeros (flat), (1, 0) (circle), the quaternion 1 (quaternion, and
+/// Returns the zero increment, in the storage of x: zeros (flat), (1, 0) (circle), the quaternion 1 (quaternion, and
 /// the first four entries of a rotation).
 #[inline]
 fn unit<Sys: Canonical + ?Sized>(blocks: &[Block], mut z: Sys::Coordinates) -> Sys::Coordinates {
@@ -237,7 +236,7 @@ fn unit<Sys: Canonical + ?Sized>(blocks: &[Block], mut z: Sys::Coordinates) -> S
     z
 }
 
-/// x moved by the increment z, whose norm does not matter.
+/// Moves x by the increment z; the norm of z does not matter.
 #[inline]
 fn compose<S: Scalar>(blocks: &[Block], x: &mut [S], z: &[S]) {
     let (mut x, mut z) = (x, z);
@@ -272,7 +271,7 @@ fn compose<S: Scalar>(blocks: &[Block], x: &mut [S], z: &[S]) {
     }
 }
 
-/// z ← ż for the chart rate w: w (flat), θ̇ times z turned a quarter (circle), ½ z ⊗ ω.
+/// Replaces z by ż for the chart rate w: w (flat), θ̇ times z turned by 90° (circle), ½ z ⊗ ω.
 #[inline]
 fn slope<S: Scalar>(blocks: &[Block], z: &mut [S], w: &[S]) {
     let (mut z, mut w) = (z, w);
@@ -304,7 +303,7 @@ fn slope<S: Scalar>(blocks: &[Block], z: &mut [S], w: &[S]) {
     }
 }
 
-/// Whether a change is below this many units of rounding in all lanes.
+/// Returns whether a change is below this many rounding units in all lanes.
 #[inline]
 fn is_below<S: Scalar>(change: S, ulps: f64) -> bool {
     (S::from_f64(ulps) * epsilon() - change).is_positive()
@@ -317,7 +316,7 @@ fn largest_difference<S: Scalar>(a: &[S], b: &[S]) -> S {
     })
 }
 
-/// What the entries of an increment are judged beside: x itself (flat), 1 rad (angles).
+/// Returns the sizes to which changes of the increment are compared: x itself (flat), 1 rad (angles).
 #[inline]
 fn own_sizes<S: Scalar, X: Store<S>>(blocks: &[Block], mut x: X) -> X {
     let mut rest = x.as_mut();
@@ -333,8 +332,10 @@ fn own_sizes<S: Scalar, X: Store<S>>(blocks: &[Block], mut x: X) -> X {
     x
 }
 
-/// 1 in the lanes in which an entry has yet to settle, 0 elsewhere: it changes by more than rounding beside its own
-/// size and its change over the step, and the change is well below the least of those before, or far above.
+/// Returns 1 in the lanes in which an entry has not yet converged, 0 elsewhere.
+///
+/// An entry has not converged if it changes by more than rounding, relative to the sum of its own size and its change
+/// over the step, and this change is well below the smallest one so far, or far above it.
 #[inline]
 fn still_moving<S: Scalar>(length: S, (old, new, sizes): (&[S], &[S], &[S]), least: &mut [S]) -> S {
     let (zero, one) = (S::default(), S::from_f64(1.0));
@@ -344,7 +345,7 @@ fn still_moving<S: Scalar>(length: S, (old, new, sizes): (&[S], &[S], &[S]), lea
         let change = (length * (*new - *old)).beside(*size, length * *new);
         let shrinks = change.select_lt(S::from_f64(0.75) * *least, one, zero);
         let unsteady = (S::from_f64(16.0) * *least).select_lt(change, one, shrinks);
-        // The first has nothing before it.
+        // At the first iteration there is no earlier change to compare with.
         let known = zero.select_lt(*least, *least, change);
         *least = change.select_lt(known, change, known);
         Scalar::max(moving, rounding.select_lt(change, unsteady, zero))

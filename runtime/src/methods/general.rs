@@ -5,10 +5,10 @@ use crate::methods::{BackwardEuler, Cf4, Method, Rk4, Rkmk4, Rkmk8, Rkmk54, Semi
 use crate::state::State;
 use crate::system::System;
 
-/// Declares [`General`], its names, and the call of the method that is meant.
+/// Declares [`General`], the names of its variants, and the calls of the methods.
 macro_rules! general {
     ($($(#[$note:meta])* $variant:ident $name:literal,)*) => {
-        /// The methods that need nothing but [`System`], as one type.
+        /// Any method that needs nothing but [`System`], as one type.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum General {
@@ -21,10 +21,10 @@ macro_rules! general {
         }
 
         impl General {
-            /// All of them, the recommended first; [`Rk4`] without stabilisation.
+            /// All methods, the recommended one first; [`Rk4`] without stabilisation.
             pub const ALL: &[Self] = &[$(Self::$variant,)* Self::Rk4 { lambda: 0.0 }];
 
-            /// The name by which people choose it.
+            /// Returns the name of the method, for command lines and files.
             pub const fn name(self) -> &'static str {
                 match self {
                     Self::Rk4 { .. } => "rk4",
@@ -85,7 +85,7 @@ general! {
 }
 
 impl General {
-    /// The method of this name; `rk4` without stabilisation.
+    /// Returns the method of this name; `rk4` is without stabilisation.
     pub fn named(name: &str) -> Option<Self> {
         let mut all = Self::ALL.iter().copied();
         all.find(|method| method.name() == name)

@@ -1,9 +1,9 @@
 //! The discrete rotor of Moser and Veselov as a Lie group variational integrator.
 //!
-//! h (P + (h/2) τ)^ = F J_d − J_d Fᵀ with J_d = (tr J/2) I − J; R₁ = R F, P₁ = Fᵀ(P + (h/2) τ) + (h/2) τ₁.
-//! With F = cay(f) = I + 2/(1+f·f) (f̂ + f̂²) that is (1 + f·f)/2 a = J f + f × J f, a = h (P + (h/2) τ),
-//! solved by Newton's method. Sources: J. Moser, A. Veselov, Commun. Math. Phys. 139 (1991) 217; T. Lee,
-//! M. Leok, N. H. McClamroch, Comput. Methods Appl. Mech. Eng. 196 (2007) 2907.
+//! h (P + (h/2) τ)^ = F J_d − J_d Fᵀ with J_d = (tr J/2) I − J; R₁ = R F, P₁ = Fᵀ(P + (h/2) τ) + (h/2) τ₁. With
+//! F = cay(f) = I + 2/(1+f·f) (f̂ + f̂²) this becomes (1 + f·f)/2 a = J f + f × J f, a = h (P + (h/2) τ), which is
+//! solved by Newton's method. Sources: J. Moser, A. Veselov, Commun. Math. Phys. 139 (1991) 217; T. Lee, M. Leok, N. H.
+//! McClamroch, Comput. Methods Appl. Mech. Eng. 196 (2007) 2907.
 
 use core::array::from_fn;
 
@@ -17,15 +17,16 @@ use crate::so3::{self, Matrix, Vector};
 use crate::split::Split;
 use crate::state::State;
 
-/// Order 2, one evaluation of forces a step of a run; symplectic, keeps R P and the energy of a free body.
+/// Lie group variational integrator: order 2, one evaluation of the forces per step of a run; symplectic; conserves R P
+/// and the energy of a free body.
 ///
-/// A steady spin gets a phase error of order (h|ω|)², so that splitting is more accurate; this is the
-/// variational reference. Beyond h|ω| of about 1.5 the equation for f has no solution:
+/// A steady spin has a phase error of order (h|ω|)², so splitting methods are more accurate; this method is the
+/// variational reference. Beyond h|ω| of about 1.5 the equation for f has no solution, and the step returns
 /// [`StepError::NotConverged`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lgvi;
 
-/// Newton's method takes three or four.
+/// Largest number of Newton iterations; three or four are usual.
 const ITERATIONS: u32 = 20;
 
 impl<Sys: Split + ?Sized> Method<Sys> for Lgvi {
@@ -88,7 +89,7 @@ impl Drift for Lgvi {
     }
 }
 
-/// cay(f)ᵀ p = p − 2/(1+f·f) (f × p − f × (f × p))
+/// Returns cay(f)ᵀ p = p − 2/(1+f·f) (f × p − f × (f × p)).
 #[inline]
 fn turned_back<S: Scalar>(f: Vector<S>, p: Vector<S>) -> Vector<S> {
     let factor = S::from_f64(2.0) / (S::from_f64(1.0) + so3::dot(f, f));
@@ -97,9 +98,10 @@ fn turned_back<S: Scalar>(f: Vector<S>, p: Vector<S>) -> Vector<S> {
     from_fn(|i| p[i] + factor * (twice[i] - once[i]))
 }
 
-/// f of (1 + f·f)/2 a = J f + f × J f; `None` without convergence in all lanes.
+/// Solves (1 + f·f)/2 a = J f + f × J f for f; `None` if not all lanes converge.
 ///
-/// From f₀ = J⁻¹ a/2 by one step of J f₁ = (1 + f₀·f₀)/2 a − f₀ × J f₀, which leaves one of Newton's out.
+/// The initial value is one fixed-point step from f₀ = J⁻¹ a/2, J f₁ = (1 + f₀·f₀)/2 a − f₀ × J f₀, which saves one
+/// Newton iteration.
 #[inline]
 fn solve<S: Scalar>(j: Vector<S>, a: Vector<S>) -> Option<Vector<S>> {
     let (half, one) = (S::from_f64(0.5), S::from_f64(1.0));
@@ -114,7 +116,7 @@ fn solve<S: Scalar>(j: Vector<S>, a: Vector<S>) -> Option<Vector<S>> {
         let fjf = so3::cross(f, jf);
         let factor = half * (one + so3::dot(f, f));
         let residual: Vector<S> = from_fn(|i| (-factor).mul_add(a[i], jf[i] + fjf[i]));
-        // a fᵀ − J + (J f)^ − f̂ J
+        // Minus the Jacobian of the residual: a fᵀ − J + (J f)^ − f̂ J.
         let (hat_jf, hat_f) = (so3::hat(jf), so3::hat(f));
         let slope: Matrix<S> = from_fn(|k| {
             let (row, column) = (k / 3, k % 3);
@@ -124,7 +126,7 @@ fn solve<S: Scalar>(j: Vector<S>, a: Vector<S>) -> Option<Vector<S>> {
         });
         let change = cramer(slope, residual);
         f = from_fn(|i| f[i] + change[i]);
-        // Newton's method squares the error: a change of √ε leaves none to see.
+        // Newton's method squares the error: after a change of √ε, the remaining error is below rounding.
         let limit = epsilon * (so3::dot(f, f) + epsilon * epsilon);
         if (limit - so3::dot(change, change)).is_positive() {
             return Some(f);
@@ -133,7 +135,7 @@ fn solve<S: Scalar>(j: Vector<S>, a: Vector<S>) -> Option<Vector<S>> {
     None
 }
 
-/// The solution of M v = b by cross products of rows.
+/// Solves M v = b by cross products of the rows of M (Cramer's rule).
 #[inline]
 fn cramer<S: Scalar>(m: Matrix<S>, b: Vector<S>) -> Vector<S> {
     let [m0, m1, m2]: [Vector<S>; 3] = from_fn(|row| from_fn(|column| m[3 * row + column]));

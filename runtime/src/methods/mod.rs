@@ -1,26 +1,24 @@
-//! The methods, one per file: what each is good for, its order, its cost.
+//! The integration methods, one per file, with their purpose, order and cost.
 //!
-//! All of them are types that implement [`Method`]: a step from one
-//! [`State`] to the next. What a method needs beyond
-//! [`System`] it names as a bound, so that a system that cannot be run by it is an
-//! error of the compiler.
+//! All of them are types that implement [`Method`]: a step from one [`State`] to the next. Whatever a method needs
+//! beyond [`System`] is a trait bound, so that applying it to an unsuitable system is a compile-time error.
 //!
 //! | method | order | for |
 //! |---|---|---|
-//! | [`Rkmk4`], [`Cf4`] | 4 | any system; stay on the manifold |
+//! | [`Rkmk4`], [`Cf4`] | 4 | any system; x stays on the manifold |
 //! | [`Rkmk54`] | 5 | any system; errors of 1e-4 to 1e-8 |
 //! | [`Rkmk8`] | 8 | any system; errors below 1e-6 |
 //! | [`tableau::Rkmk`] | any | other explicit tableaux, on the manifold |
 //! | [`Splitting`] | 2, 4, 6 | bodies in potentials ([`Split`](crate::Split)): the most accurate per evaluation |
-//! | [`Free`] | exact | bodies without forces, at any time |
+//! | [`Free`] | exact | bodies without forces; gives the state at any time |
 //! | [`Lgvi`] | 2 | bodies in potentials; the variational reference |
-//! | [`Gauss4`], [`Gauss6`] | 4, 6 | long runs of systems with M(x) ([`Canonical`](crate::Canonical)); implicit |
-//! | [`Rk4`] | 4 | starts off the manifold, which the stabilising term leads back; on the coordinates x |
-//! | [`BackwardEuler`] | 1 | implicit: damps whatever is fast, and all else as well |
-//! | [`StiffEuler`] | 1 | the same step of systems with a linearisation ([`Tangent`]), by Newton's method: of many stiff directions |
-//! | [`SemiImplicitEuler`] | 1 | short steps of controllers; one evaluation |
+//! | [`Gauss4`], [`Gauss6`] | 4, 6 | long runs of systems whose M depends on x ([`Canonical`](crate::Canonical)); implicit |
+//! | [`Rk4`] | 4 | initial states off the manifold, which a stabilising term leads back to it; steps the coordinates x |
+//! | [`BackwardEuler`] | 1 | implicit; damps fast motions, and slow ones as well |
+//! | [`StiffEuler`] | 1 | the same step by Newton's method, with a linearisation ([`Tangent`]); many stiff directions |
+//! | [`SemiImplicitEuler`] | 1 | short steps, such as those of controllers; one evaluation |
 //!
-//! [`Adaptive`](crate::adaptive::Adaptive) chooses the steps of [`Rkmk54`] and [`Rkmk8`] itself.
+//! [`Adaptive`](crate::adaptive::Adaptive) runs [`Rkmk54`] and [`Rkmk8`] with step-size control.
 
 mod backward_euler;
 mod cf4;
@@ -65,20 +63,22 @@ use crate::system::System;
 
 /// A one-step method for systems of the type `Sys`.
 pub trait Method<Sys: System + ?Sized> {
-    /// The order p: the error at a fixed time is O(hᵖ).
+    /// Returns the order p: the error at a fixed time is O(hᵖ).
     fn order(&self) -> u32;
 
-    /// Whether x stays near φ(x) = 0 over long runs by the method itself. Symmetric methods do that, and lose it where x is
-    /// moved after each step; x is led back after the steps of all others ([`System::project_coordinates`]).
+    /// Returns whether the method itself keeps x near φ(x) = 0 over long runs.
+    ///
+    /// Symmetric methods do, but lose this property if x is corrected after each step. For all other methods, x is
+    /// corrected towards φ(x) = 0 after each step ([`System::project_coordinates`]).
     #[inline]
     fn stays_near(&self) -> bool {
         false
     }
 
-    /// The state one step of length `h` after `state`, with `h` of either sign or zero.
-    /// `inputs(t, x, ξ)` gives u.
+    /// Returns the state one step of length `h` after `state`; `h` may have either sign or be zero. `inputs(t, x, ξ)`
+    /// returns u.
     ///
-    /// Constraints kept by multipliers are not projected on; [`step`](crate::step) and
+    /// The result is not projected onto the constraints that multipliers enforce; [`step`](crate::step) and
     /// [`integrate`](crate::integrate()) do that.
     ///
     /// # Errors
@@ -93,11 +93,13 @@ pub trait Method<Sys: System + ?Sized> {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs;
 
-    /// A [`step`](Self::step) that follows another of the same run. `force` is the force at its start, where
-    /// the step before has left it, and takes the one at its end: a method that evaluates both does so once
-    /// for two steps. Others leave it alone.
+    /// Makes a [`step`](Self::step) that follows another of the same run, reusing the last evaluation of the forces.
     ///
-    /// `force` has to be `None` for the first step, and after the state was moved by anything else.
+    /// `force` holds the force at the start of this step, as the previous step left it, and receives the force at its
+    /// end. A method that evaluates the force at both ends of a step thus saves one evaluation. Other methods do not
+    /// touch it.
+    ///
+    /// `force` has to be `None` for the first step, and whenever anything else has changed the state.
     ///
     /// # Errors
     /// Those of [`step`](Self::step).
@@ -118,15 +120,17 @@ pub trait Method<Sys: System + ?Sized> {
     }
 }
 
-/// A method that moves x in the chart alone, so that all that it evaluates lies on the manifold, and that has no
-/// memory: its steps have slopes ([`step_slopes`](crate::step_slopes)). [`Rk4`] moves the entries of x.
+/// A method that moves x only through the chart, so that every point it evaluates lies on the manifold, and that has no
+/// memory: the slopes of its steps can be computed ([`step_slopes`](crate::step_slopes)). [`Rk4`], in contrast, moves
+/// the entries of x.
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no slopes",
     label = "it evaluates points off the manifold",
     note = "take `Rkmk4`, or another method that implements `InChart`"
 )]
 pub trait InChart {
-    /// A step whose slopes are written: by matrices, where the method can and the system allows it, else in dual numbers.
+    /// Makes a step and writes its slopes: by matrix products if the method and the system allow it, otherwise in dual
+    /// numbers.
     ///
     /// # Errors
     /// Those of [`step`](crate::step()).
@@ -201,8 +205,8 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     }
 }
 
-/// The end of a step of length `h` from `state`: (x, ξ), with x brought back onto its manifold from
-/// what rounding did.
+/// Returns the state at the end of a step of length `h` from `state`, given (x, ξ): normalises x, to remove the drift
+/// off the manifold that rounding causes.
 #[inline]
 pub(crate) fn arrive<Sys: System + ?Sized>(
     system: &Sys,
@@ -213,7 +217,7 @@ pub(crate) fn arrive<Sys: System + ?Sized>(
 ) -> Result<State<Sys>, StepError> {
     manifold::normalise(system.blocks(), x.as_mut());
     let t = state.t + h;
-    // Before the state is there, which would be moved once more.
+    // Tests before the state is built, since a built state would have to be moved once more.
     if t.is_finite() && is_finite(x.as_ref()) && is_finite(xi.as_ref()) {
         Ok(State { t, x, xi })
     } else {

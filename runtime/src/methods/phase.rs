@@ -1,4 +1,4 @@
-//! Positions and momenta of a system that splits, and the two motions they are composed of.
+//! Positions and momenta of a system that splits, and the two motions, kick and drift, that methods compose.
 
 use crate::error::StepError;
 use crate::flows::{Attitude, Flow};
@@ -12,9 +12,9 @@ use crate::state::State;
 use crate::store::add_scaled;
 use crate::system::Block;
 
-/// A free motion of one rotor: [`Flow`], or the approximation by which a method is known.
+/// The free motion of one rotor: [`Flow`], or the approximation that defines a method.
 pub(crate) trait Drift {
-    /// The attitude after `h`, P changed with it; `None` where an iteration does not converge.
+    /// Returns the attitude after the time `h` and updates P; `None` if an iteration does not converge.
     fn turn<S: Scalar, A: Attitude<S>>(
         &self,
         rotor: &Rotor<S>,
@@ -37,13 +37,13 @@ impl Drift for Flow {
     }
 }
 
-/// Centred coordinates y and momenta p of [`Split`], on the way through one step.
+/// Centred coordinates y and momenta p of [`Split`], during one step.
 pub(crate) struct Phase<'s, Sys: Split + ?Sized> {
     system: &'s Sys,
     rotors: Sys::Rotors,
-    /// Start of the step.
+    /// Time at the start of the step.
     start: f64,
-    /// Time since then.
+    /// Time since the start of the step.
     elapsed: f64,
     y: Sys::Coordinates,
     pub(crate) p: Sys::Chart,
@@ -63,7 +63,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         })
     }
 
-    /// ṗ by the forces, with the inputs of this moment.
+    /// Returns ṗ due to the forces, with the inputs at the current time.
     #[inline(always)]
     pub(crate) fn force<U>(&self, inputs: &U) -> Sys::Chart
     where
@@ -75,13 +75,13 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         self.system.kick(&x, &u)
     }
 
-    /// p ← p + h ṗ for a force that is known.
+    /// Applies a kick, p ← p + h ṗ, for a known force.
     #[inline(always)]
     pub(crate) fn push(&mut self, h: f64, force: &Sys::Chart) {
         add_scaled(self.p.as_mut(), h, force.as_ref());
     }
 
-    /// Free motion for the time `h`; `None` where an iteration does not converge.
+    /// Applies free motion for the time `h`; returns `None` if an iteration does not converge.
     #[inline(always)]
     pub(crate) fn drift<D: Drift>(&mut self, h: f64, drift: &D) -> Option<()> {
         let time = Sys::Scalar::from_f64(h);
@@ -126,13 +126,13 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         Some(())
     }
 
-    /// Back on the manifold from what rounding did, where the step ends.
+    /// Normalises y at the end of a step, to remove the drift off the manifold that rounding causes.
     #[inline(always)]
     pub(crate) fn arrive(&mut self) {
         manifold::normalise(self.system.blocks(), self.y.as_mut());
     }
 
-    /// The state after a step of length `h`, which has arrived.
+    /// Returns the state after a step of length `h`, once [`arrive`](Self::arrive) has normalised y.
     #[inline(always)]
     pub(crate) fn state(&self, h: f64) -> Result<State<Sys>, StepError> {
         let x = self.system.uncentre(&self.y);
@@ -147,8 +147,9 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 }
 
-/// A kick of h/2, free motion, a kick of h/2: order 2, symmetric, and symplectic with the flow. `force` is
-/// that of [`Method::follow`](crate::Method::follow).
+/// Makes a Strang step: a kick of h/2, free motion, a kick of h/2. Order 2, symmetric, and symplectic if the free
+/// motion is. `force` is that of [`Method::follow`](crate::Method::follow). Returns `None` if the free motion does not
+/// converge.
 #[inline(always)]
 pub(crate) fn strang<Sys, D, U>(
     system: &Sys,

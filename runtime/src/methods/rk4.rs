@@ -1,9 +1,9 @@
 //! The classical Runge-Kutta method of order 4 on the coordinates x themselves.
 //!
-//! The method leaves φ(x) = 0 at its own order. The stabilising term of KR18 (8),
-//! ẋ = A ξ − λ Ψ φ, bounds the defect. A fixed λ keeps order 4; λ proportional to 1/h acts on the
-//! stages and costs two orders, and λ h ≥ 5 is unstable. [`Rkmk4`](crate::methods::Rkmk4) is more accurate
-//! and needs no λ; this method serves for starts off the manifold, and for comparison.
+//! The numerical solution drifts off φ(x) = 0 with the order of the method. The stabilising term of KR18 (8),
+//! ẋ = A ξ − λ Ψ φ, bounds this drift. A fixed λ keeps order 4; λ proportional to 1/h acts on the stages and costs two
+//! orders, and λ h ≥ 5 is unstable. [`Rkmk4`](crate::methods::Rkmk4) is more accurate and needs no λ; use this method
+//! for initial states off the manifold, and for comparison.
 
 use crate::error::StepError;
 use crate::integrate::acceleration;
@@ -12,10 +12,10 @@ use crate::state::State;
 use crate::store::add_scaled;
 use crate::system::System;
 
-/// Order 4, four evaluations of ξ̇ a step.
+/// Classical Runge-Kutta method: order 4, four evaluations of ξ̇ per step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rk4 {
-    /// λ ≥ 0 in 1/time, 0 for no stabilisation. Fixed, of the order of 10/s: λ ~ 1/h costs two orders.
+    /// Stabilising rate λ ≥ 0 in 1/time; 0 for no stabilisation. Should be fixed, about 10/s: λ ~ 1/h costs two orders.
     pub lambda: f64,
 }
 
@@ -24,7 +24,7 @@ impl<Sys: System + ?Sized> Method<Sys> for Rk4 {
         4
     }
 
-    /// It leads back at the rate λ, in its own way.
+    /// Returns true, so that x is not corrected after a step: the stabilising term does that at the rate λ.
     #[inline]
     fn stays_near(&self) -> bool {
         true
@@ -45,8 +45,8 @@ impl<Sys: System + ?Sized> Method<Sys> for Rk4 {
     }
 }
 
-/// One step of length `h` with the stabilising rate `lambda`. With h < 0 the sign of the stabilising
-/// term turns, so that it damps the defect in either direction of time.
+/// Makes one step of length `h` with the stabilising rate `lambda`. For h < 0 the sign of the stabilising term is
+/// reversed, so that it damps the defect in either direction of time.
 #[inline]
 fn step<Sys, U>(
     system: &Sys,

@@ -1,10 +1,9 @@
 //! The classical Runge-Kutta method of order 4 in the chart (Runge-Kutta-Munthe-Kaas).
 //!
-//! Each step starts at u = 0 and computes u and ξ by the classical tableau,
-//! uᵢ = h Σⱼ aᵢⱼ kⱼ, ξᵢ = ξ + h Σⱼ aᵢⱼ fⱼ, kᵢ = dexpinv(uᵢ, wᵢ), with the chart rate wᵢ and ξ̇ = fᵢ
-//! taken at x moved along uᵢ; it closes with the weights b. Adding the wᵢ without dexpinv would lower
-//! the order to 2. Source: H. Munthe-Kaas, *High order Runge-Kutta methods on manifolds*, Appl.
-//! Numer. Math. 29 (1999) 115.
+//! Each step starts at u = 0 and computes u and ξ by the classical tableau, uᵢ = h Σⱼ aᵢⱼ kⱼ, ξᵢ = ξ + h Σⱼ aᵢⱼ fⱼ,
+//! kᵢ = dexpinv(uᵢ, wᵢ), where the chart rate wᵢ and ξ̇ = fᵢ are taken at x moved along uᵢ; the step ends with the
+//! weights b. Adding the wᵢ without dexpinv would lower the order to 2. Source: H. Munthe-Kaas, *High order Runge-Kutta
+//! methods on manifolds*, Appl. Numer. Math. 29 (1999) 115.
 
 use crate::error::StepError;
 use crate::integrate::acceleration;
@@ -16,10 +15,10 @@ use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
 
-/// Order 4, four evaluations of ξ̇ a step; for any system.
+/// Runge-Kutta-Munthe-Kaas method: order 4, four evaluations of ξ̇ per step; for any system.
 ///
-/// Local error O(h⁵). x stays on its manifold to rounding: rotations by a polar step, quaternions
-/// and circles by their norm; flat blocks move as in the plain method.
+/// Local error O(h⁵). x stays on its manifold to rounding: rotations by a polar step, quaternions and circles by
+/// normalisation; flat blocks move as in the plain method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rkmk4;
 
@@ -94,7 +93,7 @@ impl InChart for Rkmk4 {
     }
 }
 
-/// The same as a tableau.
+/// The stages of the method as a tableau, for steps with slopes.
 static ROWS: [Row; 4] = [
     Row {
         node: 0.0,

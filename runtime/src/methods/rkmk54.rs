@@ -1,9 +1,8 @@
 //! The method of Dormand and Prince of order 5(4) in the chart.
 //!
-//! Coefficients: J. R. Dormand, P. J. Prince, *A family of embedded Runge-Kutta formulae*, J. Comput.
-//! Appl. Math. 6 (1980) 19; dense output of order 4: E. Hairer, S. P. Nørsett, G. Wanner, *Solving
-//! Ordinary Differential Equations I* (1993), II.6. Row 6 is the closing b: its stage is the first of
-//! the next step.
+//! Coefficients: J. R. Dormand, P. J. Prince, *A family of embedded Runge-Kutta formulae*, J. Comput. Appl. Math. 6
+//! (1980) 19; dense output of order 4: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*
+//! (1993), II.6. Row 6 holds the weights b, so its stage is the first of the next step.
 
 use crate::adaptive::pair::Pair;
 use crate::error::StepError;
@@ -13,9 +12,9 @@ use crate::slopes::{Tangent, TangentStep};
 use crate::state::State;
 use crate::system::System;
 
-/// Order 5, six evaluations of ξ̇ a step; for any system.
+/// Dormand-Prince method in the chart: order 5, six evaluations of ξ̇ per step; for any system.
 ///
-/// Local error O(h⁶). x stays on its manifold to rounding. [`Adaptive::rkmk54`] chooses the steps.
+/// Local error O(h⁶). x stays on its manifold to rounding. [`Adaptive::rkmk54`] is the version with step-size control.
 ///
 /// [`Adaptive::rkmk54`]: crate::adaptive::Adaptive::rkmk54
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,7 +68,7 @@ const CLOSING: &[(usize, f64)] = &[
     (5, 11.0 / 84.0),
 ];
 
-/// The coefficients.
+/// Coefficients of the method, with its error estimate and dense output.
 pub static PAIR: Pair<7, 1> = Pair {
     order: 5,
     end: 6,

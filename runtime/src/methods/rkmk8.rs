@@ -1,8 +1,8 @@
 //! The method of Dormand and Prince of order 8(5,3), twelve stages, in the chart.
 //!
-//! Coefficients: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*
-//! (1993), II.5 and II.6 (DOP853), rounded to the nearest `f64`. Row 12 is the closing b, at which
-//! the next step starts; rows 13 to 15 serve the dense output of order 7 alone.
+//! Coefficients: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I* (1993), II.5 and II.6
+//! (DOP853), rounded to the nearest `f64`. Row 12 holds the weights b, so its stage is the first of the next step; rows
+//! 13 to 15 are only for the dense output of order 7.
 
 use crate::adaptive::pair::Pair;
 use crate::error::StepError;
@@ -12,9 +12,10 @@ use crate::slopes::{Tangent, TangentStep};
 use crate::state::State;
 use crate::system::System;
 
-/// Order 8, twelve evaluations of ξ̇ a step; for any system, for errors below 1e-6.
+/// Dormand-Prince method DOP853 in the chart: order 8, twelve evaluations of ξ̇ per step; for any system, for errors
+/// below 1e-6.
 ///
-/// Local error O(h⁹). x stays on its manifold to rounding. [`Adaptive::rkmk8`] chooses the steps.
+/// Local error O(h⁹). x stays on its manifold to rounding. [`Adaptive::rkmk8`] is the version with step-size control.
 ///
 /// [`Adaptive::rkmk8`]: crate::adaptive::Adaptive::rkmk8
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,7 +72,7 @@ const CLOSING: &[(usize, f64)] = &[
     (11, 0.04471061572777259),
 ];
 
-/// The coefficients.
+/// Coefficients of the method, with its error estimates and dense output.
 pub static PAIR: Pair<16, 4> = Pair {
     order: 8,
     end: 12,

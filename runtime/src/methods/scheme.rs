@@ -1,32 +1,31 @@
-//! Coefficients of compositions of kicks and free motion.
+//! Coefficients of splitting schemes: compositions of kicks and free motion (drifts).
 //!
-//! A step is kick b₀ h, drift a₀ h, kick b₁ h, …, drift, kick; both lists are palindromes, so that a
-//! step back returns to the start. The last kick and the first of the next step are at the same
-//! point. Sources: G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; M. Suzuki, Phys. Lett. A 146 (1990)
-//! 319; W. Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089; S. Blanes, P. C. Moan, J. Comput. Appl. Math.
-//! 142 (2002) 313.
+//! A step is kick b₀ h, drift a₀ h, kick b₁ h, …, drift, kick. Both lists of coefficients are palindromes, so that the
+//! schemes are symmetric: a step back returns to the start. The last kick of a step and the first of the next are at
+//! the same point. Sources: G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; M. Suzuki, Phys. Lett. A 146 (1990) 319; W.
+//! Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089; S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313.
 
-/// Which composition.
+/// A splitting scheme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Scheme {
-    /// Order 2, one kick a step.
+    /// Order 2, one kick per step.
     Strang,
-    /// Order 4, five steps of [`Strang`](Self::Strang).
+    /// Order 4, composed of five steps of [`Strang`](Self::Strang).
     Suzuki4,
-    /// Order 6, nine steps of [`Strang`](Self::Strang).
+    /// Order 6, composed of nine steps of [`Strang`](Self::Strang).
     KahanLi6,
-    /// Order 4, six kicks a step, with small error constants; needs the free flow in closed form.
+    /// Order 4, six kicks per step, with small error constants; needs the free flow in closed form.
     #[default]
     Nystrom4,
-    /// Order 6, eleven kicks a step; needs the free flow in closed form.
+    /// Order 6, eleven kicks per step; needs the free flow in closed form.
     Nystrom6,
 }
 
-/// 1/(4 − ∛4)
+/// Suzuki's coefficient 1/(4 − ∛4).
 const SUZUKI: f64 = 0.414_490_771_794_375_77;
 
-/// Kahan and Li's nine stages, the first five.
+/// Kahan and Li's coefficients of nine stages, the first five.
 const KAHAN_LI: [f64; 5] = [
     0.392_161_444_007_314_1,
     0.332_599_136_789_359_43,
@@ -35,7 +34,7 @@ const KAHAN_LI: [f64; 5] = [
     0.798_543_990_934_83,
 ];
 
-/// Blanes and Moan, SRKN₆ᵇ: kicks and drifts up to the middle, the middle ones last.
+/// Kicks and drifts in the first half of Blanes and Moan's SRKN₆ᵇ; those in the middle follow from the sums.
 const NYSTROM_4: ([f64; 3], [f64; 2]) = (
     [
         0.082_984_406_417_405_2,
@@ -45,7 +44,7 @@ const NYSTROM_4: ([f64; 3], [f64; 2]) = (
     [0.245_298_957_184_271, 0.604_872_665_711_08],
 );
 
-/// Blanes and Moan, SRKN₁₁ᵇ.
+/// Kicks and drifts in the first half of Blanes and Moan's SRKN₁₁ᵇ; those in the middle follow from the sums.
 const NYSTROM_6: ([f64; 5], [f64; 5]) = (
     [
         0.041_464_998_518_262_4,
@@ -64,7 +63,7 @@ const NYSTROM_6: ([f64; 5], [f64; 5]) = (
 );
 
 impl Scheme {
-    /// The order p with a flow in closed form.
+    /// Returns the order p, provided that the free flow is exact.
     pub const fn order(self) -> u32 {
         match self {
             Self::Strang => 2,
@@ -73,8 +72,8 @@ impl Scheme {
         }
     }
 
-    /// Number of drifts in a step, which is also its number of kicks when the last is shared with
-    /// the next step.
+    /// Returns the number of drifts in a step, which is also its number of kicks if the last one is shared with the
+    /// next step.
     pub const fn drifts(self) -> usize {
         match self {
             Self::Strang => 1,
@@ -85,13 +84,13 @@ impl Scheme {
         }
     }
 
-    /// Whether the order is that of the free flow too, when that is of order 2 only: true for
-    /// compositions of [`Strang`](Self::Strang) steps.
+    /// Returns whether the scheme keeps its order with a free flow of order 2: true for compositions of
+    /// [`Strang`](Self::Strang) steps.
     pub const fn composes_steps(self) -> bool {
         !matches!(self, Self::Nystrom4 | Self::Nystrom6)
     }
 
-    /// aᵢ, the part of the step of drift `index` from 0, in [0, [`drifts`](Self::drifts)).
+    /// Returns aᵢ, the length of drift `index` as a fraction of h; `index` is in `0..drifts()`.
     pub fn drift(self, index: usize) -> f64 {
         let count = self.drifts();
         let mirrored = index.min(count.saturating_sub(1).saturating_sub(index));
@@ -113,7 +112,7 @@ impl Scheme {
         }
     }
 
-    /// bᵢ, the part of the step of kick `index` from 0, in [0, [`drifts`](Self::drifts)].
+    /// Returns bᵢ, the length of kick `index` as a fraction of h; `index` is in `0..=drifts()`.
     pub fn kick(self, index: usize) -> f64 {
         let mirrored = index.min(self.drifts().saturating_sub(index));
         let rest = |list: &[f64]| 0.5 - list.iter().sum::<f64>();
@@ -162,8 +161,8 @@ mod tests {
         }
     }
 
-    /// Exactness for a constant and for a linear force: Σᵢ bᵢ cᵢ = 1/2 and Σ bᵢ cᵢ² = 1/3, with the time
-    /// cᵢ of each kick, are conditions of order 2 and 3.
+    /// Checks that the kicks at the times cᵢ integrate forces that are polynomials in time exactly: the conditions of
+    /// order 2 and 3 include Σ bᵢ cᵢ = 1/2 and Σ bᵢ cᵢ² = 1/3.
     #[test]
     fn times_of_kicks_satisfy_the_conditions_of_quadrature() {
         for scheme in ALL {

@@ -1,9 +1,9 @@
-//! The semi-implicit Euler method: velocities first, coordinates along the new ones.
+//! The semi-implicit Euler method: first the velocities, then the coordinates with the new velocities.
 //!
-//! ξ⁺ = ξ + h ξ̇(x, ξ, u), and x moved along the chart vector h w with the chart rate w at (x, ξ⁺). One evaluation of ξ̇
-//! a step: what simulators of contact and model-predictive control step with. In the plane of one coordinate and its
-//! momentum, forces of x alone, it is the symplectic Euler method. Source: E. Hairer, C. Lubich, G. Wanner, *Geometric
-//! Numerical Integration*, Springer (2006), I.1.2.
+//! ξ⁺ = ξ + h ξ̇(x, ξ, u); then x is moved along the chart vector h w, with the chart rate w at (x, ξ⁺). One evaluation
+//! of ξ̇ per step; this is the step of many contact simulators and of model-predictive control. For one coordinate and
+//! its momentum, with forces that depend on x alone, it is the symplectic Euler method. Source: E. Hairer, C. Lubich,
+//! G. Wanner, *Geometric Numerical Integration*, Springer (2006), I.1.2.
 
 use crate::error::StepError;
 use crate::integrate::acceleration;
@@ -14,7 +14,7 @@ use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
 
-/// Order 1, one evaluation of ξ̇ a step; for any system.
+/// Semi-implicit Euler method: order 1, one evaluation of ξ̇ per step; for any system.
 ///
 /// Local error O(h²). x stays on its manifold to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

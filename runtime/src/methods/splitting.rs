@@ -1,10 +1,9 @@
-//! Bodies in potentials: kicks of the forces between free motions in closed form.
+//! Splitting methods for bodies in potentials: kicks by the forces between free motions in closed form.
 //!
-//! T(p) + V(x) is split into its two terms, whose flows are known, and the flows are composed. The
-//! methods are symplectic and symmetric: energy errors do not grow, vertical momentum is kept to
-//! rounding, a step of −h returns. One evaluation of forces, no linear algebra and no iteration a
-//! kick. On tops near a steady spin the free flow does most of the work, and steps of several radians
-//! are usual.
+//! T(p) + V(x) is split into its two terms, whose flows are known, and the flows are composed. The methods are
+//! symplectic and symmetric: energy errors do not grow, vertical momentum is conserved to rounding, and a step of −h
+//! returns to the start. A kick takes one evaluation of the forces, no linear algebra and no iteration. For tops near a
+//! steady spin the free flow accounts for most of the motion, and steps of several radians are usual.
 
 use crate::error::StepError;
 use crate::flows::Flow;
@@ -14,25 +13,24 @@ use crate::methods::scheme::Scheme;
 use crate::split::Split;
 use crate::state::State;
 
-/// Order 2, 4 or 6; for systems that implement [`Split`].
+/// Splitting method of order 2, 4 or 6; for systems that implement [`Split`].
 ///
-/// A step evaluates the forces [`Scheme::drifts`] + 1 times, the last of them at the point where the
-/// next step starts: a run by [`integrate`](crate::integrate()) uses that one again. Torques that depend on
-/// velocities are not of this form: u is evaluated with the momenta at the kick, so that inputs
-/// depending on ξ lower the order.
+/// A step evaluates the forces [`Scheme::drifts`] + 1 times, the last time at the point where the next step starts: a
+/// run by [`integrate`](crate::integrate()) reuses that evaluation. Torques that depend on velocities are not of this
+/// form: u is evaluated with the momenta at the kick, so that inputs depending on ξ lower the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Splitting {
-    /// The composition.
+    /// Scheme by which kicks and drifts are composed.
     pub scheme: Scheme,
-    /// The free flow. One of order 2 keeps the order of compositions of Strang steps only.
+    /// Free flow. A flow of order 2 keeps the order of the scheme only for compositions of Strang steps.
     pub flow: Flow,
-    /// Whether that flow is exact for all rotors of the system.
+    /// Whether this flow is exact for all rotors of the system.
     exact: bool,
 }
 
 impl Splitting {
-    /// The composition with the free flow that suits it: closed forms for the Nyström schemes; for
-    /// compositions of Strang steps turns about axes where a rotor has no symmetry.
+    /// Creates the method with the free flow that suits the scheme: closed forms for the Nyström schemes; for
+    /// compositions of Strang steps, turns about axes if a rotor has no symmetry.
     pub fn new<Sys: Split + ?Sized>(system: &Sys, scheme: Scheme) -> Self {
         let flow = if scheme.composes_steps() {
             Flow::Turns
@@ -42,7 +40,7 @@ impl Splitting {
         Self::with_flow(system, scheme, flow)
     }
 
-    /// The composition with a given free flow.
+    /// Creates the method with a given free flow.
     pub fn with_flow<Sys: Split + ?Sized>(system: &Sys, scheme: Scheme, flow: Flow) -> Self {
         let rotors = system.rotors();
         Self {

@@ -1,4 +1,4 @@
-//! Euler's implicit step in the chart, by Newton's method with exact derivatives; the method stands in
+//! Implicit Euler method in the chart, by Newton's method with exact derivatives; the iteration is in
 //! [`implicit`](crate::methods::implicit).
 
 use crate::error::StepError;
@@ -10,28 +10,30 @@ use crate::slopes::{Directions, Tangent, TangentSystem, values};
 use crate::state::State;
 use crate::system::System;
 
-/// Order 1: the step of [`BackwardEuler`](crate::methods::BackwardEuler) of systems with a linearisation
-/// ([`Tangent`], `generate all, linearize;`), solved by Newton's method with exact derivatives.
+/// Implicit Euler method for stiff systems with a linearisation ([`Tangent`], `generate all, linearize;`): order 1, the
+/// same step as [`BackwardEuler`](crate::methods::BackwardEuler), solved by Newton's method with exact derivatives.
 ///
-/// A step takes one evaluation of [A B] and one of ξ̇ where the equations are linear, some more of either where they
-/// are not, and up to hundreds where the step is so long that it is approached by way of shorter ones. Each unknown is
-/// found to rounding by itself; the length of the step may have either sign. Steps have slopes
-/// ([`step_slopes`](crate::step_slopes)): those of the implicit function.
+/// A step takes one evaluation of the linearisation `[A B]` and one of ξ̇ if the equations are linear, a few more of
+/// each if they are not, and up to hundreds if the step is so long that it is approached through shorter ones. Each
+/// unknown is solved to rounding relative to its own size; the length of the step may have either sign. The slopes of a
+/// step ([`step_slopes`](crate::step_slopes)) are those of the implicit function.
 ///
-/// Inputs are a function whose slopes are not known. Those that depend on the time alone cost nothing. Of a controller,
-/// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state: it takes more of them, and may
-/// not converge where many loops of a controller are stiff. [`BackwardEuler`](crate::methods::BackwardEuler), which takes
-/// differences of everything, knows those, too; or a stiff spring or damper becomes a load of the system.
+/// Inputs are a function whose derivatives are not known. Inputs that depend on time alone cost nothing extra. For a
+/// controller u(t, x, ξ), the iteration learns from its own steps how the inputs depend on the state: it takes more of
+/// them, and may not converge if many loops of the controller are stiff. In this case use
+/// [`BackwardEuler`](crate::methods::BackwardEuler), which takes finite differences of everything, or describe a stiff
+/// spring or damper as a load of the system instead of an input.
 ///
-/// Equations of a long step may have several solutions. Springs of 10⁶ N/m that begin half a metre from rest can turn a
-/// mechanism by many radians in one step, to a solution that no shorter step leads to.
+/// The equations of a long step may have several solutions. Springs of 10⁶ N/m that start half a metre from equilibrium
+/// can turn a mechanism by many radians in one step, to a solution that is not the limit of the solutions of shorter
+/// steps.
 ///
 /// # Errors
-/// [`StepError::NotConverged`] where no solution is found on the way from h = 0: there is none, or the step is so long
-/// that the rates of the coordinates themselves turn by more than about 1 rad in it, in coordinates whose rates depend on
-/// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ), or the
-/// mechanism moves far in directions that very stiff springs or loops leave free. Shorter steps help.
-/// [`StepError::Singular`] and [`StepError::NonFinite`] where ξ̇ has no value at the start, or at an iterate.
+/// [`StepError::NotConverged`] if no solution is found on the way from h = 0. Either there is none; or the rates of the
+/// coordinates themselves turn by more than about 1 rad in the step, in coordinates whose rates depend on their values
+/// (Euler angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ); or the mechanism moves far in
+/// directions that very stiff springs or loops leave free. Shorter steps help. [`StepError::Singular`] and
+/// [`StepError::NonFinite`] if ξ̇ cannot be computed at the start, or at an iterate.
 ///
 /// ```
 /// # #[cfg(feature = "macros")]
@@ -98,8 +100,9 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
     }
 }
 
-/// The step of the values, with the slopes of the implicit function: δξ₁ = −(∂g/∂ξ₁)⁻¹ δg for what g varies by at ξ₁.
-/// Inputs are in dual numbers here, so that a controller's slopes count.
+/// Makes the step in plain numbers, then computes its slopes by the implicit function theorem: δξ₁ = −(∂g/∂ξ₁)⁻¹ δg,
+/// where δg is the variation of g at fixed ξ₁. Inputs are evaluated in dual numbers here, so that the slopes of a
+/// controller count.
 impl<Sys: Tangent> Method<TangentSystem<Sys>> for StiffEuler {
     fn order(&self) -> u32 {
         1

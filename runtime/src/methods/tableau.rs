@@ -1,9 +1,8 @@
 //! Explicit Runge-Kutta methods in the chart, for any tableau (Runge-Kutta-Munthe-Kaas).
 //!
-//! Each step starts at u = 0: uᵢ = h Σⱼ aᵢⱼ kⱼ, ξᵢ = ξ + h Σⱼ aᵢⱼ fⱼ, kᵢ = dexpinv(uᵢ, wᵢ), with the
-//! chart rate wᵢ and ξ̇ = fᵢ at x moved along uᵢ; it closes with the weights b. The order is that of
-//! the tableau. Source: H. Munthe-Kaas, *High order Runge-Kutta methods on manifolds*, Appl. Numer.
-//! Math. 29 (1999) 115.
+//! Each step starts at u = 0: uᵢ = h Σⱼ aᵢⱼ kⱼ, ξᵢ = ξ + h Σⱼ aᵢⱼ fⱼ, kᵢ = dexpinv(uᵢ, wᵢ), where wᵢ is the chart rate
+//! and fᵢ = ξ̇ at x moved along uᵢ; the step ends with the weights b. The order is that of the tableau. Source: H.
+//! Munthe-Kaas, *High order Runge-Kutta methods on manifolds*, Appl. Numer. Math. 29 (1999) 115.
 
 use core::array::from_fn;
 
@@ -16,15 +15,15 @@ use crate::state::State;
 use crate::store::{add, add_scaled};
 use crate::system::System;
 
-/// The coefficients that are not zero, each with its stage, from 0.
+/// Nonzero coefficients, each with the index of its stage, from 0.
 pub type Weights = &'static [(usize, f64)];
 
-/// One stage: cᵢ and row i of a.
+/// One stage of a tableau: cᵢ and row i of a.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// cᵢ = Σⱼ aᵢⱼ
+    /// Node cᵢ = Σⱼ aᵢⱼ
     pub node: f64,
-    /// aᵢⱼ, stages j < i
+    /// Nonzero aᵢⱼ of the stages j < i
     pub weights: Weights,
 }
 
@@ -35,14 +34,14 @@ pub struct Tableau<const N: usize> {
     pub order: u32,
     /// The stages; the first has no weights.
     pub rows: [Row; N],
-    /// b
+    /// Weights b of the end of the step.
     pub closing: Weights,
 }
 
-/// The method of a tableau: N evaluations of ξ̇ a step; for any system.
+/// Runge-Kutta-Munthe-Kaas method of a tableau: N evaluations of ξ̇ per step; for any system.
 ///
-/// x stays on its manifold to rounding: rotations by a polar step, quaternions and circles by their
-/// norm; flat blocks move as in the plain method.
+/// x stays on its manifold to rounding: rotations by a polar step, quaternions and circles by normalisation. Flat
+/// blocks move as in the plain method.
 ///
 /// ```
 /// use hamel::methods::tableau::{Rkmk, Row, Tableau};
@@ -103,23 +102,23 @@ impl<const N: usize> InChart for Rkmk<N> {
     }
 }
 
-/// kᵢ and fᵢ of the stages of one step.
+/// Rates kᵢ and fᵢ of the stages of one step.
 ///
-/// Its functions are inlined by force: called, they pass stages through memory, which costs a third of
-/// a step of a small system.
+/// Its functions are `inline(always)`: calls would pass stages through memory, which costs a third of a step of a small
+/// system.
 pub(crate) struct Stages<Sys: System + ?Sized, const N: usize> {
     pub(crate) k: [Sys::Chart; N],
     pub(crate) f: [Sys::Velocities; N],
 }
 
-/// u = h Σ aⱼ kⱼ and Δξ = h Σ aⱼ fⱼ.
+/// Weighted sums of the stages, u = h Σ aⱼ kⱼ and Δξ = h Σ aⱼ fⱼ.
 pub(crate) struct Sums<Sys: System + ?Sized> {
     pub(crate) u: Sys::Chart,
     pub(crate) dxi: Sys::Velocities,
 }
 
 impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
-    /// No stage yet.
+    /// Creates stages that are all zero.
     #[inline(always)]
     pub(crate) fn empty(system: &Sys) -> Self {
         Self {
@@ -128,7 +127,7 @@ impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
         }
     }
 
-    /// The first stage, at u = 0, where dexpinv is the identity.
+    /// Evaluates the first stage, at u = 0, where dexpinv is the identity.
     #[inline(always)]
     pub(crate) fn start<U>(system: &Sys, state: &State<Sys>, inputs: &U) -> Result<Self, StepError>
     where
@@ -140,7 +139,7 @@ impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
         Ok(stages)
     }
 
-    /// Stage `index`, from those before it.
+    /// Evaluates stage `index` from those before it; returns the sums that lead to its point.
     #[inline(always)]
     pub(crate) fn evaluate<U>(
         &mut self,
@@ -188,7 +187,7 @@ impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
 }
 
 impl<Sys: System + ?Sized> Sums<Sys> {
-    /// x moved along u, ξ + Δξ.
+    /// Returns x moved along u, and ξ + Δξ.
     #[inline(always)]
     pub(crate) fn point(
         &self,
@@ -202,7 +201,7 @@ impl<Sys: System + ?Sized> Sums<Sys> {
         (x, xi)
     }
 
-    /// The state at the end of a step, on its manifold.
+    /// Returns the state at the end of a step, on its manifold.
     #[inline(always)]
     pub(crate) fn end(
         &self,

@@ -1,13 +1,14 @@
-//! Steps with slopes by matrices, in the place of a step in dual numbers.
+//! Slopes of steps by matrix products, instead of a step in dual numbers.
 //!
-//! W holds the slopes of (x, ξ, z) at a point of the step by those of its start and by u, G those of their rates there.
-//! With the linearisation T = [A B] at the point, where coordinates are plain and ẋ = ξ ([`Tangent::PLAIN`]),
+//! W is the derivative of (x, ξ, z) at a point of the step with respect to those at its start and to u, G that of their
+//! rates at this point. With the linearisation T = `[A B]` at the point, if coordinates are plain and ẋ = ξ
+//! ([`Tangent::PLAIN`]),
 //!
 //! G = [W_ξ; T W + T_u],  Wᵢ = I + h Σⱼ aᵢⱼ Gⱼ
 //!
-//! and an explicit step is closed by the weights b in the place of a. The semi-implicit Euler method has the rows
-//! I + h T of ξ for coordinates of all kinds; those of x follow from the slopes of a motion along the chart rate, which
-//! are sparse.
+//! and an explicit step ends with the weights b instead of a. For the semi-implicit Euler method, the rows of ξ are
+//! I + h T for coordinates of all kinds; those of x follow from the slopes of a motion along the chart rate, which are
+//! sparse.
 
 use core::array::from_fn;
 use core::fmt;
@@ -23,11 +24,11 @@ use crate::state::State;
 use crate::store::{Table, add_scaled, is_finite, scale};
 use crate::system::System;
 
-/// A step of length h from a state, at inputs that are held over it, whose slopes are asked for.
+/// A step of length h from a state, with inputs held over it, whose slopes are to be computed.
 #[derive(Clone, Copy)]
 pub struct TangentStep<'a, Sys: Tangent> {
     pub(crate) system: &'a Sys,
-    /// The system in dual numbers; made where it is needed and not given.
+    /// The system in dual numbers; if it is `None` and needed, it is created.
     pub(crate) tangent: Option<&'a TangentSystem<Sys>>,
     pub(crate) state: &'a State<Sys>,
     pub(crate) u: &'a Sys::Inputs,
@@ -45,7 +46,7 @@ impl<Sys: Tangent> fmt::Debug for TangentStep<'_, Sys> {
 }
 
 impl<Sys: Tangent> TangentStep<'_, Sys> {
-    /// The step of a method, with its slopes.
+    /// Makes the step of a method, and writes its slopes.
     #[inline]
     pub(crate) fn of<M: Method<TangentSystem<Sys>> + InChart>(
         &self,
@@ -117,7 +118,7 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
         Ok(end)
     }
 
-    /// The step of an explicit method of N stages, whose tableau is given, of plain coordinates ([`Tangent::PLAIN`]).
+    /// Makes the step of an explicit method of N stages, given its tableau, for plain coordinates ([`Tangent::PLAIN`]).
     #[inline]
     pub(crate) fn explicit<const N: usize>(
         &self,
@@ -150,8 +151,10 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
         checked(end, slopes, state.t)
     }
 
-    /// The step of the semi-implicit Euler method, where nothing is projected: the rows of ξ⁺ = ξ + h ξ̇ are I + h T; those
-    /// of x move by h times these where coordinates are plain, else along the chart rate.
+    /// Makes the step of the semi-implicit Euler method, for systems without projection.
+    ///
+    /// The rows of W for ξ⁺ = ξ + h ξ̇ are I + h T. The rows for x are I plus h times these if coordinates are plain;
+    /// otherwise they follow from the motion along the chart rate.
     #[inline]
     pub(crate) fn semi_implicit(&self, w: &mut Sys::Slopes) -> Result<State<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);
@@ -182,10 +185,10 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
         checked(end, w, state.t)
     }
 
-    /// x moved along the chart rate for the length of the step, with its rows of W: those of ξ are known.
+    /// Moves x along the chart rate for the length of the step, and computes its rows of W; the rows of ξ are known.
     ///
-    /// With the slopes P and Q of the displacements at its end by η and ξ, sparse and found in compressed numbers, these
-    /// rows are [P 0] + Q W_ξ.
+    /// Let P and Q be the derivatives of the displacements at the end with respect to η and ξ; they are sparse and
+    /// computed in compressed dual numbers. The rows of x are [P 0] + Q W_ξ.
     #[inline]
     fn along(
         &self,
@@ -248,7 +251,7 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
         Ok(end)
     }
 
-    /// ξ̇ at a point, and T = [A B], which is written.
+    /// Returns ξ̇ at a point, and writes T = `[A B]`.
     #[inline]
     fn linear(
         &self,
@@ -267,7 +270,7 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
     }
 }
 
-/// The end of a step, where its slopes have values.
+/// Returns the end of a step if its slopes are finite.
 #[inline]
 fn checked<Sys: Tangent>(
     end: State<Sys>,
@@ -280,7 +283,7 @@ fn checked<Sys: Tangent>(
     }
 }
 
-/// Adds 1 to an entry on the diagonal.
+/// Adds 1 to the diagonal entry of row `i`.
 #[inline]
 fn lean<S: Scalar, T: Table<S>>(table: &mut T, i: usize) {
     if let Some(entry) = table.row_mut(i).get_mut(i) {
@@ -288,7 +291,7 @@ fn lean<S: Scalar, T: Table<S>>(table: &mut T, i: usize) {
     }
 }
 
-/// W = I + h Σⱼ aⱼ Gⱼ
+/// Returns W = I + h Σⱼ aⱼ Gⱼ.
 #[inline]
 fn moved<S: Scalar, T: Table<S>>(g: &[T], weights: Weights, h: f64) -> T {
     let mut w = T::zero();
@@ -309,7 +312,7 @@ fn moved<S: Scalar, T: Table<S>>(g: &[T], weights: Weights, h: f64) -> T {
     w
 }
 
-/// G of a stage whose point has slopes W: the rows of x are those of ξ in W. Inputs are held.
+/// Returns G of a stage, given T and W at its point: the rows of x are those of ξ in W. Inputs are held.
 #[inline]
 fn later<S: Scalar, T: Table<S>>(table: &T, w: &T, n: usize) -> T {
     let mut g = T::zero();
@@ -326,7 +329,7 @@ fn later<S: Scalar, T: Table<S>>(table: &T, w: &T, n: usize) -> T {
     g
 }
 
-/// G of a stage at W = I + a G₁: T + a T G₁, where the rows of x in G₁ are those of ξ in I.
+/// Returns G of a stage with W = I + a G₁, which is T + a T G₁, where the rows of x in G₁ are those of ξ in I.
 #[inline]
 fn second<S: Scalar, T: Table<S>>(table: &T, first: &T, n: usize, a: f64) -> T {
     let mut g = table.clone();

@@ -1,15 +1,15 @@
-//! Steps with slopes: the derivative of the map that a method makes of states, on the manifold.
+//! Slopes of steps: the derivative, on the manifold, of the map from one state to the next that a method defines.
 //!
-//! A step Φ of length h takes (x, ξ, z) to (x⁺, ξ⁺, z⁺) at inputs u held over the step. Displacements are measured
-//! by δx = A(x) η and read by η⁺ = Y(x⁺) δx⁺, Y A = I, so that
+//! A step Φ of length h takes (x, ξ, z) to (x⁺, ξ⁺, z⁺) with inputs u held over the step. Displacements of the start
+//! are expressed by η, δx = A(x) η, and those of the end by η⁺ = Y(x⁺) δx⁺, where Y A = I, so that
 //!
 //! (η⁺, δξ⁺, δz⁺) = A_d (η, δξ, δz) + B_d δu
 //!
-//! has no redundant direction, whatever coordinates x are. A_d and B_d are those of the discrete map itself, not of
-//! a truncated variational equation: the step is made in dual numbers, with the emitted linearisation for the slopes
-//! of ξ̇, which is several times shorter than ξ̇ in such numbers. Explicit methods multiply matrices instead where
-//! coordinates are plain and ẋ = ξ, and so does the semi-implicit Euler method wherever no multiplier is
-//! ([`TangentStep`]).
+//! has no redundant direction, whichever coordinates x are used. A_d and B_d are the derivatives of the discrete map
+//! itself, not of a truncated variational equation. The step is made in dual numbers, in which the slopes of ξ̇ come
+//! from the generated linearisation; its code is several times shorter than that of ξ̇ in dual numbers. Explicit
+//! methods multiply matrices instead if the coordinates are plain and ẋ = ξ, and so does the semi-implicit Euler method
+//! if there are no multipliers ([`TangentStep`]).
 
 mod matrices;
 
@@ -24,34 +24,34 @@ use crate::state::State;
 use crate::store::Table;
 use crate::system::{Block, System};
 
-/// Dual numbers of any number of directions.
+/// Dual numbers with any number of directions.
 pub trait Directions: Scalar {
-    /// Values and slopes.
+    /// Type of the value and of each slope.
     type Value: Scalar;
 
-    /// Makes it a number that varies with these slopes along the first directions, in place.
+    /// Sets the number to a value and to slopes along the first directions; all other slopes are zero.
     fn vary(&mut self, value: Self::Value, slopes: &[Self::Value]);
 
-    /// A number that varies with slope 1 along one direction.
+    /// Creates a number with slope 1 along one direction and 0 along all others.
     fn along(value: Self::Value, direction: usize) -> Self;
 
-    /// Its value.
+    /// Returns the value.
     fn value(&self) -> Self::Value;
 
-    /// Its slopes.
+    /// Returns the slopes.
     fn slopes(&self) -> &[Self::Value];
 
-    /// Adds a multiple of the slopes of another number.
+    /// Adds `factor` times the slopes of another number; the value is unchanged.
     fn follow(&mut self, factor: Self::Value, other: &Self);
 
-    /// Adds to the slope along one direction.
+    /// Adds to the slope along one direction; the value is unchanged.
     fn lean(&mut self, by: Self::Value, direction: usize);
 
-    /// Whether the slopes are 1 along one direction and 0 along all others.
+    /// Returns whether the slopes are 1 along one direction and 0 along all others.
     fn is_along(&self, direction: usize) -> bool;
 }
 
-/// Whether all lanes are 0.
+/// Returns whether all lanes are 0.
 #[inline]
 fn is_zero<S: Scalar>(a: S) -> bool {
     a.abs().largest_lane() == 0.0
@@ -107,71 +107,72 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     }
 }
 
-/// What is known of matrices when code is generated: for each row the entries that are not 0, and which of them can be
-/// told apart along one direction.
+/// Sparsity of the matrices of a system, known when code is generated: the nonzero entries of each row, and a colouring
+/// of the directions for compressed dual numbers.
 ///
 /// Source: A. R. Curtis, M. J. D. Powell, J. K. Reid, *On the estimation of sparse Jacobian matrices*, J. Inst. Maths
 /// Applics 13 (1974).
 #[derive(Clone, Copy, Debug)]
 pub struct Sparsity {
-    /// Of the rows of the frame A(x).
+    /// Nonzero entries of each row of the frame A(x).
     pub frame: &'static [&'static [usize]],
-    /// Of the rows of the coframe Y(x).
+    /// Nonzero entries of each row of the coframe Y(x).
     pub coframe: &'static [&'static [usize]],
-    /// The entries of (η, ξ, z) that each displacement depends on at the end of a motion along the chart rate.
+    /// For each displacement at the end of a motion along the chart rate, the entries of (η, ξ, z) on which it depends.
     pub motion: &'static [&'static [usize]],
-    /// The direction along which each entry of (η, ξ, z) varies in compressed numbers: entries that no row of `motion`
-    /// contains together may share one.
+    /// For each entry of (η, ξ, z), its direction in compressed numbers: entries that do not occur together in any row
+    /// of `motion` may share a direction.
     pub seeds: &'static [usize],
 }
 
-/// A system whose steps have slopes; generated code implements it where `linearize` is asked for.
+/// A system whose steps have slopes; generated code implements it if the description asks for `linearize`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no linearisation",
     label = "slopes and `StiffEuler` need it",
     note = "ask for it in the description: `generate all, linearize;`"
 )]
 pub trait Tangent: System + Clone {
-    /// Whether the coordinate kinds alone keep φ(x) = 0: all that a method moves in the chart then lies on the
-    /// manifold, where the linearisation holds.
+    /// Whether the kinds of coordinates alone keep φ(x) = 0: then all points that a method reaches in the chart lie on
+    /// the manifold, where the linearisation is valid.
     const CHARTED: bool;
-    /// Whether a step ends with a projection, on constraints that multipliers keep.
+    /// Whether a step ends with a projection onto constraints that multipliers enforce.
     const PROJECTED: bool;
-    /// Whether all coordinates are plain numbers with ẋ = ξ, and nothing is projected: explicit methods then take
-    /// matrices in the place of dual numbers.
+    /// Whether all coordinates are plain numbers with ẋ = ξ, and nothing is projected: explicit methods then use
+    /// matrices instead of dual numbers.
     const PLAIN: bool;
 
-    /// Which entries of A, of Y and of the slopes of a motion along the chart rate are not 0.
+    /// Nonzero entries of A, of Y and of the slopes of a motion along the chart rate.
     const SPARSITY: Sparsity;
 
-    /// Numbers with a slope for each entry of η, ξ, z and u, in this order.
+    /// Dual numbers with a slope for each entry of η, ξ, z and u, in this order.
     type Number: Directions<Value = Self::Scalar>;
-    /// The same system in such numbers.
+    /// The same system in these dual numbers.
     type Dual: System<Scalar = Self::Number>;
-    /// Numbers with a slope for each direction of the seeds.
+    /// Compressed dual numbers, with a slope for each direction that occurs in [`Sparsity::seeds`].
     type CompressedNumber: Directions<Value = Self::Scalar>;
     /// The same system in compressed numbers.
     type Compressed: System<Scalar = Self::CompressedNumber>;
-    /// A(x), ν rows.
+    /// Storage of A(x), ν rows.
     type Frame: Table<Self::Scalar>;
-    /// Y(x), a row for each entry of η.
+    /// Storage of Y(x), a row for each entry of η.
     type Coframe: Table<Self::Scalar>;
-    /// [A B] and [A_d B_d]: rows of η, ξ and z, columns of η, ξ, z and u.
+    /// Storage of `[A B]` and `[A_d B_d]`: rows of η, ξ and z, columns of η, ξ, z and u.
     type Slopes: Table<Self::Scalar>;
 
-    /// The system in dual numbers, its parameters constant.
+    /// Returns the system in dual numbers, with constant parameters.
     fn dual(&self) -> Self::Dual;
 
-    /// The system in compressed numbers, its parameters constant.
+    /// Returns the system in compressed dual numbers, with constant parameters.
     fn compressed(&self) -> Self::Compressed;
 
-    /// A(x), by rows: δx = A η.
+    /// Returns A(x), by rows: δx = A η.
     fn frame(&self, x: &Self::Coordinates) -> Self::Frame;
 
-    /// Y(x), by rows: η = Y δx.
+    /// Returns Y(x), by rows: η = Y δx.
     fn coframe(&self, x: &Self::Coordinates) -> Self::Coframe;
 
-    /// ξ̇, and [A B] of the motion, d/dt (η, δξ, δz) = A (η, δξ, δz) + B δu, which is written to `slopes`.
+    /// Returns ξ̇, and writes the linearisation `[A B]` of the motion, d/dt (η, δξ, δz) = A (η, δξ, δz) + B δu, to
+    /// `slopes`.
     ///
     /// # Errors
     /// Those of [`accel`](System::accel).
@@ -184,7 +185,7 @@ pub trait Tangent: System + Clone {
     ) -> Result<Self::Velocities, Singular>;
 }
 
-/// The state at the end of a step, and the slopes [A_d B_d] of the step.
+/// State at the end of a step, and the slopes `[A_d B_d]` of the step.
 pub type Stepped<Sys> = Result<(State<Sys>, <Sys as Tangent>::Slopes), StepError>;
 
 /// A system in dual numbers, with the slopes of ξ̇ from its linearisation.
@@ -196,7 +197,7 @@ pub struct TangentSystem<Sys: Tangent> {
 }
 
 impl<Sys: Tangent> TangentSystem<Sys> {
-    /// Of a system at its parameters.
+    /// Creates the dual system of a system with its current parameters.
     pub fn new(system: &Sys) -> Self {
         TangentSystem {
             system: system.clone(),
@@ -205,20 +206,20 @@ impl<Sys: Tangent> TangentSystem<Sys> {
         }
     }
 
-    /// The system, in numbers without slopes.
+    /// Returns the system in numbers without slopes.
     pub(crate) fn plain(&self) -> &Sys {
         &self.system
     }
 }
 
-/// The values of numbers.
+/// Copies the values of dual numbers.
 pub(crate) fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
     for (value, number) in values.iter_mut().zip(numbers) {
         *value = number.value();
     }
 }
 
-/// Entry i of η = Y δx, without a value, of coordinates that vary.
+/// Returns entry i of η = Y δx, where δx are the slopes of the coordinates; the value of the result is zero.
 #[inline]
 fn displacement<Sys, N>(coframe: &Sys::Coframe, i: usize, x: &[N]) -> N
 where
@@ -279,8 +280,8 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
         self.dual.chart_rate(x, xi)
     }
 
-    /// ξ̇ + ∂ξ̇/∂(η, ξ, z, u) of the displacements Y δx and of what ξ, z and u vary by; where coordinates may be off the
-    /// manifold, ξ̇ in dual numbers.
+    /// Returns ξ̇ with slopes ∂ξ̇/∂(η, ξ, z, u) times those of the displacements Y δx and of ξ, z and u; if coordinates
+    /// may be off the manifold, evaluates ξ̇ in dual numbers instead.
     fn accel(
         &self,
         x: &Self::Coordinates,
@@ -306,7 +307,7 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
             number.vary(*rate, &[]);
         }
         let mut follow = |column: usize, by: &Sys::Number| {
-            // At the start of a step all vary by themselves, and inputs always do.
+            // At the start of a step each entry varies along its own direction alone, and inputs always do.
             let alone = by.is_along(column);
             for (i, number) in result.as_mut().iter_mut().enumerate() {
                 match table.row(displacements + i).get(column) {
@@ -316,7 +317,7 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
                 }
             }
         };
-        // Many forces depend on no place.
+        // Columns of displacements are often zero: many forces do not depend on position.
         let is_felt = |column: usize| {
             let mut rows = displacements..table.rows();
             rows.any(|i| {
@@ -401,12 +402,12 @@ impl<Sys: Tangent<Dual: Split>> Split for TangentSystem<Sys> {
     }
 }
 
-/// A step of length `h` from a state at inputs that are held, and its slopes [A_d B_d].
+/// Makes a step of length `h` from a state with constant inputs, and returns it with its slopes `[A_d B_d]`.
 ///
 /// Works with every method that moves coordinates in the chart, and allocates nothing, except in
-/// [`BackwardEuler`](crate::methods::BackwardEuler) where a system is stiff. Constraints that multipliers keep are
-/// projected on as in [`step`](crate::step()), slopes with them. Implicit methods end where slopes have converged, too.
-/// A run of many steps makes [`TangentSystem`] once and calls [`step_slopes_into`].
+/// [`BackwardEuler`](crate::methods::BackwardEuler) on a stiff system. The state and its slopes are projected onto the
+/// constraints that multipliers enforce, as in [`step`](crate::step()). Implicit methods iterate until the slopes have
+/// converged, too. For many steps, create [`TangentSystem`] once and call [`step_slopes_into`].
 ///
 /// # Errors
 /// Those of [`step`](crate::step()).
@@ -433,14 +434,14 @@ where
         let end = step.of(method, &mut slopes)?;
         Ok((end, slopes))
     };
-    // What methods make by matrices needs no dual numbers there.
+    // For such systems, methods that use matrices need no dual system.
     match Sys::PLAIN {
         true => step(None),
         false => step(Some(&TangentSystem::new(system))),
     }
 }
 
-/// Coordinates that vary along the frame of displacements.
+/// Returns the coordinates in dual numbers whose slopes are the frame A(x).
 #[inline]
 fn varying<Sys: Tangent>(
     tangent: &TangentSystem<Sys>,
@@ -455,10 +456,10 @@ fn varying<Sys: Tangent>(
     varied
 }
 
-/// The same of a system that is in dual numbers already; [A_d B_d] is written to `slopes`, whatever it was.
+/// Makes the step of [`step_slopes`] with a dual system that already exists, and overwrites `slopes` with `[A_d B_d]`.
 ///
 /// # Errors
-/// Those of [`step`](crate::step()); `slopes` then has no meaning.
+/// Those of [`step`](crate::step()); the content of `slopes` is then unspecified.
 pub fn step_slopes_into<Sys, M>(
     method: &M,
     tangent: &TangentSystem<Sys>,

@@ -1,4 +1,4 @@
-//! ∂g/∂ξ₁ from differences of g: for any system, and whatever its inputs follow.
+//! ∂g/∂ξ₁ by finite differences of g: for any system, including inputs that depend on the state.
 
 use std::vec;
 use std::vec::Vec;
@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 use crate::store::{Store, largest};
 use crate::system::System;
 
-/// A square matrix of as many rows as there are velocities.
+/// A square matrix with a row for each velocity.
 pub(in crate::methods) struct Grid<V>(Vec<V>);
 
 impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
@@ -25,7 +25,7 @@ impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
     }
 }
 
-/// Slopes by one evaluation more for each velocity.
+/// Finite-difference derivatives, at one evaluation per velocity.
 pub(in crate::methods) struct Differences;
 
 impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
@@ -44,7 +44,7 @@ impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
         let zeros = equations.system.zero_velocities();
         let mut grid = Grid(vec![zeros.clone(); zeros.as_ref().len()]);
         let of = Sys::Scalar::from_f64;
-        // Half of the digits of x, or of ξ where these say more.
+        // The perturbation uses half of the digits: of ξ, or of x/h if that is larger.
         let half = of(Sys::Scalar::EPSILON.sqrt());
         let reach = largest(equations.state.x.as_ref()).size() / of(equations.h.abs());
         for j in 0..zeros.as_ref().len() {

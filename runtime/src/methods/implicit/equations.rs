@@ -1,4 +1,4 @@
-//! The equations g(ξ₁) = 0 of a step.
+//! The equations g(ξ₁) = 0 of an implicit step.
 
 use crate::error::StepError;
 use crate::integrate::acceleration;
@@ -9,12 +9,12 @@ use crate::state::State;
 use crate::store::{add_scaled, largest, scale};
 use crate::system::System;
 
-/// Turns after which the coordinates of a step have not been found.
+/// Largest number of fixed-point iterations for the coordinates of a step.
 pub(in crate::methods) const TURNS: u32 = 64;
-/// Units of rounding to which the coordinates of a step are found.
+/// Accuracy of the coordinates of a step, in rounding units.
 const ULPS: f64 = 4.0;
 
-/// x ⊕ u
+/// Returns x ⊕ u.
 fn moved<Sys: System + ?Sized>(
     system: &Sys,
     x: &Sys::Coordinates,
@@ -25,7 +25,9 @@ fn moved<Sys: System + ?Sized>(
     x
 }
 
-/// x ⊕ u with u = h w(x ⊕ u, ξ₁), by turns that begin at `u`, which is left at the solution; nothing where turns find none.
+/// Solves u = h w(x ⊕ u, ξ₁) by fixed-point iteration and returns x ⊕ u.
+///
+/// The iteration starts from `u`, which is left at the solution; `None` if it does not converge.
 pub(in crate::methods) fn reach<Sys: System + ?Sized>(
     system: &Sys,
     x: &Sys::Coordinates,
@@ -49,7 +51,7 @@ pub(in crate::methods) fn reach<Sys: System + ?Sized>(
         if own.largest_lane() == 0.0 {
             return Some(place);
         }
-        // Small beside all of u, and no longer shrinking: rounding.
+        // Converged entries have changes that are small compared with all of u and no longer shrink: rounding.
         let whole = change.beside(largest(u.as_ref()), zero);
         let unsettled = rounding.select_lt(whole, one, zero);
         let shrinks = own.select_lt(Sys::Scalar::from_f64(0.5) * nearest, one, unsettled);
@@ -62,9 +64,11 @@ pub(in crate::methods) fn reach<Sys: System + ?Sized>(
     None
 }
 
-/// M(x) g in the place of g: entry i is T(g + s eᵢ) − T(g) − T(s eᵢ) + T(0), over s. States stay as they are.
+/// Replaces g by M(x) g: entry i is (T(g + s eᵢ) − T(g) − T(s eᵢ) + T(0))/s. Entries of first-order states z stay as
+/// they are.
 ///
-/// The energy is a quadratic polynomial of velocities, so that this is exact; s makes both parts about equally large.
+/// This is exact, since the kinetic energy T is a quadratic polynomial of the velocities; s makes both parts about
+/// equally large.
 pub(super) fn weigh<Sys: System + ?Sized>(
     system: &Sys,
     x: &Sys::Coordinates,
@@ -91,30 +95,30 @@ pub(super) fn weigh<Sys: System + ?Sized>(
     }
 }
 
-/// What is found at values of the unknowns.
+/// Quantities at given values of the unknowns.
 pub(in crate::methods) struct Point<Sys: System + ?Sized> {
     pub(super) x: Sys::Coordinates,
     pub(super) inputs: Sys::Inputs,
-    /// g
+    /// Residual g; holds ξ₁ until the residual has been computed.
     pub(in crate::methods) defect: Sys::Velocities,
 }
 
-/// u(t, x, ξ), by a pointer: the iteration is compiled once for a system, whatever its inputs are.
+/// Input function u(t, x, ξ), behind a pointer: the iteration is compiled once per system, whatever its inputs are.
 pub(in crate::methods) type Follow<'a, Sys> = dyn Fn(f64, &<Sys as System>::Coordinates, &<Sys as System>::Velocities) -> <Sys as System>::Inputs
     + 'a;
 
-/// The equations of a step.
+/// The equations of a step of length h from a state.
 pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized> {
     pub(in crate::methods) system: &'a Sys,
     pub(in crate::methods) state: &'a State<Sys>,
     pub(in crate::methods) h: f64,
     pub(in crate::methods) inputs: &'a Follow<'a, Sys>,
-    /// Whether they are M g = 0.
+    /// Whether the equations are M g = 0 instead of g = 0.
     pub(in crate::methods) weighed: bool,
 }
 
 impl<Sys: System + ?Sized> Equations<'_, Sys> {
-    /// Where ξ₁ leads to, with u from a guess of it.
+    /// Returns the coordinates to which ξ₁ leads, and the inputs there; the iteration for u starts from the guess in z.
     pub(super) fn place(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);
         let x = reach(system, &state.x, h, &z.xi, &mut z.u).ok_or(StepError::NotConverged {
@@ -126,7 +130,7 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
         Ok(Point { x, inputs, defect })
     }
 
-    /// ξ₁ − ξ − h f, in the place of ξ₁.
+    /// Replaces ξ₁ by the residual ξ₁ − ξ − h f.
     pub(super) fn lag(&self, f: &Sys::Velocities, xi: &mut Sys::Velocities) {
         for (own, start) in xi.as_mut().iter_mut().zip(self.state.xi.as_ref()) {
             *own -= *start;
@@ -134,7 +138,7 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
         add_scaled(xi.as_mut(), -self.h, f.as_ref());
     }
 
-    /// g at values of ξ₁.
+    /// Evaluates g, or M g, at given ξ₁.
     pub(in crate::methods) fn point(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
         let mut here = self.place(z)?;
         let held = |_: f64, _: &_, _: &_| here.inputs.clone();

@@ -1,4 +1,4 @@
-//! ∂g/∂ξ₁ from the linearisation of a system: exact.
+//! Exact ∂g/∂ξ₁, from the linearisation of a system.
 
 use crate::error::StepError;
 use crate::methods::factors::{Factors, Part};
@@ -11,11 +11,11 @@ use crate::state::State;
 use crate::store::{Table, add_scaled, is_finite, scale};
 use crate::system::System;
 
-/// ∂g/∂ξ₁ of a system.
+/// LU factors of ∂g/∂ξ₁ of a system.
 pub(in crate::methods) type FactorsOf<Sys> =
     Factors<<Sys as System>::Scalar, Part<<Sys as Tangent>::Slopes>, <Sys as System>::Velocities>;
 
-/// The factors of ∂g/∂ξ₁ from numbers that vary with ξ₁ along the directions of ξ.
+/// Factorises ∂g/∂ξ₁, given g in dual numbers with slopes along the directions of ξ.
 pub(in crate::methods) fn factored<Sys: Tangent>(
     system: &Sys,
     defect: &[Sys::Number],
@@ -30,7 +30,7 @@ pub(in crate::methods) fn factored<Sys: Tangent>(
     Factors::new(Part { table, first }, system.zero_velocities())
 }
 
-/// ξ₁ that varies along its own directions.
+/// Returns ξ₁ in dual numbers, each entry with slope 1 along its own direction.
 pub(in crate::methods) fn varied<Sys: Tangent>(
     tangent: &TangentSystem<Sys>,
     xi: &Sys::Velocities,
@@ -43,16 +43,16 @@ pub(in crate::methods) fn varied<Sys: Tangent>(
     varied
 }
 
-/// Numbers that do not vary.
+/// Sets dual numbers to values with zero slopes.
 pub(in crate::methods) fn still<N: Directions>(numbers: &mut [N], values: &[N::Value]) {
     for (number, value) in numbers.iter_mut().zip(values) {
         number.vary(*value, &[]);
     }
 }
 
-/// Slopes of a system with a linearisation, where inputs stay.
+/// Exact derivatives of a system with a linearisation, for inputs held constant.
 pub(in crate::methods) struct Exact<'a, Sys: Tangent> {
-    /// The system in dual numbers, where they are needed.
+    /// The system in dual numbers, if they are needed.
     pub(in crate::methods) tangent: Option<&'a TangentSystem<Sys>>,
 }
 
@@ -86,7 +86,8 @@ impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
             let first = table.rows() - f.as_ref().len();
             for i in first..table.rows() {
                 let row = table.row_mut(i);
-                // Displacements are h times the velocities in front of the states.
+                // The displacement of each plain coordinate is h times its velocity; velocities precede the states z in
+                // ξ₁.
                 let (by_x, by_xi) = row.split_at_mut(first.min(row.len()));
                 add_scaled(by_xi.get_mut(..first).unwrap_or(&mut []), h, by_x);
                 scale(row, -h);

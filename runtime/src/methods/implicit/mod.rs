@@ -1,19 +1,21 @@
-//! Implicit steps of Euler in the chart: u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u, by Newton's method.
+//! Implicit Euler steps in the chart, by Newton's method: u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u.
 //!
-//! The first of these equations is not stiff. It is solved by itself, in as many turns as coordinates move one another, and
-//! makes u a function of ξ₁; what is left are as many unknowns as there are velocities and states,
+//! The first equation is not stiff. It is solved by itself by fixed-point iteration, which takes about as many
+//! iterations as there are levels in the dependence of the coordinates' rates on other coordinates, and makes u a
+//! function of ξ₁. The remaining unknowns are the velocities and first-order states ξ₁,
 //!
 //! g(ξ₁) = ξ₁ − ξ − h f(x ⊕ u(ξ₁), ξ₁) = 0,  ∂g/∂ξ₁ = I − h ∂f/∂ξ − h ∂f/∂x ∂u/∂ξ₁.
 //!
-//! Where coordinates are plain and ẋ = ξ, ∂g/∂ξ₁ is I − h (T_ξ + h T_x) with the linearisation T = [A B], else it comes from
-//! the same sums in dual numbers: both are exact. Without a linearisation it is found by differences. Factors are kept as
-//! long as corrections shrink, and corrected by the steps (Broyden).
+//! If coordinates are plain and ẋ = ξ, ∂g/∂ξ₁ is I − h (T_ξ + h T_x) with the linearisation T = `[A B]`; otherwise it
+//! comes from evaluating g in dual numbers. Both are exact. Without a linearisation it is found by finite differences.
+//! LU factors are kept as long as the corrections shrink, and are updated from the steps by Broyden's method.
 //!
-//! Where a point turns out to be no nearer, measured by the correction that follows, there are two remedies. First, M(x) g = 0
-//! is solved instead. Far from the solution f = M⁻¹ τ is larger by h² k/m than it will be, and ∂(M⁻¹)/∂x τ passes for
-//! stiffness; M g contains τ itself, which is nearly linear, and M only beside ξ₁ − ξ. Where that does not do, as where a
-//! spring between two points is so stiff that it guides a mechanism like a rod, the step is approached by way of shorter
-//! ones, each of which begins where the last two point (continuation in h).
+//! If a correction leads to a point that is no nearer to the solution, as measured by the next correction, there are
+//! two remedies. First, M(x) g = 0 is solved instead. Far from the solution f = M⁻¹ τ is larger than at the solution by
+//! a factor of h² k/m, and ∂(M⁻¹)/∂x τ looks like stiffness; M g contains τ itself, which is nearly linear, and M only
+//! as a factor of ξ₁ − ξ. If that fails, for example if a spring between two points is so stiff that it guides a
+//! mechanism like a rod, the step is approached through shorter ones, each of which starts from an extrapolation of the
+//! last two solutions (continuation in h).
 //!
 //! Sources: P. Deuflhard, *Newton Methods for Nonlinear Problems* (2011), 3.3 and 5.1; C. T. Kelley, *Iterative Methods for
 //! Linear and Nonlinear Equations* (1995), 7.3.
@@ -30,15 +32,15 @@ use crate::system::System;
 use equations::{Equations, Point};
 use unknowns::Unknowns;
 
-/// How ∂g/∂ξ₁ is found.
+/// A way to find ∂g/∂ξ₁.
 pub(super) trait Derivative<Sys: System + ?Sized> {
-    /// What is solved with it.
+    /// Factors of ∂g/∂ξ₁, used to solve linear equations.
     type Factors;
 
-    /// Whether it knows how inputs follow the state.
+    /// Whether the derivative includes the dependence of the inputs on the state.
     const KNOWS_INPUTS: bool;
 
-    /// g with the factors of its slopes; evaluations are counted.
+    /// Returns g and the factors of its derivative; adds the evaluations to `iterations`.
     fn linear(
         &self,
         equations: &Equations<'_, Sys>,
@@ -46,6 +48,6 @@ pub(super) trait Derivative<Sys: System + ?Sized> {
         iterations: &mut u32,
     ) -> Result<(Point<Sys>, Self::Factors), StepError>;
 
-    /// (∂g/∂ξ₁)⁻¹ g in the place of g.
+    /// Replaces g by (∂g/∂ξ₁)⁻¹ g.
     fn solve(factors: &Self::Factors, defect: &mut Sys::Velocities);
 }

@@ -1,4 +1,4 @@
-//! The iteration: Newton's method, factors that are kept and corrected, and shorter steps on the way to one that is long.
+//! Newton's method with kept and updated factors, and continuation through shorter steps.
 
 use core::array::from_fn;
 
@@ -10,22 +10,23 @@ use crate::scalar::Scalar;
 use crate::store::{is_finite, largest};
 use crate::system::System;
 
-/// Corrections after which the iteration of one length has failed.
+/// Largest number of corrections for one step length.
 const MOST: u32 = 64;
-/// Evaluations after which all lengths have.
+/// Budget of evaluations for all step lengths together.
 const MOST_OF_ALL: u32 = 1024;
-/// Corrections that are longer than this part of the ones before ask for new factors.
+/// Ratio of successive corrections above which new factors are computed.
 const SLOW: f64 = 0.1;
-/// Corrections by exact factors that are longer than this part of the ones before lead nowhere.
+/// Ratio of successive corrections by exact factors above which the iteration is not approaching a solution.
 const ASTRAY: f64 = 0.75;
-/// The least part of a correction that is taken on the way to the whole step. On the way to shorter ones, which begin near
-/// their solutions, all of each is.
+/// Smallest fraction of a correction that is tried for the whole step. For shorter steps, which start near their
+/// solutions, only full corrections are taken.
 const LEAST: f64 = 0.1;
-/// The part of the step that is tried first where the whole one is too long, and the least by which it grows.
+/// Fraction of the step that is tried first if the whole step is too long, and the smallest increment of this fraction.
 const PARTS: (f64, f64) = (0.25, 1e-4);
 
 impl<Sys: System + ?Sized> Equations<'_, Sys> {
-    /// (x₁, ξ₁): from ξ, or else along the solutions of shorter steps, which begin there.
+    /// Solves the equations and returns (x₁, ξ₁): starts from ξ, and if that fails, follows the solutions of shorter
+    /// steps.
     pub(in crate::methods) fn solve<D: Derivative<Sys>>(
         mut self,
         derivative: &D,
@@ -67,7 +68,7 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
         })
     }
 
-    /// The solution near values of ξ₁.
+    /// Returns the solution near the initial value `xi` of ξ₁.
     fn newton<D: Derivative<Sys>>(
         &mut self,
         derivative: &D,
@@ -88,7 +89,7 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
                 return Err(failed);
             }
             match iteration.ahead::<D>(self, &kept, failed) {
-                // With M g = 0 shorter parts of the same correction, too, may lead nearer.
+                // For M g = 0, a smaller fraction of the same correction may lead nearer to the solution.
                 Err(error) if iteration.fresh && self.weighed => {
                     iteration.part *= 0.5;
                     if iteration.part < least {
@@ -118,41 +119,41 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
     }
 }
 
-/// Where an iteration stands.
+/// State of an iteration.
 struct Iteration<Sys: System + ?Sized> {
     z: Unknowns<Sys>,
-    /// The inputs there.
+    /// Inputs at z.
     inputs: Sys::Inputs,
-    /// The correction of ξ₁ there, and the part of it that is tried.
+    /// Correction of ξ₁ at z, and the fraction `part` of it that is tried.
     step: Sys::Velocities,
     part: f64,
-    /// Whether the factors are those of this point.
+    /// Whether the factors were computed at this point.
     fresh: bool,
-    /// The steps since they were.
+    /// Steps since the factors were computed, of which `known` are in use.
     steps: [Sys::Velocities; MEMORY],
     known: usize,
     progress: Progress<Sys>,
 }
 
-/// The point that a correction leads to.
+/// Point to which a correction leads.
 struct Ahead<Sys: System + ?Sized> {
     z: Unknowns<Sys>,
     inputs: Sys::Inputs,
-    /// The correction there, by the factors alone.
+    /// Correction at this point by the factors alone, without Broyden's update.
     step: Sys::Velocities,
-    /// Whether inputs follow the state in a way that the factors do not know.
+    /// Whether the inputs change with the state in a way that the factors do not include.
     fed: bool,
-    /// Whether the correction that led here was rounding.
+    /// Whether the correction that led here is only of the size of rounding.
     rounding: bool,
 }
 
-/// What comes of a whole correction.
+/// Outcome of a full correction.
 enum Followed<Sys: System + ?Sized> {
-    /// It was the last one: (x₁, ξ₁).
+    /// The equations are solved: (x₁, ξ₁).
     Solved(Sys::Coordinates, Sys::Velocities),
-    /// The same factors do.
+    /// Corrections shrink; the factors are kept.
     Nearer,
-    /// New ones are wanted.
+    /// Corrections shrink too slowly; new factors are needed.
     Slower,
 }
 
@@ -174,7 +175,7 @@ impl<Sys: System + ?Sized> Iteration<Sys> {
         }
     }
 
-    /// Factors of this point, and the correction by them.
+    /// Computes factors at this point, and the correction by them.
     fn begin<D: Derivative<Sys>>(
         &mut self,
         equations: &Equations<'_, Sys>,
@@ -192,7 +193,7 @@ impl<Sys: System + ?Sized> Iteration<Sys> {
         Ok(factors)
     }
 
-    /// The point that the correction leads to; an error where it is no nearer.
+    /// Evaluates the point to which the correction leads; an error, `farther`, if it is no nearer to the solution.
     fn ahead<D: Derivative<Sys>>(
         &self,
         equations: &Equations<'_, Sys>,
@@ -228,14 +229,14 @@ impl<Sys: System + ?Sized> Iteration<Sys> {
         })
     }
 
-    /// Goes on from the point that a whole correction has led to.
+    /// Continues from the point to which a full correction has led.
     fn follow(&mut self, equations: &Equations<'_, Sys>, ahead: Ahead<Sys>) -> Followed<Sys> {
         let Ahead { fed, rounding, .. } = ahead;
         let (system, state, h) = (equations.system, equations.state, equations.h);
         let exact = core::mem::take(&mut self.fresh) && !fed;
         let length = Sys::Scalar::from_f64(h.abs()) * largest(ahead.step.as_ref());
         let mut after = ahead.step;
-        // Rounding teaches nothing.
+        // Corrections of the size of rounding carry no information for Broyden's update.
         if !rounding {
             if let Some(slot) = self.steps.get_mut(self.known) {
                 *slot = self.step.clone();
@@ -256,7 +257,7 @@ impl<Sys: System + ?Sized> Iteration<Sys> {
                 *by -= *before;
             }
             let over = self.progress.is_over(&end, &by, length, h);
-            // What exact factors do not make shorter is rounding.
+            // A correction that exact factors do not shrink is rounding.
             if over || rounding && exact && self.progress.idle > 1 {
                 return Followed::Solved(x, end.xi);
             }
@@ -272,7 +273,7 @@ impl<Sys: System + ?Sized> Iteration<Sys> {
     }
 }
 
-/// −(∂g/∂ξ₁)⁻¹ g
+/// Returns the Newton correction −(∂g/∂ξ₁)⁻¹ g.
 fn correction<Sys: System + ?Sized, D: Derivative<Sys>>(
     factors: &D::Factors,
     defect: &Sys::Velocities,
@@ -285,7 +286,8 @@ fn correction<Sys: System + ?Sized, D: Derivative<Sys>>(
     step
 }
 
-/// The correction by the factors, with what the steps since then tell of them: Broyden's update as a product.
+/// Applies Broyden's update, as a product over the steps since the factors were computed, to the correction by the
+/// factors.
 fn learnt<Sys: System + ?Sized>(steps: &[Sys::Velocities], correction: &mut Sys::Velocities) {
     let inner = |a: &Sys::Velocities, b: &Sys::Velocities| {
         let entries = a.as_ref().iter().zip(b.as_ref());
@@ -312,7 +314,7 @@ fn learnt<Sys: System + ?Sized>(steps: &[Sys::Velocities], correction: &mut Sys:
     }
 }
 
-/// Whether an entry that has yet to settle shrinks too little.
+/// Returns whether an entry that has not converged shrinks too slowly.
 fn slow<Sys: System + ?Sized>(
     new: &Sys::Velocities,
     old: &Sys::Velocities,
@@ -334,7 +336,7 @@ fn slow<Sys: System + ?Sized>(
     slow.largest_lane() != 0.0
 }
 
-/// Whether numbers differ.
+/// Returns whether any numbers differ.
 fn differ<S: Scalar>(a: &[S], b: &[S]) -> bool {
     let mut pairs = a.iter().zip(b);
     pairs.any(|(a, b)| (*a - *b).size().largest_lane() != 0.0)

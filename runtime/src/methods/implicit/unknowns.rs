@@ -1,23 +1,22 @@
-//! The unknowns (u, ξ₁) of an implicit step, and how far an iteration for them has come.
+//! The unknowns (u, ξ₁) of an implicit step, and the convergence tests of the iterations that solve for them.
 
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::store::{is_finite, largest};
 use crate::system::{Block, System};
 
-/// Steps that the iteration remembers before it starts anew.
+/// Number of steps that Broyden's method remembers before it starts anew.
 pub(in crate::methods) const MEMORY: usize = 16;
-/// The correction at which it ends, in units of the last place; the error that it leaves is smaller by the rate of
-/// convergence.
+/// Correction at which an iteration ends, in rounding units; the remaining error is smaller by the rate of convergence.
 pub(in crate::methods) const ENOUGH: f64 = 256.0;
-/// How much longer a defect may be than the correction times the largest growth seen.
+/// Factor by which a residual may exceed the correction times the largest growth seen.
 const MARGIN: f64 = 10.0;
-/// Defects that grow by more are those of stiff systems.
+/// Growth of residuals above which a system counts as stiff.
 const STIFF: f64 = 100.0;
-/// Corrections in a row that bring no entry nearer, after which what is left is rounding.
+/// Number of successive corrections that bring no entry nearer, after which the remaining changes count as rounding.
 const PATIENCE: u32 = 4;
 
-/// (u, ξ₁), or a change or a residual of it.
+/// The unknowns (u, ξ₁), or a change or residual of them.
 pub(in crate::methods) struct Unknowns<Sys: System + ?Sized> {
     pub(in crate::methods) u: Sys::Chart,
     pub(in crate::methods) xi: Sys::Velocities,
@@ -42,7 +41,7 @@ impl<Sys: System + ?Sized> Unknowns<Sys> {
         }
     }
 
-    /// Σ aᵢ bᵢ by the function that adds one such product.
+    /// Returns Σ aᵢ bᵢ, where `add(a, b, sum)` adds one product.
     pub(in crate::methods) fn dot(
         &self,
         other: &Self,
@@ -54,7 +53,8 @@ impl<Sys: System + ?Sized> Unknowns<Sys> {
             .fold(Sys::Scalar::default(), |sum, (a, b)| add(*a, *b, sum))
     }
 
-    /// The part of another along this step. A step whose square is not above `rest` has only slopes to go by, if any.
+    /// Returns the coefficient of the projection of `other` onto this step. If the square of the step is not above
+    /// `rest`, the values are rounding, and the slopes of dual numbers (if any) are used as well.
     pub(in crate::methods) fn along(&self, other: &Self, rest: Sys::Scalar) -> Sys::Scalar {
         let (product, inner) = (Scalar::mul_add, Scalar::inner_plus);
         let square = self.dot(self, product);
@@ -63,7 +63,7 @@ impl<Sys: System + ?Sized> Unknowns<Sys> {
         rest.select_lt(square, by_value, by_slopes)
     }
 
-    /// max(|u|, h |ξ|)
+    /// Returns max(|u|, h |ξ|).
     pub(in crate::methods) fn length(&self, h: f64) -> Sys::Scalar {
         let of_xi = Sys::Scalar::from_f64(h.abs()) * largest(self.xi.as_ref());
         Scalar::max(largest(self.u.as_ref()), of_xi)
@@ -83,24 +83,24 @@ impl<Sys: System + ?Sized> Clone for Unknowns<Sys> {
     }
 }
 
-/// a / b, and 0 in the lanes where b is zero: those have converged.
+/// Returns a / b, and 0 in the lanes where b is zero, which have converged.
 pub(in crate::methods) fn ratio<S: Scalar>(a: S, b: S) -> S {
     S::default().select_lt(b.abs(), a / b, S::default())
 }
 
-/// How far the iteration has come.
+/// Progress and convergence tests of an iteration.
 pub(in crate::methods) struct Progress<Sys: System + ?Sized> {
-    /// What each unknown starts from: x (flat) or 1 rad (angles), and ξ.
+    /// Reference sizes of the unknowns: x (flat) or 1 rad (angles), and ξ at the start of the step.
     start: Unknowns<Sys>,
-    /// The least corrections so far, each beside the size of its unknown; 0 before the first.
+    /// Smallest correction of each unknown so far, relative to the size of the unknown; 0 before the first.
     least: Unknowns<Sys>,
-    /// The largest |x|.
+    /// Largest |x| at the start of the step.
     reach: Sys::Scalar,
-    /// Corrections in a row that brought no unknown nearer.
+    /// Number of successive corrections that brought no unknown nearer.
     pub(in crate::methods) idle: u32,
-    /// The lengths of the last defect and correction.
+    /// Lengths of the last residual and correction.
     last: (Sys::Scalar, Sys::Scalar),
-    /// By how much defects grew for the corrections made, at most, or 1: 1 + h L or nearly so, L the stiffest rate.
+    /// Largest growth of the residual per length of correction, at least 1: about 1 + h L, with L the stiffest rate.
     growth: Sys::Scalar,
 }
 
@@ -134,12 +134,14 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         }
     }
 
-    /// Whether z, after a correction, is the solution: the correction is small beside the size of every unknown and its
-    /// change over the step, each by itself, or the corrections no longer shrink and are of the size of rounding.
+    /// Returns whether z, after a correction, is the solution. This holds if the correction of every unknown is small
+    /// relative to the size of this unknown and its change over the step, or if the corrections no longer shrink and
+    /// are of the size of rounding.
     ///
-    /// A correction that is shorter than the defect by more than defects were seen to grow is small by what was learnt
-    /// wrong. f is rounded as x is, by h k ε |x| for a spring of stiffness k, so that a velocity is no more certain than
-    /// ε (|ξ| + |x|/h) however small it is.
+    /// A correction that is shorter than the residual by more than the observed growth of residuals is not trusted: it
+    /// is small because of a wrong approximation of the Jacobian. f is rounded together with x, which changes a
+    /// velocity by h k ε |x| for a spring of stiffness k, so that a velocity is no more certain than ε (|ξ| + |x|/h),
+    /// however small it is.
     pub(in crate::methods) fn is_over(
         &mut self,
         z: &Unknowns<Sys>,
@@ -187,12 +189,12 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         trusted && self.idle >= PATIENCE && whole <= ENOUGH * Sys::Scalar::EPSILON
     }
 
-    /// Whether defects grew much for the corrections made.
+    /// Returns whether residuals grew so much per correction that the system is stiff.
     pub(in crate::methods) fn is_stiff(&self) -> bool {
         self.growth.largest_lane() > STIFF
     }
 
-    /// Whether a defect is what rounding leaves of z in the stiffest direction seen.
+    /// Returns whether a residual is no more than the effect of rounding in z along the stiffest direction seen.
     pub(in crate::methods) fn is_solved(
         &self,
         z: &Unknowns<Sys>,
@@ -203,7 +205,7 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         defect.is_finite() && part.largest_lane() <= STIFF * ENOUGH * Sys::Scalar::EPSILON
     }
 
-    /// The part that a correction makes of the whole of z and of where the step begins: rounding is of the size ε.
+    /// Returns the size of a correction relative to all of z and the start of the step; rounding is of the size ε.
     pub(in crate::methods) fn whole(
         &self,
         z: &Unknowns<Sys>,
