@@ -1,8 +1,8 @@
 //! Factorization of several polynomials at once into a cheap straight-line program.
 //!
-//! The total number of products and sums is made small by factoring and by sharing subexpressions: f = m c₁
-//! + m c₂ + … becomes m K + … with K = c₁ + c₂, wherever K occurs, and products of two factors that occur
-//! several times are computed once. Coefficients are factors like any other. Divisors are extracted
+//! The total number of products and sums is made small by factoring and by sharing subexpressions:
+//! f = m c₁ + m c₂ + … becomes m K + … with K = c₁ + c₂, wherever K occurs, and products of two factors that
+//! occur several times are computed once. Coefficients are factors like any other. Divisors are extracted
 //! greedily. As the result depends on their order, several orders are tried; then parts of the best program
 //! are expanded and extracted again. The search is deterministic, and limited to a fixed amount of work.
 
