@@ -30,7 +30,7 @@ const FOLDERS: [&str; 5] = [
     "target/robots",
 ];
 
-/// What is recorded of each description: a file's name, and the arguments before and after the description.
+/// Reports that are recorded for each description: a file's name, and the arguments before and after the description.
 const REPORTS: [(&str, &[&str], &[&str]); 9] = [
     ("ops.json", &["ops", "--format", "json"], &[]),
     ("check.txt", &["check"], &[]),
@@ -118,8 +118,8 @@ fn report(program: &Path, description: &Path, out: &Path) -> io::Result<()> {
 
 /// Prints every report that differs between two records; whether there is none.
 ///
-/// Of emitted code the functions are compared with comments left out and local names numbered by their
-/// first occurrence; all other reports byte by byte.
+/// Emitted functions are compared without comments and with local names numbered by first occurrence; all other reports
+/// are compared byte by byte.
 ///
 /// # Errors
 ///

@@ -21,10 +21,10 @@ pub const OPAQUE: Var = 1 << 24;
 pub const MOST_TERMS: usize = 4000;
 
 /// Factor by which a polynomial may exceed the largest number of terms before it is reduced.
-const UNREDUCED: usize = 4;
+const UNREDUCED_FACTOR: usize = 4;
 
 /// Largest number of terms of a polynomial that is short enough not to be reduced on the way.
-const REDUCED_TERMS: usize = 16;
+const MAX_TERMS_LEFT_UNREDUCED: usize = 16;
 
 /// Highest degree of an intermediate polynomial; otherwise towers of powers would reach degrees that no
 /// exponent can hold.
@@ -101,7 +101,7 @@ impl Expander {
     }
 
     /// Expands an expression to a polynomial modulo an ideal. `reduce` returns a representative of each
-    /// intermediate polynomial that has more than `REDUCED_TERMS` terms.
+    /// intermediate polynomial that has more than `MAX_TERMS_LEFT_UNREDUCED` terms.
     ///
     /// Returns `None` if a representative has too many terms, if a product before reduction has far too
     /// many, or if more than `work` products and sums of terms are needed. Parts that were not reached then
@@ -115,13 +115,13 @@ impl Expander {
     ) -> Option<Poly<BigRational>> {
         self.work = work;
         for id in self.unknown(graph, edge) {
-            let mut polynomial = self.local(graph, id, UNREDUCED * self.most_terms);
+            let mut polynomial = self.local(graph, id, UNREDUCED_FACTOR * self.most_terms);
             if self.work == 0 {
                 return None;
             }
             let terms = |polynomial: &Poly<BigRational>| polynomial.terms().len();
             let length = polynomial.as_ref().map_or(0, terms);
-            if length > REDUCED_TERMS {
+            if length > MAX_TERMS_LEFT_UNREDUCED {
                 // Each term may be replaced by others, which have to be inserted among the rest.
                 self.spend(length * length / 8)?;
                 polynomial = polynomial.map(|polynomial| reduce(graph, polynomial));

@@ -26,12 +26,11 @@ pub struct NormalForms {
     ideal: Ideal,
 }
 
-/// Largest number of products and sums of terms for one normal form; entries that people read take
-/// a tenth of it.
-const MOST_WORK: usize = 60_000;
+/// Largest number of products and sums of terms for one normal form.
+const MAX_TERM_OPERATIONS: usize = 60_000;
 
 /// Largest number of terms of an intermediate normal form.
-const MOST_REDUCED: usize = 200;
+const MAX_NORMAL_FORM_TERMS: usize = 200;
 
 impl NormalForms {
     /// Computes the Gröbner bases of φ; constraints whose basis is too large are left out.
@@ -98,7 +97,7 @@ impl NormalForms {
             .collect();
         NormalForms {
             expander: Expander::within(work),
-            reduced: Expander::default().of_terms(MOST_REDUCED),
+            reduced: Expander::default().of_terms(MAX_NORMAL_FORM_TERMS),
             ideal: Ideal {
                 angles: Angles::default(),
                 bases,
@@ -140,9 +139,9 @@ impl NormalForms {
     pub fn normal_form(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         let ideal = &mut self.ideal;
         let mut reduce = |graph: &Graph, polynomial| ideal.reduce(graph, polynomial);
-        let polynomial = self
-            .reduced
-            .expand_modulo(graph, edge, MOST_WORK, &mut reduce)?;
+        let polynomial =
+            self.reduced
+                .expand_modulo(graph, edge, MAX_TERM_OPERATIONS, &mut reduce)?;
         Some(self.ideal.reduce(graph, polynomial))
     }
 }

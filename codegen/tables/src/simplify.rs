@@ -16,11 +16,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const MOST_SHOWN: usize = 60;
 
 /// Largest number of terms of an intermediate polynomial when an expression is expanded as it stands.
-const MOST_EXPANDED: usize = 100;
+const MAX_EXPANDED_TERMS: usize = 100;
 
 /// Number of expressions without a short polynomial after which intermediate polynomials are limited to the length of
 /// those that are shown. For a long chain no entry has a short polynomial, and finding that out is slow for each.
-const MOST_FAILURES: usize = 100;
+const MAX_LONG_EXPRESSIONS: usize = 100;
 
 /// Largest number of terms of a polynomial inside an expression that is not itself a polynomial.
 const MOST_INSIDE: usize = 8;
@@ -53,7 +53,7 @@ impl Simplifier {
     pub fn free(points: &Points) -> Self {
         let numbered = points.blocks.iter().enumerate();
         Simplifier {
-            expander: Expander::default().of_terms(MOST_EXPANDED),
+            expander: Expander::default().of_terms(MAX_EXPANDED_TERMS),
             forms: None,
             failures: 0,
             first: points.first as NodeId,
@@ -71,7 +71,7 @@ impl Simplifier {
         let shortest = self.shortest(graph, node);
         if shortest.is_none() {
             self.failures += 1;
-            if self.failures == MOST_FAILURES
+            if self.failures == MAX_LONG_EXPRESSIONS
                 && let Some(forms) = &mut self.forms
             {
                 forms.limit_terms(MOST_SHOWN);

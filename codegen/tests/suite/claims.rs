@@ -36,7 +36,7 @@ enum Form {
 
 #[derive(Clone)]
 struct Claim {
-    /// What it says in words of the language, where these are not the terms.
+    /// Its text, if it is a keyword claim such as `energy` instead of a sum of terms.
     named: Option<String>,
     pieces: Vec<Piece>,
     form: Form,
@@ -147,7 +147,7 @@ fn largest(claim: &Claim, system: &System, states: &[(Vec<f64>, Vec<f64>)]) -> f
 /// The lines of the claims that are refused in a text.
 ///
 /// # Errors
-/// What is said, where anything but a claim is wrong.
+/// Returns the rendered errors if one of them is not the refusal of a claim.
 fn refused(text: &str) -> Result<Vec<usize>, String> {
     let Err(errors) = from_text(text) else {
         return Ok(Vec::new());
@@ -164,7 +164,7 @@ fn refused(text: &str) -> Result<Vec<usize>, String> {
     Ok(lines)
 }
 
-/// What is wrong with some claims that are true and some that are false, in the description that holds them.
+/// Checks that the generator accepts all of `truths` and refuses each of `lies`; returns one text for each deviation.
 fn faults_of(
     describe: impl Fn(&[String]) -> String,
     truths: &[String],
@@ -206,7 +206,8 @@ fn faults_of(
     faults
 }
 
-/// What is wrong with the claims about one mechanism; `count` grows by the number of those that are false.
+/// Checks the claims about one mechanism and returns one text for each deviation; adds the number of false claims to
+/// `count`.
 fn faults(seed: u64, count: &AtomicUsize) -> Vec<String> {
     let random = &mut Random::new(seed ^ 0xc1a1);
     let kept = drawn(random);

@@ -1,5 +1,5 @@
-//! What the crates that users name offer to them, locked as text: a change of the public interface is seen in review.
-//! What the generator's stages offer to one another is not.
+//! Locks the public interface of the crates that users name as text, so that a change of it is seen in review.
+//! The interfaces between the stages of the generator are not locked.
 //!
 //! The sources are read by `syn`; what a macro of the crate itself writes is listed as its invocation.
 

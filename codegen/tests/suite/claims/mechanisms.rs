@@ -5,9 +5,9 @@ use super::{Claim, Form, REGULAR};
 use crate::common::Random;
 use crate::jointed::{Joint, Law, Load, Loop, Motion, Name, System, short};
 
-/// What a system keeps.
+/// A mechanism with conserved quantities that are known by construction.
 pub struct Kept {
-    /// What moves.
+    /// The mechanism.
     pub system: System,
     /// The number of joints that carry the others and that nothing but gravity acts on.
     roots: usize,
@@ -169,7 +169,7 @@ impl Kept {
         written.into_iter().chain(named).collect()
     }
 
-    /// What loops and given motions hold constant, by terms.
+    /// Claims about quantities that loops and prescribed motions hold constant.
     fn ties(&self) -> Vec<Vec<Piece>> {
         let mut all = Vec::new();
         for (i, joint) in self.system.joints.iter().enumerate() {
@@ -185,7 +185,7 @@ impl Kept {
         all
     }
 
-    /// What is rarely true: the energy of what time moves, momenta about other points and along other axes.
+    /// Claims that hold only by coincidence: the energy of a driven system, and momenta about other points and axes.
     pub fn doubtful(&self, random: &mut Random) -> Vec<Claim> {
         let mut terms = kinetic(&self.system, false);
         terms.extend(potential(&self.system));

@@ -1,4 +1,4 @@
-//! What claims are made of: terms with their texts, and their rates of change along the motion of the reference.
+//! Terms of claims: their texts, and their rates of change along the motion of the reference.
 
 use crate::jet::Jet;
 use crate::jointed::{Load, Placed, System};

@@ -65,7 +65,7 @@ fn joint(random: &mut Random, i: usize) -> Joint {
     }
 }
 
-/// What gives the motion of a joint; the first one is free.
+/// Draws the source of the motion of a joint; the first joint is free.
 fn motion(random: &mut Random, i: usize) -> Motion {
     match random.below(6) {
         2 | 3 if i > 0 => {
@@ -132,7 +132,7 @@ fn number(name: &str) -> usize {
     digits.parse().expect("a joint has a number")
 }
 
-/// What the generator makes of the rates at a state, each with its joint.
+/// Evaluates the emitted accelerations at a state; each comes with the index of its joint.
 fn found(of: &Generated, system: &System, q: &[f64], v: &[f64]) -> Vec<(usize, f64)> {
     let own = system.own();
     let model = &of.active;
@@ -155,7 +155,7 @@ fn found(of: &Generated, system: &System, q: &[f64], v: &[f64]) -> Vec<(usize, f
     places.into_iter().zip(rates).collect()
 }
 
-/// What became of a system.
+/// Result of comparing one system with the reference.
 enum Outcome {
     /// It is derived, and its rates are those of the reference at some states.
     Compared,

@@ -264,7 +264,8 @@ impl System {
         solution((mass, force), (rows, right))
     }
 
-    /// What is left to move: the least pivot of M there, the number of directions, and how independent the rows are.
+    /// Measures how far the constrained system is from a singularity at a configuration: the smallest pivot of M on the
+    /// tangent space of the constraints, the dimension of that space, and the independence of the constraint rows.
     pub fn regularity(&self, q: &[f64]) -> (f64, usize, f64) {
         let still = vec![0.0; q.len()];
         let (mass, _) = self.inertia_and_force(q, &still);

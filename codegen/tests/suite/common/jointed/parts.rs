@@ -16,7 +16,7 @@ pub struct Law {
     pub products: Vec<(f64, Name, Name)>,
 }
 
-/// What a law depends on.
+/// Variable of a law: the value of a joint, or the time.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Name {
     /// The value of a joint.
@@ -26,7 +26,7 @@ pub enum Name {
 }
 
 impl Name {
-    /// How it is written.
+    /// The variable in the language.
     pub fn text(self) -> String {
         match self {
             Name::Joint(i) => format!("j{i}"),
@@ -126,7 +126,7 @@ impl Law {
     }
 }
 
-/// What gives the motion of a joint.
+/// Source of the motion of a joint.
 #[derive(Clone)]
 pub enum Motion {
     /// Forces alone.
@@ -139,7 +139,7 @@ pub enum Motion {
     Driven(Law),
 }
 
-/// What a joint moves.
+/// Load on the frame of a joint.
 #[derive(Clone)]
 pub enum Load {
     /// Nothing.
@@ -210,13 +210,13 @@ pub struct Joint {
     pub axis: [f64; 3],
     /// The joint whose frame it is mounted on; the world where there is none.
     pub on: Option<usize>,
-    /// Where it is mounted.
+    /// The origin of its frame, in the frame that it is mounted on.
     pub at: [f64; 3],
-    /// What gives its motion.
+    /// The source of its motion.
     pub motion: Motion,
-    /// What it moves.
+    /// The body or particle on its frame, if any.
     pub load: Load,
-    /// Of a spring on it.
+    /// Stiffness of its spring; 0 if it has none.
     pub stiffness: f64,
     /// The inertia of its drive.
     pub armature: f64,
