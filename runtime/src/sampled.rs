@@ -152,6 +152,8 @@ impl<C> Sampled<C> {
         // A ratio within rounding of a whole number counts as that number.
         let whole = count as u64;
         let last = whole + u64::from(count - whole as f64 > 1e-9 * count.max(1.0));
+        // A span below that rounding is still a span.
+        let last = last.max(u64::from(span > 0.0));
         let clock = Clock::new(system, state);
         for index in 1..=last {
             let u = (self.controller)(state);

@@ -124,3 +124,20 @@ fn periods_are_positive_and_finite() {
     let result = controller.integrate(&system, General::Rkmk4, &mut state, 0.1, 0.0, |_| {});
     assert_eq!(result, Ok(()));
 }
+
+/// A run of less than 1e-9 periods is a run: it ends at its end, with the controller asked once.
+#[test]
+fn spans_far_below_a_period_are_reached() {
+    let system = FREE;
+    let mut state = State::start(&system);
+    let mut calls = 0;
+    let until = 1e-12 * PERIOD;
+    let mut controller = Sampled::new(PERIOD, |_: &State<Oscillator>| {
+        calls += 1;
+        [0.0]
+    });
+    controller
+        .integrate(&system, General::Rkmk4, &mut state, PERIOD, until, |_| {})
+        .expect("a run");
+    assert_eq!((state.t, calls), (until, 1));
+}

@@ -54,27 +54,59 @@ fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
         return None;
     }
     let of = |edge: Edge| expression(graph, edge, depth + 1);
+    // A sum that is multiplied, subtracted or negated needs parentheses.
+    let operand = |edge: Edge| match graph.node(edge.node()) {
+        Node::Add(..) if !edge.is_negative() => of(edge).map(|text| format!("({text})")),
+        _ => of(edge),
+    };
+    if edge.is_negative() {
+        return operand(edge.abs()).map(|text| format!("-{text}"));
+    }
     let text = match graph.node(edge.node()) {
         Node::Constant(index) => graph.constant(index).to_string(),
         Node::Symbol(index) => graph.symbols().get(index as usize)?.name.clone(),
-        Node::Add(a, b) if b.is_negative() => format!("{} - {}", of(a)?, of(b.abs())?),
+        Node::Add(a, b) if b.is_negative() => format!("{} - {}", of(a)?, operand(b.abs())?),
         Node::Add(a, b) => format!("{} + {}", of(a)?, of(b)?),
-        Node::Mul(a, b) => {
-            let factor = |edge: Edge| match graph.node(edge.node()) {
-                Node::Add(..) => of(edge).map(|text| format!("({text})")),
-                _ => of(edge),
-            };
-            format!("{} {}", factor(a)?, factor(b)?)
-        }
+        Node::Mul(a, b) => format!("{} {}", operand(a)?, operand(b)?),
         Node::Apply(function, a) => {
             let name = function.name();
             format!("{name}({})", of(a)?)
         }
         _ => return None,
     };
-    Some(if edge.is_negative() {
-        format!("-{text}")
-    } else {
-        text
-    })
+    Some(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::expression;
+    use hamel_algebra::fp::Fp;
+    use hamel_algebra::function::Function;
+    use hamel_algebra::graph::Graph;
+
+    /// The sign of a node belongs to the graph: either form is right, as long as it has the value of the expression.
+    #[test]
+    fn sums_behind_a_sign_have_parentheses() {
+        let mut graph = Graph::new(7);
+        let [a, b, c] = [("a", 1 << 50), ("b", 3 << 45), ("c", 5 << 41)]
+            .map(|(name, value)| graph.symbol(name, 1, Fp::from_i64(value)));
+        let sum = graph.add(b, c);
+        for operand in [sum, -sum] {
+            let difference = graph.add(a, operand);
+            let argument = graph.apply(Function::Cos, difference);
+            let text = expression(&graph, argument, 0).expect("short");
+            let forms: &[&str] = if operand == sum {
+                &["cos(a + b + c)", "cos(b + c + a)", "cos(-(a + b + c))"]
+            } else {
+                &["cos(a - (b + c))", "cos(b + c - a)", "cos(-(b + c) + a)"]
+            };
+            assert!(forms.contains(&text.as_str()), "{text}");
+        }
+        let product = graph.mul(a, sum);
+        let text = expression(&graph, -product, 0).expect("short");
+        assert!(
+            ["-a (b + c)", "-(b + c) a"].contains(&text.as_str()),
+            "{text}"
+        );
+    }
 }
