@@ -1,5 +1,5 @@
 """All functions of random mechanisms, of one state and of many in arrays of odd layouts, against d'Alembert's principle in numbers of
-80 digits: `tests/dalembert` computes them from the data that it writes the text from. Runs are those of SciPy with these accelerations."""
+80 digits: `lab/dalembert` computes them from the data that it writes the text from. Runs are those of SciPy with these accelerations."""
 
 import sys
 import warnings

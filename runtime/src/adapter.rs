@@ -4,7 +4,7 @@
 //! [`Equations`] provides their rates, the product of the Jacobian with a vector, and the conversion of y back to a
 //! state. It depends on no solver. The recommended one is `diffsol` (MIT; BDF of variable order, ESDIRK and TR-BDF2
 //! with dense output and events, released every few weeks, described in J. Open Source Softw. 11 (2026) 9384):
-//! `tests/diffsol` of the repository runs a heavy top and a stiff system with it.
+//! `lab/diffsol` of the repository runs a heavy top and a stiff system with it.
 //!
 //! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads back to it, and
 //! [`Equations::state`] projects each state onto it. If λ is far above the rates of the motion, the equations are

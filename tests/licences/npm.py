@@ -43,7 +43,7 @@ def permitted(expression: str, allowed: set[str]) -> bool:
 
 
 def main() -> int:
-    with open("deny.toml", "rb") as file:
+    with open("tests/licences/deny.toml", "rb") as file:
         allowed = set(tomllib.load(file)["licenses"]["allow"])
     assert permitted("(MIT OR GPL-3.0)", allowed) and permitted("MIT AND Zlib", allowed)
     assert not permitted("MIT AND GPL-3.0", allowed) and not permitted("", allowed)

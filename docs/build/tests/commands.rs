@@ -112,7 +112,7 @@ fn nothing_is_only_shown() {
                 "rust" | "rust,no_run" => {
                     programs.contains(name.strip_prefix("docs/").unwrap_or(&name))
                 }
-                // tests/c99/tests/attack.rs
+                // tests/emitted/tests/c.rs
                 "c" => name == "docs/book/src/front-ends.md",
                 // python/tests/test_pages.py, tests/sweep/readers.py
                 "python" => python.contains(&name) || name == "docs/book/src/ensembles.md",

@@ -5,6 +5,10 @@
 //! error run the same ones.
 
 pub mod bodies;
+/// Systems written by hand, which the tests of the runtime share.
+#[path = "../../../runtime/tests/suite/common/mod.rs"]
+#[allow(missing_docs)]
+pub mod by_hand;
 pub mod case;
 pub mod mechanisms;
 pub mod reference;

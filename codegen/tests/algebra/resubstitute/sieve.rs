@@ -1,0 +1,27 @@
+//! The sieve of values: what is there passes, and little else does.
+
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::prime::Residue;
+use included::Sieve;
+
+// What passes shows in the time that resubstitution takes, and in nothing else.
+#[path = "../../../algebra/src/resubstitute/sieve.rs"]
+mod included;
+
+#[test]
+fn what_is_there_passes_with_either_sign_and_little_else_does() {
+    let mut random = Random::new(3);
+    let there: Vec<Fp> = (0..400).map(|_| random.element()).collect();
+    let i = Fp(Residue::I, Residue::I);
+    let all = there.iter().flat_map(|&value| [value, value * i]);
+    let sieve = Sieve::new(all.clone().chain([Fp::ZERO]));
+    assert!(
+        all.clone()
+            .all(|value| sieve.passes(value.0) && sieve.passes((-value).0))
+    );
+    assert!(sieve.passes(Residue::ZERO));
+    let others = (0..1000)
+        .filter(|_| sieve.passes(random.element().0))
+        .count();
+    assert!(others < 100, "{others}");
+}

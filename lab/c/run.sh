@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Compares generated C with generated Rust, forward dynamics and their slopes, by clang and by gcc; needs both, cargo, and
+# the robots of tests/robots/install.sh. Ends with 1 where the C of one of them takes more than 1.05 times as long as the Rust.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+bash tests/robots/install.sh
+target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
+robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
+out="$PWD/target/bench-c"
+mkdir -p "$out/c"
+
+export HAMEL_C="$out/c" HAMEL_ROBOTS="$robots"
+export RUSTFLAGS="-C target-cpu=native"
+cargo build --release --manifest-path lab/c/Cargo.toml --target-dir "$out/rust"
+# One core, where the system can say so.
+pin=$(command -v taskset || true)
+# gcc is fastest where it is told to schedule before it allocates registers, and not after, and not to put what stands
+# side by side into vectors, which takes more moves than it saves.
+gcc="gcc -fno-tree-slp-vectorize -fschedule-insns -fno-schedule-insns2 -fsched-pressure -frename-registers"
+ended=0
+for compiler in clang "$gcc"; do
+    library="$out/lib${compiler%% *}.so"
+    (cd "$out/c" && $compiler -std=c99 -O3 -march=native -fPIC -shared ./*.c -lm -o "$library")
+    echo "$compiler -O3 -march=native"
+    ${pin:+$pin -c 0} "$out/rust/release/hamel-bench-c" "$library" || ended=1
+done
+exit $ended

@@ -1,0 +1,42 @@
+//! MuJoCo, through `lab/peers/mujoco_peer.py`.
+
+use super::Foreign;
+use serde::Deserialize;
+use std::path::Path;
+use std::process::Command;
+
+/// How to have it.
+pub const START: &str = "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
+
+/// Where its Python is looked for.
+pub const PYTHON: &str = "target/mujoco/bin/python";
+
+#[derive(Deserialize)]
+struct Output {
+    version: String,
+    cases: Vec<Foreign>,
+}
+
+/// Runs the script; its version and results, or why there are none.
+///
+/// # Errors
+/// In plain words: no such Python, the script failed, or its output cannot be read.
+pub fn run(python: &Path) -> Result<(String, Vec<Foreign>), String> {
+    if !python.exists() {
+        return Err(format!("no Python with it at {}", python.display()));
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let output = Command::new(python)
+        .arg(root.join("../peers/mujoco_peer.py"))
+        .arg(root.join("../../tests/reference"))
+        .output()
+        .map_err(|error| format!("its script did not start: {error}"))?;
+    if !output.status.success() {
+        let text = String::from_utf8_lossy(&output.stderr);
+        let last = text.lines().last().unwrap_or("no message").to_string();
+        return Err(format!("its script failed: {last}"));
+    }
+    let read: Output = serde_json::from_slice(&output.stdout)
+        .map_err(|error| format!("its output cannot be read: {error}"))?;
+    Ok((read.version, read.cases))
+}

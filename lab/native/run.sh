@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Machine code made at once beside rustc's; needs cargo and the robots of tests/robots/install.sh.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+bash tests/robots/install.sh
+target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
+robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
+export HAMEL_ROBOTS="$robots"
+export RUSTFLAGS="-C target-cpu=native"
+cargo build --release --manifest-path lab/native/Cargo.toml --target-dir target/bench-native --bin hamel-bench-native
+# One core, where the system can say so.
+pin=$(command -v taskset || true)
+${pin:+$pin -c 0} target/bench-native/release/hamel-bench-native

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Steps with slopes of the robots in tests/reference/control, or in the folder that HAMEL_CONTROL_REFERENCE names, against
+# those of Pinocchio; needs cargo and the robots of tests/robots/install.sh.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+bash tests/robots/install.sh
+target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
+robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
+export HAMEL_ROBOTS="$robots" HAMEL_CONTROL_REFERENCE="${HAMEL_CONTROL_REFERENCE:-$PWD/tests/reference/control}"
+cargo test --manifest-path lab/robots/Cargo.toml --locked

@@ -1,0 +1,234 @@
+//! A quarter of a million steps, and a million with `HAMEL_ATTACK`: no drift of energy, momentum or orthonormality.
+//!
+//! Bars are those of measurements of independent prototypes, with some room.
+
+#[path = "../../../codegen/tests/suite/common/size.rs"]
+mod size;
+
+use hamel::flows::Flow;
+use hamel::methods::{Gauss4, Gauss6, Lgvi, Rkmk4, Scheme, Splitting};
+use hamel::{Method, State, System, so3};
+use hamel_cases::by_hand::{Body, QuaternionTop, Reference, Spin, Top};
+use size::size;
+
+/// The steps of a run.
+fn steps() -> u32 {
+    size(250_000, 1_000_000) as u32
+}
+
+/// Largest energy error of the last quarter over that of the first; an error that does not grow.
+const GROWTH: f64 = 1.05;
+/// Energy errors below are rounding, which may grow: a random walk of a million steps of ten
+/// operations each.
+const ENERGY_ROUNDING: f64 = 1e-11;
+/// Vertical or total momentum, relative.
+const MOMENTUM: f64 = 1e-10;
+/// |RᵀR − I| after every step.
+const ORTHONORMAL: f64 = 1e-14;
+
+/// Largest energy error over that of the prototypes, which are known to two digits.
+const SEEN: f64 = 1.1;
+
+/// What a run strays by; energies relative to T₀ + m |g| |s|, the most that a top's kinetic and potential
+/// energies are at its start.
+#[derive(Debug)]
+struct Drift {
+    /// Largest energy error by quarters of the run.
+    energy: [f64; 4],
+    momentum: f64,
+    orthonormality: f64,
+}
+
+/// What differs between bodies.
+trait Watched: System<Scalar = f64> {
+    fn body(&self) -> &Body<f64>;
+    fn rotation(x: &Self::Coordinates) -> so3::Matrix<f64>;
+    fn velocity(xi: &Self::Velocities) -> so3::Vector<f64>;
+}
+
+impl Watched for Top<f64> {
+    fn body(&self) -> &Body<f64> {
+        &self.0
+    }
+    fn rotation(x: &[f64; 9]) -> so3::Matrix<f64> {
+        *x
+    }
+    fn velocity(xi: &[f64; 3]) -> so3::Vector<f64> {
+        *xi
+    }
+}
+
+impl Watched for Spin<Top<f64>> {
+    fn body(&self) -> &Body<f64> {
+        &self.0.0
+    }
+    fn rotation(x: &[f64; 9]) -> so3::Matrix<f64> {
+        *x
+    }
+    fn velocity(xi: &[f64; 3]) -> so3::Vector<f64> {
+        *xi
+    }
+}
+
+impl Watched for QuaternionTop<f64> {
+    fn body(&self) -> &Body<f64> {
+        &self.0
+    }
+    fn rotation(x: &[f64; 4]) -> so3::Matrix<f64> {
+        hamel::s3::to_matrix(*x)
+    }
+    fn velocity(xi: &[f64; 3]) -> so3::Vector<f64> {
+        *xi
+    }
+}
+
+fn run<Sys: Watched, M: Method<Sys>>(system: &Sys, method: M, h: f64, steps: u32) -> Drift {
+    let body = system.body();
+    let energy = |state: &State<Sys>| {
+        let kinetic = system.kinetic_energy(&state.x, &state.xi);
+        (kinetic + system.potential_energy(&state.x), kinetic)
+    };
+    let momentum = |state: &State<Sys>| {
+        so3::apply(
+            Sys::rotation(&state.x),
+            body.momentum(Sys::velocity(&state.xi)),
+        )
+    };
+    let mut state = State::start(system);
+    let ((e0, t0), l0) = (energy(&state), momentum(&state));
+    let size = |v: so3::Vector<f64>| so3::dot(v, v).sqrt();
+    let scale = t0 + body.m * size(body.g) * size(body.s);
+    let length = size(l0);
+    let heavy = body.m > 0.0;
+    let none = |_, _: &_, _: &_| system.zero_inputs();
+    let mut drift = Drift {
+        energy: [0.0; 4],
+        momentum: 0.0,
+        orthonormality: 0.0,
+    };
+    for index in 0..steps {
+        hamel::step(system, &method, &mut state, h, &none).expect("a step");
+        let quarter = (4 * u64::from(index) / u64::from(steps)) as usize;
+        let error = (energy(&state).0 - e0).abs() / scale;
+        drift.energy[quarter] = drift.energy[quarter].max(error);
+        let l = momentum(&state);
+        let error = if heavy {
+            (l[2] - l0[2]).abs()
+        } else {
+            (so3::dot(l, l).sqrt() - length).abs()
+        };
+        drift.momentum = drift.momentum.max(error / length);
+        let defect = system.constraint_norm(&state.x);
+        drift.orthonormality = drift.orthonormality.max(defect);
+    }
+    assert!(state.is_finite());
+    drift
+}
+
+/// No growth, and the energy error about the expected one, where one is.
+fn assert_steady(what: &str, drift: &Drift, expected: Option<f64>) {
+    println!("{what}: {drift:?}");
+    let [first, .., last] = drift.energy;
+    assert!(
+        last <= (GROWTH * first).max(ENERGY_ROUNDING),
+        "{what}: {drift:?}"
+    );
+    assert!(drift.momentum <= MOMENTUM, "{what}: {drift:?}");
+    assert!(drift.orthonormality <= ORTHONORMAL, "{what}: {drift:?}");
+    if let Some(expected) = expected {
+        let largest = first.max(last);
+        assert!(
+            (0.9..SEEN).contains(&(largest / expected)),
+            "{what}: {largest:e}"
+        );
+    }
+}
+
+fn top(case: &str) -> Top<f64> {
+    Top(Reference::read(case).body())
+}
+
+const BC: &str = "heavy-top-benchmark-150";
+const KOV: &str = "kovalevskaya-top";
+const DZ: &str = "free-dzhanibekov-1e-3";
+
+#[test]
+fn splitting_by_the_exact_flow() {
+    for (case, h, expected) in [(BC, 5e-4, 3.7e-8), (KOV, 0.02, 8.4e-5)] {
+        let top = top(case);
+        let method = Splitting::with_flow(&top, Scheme::Strang, Flow::Exact);
+        assert_steady(case, &run(&top, method, h, steps()), Some(expected));
+    }
+    let spin = Spin(top(DZ));
+    let method = Splitting::with_flow(&spin, Scheme::Strang, Flow::Exact);
+    // Rounding, magnified at every flip.
+    let drift = run(&spin, method, 0.1, steps());
+    println!("{drift:?}");
+    assert!(drift.energy.iter().all(|error| *error < 1e-10), "{drift:?}");
+    assert!(
+        drift.momentum <= MOMENTUM && drift.orthonormality <= ORTHONORMAL,
+        "{drift:?}"
+    );
+}
+
+#[test]
+fn splitting_by_turns_about_axes() {
+    for (case, h) in [(BC, 5e-4), (KOV, 0.02)] {
+        let top = top(case);
+        for scheme in [Scheme::Strang, Scheme::Suzuki4] {
+            let method = Splitting::with_flow(&top, scheme, Flow::Axes);
+            let steps = steps() / scheme.drifts() as u32;
+            assert_steady(case, &run(&top, method, h, steps), None);
+        }
+    }
+    let spin = Spin(top(DZ));
+    let method = Splitting::new(&spin, Scheme::Strang);
+    assert_steady(DZ, &run(&spin, method, 0.1, steps()), None);
+}
+
+#[test]
+fn splitting_by_quaternions() {
+    let top = QuaternionTop(Reference::read(KOV).body());
+    let method = Splitting::new(&top, Scheme::Strang);
+    assert_steady(KOV, &run(&top, method, 0.02, steps()), Some(8.4e-5));
+}
+
+#[test]
+fn steps_of_six_radians() {
+    // |ω| = 150 rad/s.
+    let top = top(BC);
+    for (scheme, expected) in [(Scheme::Nystrom4, 4.5e-10), (Scheme::Suzuki4, 1.7e-7)] {
+        let drift = run(&top, Splitting::new(&top, scheme), 0.04, steps());
+        assert_steady("6 rad", &drift, Some(expected));
+    }
+}
+
+#[test]
+fn the_variational_integrator() {
+    for (case, h, expected) in [(BC, 5e-4, 1.2e-6), (KOV, 0.02, 2.6e-4)] {
+        assert_steady(case, &run(&top(case), Lgvi, h, steps()), Some(expected));
+    }
+    assert_steady(DZ, &run(&Spin(top(DZ)), Lgvi, 0.1, steps()), None);
+}
+
+#[test]
+fn collocation() {
+    // p is not R P: what Gauss' methods keep exactly is quadratic, and vertical momentum is not.
+    for (case, h, steps, momentum) in [(BC, 5e-4, 200_000, 1e-6), (KOV, 0.02, steps(), 4e-9)] {
+        let drift = run(&top(case), Gauss4, h, steps);
+        let [first, .., last] = drift.energy;
+        assert!(
+            last <= GROWTH * first && first < 1.2e-9,
+            "{case}: {drift:?}"
+        );
+        assert!(drift.momentum < momentum, "{case}: {drift:?}");
+        assert!(drift.orthonormality <= ORTHONORMAL, "{case}: {drift:?}");
+        assert_steady(case, &run(&top(case), Gauss6, h, steps), None);
+    }
+}
+
+#[test]
+fn a_method_that_is_not_symplectic_drifts() {
+    let drift = run(&top(BC), Rkmk4, 5e-4, 100_000);
+    assert!(drift.energy[3] > 2.0 * drift.energy[0], "{drift:?}");
+}

@@ -1,1 +1,0 @@
-//! Steps with slopes of real robots against Pinocchio's: `tests/robots/steps.sh`.
