@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// messages give.
 ///
 /// # Errors
-/// The motion has no value at the state.
+/// If the motion has no value at the state.
 pub fn linear(
     generated: &Generated,
     state: &State,

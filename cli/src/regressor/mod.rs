@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The base parameters of a description.
 ///
 /// # Errors
-/// Systems with constraints, or with forces that robots do not have, have no base parameters.
+/// If the system has constraints, or forces that robots do not have.
 pub fn base(source: &Source) -> Result<BaseParameters, Failure> {
     let model = source.model()?;
     let derived = regressor(&model).and_then(|regressor| {
