@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Where to write; default: standard output. For C the files are OUT.h and OUT.c; an extension `.h` or `.c` of OUT
+    /// Output file; default: standard output. For C the files are OUT.h and OUT.c; an extension `.h` or `.c` of OUT
     /// is dropped.
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,

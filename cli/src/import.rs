@@ -27,7 +27,7 @@ pub struct Arguments {
     /// Robot; `-` for standard input.
     #[arg(value_name = "ROBOT.urdf")]
     file: PathBuf,
-    /// Where to write; default: standard output.
+    /// Output file; default: standard output.
     #[arg(short, long, value_name = "F.eom")]
     out: Option<PathBuf>,
     #[command(flatten)]

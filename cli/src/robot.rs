@@ -19,7 +19,7 @@ pub struct RobotOptions {
     /// Make masses, centres of mass and inertias run-time parameters instead of exact constants.
     #[arg(long)]
     pub params: bool,
-    /// How joints move that mimic another one.
+    /// Motion of joints that mimic another one.
     #[arg(long, value_enum, value_name = "HOW")]
     pub mimic: Option<Mimic>,
     /// Name of the system; default: the robot's.
@@ -35,7 +35,7 @@ pub struct RobotOptions {
     pub constants: Vec<(String, String)>,
 }
 
-/// How joints move that mimic another one.
+/// Motion of joints that mimic another one.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Mimic {
     /// Follow the joint that they mimic.

@@ -63,7 +63,7 @@ pub struct Arguments {
     /// from the first axis of the world; -90 looks along the second axis.
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = NAMED, value_parser = view, allow_hyphen_values = true)]
     view: (f64, f64),
-    /// Where to write the picture; default: standard output.
+    /// Output file; default: standard output.
     #[arg(long, value_name = "F.svg")]
     out: Option<PathBuf>,
     #[command(flatten)]

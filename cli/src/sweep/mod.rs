@@ -81,7 +81,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE", required_unless_present = "status")]
     file: Option<PathBuf>,
-    /// What differs from member to member; see --help for the syntax.
+    /// Entries that differ from member to member; see --help for the syntax.
     #[arg(
         long,
         value_name = "ITEMS",

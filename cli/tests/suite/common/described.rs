@@ -67,7 +67,7 @@ impl<'a> Robot<'a> {
         Some(robot)
     }
 
-    /// M, the bias and the slope of the potential at (x, ξ).
+    /// M, the bias and the gradient of the potential at (x, ξ).
     pub fn dynamics(&self, x: &[f64], xi: &[f64]) -> Dynamics {
         let n = xi.len();
         let mut places: HashMap<&str, Place> = HashMap::new();
