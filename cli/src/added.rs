@@ -1,5 +1,5 @@
-//! A description with outputs that it does not have itself: what is kept of members of a sweep, or watched for events of a run,
-//! is derived with everything else.
+//! Adds outputs to a description, so that the expressions that a sweep keeps or that a run watches for events are
+//! derived with everything else.
 
 use crate::failure::Failure;
 use crate::source::Source;
@@ -10,21 +10,21 @@ use hamel_codegen::syntax::ast::{ItemKind, Span};
 use hamel_codegen::syntax::parse_text;
 use std::ops::Range;
 
-/// What names of added outputs begin with.
+/// Prefix of the names of added outputs.
 const PREFIX: &str = "hamel_keep_";
 
-/// An output that is added.
+/// An added output.
 pub struct Added<'a> {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// The part of an option's text that it is about.
+    /// The part of the option's text that requests the output.
     pub whole: Piece<'a>,
-    /// Its expression, or two of which it is the difference.
+    /// The expression, or the two expressions whose difference is the output.
     pub sides: Vec<Piece<'a>>,
 }
 
 impl Added<'_> {
-    /// Whether an error is about it.
+    /// Whether an error lies in the text of this output.
     fn has(&self, error: &Diagnostic) -> bool {
         let whole = self.whole.start..self.whole.start + self.whole.text.len();
         let range = error.span.range();
@@ -32,25 +32,25 @@ impl Added<'_> {
     }
 }
 
-/// The output of an item by its place.
+/// The name of the output of an item, by the item's index.
 pub fn name(item: usize) -> String {
     format!("{PREFIX}{}", item + 1)
 }
 
-/// Whether an output was added.
+/// Whether an output was added, by its name.
 pub fn is_added(name: &str) -> bool {
     name.starts_with(PREFIX)
 }
 
-/// Derives a description with more outputs; what is wrong with an expression is shown in the text of the option, beside what
-/// is known to be wrong with that.
+/// Derives a description with more outputs. Errors in an expression are shown in the text of the option, together with
+/// `wrong`, the errors already found there.
 pub fn derive(
     source: &Source,
     (option, said): (&str, &str),
     added: &[Added],
     mut wrong: Vec<Diagnostic>,
 ) -> Result<Generated, Failure> {
-    // What is wrong with the description itself, and its warnings.
+    // Report errors and warnings of the description itself first.
     source.model()?;
     let of = |added: &[&Added]| {
         let longer = Longer::of(source, added);
@@ -68,7 +68,7 @@ pub fn derive(
         Err(errors) => errors,
     };
     if !own.is_empty() {
-        // Where one cannot be read, nothing was said of the names in others.
+        // Names are not resolved while another expression cannot be parsed.
         left.retain(|added| !own.iter().any(|error| added.has(error)));
         if !left.is_empty()
             && let Err((more, _)) = of(&left)
@@ -88,9 +88,9 @@ pub fn derive(
 /// A description with more outputs at its end.
 struct Longer {
     text: String,
-    /// Where these begin.
+    /// Where the added outputs begin.
     end: usize,
-    /// Where expressions stand, and statements around them, with the places in the option that they are of.
+    /// Ranges of the expressions, and of the statements around them, each with its range in the option.
     places: Vec<(Range<usize>, Range<usize>)>,
 }
 
@@ -120,12 +120,12 @@ impl Longer {
             statements.push((begin..more.len(), whole));
         }
         places.extend(statements);
-        // What was read once has its end.
+        // A text that was parsed before has an end.
         let (end, text) = with(&source.text, &more).unwrap_or_else(|| (0, source.text.clone()));
         Longer { text, end, places }
     }
 
-    /// An error that is about the option, at its place there.
+    /// An error of the option, moved to its place there.
     fn own(&self, error: &Diagnostic) -> Option<Diagnostic> {
         let notes = error.notes.iter();
         let notes = notes.filter_map(|(span, label)| Some((self.moved(*span)?, label.clone())));
@@ -150,7 +150,7 @@ impl Longer {
     }
 }
 
-/// The outputs of a description with their expressions: other expressions have these in their places.
+/// The outputs of a description with their expressions, which replace their names in other expressions.
 struct Outputs(Vec<(String, String)>);
 
 impl Outputs {
@@ -168,7 +168,7 @@ impl Outputs {
         Outputs(outputs.collect())
     }
 
-    /// The expression without names of outputs; none where it has none.
+    /// The expression with the names of outputs replaced; `None` where it contains none.
     fn written_out(&self, expression: &str) -> Option<String> {
         let is_of_word = |letter: char| letter.is_alphanumeric() || letter == '_';
         let (mut text, mut rest, mut changed) = (String::new(), expression, false);
@@ -178,7 +178,7 @@ impl Outputs {
             let (word, behind) = word.split_at(word.find(|c| !is_of_word(c)).unwrap_or(word.len()));
             text.push_str(before);
             rest = behind;
-            // Parts of a path, and functions, are no outputs.
+            // Parts of a path and functions are not outputs.
             let inside = before.ends_with('.') || rest.starts_with(['.', '(']);
             match self.0.iter().find(|(name, _)| name == word && !inside) {
                 Some((_, output)) => {
@@ -192,12 +192,12 @@ impl Outputs {
     }
 }
 
-/// The description with more statements at its end, and where they stand.
+/// The description with more statements at its end, and their offset.
 fn with(text: &str, more: &str) -> Option<(usize, String)> {
     let statements = |text: &str| parse_text(text).ok().map(|system| system.items.len());
     let known = statements(text)?;
     let ends = text.match_indices('}').map(|(place, _)| place).rev();
-    // A bracket in a comment behind the description ends nothing.
+    // A bracket in a comment after the description ends nothing.
     let marker = "\nlet hamel_end = 0;\n";
     for end in ends {
         let marked = format!("{}{marker}{}", &text[..end], &text[end..]);

@@ -1,4 +1,4 @@
-//! `hamel check`: the identities behind a description's equations, proved or refuted.
+//! `hamel check`: proves or refutes the identities behind a description's equations.
 
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
@@ -15,23 +15,22 @@ use hamel_codegen::proof::confidence::Confidence;
 use hamel_codegen::tables::geometry::lines;
 use std::path::PathBuf;
 
-/// Functions that lose fewer digits than this are not listed.
+/// Functions that lose fewer decimal digits than this are not listed.
 const SOME: f64 = 1.0;
 
 /// Proves the identities behind the equations of motion.
 ///
-/// Equation numbers are those of KR18, the paper of the method. "proved" is exact, over the rationals
-/// and modulo the constraint; "checked" is equality at random points of the configuration manifold in
-/// exact arithmetic modulo two primes, with a bound of the chance that a false equation passes.
+/// Equation numbers are those of KR18, the paper of the method. "proved" is exact, over the rationals and modulo the
+/// constraint; "checked" is equality at random points of the configuration manifold in exact arithmetic modulo two
+/// primes, with a bound on the probability that a false equation passes.
 ///
-/// Then come geometric properties: which velocities are integrable and what they are the rates of,
-/// which Lie algebra the frame is, the pattern of M, and symmetries. "rounding" is how many decimal
-/// digits a function loses in f64, where it is one or more, compared with numbers of twice the length at the start and at
-/// states close to it, relative to the largest entry of the result.
+/// Then come geometric properties: which velocities are integrable and the coordinates whose rates they are, the Lie
+/// algebra of the frame, the pattern of M, and symmetries. "rounding" is the number of decimal digits that a function
+/// loses in f64, listed from one digit on: it is found by comparison with numbers of twice the length at the start and
+/// at states close to it, relative to the largest entry of the result.
 ///
-/// The last lines say which integrators apply: whether the equations split into free motion
-/// and kicks, what stands in the way where they do not, and the method that `simulate --method auto`
-/// takes.
+/// The last lines list the integrators that apply: whether the equations split into free motion and kicks, the
+/// obstacles where they do not, and the method that `simulate --method auto` takes.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  hamel check heavy_top.eom\n  hamel check models/*.eom && echo sound"
@@ -44,7 +43,7 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
-/// Checks every file; the failures of all of them are reported.
+/// Checks every file and reports all failures.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut worst: Option<Failure> = None;
     for (index, path) in arguments.files.iter().enumerate() {
@@ -87,16 +86,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     worst.map_or(Ok(()), Err)
 }
 
-/// An identity with its verdict in words.
+/// An identity with its verdict as text.
 #[derive(Clone, Debug)]
 pub struct Checked {
-    /// What it is about.
+    /// Subject of the identity.
     pub label: &'static str,
     /// The identity.
     pub equation: String,
     /// `proved`, `checked` or `failed`.
     pub verdict: &'static str,
-    /// What there is to say of it.
+    /// Explanation of the verdict; empty where it is proved.
     pub told: String,
 }
 
@@ -120,7 +119,7 @@ pub fn checked(generated: &Generated) -> Vec<Checked> {
         .collect()
 }
 
-/// What stands below the identities: rounding, merging, constraints, geometry, methods.
+/// The text below the identities: rounding, merging, constraints, geometry, methods.
 pub fn remarks(generated: &Generated, text: &str) -> String {
     [
         rounding(generated),
@@ -160,7 +159,8 @@ fn table(identities: &[Identity]) -> String {
         .collect()
 }
 
-/// The digits, of the sixteen of `f64`, that rounding takes of the functions where it takes some; the others in one line.
+/// Reports the digits, of the sixteen of `f64`, that each function loses to rounding; functions that lose none share a
+/// line.
 fn rounding(generated: &Generated) -> String {
     let functions = &generated.program.functions;
     let losses = losses(&generated.active, &generated.program);
@@ -191,7 +191,7 @@ fn rounding(generated: &Generated) -> String {
     lines.collect::<String>() + &rest
 }
 
-/// What speaks for it that expressions of equal value are equal.
+/// Reports the confidence that merged expressions are equal.
 fn merging(generated: &Generated) -> String {
     let graph = &generated.program.graph;
     let confidence = Confidence::of_merging(&generated.model, graph);
@@ -199,7 +199,7 @@ fn merging(generated: &Generated) -> String {
     format!("  merging   {count} expressions compared by their values: {confidence}\n")
 }
 
-/// Which velocities constraints leave, and what the others follow from.
+/// Lists the velocities that constraints leave, and the constraints that determine the others.
 fn constrained(generated: &Generated, text: &str) -> String {
     let lines = lines_of(generated, text);
     lines.iter().map(|line| format!("  {line}\n")).collect()
@@ -217,7 +217,7 @@ fn geometry(generated: &Generated) -> String {
         .collect()
 }
 
-/// What methods of integration ask of the system, and the one that fits; nothing where it has no inertia.
+/// Lists the requirements of the integration methods and the one that fits; empty for a system without inertia.
 fn methods(generated: &Generated) -> String {
     if !generated.model.has_inertia {
         return String::new();

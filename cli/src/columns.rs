@@ -1,9 +1,9 @@
-//! Tables of text whose columns stand apart, however wide their entries are.
+//! Text tables with aligned columns.
 
 /// Spaces between two columns.
 const GAP: &str = "  ";
 
-/// Every row on a line, behind an indentation: the first column to the left, the others to the right.
+/// One line for each row, after an indentation: the first column aligned left, the others right.
 pub fn aligned(rows: &[Vec<String>], indent: &str) -> String {
     let widths = widths(rows);
     rows.iter()
@@ -11,7 +11,7 @@ pub fn aligned(rows: &[Vec<String>], indent: &str) -> String {
         .collect()
 }
 
-/// The same with the first row as a heading in bold.
+/// Like [`aligned`], with the first row as a bold heading.
 pub fn headed(rows: &[Vec<String>]) -> String {
     let text = aligned(rows, "");
     match text.split_once('\n') {

@@ -1,4 +1,4 @@
-//! The command line: its subcommands, and what runs them.
+//! The command line: its subcommands and their dispatch.
 
 use crate::failure::{self, Failure};
 use crate::simulate::stop::Stop;
@@ -48,12 +48,12 @@ enum Command {
     Import(import::Arguments),
 }
 
-/// The subcommands and options of the command line, for its reference.
+/// The subcommands and options of the command line, from which its reference is generated.
 pub fn described() -> clap::Command {
     <Line as clap::CommandFactory>::command()
 }
 
-/// Runs a command, whose words begin with the name of the program, and shows what it says; its exit status.
+/// Runs a command, whose words begin with the name of the program, prints its messages and returns the exit status.
 pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
     let line = match Line::try_parse_from(words) {
         Ok(line) => line,
@@ -62,10 +62,11 @@ pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
     line.command.run().map_or_else(Failure::report, |()| 0)
 }
 
-/// Runs a command for a program, which gets what is wrong in place of its user. A sweep may be given up on its way.
+/// Runs a command for a program, to which errors are returned instead of being printed. A sweep can be cancelled by
+/// `stop`.
 ///
 /// # Errors
-/// What is wrong with the words, or with what they ask for.
+/// Errors in the words, or the failure of the command.
 pub fn asked(
     words: impl IntoIterator<Item = OsString>,
     stop: Option<&Stop>,

@@ -1,17 +1,17 @@
-//! Other values of constants: `hamel ops --const n=100 rope.eom` is about the text with `const n = 100`.
+//! Replaces values of constants: `hamel ops --const n=100 rope.eom` reads the text with `const n = 100`.
 
 use hamel_codegen::syntax::ast::{Declaration, Expr, ItemKind, System};
 use hamel_codegen::syntax::parse_text;
 use hamel_codegen::syntax::suggest::closest;
 
-/// The description with another value of a constant, or why it has none. A description that cannot be read is left as
-/// it is: its errors are shown when it is.
+/// The description with another value of a constant, or the reason why it cannot have one. A description that cannot be
+/// parsed is left unchanged: its errors are reported later.
 pub fn given(text: &str, name: &str, value: &str) -> Result<String, String> {
     let Ok(system) = parse_text(text) else {
         return Ok(text.to_string());
     };
     let number = parse_text(&format!("system S {{ const c = {value}; }}"));
-    // One statement with one constant, and nothing behind it.
+    // The value must be a single expression: one statement with one constant, and nothing after it.
     let alone = |system: System| system.items.len() == 1 && constants(&system).count() == 1;
     if !number.is_ok_and(alone) {
         return Err("the value is no expression".into());
@@ -37,7 +37,7 @@ pub fn given(text: &str, name: &str, value: &str) -> Result<String, String> {
     ))
 }
 
-/// The constants of the description itself, not of its components.
+/// The constants of the description itself, without those of its components.
 fn constants(system: &System) -> impl Iterator<Item = &Declaration> {
     let lists = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Const(list) => Some(list),

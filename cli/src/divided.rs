@@ -1,4 +1,4 @@
-//! Constraints that were solved by dividing by parameters: which of them has a factor that is 0.
+//! Finds zero divisors in constraints that were solved by dividing by parameters.
 
 use crate::names;
 use crate::state::solved::shown;
@@ -7,24 +7,24 @@ use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::text::short;
 use hamel_codegen::generate::Generated;
 
-/// Longer factors are not shown.
+/// Maximal length of a factor in a message.
 const LONGEST: usize = 40;
 
-/// The factors that are made of parameters, and what is said where one is 0.
+/// The divisors that depend on parameters, each with the message for the case that it is 0.
 pub struct Divisors {
     graph: Graph,
     factors: Vec<(Edge, String)>,
 }
 
 impl Divisors {
-    /// Those of a description; its text is for messages.
+    /// Collects the divisors of a description, whose text is for messages.
     pub fn of(generated: &Generated, text: &str) -> Option<Self> {
         let model = &generated.model;
         let names = names::velocities(model);
         let factor = |&(velocity, row): &(usize, usize)| {
             let constraint = model.constraints.get(row)?;
             let edge = *constraint.row.get(velocity)?;
-            // A number is not 0, or another one took its place.
+            // Elimination never divides by the number 0.
             if model.graph.class(edge.node()) == 0 {
                 return None;
             }
@@ -41,7 +41,7 @@ impl Divisors {
         })
     }
 
-    /// What is said of the first factor that is 0 with parameters, if one is.
+    /// The message of the first divisor that is 0 with these parameters, if any.
     pub fn zero(&self, params: &[f64]) -> Option<&str> {
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend_from_slice(params);

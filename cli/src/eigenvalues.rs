@@ -1,35 +1,35 @@
 //! Eigenvalues of a general real matrix.
 //!
-//! States that drive one another form classes; the classes can be put in an order in which the matrix
-//! is block triangular, so its eigenvalues are those of the diagonal blocks. A displacement that
-//! nothing depends on is a block of its own, with an eigenvalue that is zero and not the square root
-//! of a rounding error. Blocks are balanced and go through the QR algorithm.
+//! States that influence one another form classes; ordering the classes makes the matrix block triangular, so that its
+//! eigenvalues are those of the diagonal blocks. A displacement on which nothing depends is a separate block, with an
+//! eigenvalue that is exactly zero instead of the square root of a rounding error. Blocks are balanced before the QR
+//! algorithm.
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{DMatrix, DVector, Schur};
 
-/// Rounds of the QR algorithm for each row before it is tried otherwise.
+/// Iterations of the QR algorithm for each row before other axes are tried.
 const ROUNDS: usize = 60;
-/// The axes in which the algorithm is tried, those of the block first. For systems at rest, whose eigenvalues come in pairs
-/// ±λ, it goes in circles in some of a hundred; in other axes it then ends.
+/// Number of bases in which the algorithm is tried, beginning with the basis of the block. For systems at rest, whose
+/// eigenvalues come in pairs ±λ, QR cycles on about one matrix in a hundred; in another basis it then converges.
 const TURNS: u64 = 12;
-/// Reflections at random planes that lead to other axes.
+/// Random reflections that make up a change of basis.
 const REFLECTIONS: usize = 4;
-/// What counts as zero, in units of rounding; looser where no axes lead to an end.
+/// Deflation thresholds, in units of rounding; looser ones are tried where no basis leads to convergence.
 const LOOSER: [f64; 4] = [1.0, 8.0, 64.0, 512.0];
 
-/// How the QR algorithm is tried until it ends.
+/// Strategy for repeating the QR algorithm until it converges.
 struct Tries<'a> {
-    /// What counts as zero, in units of rounding.
+    /// Deflation thresholds, in units of rounding.
     looser: &'a [f64],
-    /// How many axes, the block's own first.
+    /// Number of bases, beginning with the basis of the block.
     turns: u64,
-    /// The most iterations of the first tries, where they are not as many as usual.
+    /// Limits on the iterations of the first attempts, where they differ from the default.
     most: &'a [usize],
 }
 
-/// Real and imaginary parts, the fastest growing first; `None` where the QR algorithm does not
-/// converge. The entries have to be finite.
+/// Real and imaginary parts, the fastest growing first; `None` if the QR algorithm does not converge. The entries have
+/// to be finite.
 pub fn eigenvalues(rows: &[Vec<f64>]) -> Option<Vec<(f64, f64)>> {
     let tries = Tries {
         looser: &LOOSER,
@@ -53,7 +53,7 @@ fn eigenvalues_by(rows: &[Vec<f64>], tries: &Tries) -> Option<Vec<(f64, f64)>> {
     Some(values)
 }
 
-/// The states that drive one another, directly or through others.
+/// The classes of states that influence one another, directly or through others.
 fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
     let n = rows.len();
     let mut reaches: Vec<Vec<bool>> = (0..n)
@@ -79,7 +79,8 @@ fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
 }
 
 fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
-    // Balancing squares the entries. A power of two changes no digit; two factors, as one of them alone may overflow.
+    // Balancing squares the entries. A power of two changes no digit; it is split into two factors since it may
+    // overflow.
     let exponent = block.amax().log2().floor() as i32;
     let halves = [exponent / 2, exponent - exponent / 2].map(|half| 2.0_f64.powi(half));
     block.apply(|entry| *entry = *entry / halves[0] / halves[1]);
@@ -102,7 +103,7 @@ fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
     })
 }
 
-/// H A Hᵀ, which has the eigenvalues of A, with H a product of some I − 2 v vᵀ / |v|²; A itself for the first turn.
+/// H A Hᵀ, similar to A, with H a product of reflections I − 2 v vᵀ / |v|²; A itself for turn 0.
 fn reflected(block: &DMatrix<f64>, turn: u64) -> DMatrix<f64> {
     let mut turned = block.clone();
     let mut state = turn;
@@ -125,7 +126,7 @@ fn reflected(block: &DMatrix<f64>, turn: u64) -> DMatrix<f64> {
 mod tests {
     use super::{LOOSER, TURNS, Tries, eigenvalues, eigenvalues_by};
 
-    /// Numbers between −1 and 1.
+    /// Pseudorandom numbers between −1 and 1.
     fn numbers(mut state: u64) -> impl FnMut() -> f64 {
         move || {
             state = state
@@ -135,7 +136,7 @@ mod tests {
         }
     }
 
-    /// An oscillator of any frequency: ±i ω.
+    /// Oscillators of any frequency: ±i ω.
     #[test]
     fn frequencies_of_all_magnitudes() {
         for exponent in [-300, -160, -20, 0, 20, 155, 160, 300] {
@@ -150,7 +151,7 @@ mod tests {
         }
     }
 
-    /// Sum and sum of squares of the eigenvalues are the traces of A and A².
+    /// Asserts that sum and sum of squares of the eigenvalues are the traces of A and A².
     fn assert_traces(rows: &[Vec<f64>]) {
         let values = eigenvalues(rows).expect("converges");
         assert_eq!(values.len(), rows.len());
@@ -168,7 +169,7 @@ mod tests {
 
     #[test]
     fn structured_matrices_converge() {
-        // A cycle, on which unshifted QR never moves.
+        // A cycle, on which unshifted QR makes no progress.
         let cycle: Vec<Vec<f64>> = (0..6)
             .map(|i| {
                 (0..6)
@@ -177,7 +178,7 @@ mod tests {
             })
             .collect();
         assert_traces(&cycle);
-        // A top that spins: two tilts turned into one another.
+        // A spinning top: two coupled tilts.
         let (a, b, c) = (60.0, 19.62, 44.0);
         assert_traces(&[
             vec![0.0, a, 1.0, 0.0],
@@ -205,7 +206,7 @@ mod tests {
         let mut number = || (1.0 + signed()) / 2.0;
         for round in 0..rounds {
             for n in 2..=24 {
-                // Equal links first, then any.
+                // Equal links first, then random ones.
                 let mut any = || {
                     if round == 0 {
                         1.0
@@ -242,8 +243,8 @@ mod tests {
         }
     }
 
-    /// Systems at rest with any −M⁻¹ K, the squares of whose eigenvalues add up to twice its trace: in their own axes some go
-    /// in circles. A thousand of them with `HAMEL_ATTACK`.
+    /// Systems at rest with a random −M⁻¹ K, for which the squares of the eigenvalues add up to twice its trace: QR
+    /// cycles on some of these matrices. A thousand of them with `HAMEL_ATTACK`.
     #[test]
     fn systems_at_rest_converge() {
         let mut number = numbers(9u64);
@@ -277,8 +278,8 @@ mod tests {
         assert!(circles > 0);
     }
 
-    /// The knees and the elbows of a robot at rest, on which nalgebra's algorithm goes in circles: pairs of ±λ, whose
-    /// squares have the traces of −M⁻¹ K and of its square.
+    /// The knees and elbows of a robot at rest, on which nalgebra's algorithm cycles: pairs of ±λ, whose squares have
+    /// the traces of −M⁻¹ K and of its square.
     #[test]
     fn what_goes_in_circles_converges_in_other_axes() {
         let springs = [
@@ -312,18 +313,18 @@ mod tests {
         }
     }
 
-    /// A try that does not end is followed by the next one, and one that follows gives the right numbers; where none
-    /// ends there are no eigenvalues. One iteration is never enough here.
+    /// An attempt that does not converge is followed by the next one, which yields the right numbers; if none converges
+    /// there are no eigenvalues. One iteration is never enough here.
     #[test]
     fn what_stalls_is_tried_again() {
         let (n, tilt) = (5, 0.3);
-        // A companion matrix of (x − 1)(x − 2) … (x − 5) in other axes.
+        // A companion matrix of (x − 1)(x − 2) … (x − 5) in another basis.
         let entry = |i: usize, j: usize| match (i + 1 == j, i == j) {
             (true, _) => tilt,
             (_, true) => 1.0 + i as f64,
             _ => 0.0,
         };
-        // Similar to that by I + e₅ e₁ᵀ, so that all states drive one another.
+        // Similar to it by I + e₅ e₁ᵀ, so that all states influence one another.
         let rows: Vec<Vec<f64>> = (0..n)
             .map(|i| {
                 let row =

@@ -1,4 +1,4 @@
-//! `hamel emit`: the generated Rust, or C99.
+//! `hamel emit`: writes the generated Rust, or C99.
 
 use crate::failure::{Failure, print, update};
 use crate::outputs;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// Writes the generated Rust, or C99.
 ///
-/// The text is the same, byte for byte, as that of a build script.
+/// The output is byte for byte the same as that of a build script.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel emit heavy_top.eom                          to the terminal
@@ -24,33 +24,33 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Where to write; default standard output. For C the files are OUT.h and OUT.c; where OUT ends in `.h` or `.c`,
-    /// the extension is dropped.
+    /// Output file; default: standard output. For C the files are OUT.h and OUT.c; an extension `.h` or `.c` of OUT
+    /// is dropped.
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
-    /// Write nothing; status 1 where OUT is not what would be written.
+    /// Write nothing; exit with status 1 if OUT differs from what would be written.
     #[arg(long, requires = "out")]
     check: bool,
-    /// What to write.
+    /// Language of the output.
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     language: Language,
-    /// The numbers of C: `double` or `float`; default `double`. Rust is generic over them.
+    /// Number type of C: `double` or `float`; default: `double`. Rust is generic over it.
     #[arg(long, value_name = "NUMBERS")]
     precision: Option<Precision>,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
-/// What is written.
+/// Language of the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Language {
-    /// A type of Rust, in one file.
+    /// A Rust type, in one file.
     Rust,
-    /// C99, which is C++17 as well, in a header and a source.
+    /// C99, also valid as C++17, in a header and a source file.
     C,
 }
 
-/// Emits, or compares.
+/// Writes the code, or compares it with the file.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.language == Language::Rust && arguments.precision.is_some() {
         return Err(Failure::usage(
@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .file
         .file_name()
         .map_or_else(|| "-".into(), PathBuf::from);
-    // A robot's description is written by `hamel import`, as its first lines say.
+    // `hamel import` writes the description of a robot, as the first lines of that description say.
     let name = match source.robot {
         Some(_) => name.with_extension("eom"),
         None => name,
@@ -105,7 +105,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Header and source to their files, or both as one source to the terminal.
+/// Writes header and source to their files, or both as one source to the terminal.
 fn write_c(arguments: &Arguments, files: &Files, stem: Option<&str>) -> Result<(), Failure> {
     let (Some(out), Some(stem)) = (&arguments.out, stem) else {
         return print(&format!("{}\n{}", files.header, files.rest));
@@ -126,7 +126,7 @@ fn write_c(arguments: &Arguments, files: &Files, stem: Option<&str>) -> Result<(
     }
 }
 
-/// What the files of C are called before their endings: it stands in `#include` as well.
+/// The name of the C files without extension, which `#include` contains as well.
 fn stem(out: &Path) -> Result<String, Failure> {
     let name = out.file_name().and_then(|name| name.to_str());
     let stem = name.map(|name| {
@@ -142,7 +142,7 @@ fn stem(out: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Writes a file, or tells whether it is what would be written.
+/// Writes a file, or compares it with the code.
 fn write(arguments: &Arguments, out: &Path, code: &str) -> Result<(), Failure> {
     if !arguments.check {
         return update(out, code);

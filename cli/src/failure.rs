@@ -1,32 +1,32 @@
-//! What ends a command early, and the exit status that it ends with.
+//! Failures of commands, their exit statuses, and warnings.
 
 use hamel_codegen::diagnostics::Diagnostic;
 use std::cell::RefCell;
 use std::io::{ErrorKind, Write};
 
-/// A failure, ready to be shown.
+/// A failure, ready to be printed.
 #[derive(Debug)]
 pub enum Failure {
     /// A description or a check failed: status 1.
     Failed(String),
     /// Wrong usage, unreadable files: status 2.
     Usage(String),
-    /// The reader of our output is gone, as in `hamel … | head`: nothing left to do.
+    /// The reader of standard output has gone, as in `hamel … | head`: nothing is left to do.
     Closed,
 }
 
 impl Failure {
-    /// A failure of what was asked for, in one message.
+    /// A failure of the request, in one message.
     pub fn failed(message: impl AsRef<str>) -> Self {
         Failure::Failed(headed(message.as_ref()))
     }
 
-    /// Input that cannot be used, in one message.
+    /// Unusable input, in one message.
     pub fn usage(message: impl AsRef<str>) -> Self {
         Failure::Usage(headed(message.as_ref()))
     }
 
-    /// Several messages at once, about the same thing.
+    /// Several messages about the same subject.
     pub fn usages(about: &str, messages: &[String]) -> Self {
         let mut text: String = messages
             .iter()
@@ -38,7 +38,7 @@ impl Failure {
         Failure::Usage(text)
     }
 
-    /// What is said, without colours.
+    /// The message without colours.
     pub fn text(&self) -> String {
         match self {
             Failure::Failed(text) | Failure::Usage(text) => plain(text),
@@ -46,19 +46,19 @@ impl Failure {
         }
     }
 
-    /// Writes the failure to standard error.
+    /// Writes the failure to standard error and returns the exit status.
     pub fn report(self) -> u8 {
         let (text, code) = match self {
             Failure::Failed(text) => (text, 1),
             Failure::Usage(text) => (text, 2),
             Failure::Closed => return 0,
         };
-        // Where standard error is gone there is nobody to tell.
+        // If standard error is closed, the message cannot be delivered.
         let _ = anstream::stderr().write_all(text.as_bytes());
         code
     }
 
-    /// The graver of two failures, with the text of both.
+    /// The more severe of two failures, with the text of both.
     pub fn and(self, other: Failure) -> Failure {
         match (self, other) {
             (Failure::Closed, other) => other,
@@ -75,7 +75,7 @@ fn headed(message: &str) -> String {
     format!("\x1b[1;31merror\x1b[0m: {message}\n")
 }
 
-/// Writes a result to standard output; colours are dropped where it is no terminal, or with `NO_COLOR`.
+/// Writes a result to standard output; colours are dropped if it is not a terminal, or with `NO_COLOR`.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = anstream::stdout();
     let written = stdout
@@ -84,7 +84,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     printed(written)
 }
 
-/// What a failure to write to standard output means.
+/// Converts an error of writing to standard output.
 fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Ok(()) => Ok(()),
@@ -95,7 +95,7 @@ fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// What the command line is answered with: help, the version, or what is wrong with it.
+/// Prints clap's answer, which is help, the version or a usage error, and returns the exit status.
 pub fn said(answer: &clap::Error) -> u8 {
     let written = answer.print();
     match (answer.use_stderr(), printed(written)) {
@@ -105,7 +105,7 @@ pub fn said(answer: &clap::Error) -> u8 {
     }
 }
 
-/// What is said besides a result: warnings as a text without colours, and where errors and warnings are about.
+/// Messages in addition to a result: warnings as a text without colours, and the places of errors and warnings.
 #[derive(Clone, Debug, Default)]
 pub struct Said {
     /// The warnings, each with its source underlined.
@@ -114,21 +114,21 @@ pub struct Said {
     pub marks: Vec<Mark>,
 }
 
-/// An error or a warning with its place in the description, for who underlines it there.
+/// An error or a warning with its place in the description, for editors that underline it.
 #[derive(Clone, Debug)]
 pub struct Mark {
     /// Whether it is an error.
     pub is_error: bool,
-    /// Where it is, what it says, and what to do about it.
+    /// The place, the message and the help.
     pub diagnostic: Diagnostic,
 }
 
 thread_local! {
-    /// What is said, while somebody collects it in this thread.
+    /// Messages captured in this thread, while [`collected`] runs.
     static SAID: RefCell<Option<Said>> = const { RefCell::new(None) };
 }
 
-/// Notes the places of errors or warnings, where somebody collects them.
+/// Records the places of errors or warnings if messages are being captured.
 pub fn mark(diagnostics: &[Diagnostic], is_error: bool) {
     SAID.with_borrow_mut(|said| {
         let Some(said) = said else { return };
@@ -139,7 +139,7 @@ pub fn mark(diagnostics: &[Diagnostic], is_error: bool) {
     });
 }
 
-/// Writes what does not end the command to standard error, or where warnings are collected.
+/// Writes a warning to standard error, or to the captured messages.
 pub fn warn(text: &str) {
     let collected = SAID.with_borrow_mut(|said| match said {
         Some(said) => {
@@ -149,12 +149,12 @@ pub fn warn(text: &str) {
         None => false,
     });
     if !collected {
-        // Where standard error is gone there is nobody to tell.
+        // If standard error is closed, the warning cannot be delivered.
         let _ = anstream::stderr().write_all(text.as_bytes());
     }
 }
 
-/// Does something, and collects what is said besides its result.
+/// Runs `act` and captures the messages that it emits.
 pub fn collected<T>(act: impl FnOnce() -> T) -> (T, Said) {
     let outer = SAID.replace(Some(Said::default()));
     let done = act();
@@ -162,17 +162,17 @@ pub fn collected<T>(act: impl FnOnce() -> T) -> (T, Said) {
     (done, said)
 }
 
-/// A text without colours.
+/// Removes the colours of a text.
 fn plain(text: &str) -> String {
     anstream::adapter::strip_str(text).to_string()
 }
 
-/// Writes a file, whole or not at all.
+/// Writes a file atomically.
 pub fn write(path: &std::path::Path, text: &str) -> Result<(), Failure> {
     hamel_files::write(path, text).map_err(|error| Failure::usage(error.to_string()))
 }
 
-/// Writes a file, whole or not at all, unless it holds the text already.
+/// Writes a file atomically, unless it already has this text.
 pub fn update(path: &std::path::Path, text: &str) -> Result<(), Failure> {
     hamel_files::update(path, text).map_err(|error| Failure::usage(error.to_string()))
 }

@@ -1,4 +1,4 @@
-//! `hamel import`: a robot in URDF as a description.
+//! `hamel import`: converts a robot in URDF into a description.
 
 use crate::failure::{Failure, print, warn, write};
 use crate::outputs;
@@ -9,11 +9,11 @@ use std::path::PathBuf;
 
 /// Writes a robot in URDF as a description.
 ///
-/// One `joint` for each joint and one `body` for each link with mass, in the order of the tree;
-/// the joints on one link in the order of their names. Inertias are exact constants unless
-/// --params. Every joint gets an input, its motor's torque or force. Limits stand as documented
-/// constants. What is taken for a rounding is listed on standard error, and what changes the motion and
-/// is not understood or not modelled, as Coulomb friction, is a warning; both also stand in the description.
+/// The description has one `joint` for each joint and one `body` for each link with mass, in the order of the tree; the
+/// joints on one link in the order of their names. Inertias are exact constants unless --params is given. Every joint
+/// gets an input, its motor's torque or force. Limits become documented constants. Numbers corrected as rounding errors
+/// are listed on standard error; anything that changes the motion and is not understood or not modelled, such as
+/// Coulomb friction, is a warning; both also stand in the description.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel import arm.urdf -o arm.eom
@@ -24,17 +24,17 @@ use std::path::PathBuf;
 The other commands take the file, too:
   hamel ops quadruped.urdf --floating")]
 pub struct Arguments {
-    /// Robot, `-` for standard input.
+    /// Robot; `-` for standard input.
     #[arg(value_name = "ROBOT.urdf")]
     file: PathBuf,
-    /// Where to write; default standard output.
+    /// Output file; default: standard output.
     #[arg(short, long, value_name = "F.eom")]
     out: Option<PathBuf>,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
-/// Imports and writes.
+/// Imports the robot and writes its description.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     outputs::apart(
         [("-o", arguments.out.as_deref())],

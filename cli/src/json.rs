@@ -1,11 +1,11 @@
-//! JSON with members in the order in which they were given, and short lists on one line.
+//! Writes JSON with members in insertion order, and short lists on one line.
 
 use crate::number::exact;
 
-/// A value to be written.
+/// A JSON value to be written.
 #[derive(Clone, Debug)]
 pub enum Json {
-    /// A number; what is not finite is written as `null`.
+    /// A number; written as `null` if it is not finite.
     Number(f64),
     /// A count.
     Count(u128),
@@ -19,11 +19,11 @@ pub enum Json {
     Object(Vec<(String, Json)>),
 }
 
-/// Lists up to this width stand on one line.
+/// Maximal width of a list on one line.
 const WIDTH: usize = 100;
 
 impl Json {
-    /// An object of members.
+    /// An object with these members.
     pub fn object<'a>(members: impl IntoIterator<Item = (&'a str, Json)>) -> Json {
         Json::Object(
             members
@@ -38,7 +38,7 @@ impl Json {
         Json::List(values.iter().map(|&value| Json::Number(value)).collect())
     }
 
-    /// Rows of numbers.
+    /// A list of rows.
     pub fn matrix(rows: &[Vec<f64>]) -> Json {
         Json::List(rows.iter().map(|row| Json::vector(row)).collect())
     }
@@ -56,7 +56,7 @@ impl Json {
         text
     }
 
-    /// Text on one line.
+    /// Text on one line, without a line break.
     pub fn line(&self) -> String {
         match self {
             Json::Number(value) if value.is_finite() => exact(*value),
@@ -90,7 +90,7 @@ impl Json {
         };
         let line = self.line();
         let list = matches!(self, Json::List(_));
-        // The outermost object is never a line.
+        // The outermost object always spans several lines.
         if indent + line.chars().count() <= WIDTH && (list || indent > 0) {
             return text.push_str(&line);
         }

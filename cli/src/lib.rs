@@ -1,4 +1,4 @@
-//! What the commands of `hamel` do, for the command line and for other front ends.
+//! The commands of `hamel`, for the command line and for other front ends.
 //!
 #![doc = include_str!("../README.md")]
 //!
@@ -9,29 +9,29 @@
 //! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
-//! | `added` | a description with more outputs: what a sweep keeps, what a run watches |
-//! | `text` | options that are lists, and where they are wrong |
+//! | `added` | a description with more outputs: those that a sweep keeps or a run watches |
+//! | `text` | options that are lists, and the places of errors in them |
 //! | `robot` | robots in URDF as descriptions, and the options for them |
-//! | `state` | reading the numbers of a state |
-//! | `mechanism` | a described system that the integrators can run |
-//! | `singular` | which velocity has no inertia where a run or an evaluation fails |
-//! | `method` | the methods by their names, and which systems they are for |
-//! | `json`, `names`, `columns` | how results are written; pictures and numbers are those of `hamel-report` |
-//! | `progress` | what long work shows; `silent` without the feature `command` |
-//! | `drawing` | what of a mechanism can be drawn at a state, as plain numbers |
+//! | `state` | reading the values of a state |
+//! | `mechanism` | a described system as the integrators run it |
+//! | `singular` | finding the velocity without inertia after a failed run or evaluation |
+//! | `method` | the methods by name, and the systems that each fits |
+//! | `json`, `names`, `columns` | writing results; pictures and numbers come from `hamel-report` |
+//! | `progress` | progress bars; `silent` without the feature `command` |
+//! | `drawing` | the drawable parts of a mechanism at a state, as plain numbers |
 //! | `command` | the command line, with the feature of that name |
-//! | `session` | the same for other front ends: numbers in place of texts |
+//! | `session` | the commands for other front ends: numbers instead of text |
 //! | `failure` | errors, warnings and exit statuses |
 
 //! # Features
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `command` | the program `hamel`, its sweeps, its pictures, and what it shows while work takes its time |
-//! | `machine` | runs by machine code; without it functions are evaluated step by step, on any target |
+//! | `command` | the program `hamel`, its sweeps, its pictures and its progress bars |
+//! | `machine` | runs as machine code; without it functions are interpreted, on any target |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// What the command line alone calls stays where it is when the crate is built without it.
+// Without the command line, code that only it calls is kept and unused.
 #![cfg_attr(not(feature = "command"), allow(dead_code, unused_imports))]
 
 mod added;
@@ -90,7 +90,7 @@ pub use source::decoded;
 pub use state::State;
 pub use tables::Format;
 
-/// Which changes of sign are events.
+/// The sign changes that count as events.
 pub use hamel::adaptive::Direction;
 /// The shape of a value, matrices by rows.
 pub use hamel_codegen::program::Shape;

@@ -3,7 +3,7 @@
 use std::panic::resume_unwind;
 use std::process::ExitCode;
 
-/// Bytes of stack: enough for what nests as deep as is allowed. Windows gives the main thread 1 MB.
+/// Stack size in bytes, sufficient for the deepest nesting allowed. Windows gives the main thread 1 MB.
 const STACK: usize = 8 << 20;
 
 fn main() -> ExitCode {

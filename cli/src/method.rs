@@ -1,4 +1,4 @@
-//! The methods by their names on the command line, and which systems they are for.
+//! The methods by their names on the command line, and their requirements.
 
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Numbers};
@@ -14,7 +14,7 @@ use hamel_report::data::{Kind, Missing};
 /// The name that leaves the choice to the structure of the system.
 pub const AUTO: &str = "auto";
 
-/// What a method asks of a system.
+/// Requirements of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Needs {
     /// Nothing beyond ξ̇.
@@ -23,11 +23,11 @@ enum Needs {
     Momenta,
     /// Free motion in closed form, and kicks.
     Split,
-    /// The same, without kicks.
+    /// Free motion in closed form, without kicks.
     Free,
 }
 
-/// One method.
+/// A row of the table of methods.
 struct Entry {
     name: &'static str,
     kind: Kind,
@@ -46,7 +46,7 @@ fn split(system: &Instance, scheme: Scheme) -> Stepper {
     Stepper::Splitting(Splitting::new(system, scheme))
 }
 
-/// A line for every method.
+/// The table of methods.
 const METHODS: &[Entry] = entries! {
     "rkmk4" Method Any |_| Stepper::General(General::Rkmk4), "any system; order 4, on the manifold";
     "cf4" Method Any |_| Stepper::General(General::Cf4), "any system; order 4, without commutators";
@@ -73,13 +73,13 @@ const METHODS: &[Entry] = entries! {
     "buss4" Baseline Split |_| Stepper::Buss(Buss::Fourth), "baseline; the same, order 4 without torques";
 };
 
-/// Every name that `--method` takes.
+/// All values of `--method`.
 pub fn names() -> Vec<&'static str> {
     let all = METHODS.iter().map(|entry| entry.name);
     std::iter::once(AUTO).chain(all).collect()
 }
 
-/// The names with what they are for, a line each.
+/// A line for each method: its name and purpose.
 pub fn described() -> String {
     let width = METHODS.iter().map(|entry| entry.name.len()).max();
     let width = width.unwrap_or(0);
@@ -90,10 +90,10 @@ pub fn described() -> String {
         + &lines.collect::<String>()
 }
 
-/// A method for one system, and why it was taken where `auto` took it.
+/// A method for one system, with the reason if `auto` chose it.
 #[derive(Clone, Debug)]
 pub struct Chosen {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
     /// The method.
     pub stepper: Stepper,
@@ -102,8 +102,8 @@ pub struct Chosen {
 }
 
 impl Chosen {
-    /// The method of this name for a run of about so many steps; refused, with the reasons of the
-    /// system's structure, where it cannot be run by it.
+    /// The method of this name for a run of about `steps` steps. Fails, with reasons from the system's structure, if it
+    /// does not fit.
     pub fn new(
         name: &str,
         system: &Instance,
@@ -134,11 +134,11 @@ impl Chosen {
         })
     }
 
-    /// The same method for another system of the same structure: with other parameters, or another start.
+    /// The same method for another system of the same structure: with other parameters or another start.
     pub fn of_another(&self, system: &Instance) -> Self {
         let entry = METHODS.iter().find(|entry| entry.name == self.name);
         let stepper = match (&self.stepper, entry) {
-            // What is set beside the name stays.
+            // Keep settings other than the name.
             (Stepper::General(_) | Stepper::Baseline(_), _) | (_, None) => self.stepper.clone(),
             (_, Some(entry)) => (entry.make)(system),
         };
@@ -152,16 +152,15 @@ impl Chosen {
 /// A method of a comparison.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// What it is in a comparison.
+    /// Role in the comparison.
     pub kind: Kind,
     /// The method.
     pub stepper: Stepper,
 }
 
-/// The methods with these names, or all, as far as they fit a system; and those that do not, with the
-/// reasons.
+/// The methods with these names, or all, that fit a system; and the others with the reasons why they do not.
 pub fn fitting(
     names: &[String],
     system: &Instance,
@@ -190,7 +189,7 @@ pub fn fitting(
     (fit, missing)
 }
 
-/// Whether all names are those of methods.
+/// Checks that all names are names of methods.
 pub fn known(names: &[String]) -> Result<(), Failure> {
     let unknown = |name: &&String| METHODS.iter().all(|entry| entry.name != name.trim());
     match names.iter().find(unknown) {
@@ -207,7 +206,7 @@ fn no_method(name: &str) -> Failure {
 }
 
 impl Needs {
-    /// What stands in the way.
+    /// The unmet requirements.
     fn obstacles(self, structure: &Structure) -> Vec<String> {
         match (self, &structure.split) {
             (Needs::Any, _) => Vec::new(),
@@ -226,23 +225,23 @@ impl Needs {
     }
 }
 
-/// A method as a type that steps mechanisms.
+/// A method, as a type that steps mechanisms.
 #[derive(Clone, Debug)]
 pub enum Stepper {
-    /// One for any system.
+    /// A method for any system.
     General(General),
     /// A baseline for any system.
     Baseline(Baseline),
     /// Kicks between free motions.
     Splitting(Splitting),
-    /// The free motion from the start, with nothing gathered on the way.
+    /// The free motion from the start, without accumulated errors.
     Closed {
         /// Time, x and ξ of the start.
         start: Box<(Numbers, Numbers)>,
-        /// One free motion; its kicks are zero.
+        /// One free motion, whose kicks are zero.
         motion: Splitting,
     },
-    /// Variational.
+    /// Variational integrator.
     Lgvi,
     /// Collocation of order 4.
     Gauss4,
@@ -250,7 +249,7 @@ pub enum Stepper {
     Gauss6,
     /// Angular momentum of first order.
     Slide,
-    /// Buss' methods.
+    /// The methods of Buss.
     Buss(Buss),
 }
 
@@ -262,7 +261,7 @@ impl Stepper {
         }
     }
 
-    /// What it evaluates, for counts.
+    /// The function whose evaluations are counted.
     pub fn evaluated(&self) -> &'static str {
         match self {
             Stepper::General(_) | Stepper::Baseline(_) => "the acceleration",
@@ -271,7 +270,7 @@ impl Stepper {
         }
     }
 
-    /// What is set beside its name.
+    /// Settings other than the name.
     pub fn settings(&self) -> String {
         match self {
             Stepper::General(General::Rk4 { lambda }) => format!(", lambda {}", short(*lambda)),
@@ -334,8 +333,8 @@ where
     }
 }
 
-/// Inputs in closed form, as a method asks for them. Every method is compiled for this one type, whatever a run computes
-/// its inputs by.
+/// Inputs in closed form, as methods take them. Every method is compiled for this one type, no matter how a run
+/// computes its inputs.
 pub type Given<'a, Sys> = &'a dyn Fn(f64, &Numbers, &Numbers) -> <Sys as System>::Inputs;
 
 impl Stepper {

@@ -1,4 +1,4 @@
-//! Names of single numbers, as the language writes them: `r[1]`, `R[1,2]`, `q.c`.
+//! Names of scalar entries, as the language writes them: `r[1]`, `R[1,2]`, `q.c`.
 
 use hamel_codegen::model::layout::entry_names;
 use hamel_codegen::model::{Group, Model};
@@ -7,7 +7,7 @@ use hamel_codegen::syntax::ast::ShapeKind;
 
 /// The name of the time.
 pub const TIME: &str = "t";
-/// What is added to it where it is taken.
+/// Suffix of the name of the time if it is taken.
 const OF_RUN: &str = "_run";
 
 /// Names of the entries of x.
@@ -24,24 +24,24 @@ pub fn velocities(model: &Model) -> Vec<String> {
     model.velocities.iter().flat_map(group).collect()
 }
 
-/// Names of the entries of ξ and of the states of first order behind it.
+/// Names of the entries of ξ, followed by those of the states of first order.
 pub fn moving(model: &Model) -> Vec<String> {
     let groups = model.velocities.iter().chain(&model.states);
     groups.flat_map(group).collect()
 }
 
-/// The time of runs among what is recorded.
+/// The time of a run among the recorded values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Time {
-    /// Its name, which nothing else has.
+    /// Name, which is unique.
     pub name: String,
-    /// Its place in x, where it is that of the description; else it counts from the start of the run.
+    /// Index in x, if it is the description's time; otherwise it counts from the start of the run.
     pub place: Option<usize>,
 }
 
 impl Time {
-    /// What a run of a model calls time beside these names: `t`. It is the description's where that declares `time t;`, and
-    /// has another name where something else is called so.
+    /// The name `t` of the time of a run. It is the description's time if that declares `time t;`; if another quantity
+    /// has this name, including those in `taken`, a suffix is added.
     pub fn of(model: &Model, taken: &[&[String]]) -> Self {
         let mut name = TIME.to_string();
         let own = model.clock.map(|clock| clock.x);
@@ -55,7 +55,7 @@ impl Time {
         Time { name, place }
     }
 
-    /// The time at which a description has this x and a run has come to t.
+    /// The time at x, where t is the time of the run.
     pub fn at(&self, t: f64, x: &[f64]) -> f64 {
         self.place
             .and_then(|place| x.get(place))

@@ -1,9 +1,9 @@
-//! Where results are written: never over what they are made from, and not two of them to one place.
+//! Checks of output paths: they must differ from each other and from the inputs.
 
 use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 
-/// Refuses results that would be written over a file that is read, or over one another; each with its option.
+/// Refuses outputs that would overwrite an input or one another; each is given with its option.
 pub fn apart<'a>(
     outputs: impl IntoIterator<Item = (&'a str, Option<&'a Path>)>,
     inputs: impl IntoIterator<Item = Option<&'a Path>>,
@@ -30,7 +30,7 @@ pub fn apart<'a>(
     Ok(())
 }
 
-/// Refuses a picture whose name does not end in `.svg`; devices and pipes have any name.
+/// Refuses a picture whose name does not end in `.svg`; devices and pipes may have any name.
 pub fn svg(option: &str, path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path else { return Ok(()) };
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
@@ -43,7 +43,7 @@ pub fn svg(option: &str, path: Option<&Path>) -> Result<(), Failure> {
     )))
 }
 
-/// What a path stands for, where that is a file or may become one.
+/// The canonical path, if it is or may become a file.
 fn place(path: &Path) -> Option<PathBuf> {
     if path.as_os_str() == "-" || is_stream(path) {
         return None;
@@ -59,7 +59,7 @@ fn place(path: &Path) -> Option<PathBuf> {
     Some(folder.join(path.file_name()?))
 }
 
-/// Whether a path is there, and neither a file nor a folder.
+/// Whether a path exists and is neither a file nor a folder.
 fn is_stream(path: &Path) -> bool {
     let known = path.metadata();
     known.is_ok_and(|known| !known.is_file() && !known.is_dir())

@@ -1,18 +1,18 @@
-//! What long work shows on standard error, where that is a terminal.
+//! Progress bars on standard error, shown if it is a terminal.
 
 pub use indicatif::ProgressBar as Bar;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
-/// How often something moves while an end is not known.
+/// Interval between updates of a spinner.
 const TICK: Duration = Duration::from_millis(200);
 
-/// A bar of so many steps, with the time that is left.
+/// A bar for a number of steps, with the remaining time.
 pub fn bar(steps: u64) -> Bar {
     styled(steps, "{percent}%  {eta} left")
 }
 
-/// A bar of so many of many things, with how many of them a second are done.
+/// A bar for many items, with their rate and the remaining time.
 pub fn rated(count: u64) -> Bar {
     let bar = styled(count, "{percent}%  {pos} of {len}, {per_sec}, {eta} left");
     bar.enable_steady_tick(TICK);
@@ -34,7 +34,7 @@ pub fn hidden() -> Bar {
     ProgressBar::hidden()
 }
 
-/// A bar with a name and the time that has gone by, whose length is given later.
+/// A bar with a name and the elapsed time; its length is set later.
 pub fn named(name: &str) -> Bar {
     let bar = ProgressBar::new(1).with_message(name.to_string());
     match ProgressStyle::with_template("{msg} {bar:40} {elapsed}") {
@@ -43,7 +43,7 @@ pub fn named(name: &str) -> Bar {
     }
 }
 
-/// Does work whose length is not known, and shows for how long it has been going on.
+/// Does work of unknown length, showing the elapsed time.
 pub fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
     let bar = ProgressBar::new_spinner().with_message(what);
     if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {

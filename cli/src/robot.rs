@@ -1,4 +1,4 @@
-//! Options for robots in URDF, and for descriptions, which every command takes that takes descriptions.
+//! Options for robots in URDF and for descriptions, common to all commands that read descriptions.
 
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
@@ -6,41 +6,41 @@ use hamel_codegen::syntax::suggest::closest;
 use hamel_codegen::urdf::{self, Imported, Options, TOLERANCE};
 use std::path::Path;
 
-/// How a robot in URDF is read.
+/// Options for reading a robot in URDF.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Robots in URDF")]
 pub struct RobotOptions {
-    /// The base moves freely: `root_joint`, position and rotation, with its twist in body axes.
+    /// Let the base move freely: `root_joint`, position and rotation, with its twist in body axes.
     #[arg(long)]
     pub floating: bool,
-    /// A joint that does not move, with its angle (rad) or length (m); once for each joint.
+    /// Fix a joint at an angle (rad) or length (m); once for each joint.
     #[arg(long = "lock", value_name = "JOINT=VALUE", value_parser = lock)]
     pub locks: Vec<(String, String)>,
-    /// Masses, centres of mass and inertias are run-time parameters, not exact constants.
+    /// Make masses, centres of mass and inertias run-time parameters instead of exact constants.
     #[arg(long)]
     pub params: bool,
-    /// How joints move that mimic another one.
+    /// Motion of joints that mimic another one.
     #[arg(long, value_enum, value_name = "HOW")]
     pub mimic: Option<Mimic>,
-    /// Name of the system; by default the robot's.
+    /// Name of the system; default: the robot's.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
-    /// Angles within TOL (rad) of a multiple of π/2 become that multiple. Entries below TOL times the largest
-    /// of their vector or matrix become 0, and so do lengths below a millionth of TOL (m); default 1e-9, 0 keeps every
+    /// Angles within TOL (rad) of a multiple of π/2 become that multiple. Entries below TOL times the largest entry
+    /// of their vector or matrix become 0, and so do lengths below a millionth of TOL (m); default: 1e-9; 0 keeps every
     /// digit.
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub rounding: Option<f64>,
-    /// Another value of a constant of the description, such as the length of a chain; once for each constant.
+    /// Replace the value of a constant of the description, such as the length of a chain; once for each constant.
     #[arg(long = "const", value_name = "NAME=VALUE", value_parser = constant, help_heading = "Descriptions")]
     pub constants: Vec<(String, String)>,
 }
 
-/// How joints move that mimic another one.
+/// Motion of joints that mimic another one.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Mimic {
-    /// As the joint that they mimic.
+    /// Follow the joint that they mimic.
     Follow,
-    /// By themselves.
+    /// Move independently.
     Free,
 }
 
@@ -68,7 +68,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 impl RobotOptions {
-    /// Whether anything was asked for.
+    /// Whether any option was given.
     pub fn given(&self) -> bool {
         self.floating
             || !self.locks.is_empty()
@@ -78,7 +78,7 @@ impl RobotOptions {
             || self.rounding.is_some()
     }
 
-    /// The same for an import.
+    /// The options of the import.
     fn options(&self, path: &str) -> Options {
         let file = Path::new(path).file_name();
         Options {
@@ -100,7 +100,7 @@ impl RobotOptions {
 pub struct Robot {
     /// The URDF.
     pub urdf: String,
-    /// What was made of it.
+    /// The result of the import.
     pub imported: Imported,
 }
 
@@ -113,8 +113,8 @@ impl Robot {
         Ok(Robot { urdf, imported })
     }
 
-    /// The frame of a link, by the link's name in the file or else in the description; the link that stands in the world
-    /// becomes a frame.
+    /// The frame of a link, by the link's name in the file or else in the description; a link that is fixed in the
+    /// world becomes a frame.
     pub fn frame(&mut self, link: &str) -> Result<String, String> {
         let Imported { links, ground, .. } = &self.imported;
         let all: Vec<&(String, String)> = links.iter().chain(ground).collect();
@@ -135,7 +135,7 @@ impl Robot {
         Ok(frame)
     }
 
-    /// The link that stands in the world becomes a frame of the description.
+    /// Makes the link that is fixed in the world a frame of the description.
     fn stand(&mut self) {
         let Imported {
             text,

@@ -1,4 +1,4 @@
-//! What long work shows where there is no terminal: nothing.
+//! No-op progress bars for builds without the feature `command`.
 
 /// A bar that is not shown.
 pub struct Bar;
@@ -11,7 +11,7 @@ impl Bar {
     pub fn finish_and_clear(&self) {}
 }
 
-/// A bar of so many steps.
+/// A bar for a number of steps.
 pub fn bar(_: u64) -> Bar {
     Bar
 }
@@ -26,7 +26,7 @@ pub fn named(_: &str) -> Bar {
     Bar
 }
 
-/// Does work whose length is not known.
+/// Does work of unknown length.
 pub fn during<T>(_: &'static str, work: impl FnOnce() -> T) -> T {
     work()
 }

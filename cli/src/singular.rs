@@ -1,4 +1,4 @@
-//! Singular states in the names of the description: which velocity has no inertia.
+//! Explains singular states in terms of the description: finds the velocity without inertia.
 
 use crate::divided::Divisors;
 use crate::failure::Failure;
@@ -12,24 +12,24 @@ use hamel_codegen::model::Model;
 use hamel_codegen::program::Cause;
 use nalgebra::DMatrix;
 
-/// Pivots that are smaller than this part of the diagonal entry that they began as are rounding of zero.
+/// Pivots below this, relative to the original diagonal entry, are rounding errors of zero.
 const ROUNDING: f64 = 1e-12;
-/// Constraints listed at most.
+/// Largest number of constraints listed.
 const LISTED: usize = 6;
-/// What is said where no inertia is missing.
+/// Messages for singular states at which every velocity has inertia.
 const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
 const DEPENDENT: &str = "the constraints on the velocities depend on one another";
 
-/// Which function had no value, and at which x.
+/// The function that had no value, with x.
 #[derive(Clone, Debug)]
 pub enum Failed {
-    /// ξ̇, or the velocities of momenta.
+    /// ξ̇, or the velocities from momenta.
     Motion(Vec<f64>),
-    /// The step that closes loops, or the one that keeps constraints on velocities.
+    /// The projection that closes loops, or that enforces constraints on velocities.
     Projection,
 }
 
-/// Velocities as messages call them, with the lines on which they are declared.
+/// Names of velocities for messages, with the lines on which they are declared.
 pub fn labels(model: &Model, text: &str) -> Vec<String> {
     let names = names::velocities(model).into_iter();
     let label = |(place, name): (usize, String)| {
@@ -43,7 +43,7 @@ pub fn labels(model: &Model, text: &str) -> Vec<String> {
     names.enumerate().map(label).collect()
 }
 
-/// What is said where constraints that are kept by multipliers depend on one another.
+/// The message for dependent constraints that multipliers enforce.
 pub fn dependent(model: &Model, text: &str) -> String {
     let rows = model.constraints.iter().take(LISTED);
     let rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
@@ -54,7 +54,7 @@ pub fn dependent(model: &Model, text: &str) -> String {
     }
 }
 
-/// What a mass matrix that is not positive definite is told as, by the labels of its rows.
+/// The message for a mass matrix that is not positive definite, with the labels of its rows.
 pub fn of_mass(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
     let (place, part) = weakest(mass)?;
     (part <= ROUNDING).then(|| told(place, names))
@@ -66,7 +66,7 @@ fn told(place: usize, names: &[String]) -> String {
     format!("the mass matrix is not positive definite at pivot {number} ({name})")
 }
 
-/// What it means that a pivot of a function is not positive.
+/// The message for a pivot of a function that is not positive.
 pub fn meaning(cause: Cause, model: &Model, text: &str) -> String {
     match cause {
         Cause::Velocity(place) => {
@@ -80,12 +80,12 @@ pub fn meaning(cause: Cause, model: &Model, text: &str) -> String {
     }
 }
 
-/// What is said of a state where ξ̇ has no value, from the mass matrix there.
+/// The message for a state where ξ̇ has no value, from the mass matrix there.
 pub fn at(mass: &DMatrix<f64>, names: &[String]) -> String {
     of_mass(mass, names).unwrap_or_else(|| CONFIGURATION.into())
 }
 
-/// The same of a description with parameters: what was divided by 0 comes first.
+/// Like [`at`], for a description with parameters: divisions by 0 are reported first.
 pub fn of(generated: &Generated, params: &[f64], mass: &DMatrix<f64>, text: &str) -> String {
     let divisors = Divisors::of(generated, text);
     let divided = divisors.as_ref().and_then(|all| all.zero(params));
@@ -95,14 +95,14 @@ pub fn of(generated: &Generated, params: &[f64], mass: &DMatrix<f64>, text: &str
     }
 }
 
-/// The first row whose inertia, with the rows before it eliminated, is not positive, else the one that keeps
-/// the least part of its inertia; with that part.
+/// The first row whose inertia, after elimination of the rows before it, is not positive, or else the row that keeps
+/// the smallest fraction of its inertia; with that fraction.
 fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
     let mut rest = mass.clone();
     let mut weakest: Option<(usize, f64)> = None;
     for k in 0..rest.nrows() {
         let pivot = rest[(k, k)];
-        // What is not a number is not positive either.
+        // NaN is not positive either.
         let part = Some(pivot / mass[(k, k)].abs()).filter(|part| *part > ROUNDING);
         let Some(part) = part else {
             return Some((k, 0.0));
@@ -121,7 +121,7 @@ fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
 }
 
 impl Instance {
-    /// An error where the mass matrix is constant in time, and not positive definite with the parameters.
+    /// Fails if the mass matrix is constant in time and not positive definite with the parameters.
     pub fn check_parameters(&self, x: &[f64]) -> Result<(), Failure> {
         match self.constant_singular() {
             true => Err(Failure::failed(format!(
@@ -132,7 +132,7 @@ impl Instance {
         }
     }
 
-    /// ξ̇, or why it has no value.
+    /// ξ̇, or the reason why it has no value.
     pub fn motion(&self, x: &[f64], xi: &[f64], u: &[f64]) -> Result<Vec<f64>, String> {
         match self.accel(&x.into(), &xi.into(), &u.into()) {
             Ok(_) if self.constant_singular() => Err(self.at(x)),
@@ -141,7 +141,7 @@ impl Instance {
         }
     }
 
-    /// What is said of a failure of ξ̇, of a projection or of a change to velocities.
+    /// The message for a failure of ξ̇, of a projection or of a change of velocities.
     pub fn singular(&self, cause: Singular) -> String {
         if let Some(divided) = self.divided() {
             return divided.to_owned();
@@ -166,7 +166,7 @@ impl Instance {
         }
     }
 
-    /// What is said of a step that was not taken.
+    /// The message for a failed step.
     pub fn said(&self, error: &StepError) -> String {
         match error {
             StepError::Singular { cause, time } => {
@@ -177,7 +177,7 @@ impl Instance {
         }
     }
 
-    /// What is said of a state where ξ̇ has no value.
+    /// The message for a state where ξ̇ has no value.
     pub fn at(&self, x: &[f64]) -> String {
         if let Some(divided) = self.divided() {
             return divided.to_owned();
@@ -212,7 +212,7 @@ mod tests {
         let names = ["`a`", "`w[1]`, line 3", "`w[2]`"].map(String::from);
         let told = |entries: [f64; 9]| of_mass(&DMatrix::from_row_slice(3, 3, &entries), &names);
         assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);
-        // Row 2 is half of row 1: what is left of it is rounding.
+        // Row 2 is half of row 1: the rest is a rounding error.
         let dependent = told([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
         let expected = "the mass matrix is not positive definite at pivot 2 (`w[1]`, line 3)";
         assert_eq!(dependent.as_deref(), Some(expected));

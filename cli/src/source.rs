@@ -1,4 +1,4 @@
-//! A description's file: reading and deriving it, with errors and warnings shown in its text.
+//! Reads and derives a description, and shows errors and warnings in its text.
 
 use crate::constants;
 use crate::failure::{self, Failure};
@@ -19,29 +19,29 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The path of standard input in messages.
+/// Name of standard input in messages.
 const STDIN: &str = "<stdin>";
-/// What is shown while a derivation takes its time.
+/// Text of the spinner during a derivation.
 const DERIVING: &str = "deriving";
 
-/// A text and where it comes from.
+/// A text and its origin.
 pub struct Source {
     /// The path as given, or `<stdin>`.
     pub path: String,
     /// The text of the description.
     pub text: String,
-    /// The robot that the description is made from, if it is.
+    /// The robot from which the description was made, if any.
     pub robot: Option<Robot>,
-    /// How many of the warnings were shown: those of reading come first, then those of deriving.
+    /// Number of warnings shown: those of reading come first, then those of deriving.
     warned: AtomicUsize,
-    /// Whether functions in Rust have to have values, by their stand-ins.
+    /// Whether functions in Rust must have values, from their stand-ins.
     evaluated: bool,
-    /// Whether all frames are results.
+    /// Whether all frames count as results.
     shows_frames: bool,
 }
 
 impl Source {
-    /// A text, and what messages call it.
+    /// A text with its name for messages.
     pub fn new(path: String, text: String) -> Self {
         Source {
             path,
@@ -53,7 +53,7 @@ impl Source {
         }
     }
 
-    /// Reads a file, or standard input where the path is `-`.
+    /// Reads a file, or standard input if the path is `-`.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let stdin = path.as_os_str() == "-";
         let name = if stdin {
@@ -75,7 +75,7 @@ impl Source {
         decoded(&name, bytes).map(|text| Source::new(name, text))
     }
 
-    /// Reads a file beside this description; `what` it holds is said where both are standard input.
+    /// Reads another file; `what` describes it in the error if both are standard input.
     pub fn beside(&self, path: &Path, what: &str) -> Result<Source, Failure> {
         if path.as_os_str() == "-" && self.is_stdin() {
             return Err(Failure::usage(format!(
@@ -85,12 +85,12 @@ impl Source {
         Source::read(path)
     }
 
-    /// Whether it was standard input.
+    /// Whether the text was read from standard input.
     pub fn is_stdin(&self) -> bool {
         self.path == STDIN
     }
 
-    /// The text that messages give lines of: none for a robot, whose description its user has not written.
+    /// The text whose line numbers messages give: empty for a robot, whose description was not written by the user.
     pub fn shown(&self) -> &str {
         match &self.robot {
             Some(_) => "",
@@ -98,7 +98,7 @@ impl Source {
         }
     }
 
-    /// Whether the text is that of a robot in URDF, by the name of its file or by how it begins.
+    /// Whether the text is a robot in URDF, judging by the file name or the beginning of the text.
     pub fn is_urdf(&self) -> bool {
         urdf::is_urdf(Path::new(&self.path))
             || self
@@ -107,7 +107,7 @@ impl Source {
                 .starts_with('<')
     }
 
-    /// The joints of a robot by their names in its file and in the description; none of a description.
+    /// The joints of a robot by their names in its file and in the description; empty for a description.
     pub fn joints(&self) -> &[(String, String)] {
         match &self.robot {
             Some(robot) => &robot.imported.joints,
@@ -120,7 +120,7 @@ impl Source {
         Source::read(path)?.given(options)
     }
 
-    /// The description, or robot in URDF, that a text is.
+    /// Interprets the text as a description or as a robot in URDF.
     pub fn given(self, options: &RobotOptions) -> Result<Self, Failure> {
         let mut source = self;
         if source.is_urdf() {
@@ -143,7 +143,7 @@ impl Source {
         Ok(source)
     }
 
-    /// The same for who wants numbers: of functions in Rust, the stand-ins.
+    /// The same source for evaluation: functions in Rust get their stand-ins.
     pub fn in_numbers(self) -> Self {
         Source {
             evaluated: true,
@@ -151,7 +151,7 @@ impl Source {
         }
     }
 
-    /// The same where frames are what is asked for: nothing is said of one that no other statement uses.
+    /// The same source with frames as results: unused frames are not warned about.
     pub fn showing_frames(self) -> Self {
         Source {
             shows_frames: true,
@@ -159,9 +159,8 @@ impl Source {
         }
     }
 
-    /// The frames that are asked for, each with its name in the description; those of a robot are its links, by their
-    /// names in its file or in the description, and the link that stands in the world becomes a frame where it is asked
-    /// for.
+    /// The requested frames, each with its name in the description; for a robot they are its links, by their names in
+    /// its file or in the description, and a link that is fixed in the world becomes a frame if it is requested.
     pub fn frames(&mut self, asked: &[String]) -> Result<Vec<(String, String)>, Failure> {
         let Some(robot) = &mut self.robot else {
             let both = asked.iter().map(|name| (name.clone(), plain(name)));
@@ -189,7 +188,7 @@ impl Source {
         }
     }
 
-    /// The text is a robot in URDF: it becomes a description.
+    /// Converts the text from URDF into a description.
     pub fn robot(self, options: &RobotOptions) -> Result<Self, Failure> {
         let robot = Robot::read(self.text, &self.path, options)?;
         Ok(Source {
@@ -202,13 +201,13 @@ impl Source {
         })
     }
 
-    /// The text of a file that the description names, by its path from there.
+    /// The text of a file that the description refers to, relative to the description.
     fn file(&self, name: &str) -> std::io::Result<String> {
         let folder = Path::new(&self.path).parent();
         text_of(&folder.unwrap_or(Path::new("")).join(name))
     }
 
-    /// Other files that the description has statements or numbers of.
+    /// The other files from which the description takes statements or numbers.
     pub fn files(&self) -> Result<Vec<PathBuf>, Failure> {
         let folder = Path::new(&self.path).parent().unwrap_or(Path::new(""));
         let mut files = Vec::new();
@@ -222,7 +221,7 @@ impl Source {
         Ok(files)
     }
 
-    /// The description with what it has in other files, and the texts of these.
+    /// The parsed description including its other files, and the texts of these.
     fn parsed(&self) -> Result<(System, Vec<String>), Vec<Diagnostic>> {
         let mut system = syntax::parse_text(&self.text)?;
         let texts = syntax::read_files(&mut system, &mut |name| self.file(name))?;
@@ -239,13 +238,13 @@ impl Source {
         Ok(parsed.0)
     }
 
-    /// The texts of other files that the description has statements or numbers of.
+    /// The texts of the other files from which the description takes statements or numbers.
     pub fn texts(&self) -> Result<Vec<String>, Failure> {
         let parsed = self.parsed().map_err(|errors| self.refused(&errors))?;
         Ok(parsed.1)
     }
 
-    /// The same description with another text, which says more.
+    /// The same source with an extended text.
     pub fn saying(&self, text: String) -> Self {
         Source {
             path: self.path.clone(),
@@ -257,7 +256,7 @@ impl Source {
         }
     }
 
-    /// What the description says, not derived yet.
+    /// The model of the description, before derivation.
     pub fn model(&self) -> Result<Model, Failure> {
         let model = lower::build(&self.system()?);
         let model = model.map_err(|errors| self.refused(&errors))?;
@@ -265,8 +264,8 @@ impl Source {
         Ok(model)
     }
 
-    /// Derives what a picture is made of: places, whatever the description's `generate` says. No claim about the motion is
-    /// proved.
+    /// Derives the positions and poses for a picture, regardless of the description's `generate`. No claim about the
+    /// motion is proved.
     pub fn derive_places(&self) -> Result<Generated, Failure> {
         self.derived(|mut model| {
             model.asked = Asked::only(&[]);
@@ -275,8 +274,8 @@ impl Source {
         })
     }
 
-    /// Derives these functions, whatever the description's `generate` says; those with M⁻¹ in them are
-    /// left out, with a warning, where M is not positive definite, and all that need inertia where there is none.
+    /// Derives these functions, regardless of the description's `generate`; those that contain M⁻¹ are left out, with a
+    /// warning, if M is not positive definite, and all that need inertia if there is none.
     pub fn derive_only(
         &self,
         functions: &[FunctionId],
@@ -288,7 +287,7 @@ impl Source {
         })
     }
 
-    /// Derives what is asked for by name, whatever the description's `generate` says.
+    /// Derives the requested functions, regardless of the description's `generate`.
     pub fn derive_asked(&self, asked: &Asked) -> Result<Generated, Failure> {
         let generated = self.derived(|mut model| {
             model.asked = asked.clone();
@@ -298,7 +297,7 @@ impl Source {
         Ok(generated)
     }
 
-    /// An error where nothing of the system has inertia, with what there is to do.
+    /// Fails, with help, if no part of the system has inertia.
     pub fn moves(&self, generated: &Generated) -> Result<(), Failure> {
         match generated.model.has_inertia {
             true => Ok(()),
@@ -309,7 +308,7 @@ impl Source {
         }
     }
 
-    /// What is derived of the model, with its warnings.
+    /// Derives from the model and shows its warnings.
     fn derived<T>(
         &self,
         derive: impl Fn(Model) -> Result<T, Vec<Diagnostic>>,
@@ -338,7 +337,7 @@ impl Source {
         Ok(generated)
     }
 
-    /// Says that M has no inverse, or that there is no inertia; of a robot without masses that was said when it was read.
+    /// Warns that M has no inverse or that there is no inertia; for a robot without masses, reading has warned already.
     fn warn_of(&self, left_out: Option<LeftOut>) {
         if let Some(left_out) = left_out.filter(|_| self.has_masses()) {
             let said = left_out.said();
@@ -346,14 +345,13 @@ impl Source {
         }
     }
 
-    /// Whether this is no robot without masses.
+    /// Whether the source is a description or a robot with masses.
     fn has_masses(&self) -> bool {
         let robot = self.robot.as_ref();
         robot.is_none_or(|robot| robot.imported.has_masses)
     }
 
-    /// Derives the functions that the description asks for; for a robot, which asks for nothing by itself, all
-    /// that exist.
+    /// Derives the functions that the description requests; for a robot, which requests none, all that exist.
     pub fn derive(&self) -> Result<Generated, Failure> {
         if self.robot.is_some() {
             let derived = progress::during(DERIVING, || available_in(&self.text));
@@ -369,7 +367,7 @@ impl Source {
         Ok(derived)
     }
 
-    /// As [`derive_all`](Self::derive_all), with what is wrong as it was found.
+    /// Like [`derive_all`](Self::derive_all), but returns the errors without showing them.
     pub fn try_derive_all(&self) -> Result<Generated, Vec<Diagnostic>> {
         let (system, _) = self.parsed()?;
         progress::during(DERIVING, || {
@@ -380,7 +378,7 @@ impl Source {
         })
     }
 
-    /// Derives all functions, whatever the description's `generate` says.
+    /// Derives all functions, regardless of the description's `generate`.
     pub fn derive_all(&self) -> Result<Generated, Failure> {
         self.derived(|mut model| {
             model.asked = Asked::everything();
@@ -388,8 +386,8 @@ impl Source {
         })
     }
 
-    /// Derives all functions that exist, and the kinematics of frames: those with M⁻¹ in them are left out, with a
-    /// warning, where M is not positive definite, and all that need inertia where there is none.
+    /// Derives all functions that exist, and the kinematics of frames: those that contain M⁻¹ are left out, with a
+    /// warning, if M is not positive definite, and all that need inertia if there is none.
     pub fn derive_available(&self, frames: &[Jacobian]) -> Result<Generated, Failure> {
         self.available(Asked {
             jacobians: frames.to_vec(),
@@ -397,8 +395,8 @@ impl Source {
         })
     }
 
-    /// Derives all functions and the linearisation, of a robot without an inverse of M, or without masses, what
-    /// exists.
+    /// Derives all functions and the linearisation; for a robot without masses or without an inverse of M, those that
+    /// exist.
     pub fn derive_counted(&self) -> Result<Generated, Failure> {
         let (generated, left_out) = self.derived(|mut model| {
             let errors = match Generated::all(model.clone(), 0) {
@@ -417,12 +415,13 @@ impl Source {
         Ok(generated)
     }
 
-    /// Derives all functions, the linearisation and the slopes of outputs, whatever the description's `generate` says.
+    /// Derives all functions, the linearisation and the derivatives of outputs, regardless of the description's
+    /// `generate`.
     pub fn derive_linearized(&self) -> Result<Generated, Failure> {
         let generated = self.derived(|mut model| {
             model.asked = Asked::everything();
             model.asked.functions.push(FunctionId::Linearize);
-            // Rates of functions in Rust have no slopes.
+            // Rates of functions in Rust have no derivatives.
             let outputs = model.outputs.iter();
             let smooth = outputs.filter(|(_, value)| {
                 let rate = model.graph.find_external(&value.entries(), 1);
@@ -435,7 +434,7 @@ impl Source {
         Ok(generated)
     }
 
-    /// Shows the warnings on standard error, each once. The text of a robot is the importer's, not the user's.
+    /// Shows each warning once on standard error. Those of a robot are skipped: its text was written by the importer.
     fn warn(&self, model: &Model) {
         if self.robot.is_some() {
             return;
@@ -448,7 +447,7 @@ impl Source {
         }
     }
 
-    /// The errors with their source underlined.
+    /// The errors, with their source underlined.
     pub fn refused(&self, errors: &[Diagnostic]) -> Failure {
         failure::mark(errors, true);
         Failure::Failed(match &self.robot {
@@ -458,12 +457,12 @@ impl Source {
     }
 }
 
-/// The text that the bytes of a file are, in any encoding that robots have.
+/// Decodes the bytes of a file, in any encoding that robots may have.
 pub fn decoded(name: &str, bytes: Vec<u8>) -> Result<String, Failure> {
     urdf::decode(bytes).map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))
 }
 
-/// An error for each frame that a model does not have.
+/// An error for each unknown frame.
 fn unknown_frames(model: &Model, asked: &[Jacobian]) -> Vec<Diagnostic> {
     let known = |name: &str| model.frames.iter().any(|frame| frame.name == name);
     let mut names: Vec<&str> = asked.iter().map(|one| one.frame.as_str()).collect();

@@ -1,4 +1,4 @@
-//! `hamel tables`: the symbols of the formalism, as people read them.
+//! `hamel tables`: prints the symbols of the formalism.
 
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 use hamel_codegen::tables::{self, Table, Tables};
 use std::path::PathBuf;
 
-/// Prints the tables of a description: φ, A, Y, γ, M, Γ, and what follows from them.
+/// Prints the tables of a description: φ, A, Y, γ, M, Γ, and quantities derived from them.
 ///
-/// Entries are simplified modulo the constraint; entries of one value share a row, and those that are
-/// not shown are zero. Indices count from 1, as in KR18.
+/// Entries are simplified modulo the constraint; entries of equal value share a row, and entries not shown are zero.
+/// Indices count from 1, as in KR18.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel tables heavy_top.eom
@@ -24,20 +24,20 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Which tables, a list with commas.
+    /// Tables to print, separated by commas.
     #[arg(long, value_name = "A,Y,…", value_delimiter = ',', value_parser = Table::parse)]
     of: Vec<Table>,
-    /// How to write them.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    /// Every entry on a row of its own, zeros too.
+    /// Print every entry on a separate row, including zeros.
     #[arg(long)]
     all: bool,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
-/// How tables are written.
+/// Output format of tables.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Format {
     /// Aligned columns.
@@ -50,7 +50,7 @@ pub enum Format {
     Json,
 }
 
-/// Derives and prints.
+/// Derives and prints the tables.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
     let generated = source.derive_available(&[])?;
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&written(&tables, arguments.format, arguments.all))
 }
 
-/// Tables as a text.
+/// The tables as a text.
 pub fn written(tables: &Tables, format: Format, all: bool) -> String {
     match format {
         Format::Text => tables::text(tables, all),

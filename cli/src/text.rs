@@ -1,4 +1,4 @@
-//! Texts of options that are lists: their items, with places for what is wrong with them.
+//! Splits options that are lists into items that keep their places, for error messages.
 
 use crate::failure::Failure;
 use hamel_codegen::diagnostics::Diagnostic;
@@ -6,17 +6,17 @@ use hamel_codegen::render::render;
 use hamel_codegen::syntax::ast::Span;
 use std::ops::Range;
 
-/// A part of an option's text, without spaces around it.
+/// A part of an option's text, without surrounding spaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece<'a> {
-    /// What it says.
+    /// Text of the part.
     pub text: &'a str,
-    /// The byte of the option's text at which it begins.
+    /// Byte offset in the option's text.
     pub start: usize,
 }
 
 impl<'a> Piece<'a> {
-    /// The whole text of an option; refused where its brackets do not belong together.
+    /// The whole text of an option; fails if its brackets do not match.
     pub fn of(text: &'a str) -> Result<Self, Diagnostic> {
         let mut open: Vec<(char, usize)> = Vec::new();
         for (place, letter) in text.char_indices() {
@@ -47,17 +47,17 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// Its region.
+    /// The range of the part.
     pub fn span(&self) -> Span {
         Span::new(self.start..self.start + self.text.len())
     }
 
-    /// An error about it.
+    /// An error at this part.
     pub fn wrong(&self, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(self.span(), message)
     }
 
-    /// An error about a part of its text, whose place is in that text alone.
+    /// Moves an error in the text of this part to its place in the option.
     pub fn moved(&self, error: Diagnostic) -> Diagnostic {
         let place = error.span.range();
         let place = place.map(|at| Span::new(at.start + self.start..at.end + self.start));
@@ -67,7 +67,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// A part of it.
+    /// A part of this part.
     pub fn part(&self, range: Range<usize>) -> Self {
         let start = self.start + range.start;
         let text = self.text.get(range).unwrap_or("");
@@ -82,7 +82,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// What stands between separators outside of brackets.
+    /// The parts between separators outside brackets.
     pub fn split(&self, separator: char) -> Vec<Self> {
         let mut from = 0;
         let mut parts = Vec::new();
@@ -96,7 +96,7 @@ impl<'a> Piece<'a> {
         parts
     }
 
-    /// The bytes at which letters stand that are outside of brackets.
+    /// The byte offsets of characters outside brackets.
     pub fn outside(&self) -> Vec<usize> {
         let mut depth = 0_usize;
         let mut places = Vec::new();
@@ -111,12 +111,12 @@ impl<'a> Piece<'a> {
         places
     }
 
-    /// `NAME(…)`: the name, and what stands in the brackets.
+    /// Splits `NAME(…)` into the name and the text in the brackets.
     pub fn call(&self) -> Option<(Self, Self)> {
         let open = self.text.find('(')?;
         let name = self.part(0..open);
         let is_word = |text: &str| text.chars().all(|c| c.is_alphanumeric() || c == '_');
-        // Behind the bracket that closes the first one nothing follows.
+        // Nothing may follow the bracket that closes the first one.
         let outside = self.outside();
         let whole = self.text.ends_with(')') && outside.iter().all(|place| *place < open);
         let one = self.text[open..]
@@ -144,7 +144,7 @@ fn closing(letter: char) -> char {
     }
 }
 
-/// All that is wrong with an option, underlined in its text.
+/// A failure that underlines all errors in the option's text.
 pub fn refused(option: &str, text: &str, errors: &[Diagnostic]) -> Failure {
     Failure::Usage(render(errors, option, text, true))
 }

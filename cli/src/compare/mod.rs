@@ -1,4 +1,4 @@
-//! `hamel compare`: speed against error.
+//! `hamel compare`: compares methods by speed and error.
 
 mod reference;
 #[cfg(feature = "command")]
@@ -28,28 +28,28 @@ use hamel_report::solution::{Solution, relative};
 use reference::Fields;
 use std::path::{Path, PathBuf};
 
-/// Length of a run where neither --until nor --reference says it.
+/// Length of a run without --until and --reference.
 const UNTIL: f64 = 10.0;
-/// The default of --steps.
+/// Default of --steps.
 const STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
-/// The largest of them.
+/// Largest number of steps.
 const MOST: u64 = 100_000_000;
-/// Errors that steps may make, for methods that can choose them.
+/// Tolerances of methods with step size control.
 const TOLERANCES: [f64; 8] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
-/// Timings of each run, and how long each takes at least (s).
+/// Timings of each run, and the least duration of each (s).
 const REPEATS: u32 = 3;
 const LEAST: f64 = 1e-3;
 /// Errors below this are rounding.
 const FLOOR: f64 = 1e-13;
-/// The reference run has so many times the steps of the finest run.
+/// Ratio of the steps of the reference run to those of the finest run.
 const FINER: u64 = 4;
 
 /// Compares methods: error at the end, evaluations of forces, drift, time.
 ///
 /// Errors are measured against a reference solution, or against a much finer run of the best method.
 /// Functions are compiled, steps are not: compare times with each other only. T + V is constant without inputs,
-/// dissipation and other loads that do work; `momentum` is the drift of the invariants that the
-/// description claims. rkmk54 and rkmk8 are run in equal steps, and with tolerances of 1e-4 to 1e-11.
+/// dissipation and other loads that do work; `momentum` is the drift of the invariants that the description claims.
+/// rkmk54 and rkmk8 run with equal steps, and with tolerances of 1e-4 to 1e-11.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel compare heavy_top.eom --until 5
@@ -63,16 +63,16 @@ pub struct Arguments {
     /// Descriptions, or robots in URDF.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Methods, see `hamel simulate --help`; by default all that fit.
+    /// Methods, see `hamel simulate --help`; default: all that fit.
     #[arg(long, value_name = "M", value_delimiter = ',')]
     methods: Vec<String>,
-    /// Length of the run; the last time of the reference, or 10.
+    /// Length of the run; default: the last time of the reference, or 10.
     #[arg(long, value_name = "T", value_parser = super::simulate::positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Numbers of steps.
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = number_of_steps, allow_negative_numbers = true)]
     steps: Vec<u64>,
-    /// A reference solution.
+    /// Reference solution.
     #[arg(long, value_name = "SOLUTION.json")]
     reference: Option<PathBuf>,
     /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
@@ -81,14 +81,14 @@ pub struct Arguments {
     /// Write report.json, report.md, index.html and a picture for each description.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// What is printed.
+    /// Output format.
     #[arg(long, value_enum, default_value = "markdown")]
     format: Format,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
-/// What is printed.
+/// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum Format {
     /// Tables
@@ -97,7 +97,7 @@ enum Format {
     Json,
 }
 
-/// Runs and reports.
+/// Runs the comparisons and prints the report.
 #[cfg(feature = "command")]
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     method::known(&arguments.methods)?;
@@ -145,20 +145,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// What is compared.
+/// A comparison to make.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Methods by their names; all that fit, where none is named.
+    /// Names of methods; empty for all that fit.
     pub methods: Vec<String>,
     /// Length of the run.
     pub until: f64,
-    /// Numbers of steps; the usual ones, where there are none.
+    /// Numbers of steps; empty for the default ones.
     pub steps: Vec<u64>,
-    /// How often each run is timed; 0 for no times.
+    /// Number of timings of each run; 0 for none.
     pub repeats: u32,
 }
 
-/// One description by all methods.
+/// Compares the methods on one description.
 fn compare(
     file: &Path,
     arguments: &Arguments,
@@ -183,7 +183,7 @@ fn compare(
     case(&generated, source.shown(), &state, &asked, fields.as_ref())
 }
 
-/// A derived description by the methods that are asked for, from a state; `shown` is the text for messages.
+/// Compares the methods on a derived description, from a state; `shown` is the text for messages.
 pub fn case(
     generated: &Generated,
     shown: &str,
@@ -299,7 +299,7 @@ pub fn one(case: &Case) -> Result<String, Failure> {
     serde_json::to_string(case).map_err(|error| Failure::failed(error.to_string()))
 }
 
-/// The method of the highest order, baselines last; the first of them in the table.
+/// The method of the highest order, baselines last; the first in the table among equals.
 fn best(methods: &[Named]) -> &Named {
     let rank = |named: &Named| {
         let order = Method::<Instance>::order(&named.stepper);
@@ -315,7 +315,7 @@ fn best(methods: &[Named]) -> &Named {
     methods.iter().skip(1).fold(&methods[0], better)
 }
 
-/// What `--method auto` takes.
+/// The choice of `--method auto`.
 fn choice(structure: &Structure) -> Choice {
     let choice = choose(structure, None);
     Choice {
@@ -324,7 +324,7 @@ fn choice(structure: &Structure) -> Choice {
     }
 }
 
-/// The system's name, with the first line of its description.
+/// The name of the system with the first line of its documentation.
 fn title(name: &str, docs: &[String]) -> String {
     match docs.first() {
         Some(line) if !line.trim().is_empty() => format!("{name}: {}", line.trim()),
@@ -332,14 +332,14 @@ fn title(name: &str, docs: &[String]) -> String {
     }
 }
 
-/// A number of steps of a run.
+/// Parses a number of steps.
 fn number_of_steps(text: &str) -> Result<u64, String> {
     let number = text.trim().parse::<u64>().ok();
     let number = number.filter(|number| (1..=MOST).contains(number));
     number.ok_or_else(|| format!("a whole number from 1 to {MOST} is needed"))
 }
 
-/// The time of the end, which a reference has to list.
+/// The end time, which a reference has to list.
 fn until(arguments: &Arguments, solution: Option<&Solution>) -> Result<f64, Failure> {
     let Some(solution) = solution else {
         return Ok(arguments.until.unwrap_or(UNTIL));
@@ -362,7 +362,7 @@ fn read(path: &Path) -> Result<Solution, Failure> {
         .map_err(|error| Failure::usage(format!("{}: {error}", source.path)))
 }
 
-/// The command line that was given, by names of files alone.
+/// The given command line, with file names instead of paths.
 fn command(arguments: &Arguments) -> String {
     let name = |path: Option<&Path>| -> String {
         let name = path.and_then(Path::file_name);

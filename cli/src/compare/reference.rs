@@ -1,4 +1,4 @@
-//! Fields of a reference solution, matched with coordinates and velocities.
+//! Matches the fields of a reference solution with coordinates and velocities.
 
 use crate::failure::Failure;
 use crate::state::State;
@@ -6,7 +6,7 @@ use hamel_codegen::model::layout::entry_names;
 use hamel_codegen::program::Program;
 use hamel_report::solution::{Solution, largest, relative};
 
-/// A field and where it stands in (x, ξ).
+/// A field and its place in (x, ξ).
 struct Field {
     name: String,
     offset: usize,
@@ -14,13 +14,13 @@ struct Field {
     velocity: bool,
 }
 
-/// The fields that could be matched.
+/// The matched fields.
 pub struct Fields<'a> {
     solution: &'a Solution,
     fields: Vec<Field>,
 }
 
-/// The matched fields at the end.
+/// The values of the matched fields at the end.
 pub struct End(Vec<(bool, usize, Vec<f64>)>);
 
 impl<'a> Fields<'a> {
@@ -42,7 +42,7 @@ impl<'a> Fields<'a> {
             let Some(values) = solution.initial(&name) else {
                 continue;
             };
-            // Angular velocities are ω in the literature, and often w in descriptions.
+            // Angular velocities are called ω in the literature, and often w in descriptions.
             let other = name.replacen("omega", "w", 1);
             let found = places
                 .iter()
@@ -86,7 +86,7 @@ impl<'a> Fields<'a> {
         names.join(", ")
     }
 
-    /// Sets the start of the fields.
+    /// Sets the start to the initial values of the fields.
     pub fn start(&self, state: &mut State) -> Result<(), Failure> {
         for field in &self.fields {
             let values = self.solution.initial(&field.name);
@@ -104,7 +104,7 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    /// The fields at a time that is listed.
+    /// The values of the fields at a listed time.
     pub fn end(&self, until: f64) -> Result<End, Failure> {
         let value = |field: &Field| {
             let values = self.solution.sample(until, &field.name);

@@ -1,4 +1,4 @@
-//! Comparisons as text and as files.
+//! Writes comparisons as text and as files.
 
 use crate::failure::Failure;
 use hamel_report::data::{Case, Report};
@@ -6,17 +6,17 @@ use hamel_report::plot::{Figure, precision};
 use hamel_report::{json, markdown, page};
 use std::path::Path;
 
-/// The tables, with the files of pictures where they are written.
+/// The tables as Markdown, with links to the pictures if these are written.
 pub fn markdown(report: &Report, pictures: bool) -> String {
     markdown::write(report, |case| pictures.then(|| file(case)))
 }
 
-/// One object.
+/// The report as one JSON object.
 pub fn json(report: &Report) -> Result<String, Failure> {
     json::write(report).map_err(|error| Failure::failed(error.to_string()))
 }
 
-/// All files of a folder, which is made where it is missing.
+/// Writes all files to a folder, which is created if it does not exist.
 pub fn files(report: &Report, folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder)
         .map_err(|error| Failure::usage(format!("cannot make {}: {error}", folder.display())))?;

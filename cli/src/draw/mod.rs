@@ -1,4 +1,4 @@
-//! `hamel draw`: a picture of a mechanism at a state, or of a motion.
+//! `hamel draw`: draws a mechanism at a state, or a motion.
 
 mod shapes;
 
@@ -22,17 +22,17 @@ use hamel_report::plot::space::{ISOMETRIC, Space, Vector, base, space};
 use shapes::Shapes;
 use std::path::PathBuf;
 
-/// Points of a path.
+/// Number of points of a path.
 const POINTS: usize = 600;
-/// What the view is called that is taken by default.
+/// Name of the default view.
 const NAMED: &str = "isometric";
 
 /// Draws the mechanism at a state, or in motion, as SVG.
 ///
-/// Bodies are drawn as the solid ellipsoids that have their masses and inertias; a body without an inertia is a ball, and so is a
-/// particle. Frames show their axes, the first in red, the second in green, the third in blue. Thick short lines are
-/// the axes of joints, rings are joints without an axis and points that a loop brings together. The direction against gravity points up;
-/// where there is gravity, a floor with a grid is drawn below.
+/// Bodies are drawn as the solid ellipsoids that have their masses and inertias; a body without an inertia is a ball,
+/// and so is a particle. Frames show their axes: the first in red, the second in green, the third in blue. Short thick
+/// lines are the axes of joints, rings are joints without an axis and points that a loop brings together. The direction
+/// opposite to gravity points up; with gravity, a floor with a grid is drawn below.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel draw arm.urdf --out arm.svg
@@ -44,26 +44,26 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// State, by coordinates or by joints, in place of the start; see `hamel eval --help`.
+    /// State, by coordinates or by joints, instead of the start; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// Draw the state after a run of this length, in the unit of time of the description (s).
+    /// Draw the state after a run of this length, in the description's unit of time (s).
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     time: Option<f64>,
     /// Draw a motion of this length (s) from there on: its end, with earlier poses faintly behind it.
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     motion: Option<f64>,
-    /// How many earlier poses of a motion there are.
+    /// Number of earlier poses of a motion.
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(..=200), requires = "motion")]
     poses: u16,
-    /// Draw the path that the origin of this frame takes in the motion; once for each frame.
+    /// Draw the path of this frame's origin in the motion; once for each frame.
     #[arg(long, value_name = "FRAME", requires = "motion")]
     trace: Vec<String>,
-    /// The direction from which the picture is seen: `isometric`, or azimuth and elevation in degrees. The azimuth is counted
-    /// about the vertical from the first axis of the world; -90 looks along the second axis.
+    /// Direction of view: `isometric`, or azimuth and elevation in degrees. The azimuth is counted about the vertical
+    /// from the first axis of the world; -90 looks along the second axis.
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = NAMED, value_parser = view, allow_hyphen_values = true)]
     view: (f64, f64),
-    /// Where to write the picture; default standard output.
+    /// Output file; default: standard output.
     #[arg(long, value_name = "F.svg")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -72,7 +72,7 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
-/// Draws.
+/// Runs the motion, if any, and writes the picture.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (out, at) = (arguments.out.as_deref(), arguments.at.as_deref());
     let given = &arguments.inputs;
@@ -149,15 +149,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Coordinates at the times that are drawn.
+/// Coordinates at the drawn times.
 struct Moments {
-    /// Earlier poses, and the one that is drawn strongly.
+    /// Earlier poses, then the pose that is drawn in full.
     poses: Vec<Vec<f64>>,
     /// Points of the paths.
     path: Vec<Vec<f64>>,
 }
 
-/// Runs.
+/// Runs the motion and samples it.
 fn moments(
     arguments: &Arguments,
     source: &Source,
@@ -214,7 +214,7 @@ fn moments(
     })
 }
 
-/// The places of the frames whose paths are drawn.
+/// The indices of the frames whose paths are drawn.
 fn traced(generated: &Generated, names: &[String]) -> Result<Vec<usize>, Failure> {
     let frames = &generated.active.frames;
     let mut unknown = Vec::new();
@@ -239,7 +239,7 @@ fn traced(generated: &Generated, names: &[String]) -> Result<Vec<usize>, Failure
     )))
 }
 
-/// When it is.
+/// Describes the drawn time for the caption.
 fn said(arguments: &Arguments) -> String {
     match (arguments.time, arguments.motion) {
         (None, None) if arguments.at.is_some() => "at the state given".into(),

@@ -1,9 +1,9 @@
-//! What a mechanism looks like: its scene as shapes of a picture.
+//! Turns the scene of a mechanism into shapes of a picture.
 
 use crate::drawing::{Acts, Frame, Joint, Scene, Vector};
 use hamel_report::plot::space::{Ink, Part, Shape};
 
-/// Widths of links, axes of joints, rails and axes of frames (pixels).
+/// Widths of links, joint axes, rails and frame axes (pixels).
 const LINK: f64 = 3.4;
 const HINGE: f64 = 6.5;
 const RAIL: f64 = 2.2;
@@ -11,27 +11,27 @@ const AXIS: f64 = 1.5;
 /// Radii of balls and rings (pixels).
 const BALL: f64 = 7.0;
 const RING: f64 = 4.2;
-/// Lengths over the size of the mechanism: half axes of joints, axes of frames where there are few and where there are many, the
-/// least radius of a body.
+/// Lengths relative to the size of the mechanism: half axes of joints, axes of few and of many frames, the least radius
+/// of a body.
 const HALF: f64 = 0.022;
 const FEW: f64 = 0.085;
 const MANY: f64 = 0.04;
 const THIN: f64 = 0.011;
-/// So many frames are few.
+/// Largest number of frames that counts as few.
 const COUNT: usize = 4;
-/// Shorter than this, over the size, is nothing.
+/// Lengths below this, relative to the size, count as zero.
 const NOTHING: f64 = 1e-6;
 /// The colours of the axes of a frame: red, green and blue.
 const AXES: [Ink; 3] = [Ink::Series(4), Ink::Series(2), Ink::Series(0)];
 
-/// How large things are that have no size of their own: as in the scene that it is made for.
+/// Sizes of symbols, relative to the scene for which it is made.
 pub struct Shapes {
     size: f64,
     heaviest: f64,
 }
 
 impl Shapes {
-    /// That of a scene.
+    /// Measures a scene.
     pub fn new(scene: &Scene) -> Self {
         let mut least = [f64::INFINITY; 3];
         let mut most = [f64::NEG_INFINITY; 3];
@@ -66,7 +66,7 @@ impl Shapes {
         }
     }
 
-    /// What a scene looks like.
+    /// The shapes of a scene.
     pub fn of(&self, scene: &Scene) -> Vec<Part> {
         let mut parts = Vec::new();
         self.axes(scene, &mut parts);
@@ -77,7 +77,7 @@ impl Shapes {
         parts
     }
 
-    /// The same for a pose that is drawn faintly: what moves, without axes.
+    /// The shapes of a faint pose: moving parts, without axes.
     pub fn faint(&self, scene: &Scene) -> Vec<Part> {
         let mut parts = Vec::new();
         self.links(scene, &mut parts);
@@ -102,7 +102,7 @@ impl Shapes {
         }
     }
 
-    /// From a frame to what is placed on it, and to its bodies.
+    /// Links from each frame to the frames placed on it, and to its bodies.
     fn links(&self, scene: &Scene, parts: &mut Vec<Part>) {
         let joint = |frame: usize| scene.joints.iter().find(|joint| joint.frame == frame);
         for (index, frame) in scene.frames.iter().enumerate() {
@@ -153,7 +153,7 @@ impl Shapes {
                 _ => {}
             }
         }
-        // What turns about a point without a statement `joint`.
+        // Frames that turn about a point without a statement `joint`.
         let jointed = |index: usize| scene.joints.iter().any(|joint| joint.frame == index);
         let pivots = scene.frames.iter().enumerate();
         let pivots = pivots.filter(|(index, frame)| pivot(frame) && !jointed(*index));
@@ -215,7 +215,7 @@ impl Shapes {
         }
     }
 
-    /// A bar, unless it has no length.
+    /// Adds a bar, unless its length is zero.
     fn bar(&self, ends: [Vector; 2], width: f64, ink: Ink, parts: &mut Vec<Part>) {
         if distance(ends[0], ends[1]) > NOTHING * self.size {
             let shape = Shape::Bar { ends, width };
@@ -224,7 +224,7 @@ impl Shapes {
     }
 }
 
-/// Whether a joint holds no point of what it carries.
+/// Whether a joint holds no point of the frame that it carries.
 fn floats(joint: &Joint) -> bool {
     ["free", "planar"].contains(&joint.kind)
 }
@@ -233,7 +233,7 @@ fn pivot(frame: &Frame) -> bool {
     frame.attached && frame.turns
 }
 
-/// The colour of the first body of a frame, or of the nearest one below that has any.
+/// The colour of the first body of a frame, or of its nearest ancestor that has a body.
 fn ink(scene: &Scene, frame: usize) -> Ink {
     let mut place = Some(frame);
     while let Some(frame) = place {

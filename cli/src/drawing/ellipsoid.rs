@@ -1,13 +1,13 @@
 //! The solid ellipsoid that has a given mass and inertia.
 //!
-//! With the radii a, b, c along its principal axes a solid ellipsoid has the moments m/5 (b² + c²), m/5 (c² + a²) and
-//! m/5 (a² + b²). So a² = 5/(2 m) (I₂ + I₃ − I₁), and so on: it is real where no moment is larger than the sum of the
-//! other two, which holds for every rigid body.
+//! A solid ellipsoid with the radii a, b, c along its principal axes has the moments m/5 (b² + c²), m/5 (c² + a²) and
+//! m/5 (a² + b²). Hence a² = 5/(2 m) (I₂ + I₃ − I₁), and likewise for b and c: the ellipsoid is real if no moment
+//! exceeds the sum of the other two, which holds for every rigid body.
 
 use super::scene::Vector;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// Principal axes and radii, in the axes of the inertia.
+/// Principal axes and radii, in the axes of the inertia tensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// Three right-handed unit vectors.
@@ -17,12 +17,12 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// That of a mass and an inertia about the centre of mass. Where the inertia is that of no body a radius whose
-    /// square would be negative is 0.
+    /// The ellipsoid of a mass and an inertia about the centre of mass. If the inertia is not that of a body, a radius
+    /// whose square would be negative is 0.
     pub fn new(mass: f64, inertia: [Vector; 3]) -> Self {
         let matrix = Matrix3::from_fn(|i, j| inertia[i][j]);
         let eigen = SymmetricEigen::new(matrix);
-        // In the order of the moments, so that it does not depend on how they were found.
+        // Sort by moment, so that the result does not depend on the eigenvalue solver.
         let mut order = [0, 1, 2];
         order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
         let [first, second, _] = order.map(|k| upright(eigen.eigenvectors.column(k).into()));
@@ -31,7 +31,7 @@ impl Ellipsoid {
         let sum: f64 = moments.iter().sum();
         let radii = moments.map(|moment| {
             let square = 2.5 * (sum - 2.0 * moment) / mass;
-            // What is left by rounding of a plate or a rod is no thickness.
+            // Rounding must not give a plate or a rod a thickness.
             let least = 1e-12 * 2.5 * sum / mass;
             if square > least { square.sqrt() } else { 0.0 }
         });

@@ -1,4 +1,4 @@
-//! What a picture of a mechanism leaves out, because the description does not say where it is.
+//! Lists the parts that a picture of a mechanism leaves out because the description gives them no place.
 
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::model::Model;

@@ -1,6 +1,6 @@
-//! A mechanism as a picture shows it: for each state where its frames, bodies, joints, springs and loops are.
+//! Draws a mechanism: the places of its frames, bodies, joints, springs and loops at each state.
 //!
-//! What can be drawn is compiled once, as the functions of the description are; a scene is then a call of that code:
+//! The required functions are compiled once, like those of the description; a scene is then a call of this code:
 //!
 //! ```
 //! use hamel_cli::{RobotOptions, Session};
@@ -36,12 +36,12 @@ use hamel_codegen::syntax::joint_kind;
 use hamel_native::Compiled;
 use points::Points;
 
-/// What depends on parameters alone: masses, centres of mass, inertias.
+/// The function of masses, centres of mass and inertias, which depend on parameters alone.
 const BODIES: &str = "drawn_bodies";
-/// Poses and points, which depend on x as well.
+/// The function of poses and points, which depend on x as well.
 const POINTS: &str = "drawn_points";
 
-/// What of a mechanism can be drawn, compiled, for any parameters.
+/// The drawable parts of a mechanism, compiled, for any parameters.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     compiled: Compiled,
@@ -71,13 +71,13 @@ struct Jointed {
     name: String,
     kind: &'static str,
     frame: usize,
-    /// Axes, each with the frame in whose axes it stands.
+    /// Axes, each with the frame in whose axes it is given.
     axes: Vec<(usize, Vector)>,
-    /// The place in x of how far it has slid along its first axis.
+    /// The index in x of the displacement along its first axis.
     slid: Option<usize>,
 }
 
-/// The same with its parameters set.
+/// A [`Drawing`] with its parameters set.
 #[derive(Clone, Debug)]
 pub struct Drawn<'a> {
     of: &'a Drawing,
@@ -88,7 +88,7 @@ pub struct Drawn<'a> {
 }
 
 impl Drawing {
-    /// What of a description can be drawn.
+    /// Compiles the drawable parts of a description.
     pub(crate) fn new(generated: &Generated) -> Result<Self, Failure> {
         let model = &generated.active;
         let mut graph = model.graph.clone();
@@ -119,7 +119,7 @@ impl Drawing {
         let joints = model.joints.iter().filter_map(|joint| {
             let named = |name: &str| model.frames.iter().position(|frame| frame.name == name);
             let carried = named(&joint.frame)?;
-            // The first axis of a universal joint rests in its cross.
+            // The first axis of a universal joint is fixed in its cross.
             let cross = named(&format!("{}_cross", joint.name)).filter(|_| joint.axes.len() == 2);
             let on = [cross.unwrap_or(carried), carried];
             let sliding = ["prismatic", "cylindrical"].contains(&joint_kind(joint.kind));
@@ -150,12 +150,12 @@ impl Drawing {
         })
     }
 
-    /// What is not drawn, since the description does not say where it is: a sentence for each part.
+    /// The parts that are not drawn because the description does not place them: a sentence for each.
     pub fn missing(&self) -> &[String] {
         &self.missing
     }
 
-    /// The drawing for these parameters; where one is missing it and what depends on it is NaN.
+    /// The drawing for these parameters; a missing parameter makes everything that depends on it NaN.
     pub fn with(&self, params: &[f64]) -> Drawn<'_> {
         let functions = Functions::new(&self.compiled, params);
         let values = called(&functions, self.places[0], &[]);
@@ -175,7 +175,7 @@ impl Drawing {
 }
 
 impl Drawn<'_> {
-    /// Where everything is at x.
+    /// The scene at x.
     pub fn scene(&self, x: &[f64]) -> Scene {
         let of = self.of;
         let values = called(&self.functions, of.places[1], x);
@@ -251,13 +251,13 @@ impl Drawn<'_> {
 }
 
 impl Frame {
-    /// A direction in its axes, in those of the world.
+    /// A direction in the frame's axes, in world axes.
     fn direction(&self, a: Vector) -> Vector {
         self.rotation
             .map(|row| row[0] * a[0] + row[1] * a[1] + row[2] * a[2])
     }
 
-    /// A point of it, in the world.
+    /// A point of the frame, in world coordinates.
     pub(crate) fn point(&self, at: Vector) -> Vector {
         let arm = self.direction(at);
         std::array::from_fn(|k| self.position[k] + arm[k])
@@ -275,7 +275,7 @@ fn centre(bodies: &[Body], particles: &[Particle]) -> Option<Vector> {
     (mass > 0.0).then(|| std::array::from_fn(|k| moment(k) / mass))
 }
 
-/// These functions have no pivots, and have a value wherever the description has.
+/// These functions have no pivots, and are defined wherever the description is.
 fn called(functions: &Functions, place: Place, x: &[f64]) -> Vec<f64> {
     let value = functions.call(place, [x, &[], &[], &[], &[]]);
     value.map_or_else(|_| vec![f64::NAN; place.length()], |value| value.to_vec())

@@ -1,7 +1,7 @@
-//! What of a model is drawn, as expressions, and what moves with what.
+//! The drawn parts of a model as expressions, and the frames that they move with.
 //!
-//! A point is fixed to a frame where the rates of its coordinates in that frame are zero along ẋ = A ξ, and two points
-//! keep their distance where the rate of its square is: both are found exactly, as expressions that are equal on X are
+//! A point is fixed to a frame if the rates of its coordinates in that frame vanish along ẋ = A ξ, and two points keep
+//! their distance if the rate of its square vanishes. Both tests are exact, since expressions that are equal on X are
 //! one node of the graph.
 
 use super::scene::Acts;
@@ -11,26 +11,26 @@ use hamel_codegen::algebra::linear::{Vec3, apply_transposed, sub3, zero3};
 use hamel_codegen::model::elements::Along;
 use hamel_codegen::model::{Model, class};
 
-/// Expressions and what is known of them.
+/// Expressions of the drawn parts, and their properties.
 pub(super) struct Points {
-    /// Of each body its mass, its centre of mass and its inertia about that, 13 expressions; masses of particles.
+    /// Mass, centre of mass and inertia about it of each body, 13 expressions; masses of particles.
     pub masses: Vec<Edge>,
     /// Vectors of three: four for each frame, one for each particle, two for each line, rod and loop, and gravity.
     pub moving: Vec<Edge>,
-    /// Whether the origin of a frame rests in the frame that it was placed on.
+    /// Whether the origin of a frame is fixed in the frame that it was placed on.
     pub attached: Vec<bool>,
-    /// Whether its axes turn there.
+    /// Whether the axes of a frame turn in the frame that it was placed on.
     pub turns: Vec<bool>,
     /// The frame that each particle is fixed to.
     pub particles: Vec<Option<usize>>,
-    /// Kinds of the lines, with the frames that their ends are fixed to.
+    /// Kinds of the lines, with the frames to which their ends are fixed.
     pub lines: Vec<(Acts, [Option<usize>; 2])>,
-    /// How many rods there are.
+    /// Number of rods.
     pub rods: usize,
 }
 
 impl Points {
-    /// Those of a model.
+    /// Collects the expressions of a model.
     pub fn new(model: &Model, graph: &mut Graph) -> Self {
         let bodies = model.bodies.iter().flat_map(|body| {
             let inertia = body.inertia_com.as_flattened().iter().copied();
@@ -100,7 +100,7 @@ fn along(model: &Model) -> impl Iterator<Item = (Acts, Vec3, Vec3)> {
     })
 }
 
-/// Rods from particles to one another, and to the origin of the world, where no frame holds both ends.
+/// Rods between particles, and from particles to the origin of the world, where no frame holds both ends.
 fn rods(
     model: &Model,
     graph: &mut Graph,
@@ -139,7 +139,7 @@ fn carrier(model: &Model, graph: &mut Graph, point: Vec3) -> Option<usize> {
     })
 }
 
-/// Whether it does not change along any motion.
+/// Whether the entries are constant along every motion.
 fn is_constant(model: &Model, graph: &mut Graph, entries: &[Edge]) -> bool {
     let moves = |entry: &Edge| graph.class(entry.node()) & class::CONFIGURATION != 0;
     if !entries.iter().any(moves) {

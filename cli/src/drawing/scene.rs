@@ -1,14 +1,14 @@
-//! What of a mechanism can be drawn at one state, as plain numbers: points, axes and sizes in the axes of the world.
+//! A drawn mechanism at one state, as plain numbers: points, axes and sizes in world axes.
 
 use serde::Serialize;
 
-/// A point or a direction, world axes (m, -).
+/// A point (m) or a direction, in world axes.
 pub type Vector = [f64; 3];
 
-/// A mechanism at one state. Places of frames are places in [`Scene::frames`].
+/// A mechanism at one state. Indices of frames refer to [`Scene::frames`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Scene {
-    /// Frames, each behind the one that it was placed on.
+    /// Frames, each after the one that it was placed on.
     pub frames: Vec<Frame>,
     /// Rigid bodies.
     pub bodies: Vec<Body>,
@@ -20,16 +20,16 @@ pub struct Scene {
     pub lines: Vec<Line>,
     /// Points that keep their distance and are not fixed to one frame, such as the ends of a massless rod.
     pub rods: Vec<[Vector; 2]>,
-    /// Both points of each loop between points, which coincide where it is closed.
+    /// Both points of each loop between points, which coincide if it is closed.
     pub loops: Vec<[Vector; 2]>,
-    /// The centre of mass of everything; absent where nothing has a mass.
+    /// The centre of mass of the mechanism; absent if nothing has a mass.
     pub centre: Option<Vector>,
-    /// The acceleration of gravity; zero where there is none, or where it is no function of x and the parameters.
+    /// The acceleration of gravity; zero if there is none, or if it is not a function of x and the parameters.
     pub gravity: Vector,
 }
 
 impl Scene {
-    /// Whether there is nothing in it: a description may have energies alone.
+    /// Whether the scene is empty: a description may consist of energies alone.
     pub fn is_empty(&self) -> bool {
         let Scene {
             frames,
@@ -50,62 +50,62 @@ impl Scene {
 /// A frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Frame {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// The frame that it was placed on; absent where that is the world.
+    /// The frame that it was placed on; absent for the world.
     pub parent: Option<usize>,
-    /// Whether its origin always stays at the same point of that frame.
+    /// Whether its origin is fixed in that frame.
     pub attached: bool,
     /// Whether its axes turn in that frame.
     pub turns: bool,
-    /// R, by rows: the columns are its axes.
+    /// R, by rows: the columns are the axes of the frame.
     pub rotation: [Vector; 3],
-    /// Its origin.
+    /// Origin.
     pub position: Vector,
 }
 
 /// A rigid body, with the solid ellipsoid of the same mass and inertia.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Body {
-    /// Its frame.
+    /// The frame of the body.
     pub frame: usize,
-    /// Its mass (kg).
+    /// Mass (kg).
     pub mass: f64,
-    /// Its centre of mass, the centre of the ellipsoid.
+    /// Centre of mass, which is the centre of the ellipsoid.
     pub centre: Vector,
     /// Three right-handed unit vectors along the principal axes.
     pub axes: [Vector; 3],
-    /// The radii along them; 0 where the inertia is that of a plate, a rod or a point.
+    /// The radii along the axes; 0 for the inertia of a plate, a rod or a point.
     pub radii: Vector,
 }
 
 /// A point mass.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Particle {
-    /// Its mass (kg).
+    /// Mass (kg).
     pub mass: f64,
-    /// Where it is.
+    /// Position.
     pub position: Vector,
-    /// The frame that it is fixed to, where there is one.
+    /// The frame that it is fixed to, if any.
     pub frame: Option<usize>,
 }
 
 /// A joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Joint {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its kind, as the language calls it.
+    /// Kind, as in the language.
     pub kind: &'static str,
     /// The frame that it carries.
     pub frame: usize,
-    /// Where it is on the part that carries it; where it slides, the point from which it does.
+    /// Position on the part that carries it; for a sliding joint, the zero of the displacement.
     pub place: Vector,
-    /// Unit vectors along its axes: one, two of a universal joint, none where it has no axis.
+    /// Unit vectors along its axes: one, two for a universal joint, none for a joint without an axis.
     pub axes: Vec<Vector>,
 }
 
-/// What acts along a line.
+/// Kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Acts {
@@ -120,10 +120,10 @@ pub enum Acts {
 /// A spring, a damper or a force between two points.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
-    /// Which of them it is.
+    /// Kind.
     pub acts: Acts,
-    /// Its two points.
+    /// End points.
     pub points: [Vector; 2],
-    /// The frames that these are fixed to; absent where a point is fixed to the world.
+    /// The frames to which the end points are fixed; absent for the world.
     pub frames: [Option<usize>; 2],
 }

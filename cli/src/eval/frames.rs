@@ -1,4 +1,4 @@
-//! Numbers of frames that `--frame` names: pose, twist, Jacobian, bias acceleration.
+//! Values for the frames of `--frame`: pose, twist, Jacobian, bias acceleration.
 
 use crate::failure::Failure;
 use crate::json::Json;
@@ -8,10 +8,10 @@ use hamel_codegen::functions::{FrameFunction, Jacobian};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 
-/// A frame: how it was asked for, and its name in the description.
+/// A frame: its name as requested, and in the description.
 pub type Named = (String, String);
 
-/// Its Jacobians in axes of the world and in its own.
+/// The Jacobians of a frame, in world axes and in the frame's axes.
 fn both(frame: &str) -> [Jacobian; 2] {
     [false, true].map(|own| Jacobian {
         frame: frame.into(),
@@ -19,13 +19,13 @@ fn both(frame: &str) -> [Jacobian; 2] {
     })
 }
 
-/// What is asked for of frames: everything.
+/// The Jacobians of all requested frames.
 pub fn asked(frames: &[Named]) -> Vec<Jacobian> {
     frames.iter().flat_map(|(_, frame)| both(frame)).collect()
 }
 
-/// An object for every frame, called as it was asked for, whose members are named as the functions are without the
-/// frame's name; nothing where no frame is asked for.
+/// An object for every frame, under its requested name, whose members have the names of the functions without the
+/// frame's name; `None` if no frame is requested.
 pub fn kinematics(
     generated: &Generated,
     state: &State,

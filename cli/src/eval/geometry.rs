@@ -1,5 +1,5 @@
-//! Numbers of A, γ, M and Γ at a state. No table is derived as an expression: A and M are differentiated
-//! in numbers, along the columns of A.
+//! Values of A, γ, M and Γ at a state. No table is derived symbolically: A and M are differentiated numerically, along
+//! the columns of A.
 
 use crate::failure::Failure;
 use crate::json::Json;
@@ -11,23 +11,23 @@ use hamel_codegen::derive::{inertia, kinematics};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 
-/// Rounding of a sum is at most about so many parts of its terms.
+/// Bound on the rounding error of a sum, relative to its terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// The tables, `table[i][j][k]`.
+/// Entries of a table, `table[i][j][k]`.
 pub type Cube = Vec<Vec<Vec<f64>>>;
 
 /// A, γ, M, Γ of the full frame at one state.
 pub struct Geometry {
     pub a: Vec<Vec<f64>>,
-    /// None where nothing has inertia.
+    /// `None` if the system has no inertia.
     pub mass: Option<Vec<Vec<f64>>>,
-    /// γ and Γ, where they were asked for, the latter where anything has inertia.
+    /// γ and Γ, if requested; Γ only if the system has inertia.
     pub tables: Option<(Cube, Option<Cube>)>,
 }
 
 impl Geometry {
-    /// Evaluates; γ and Γ have n³ entries each, and are left out unless `tables`.
+    /// Evaluates the tables; γ and Γ, with n³ entries each, only with `tables`.
     pub fn new(generated: &Generated, state: &State, tables: bool) -> Result<Self, Failure> {
         let model = &generated.model;
         let n = model.n();
@@ -66,7 +66,7 @@ impl Geometry {
         })
     }
 
-    /// The members of the result; null is what there is not without inertia.
+    /// The members of the result; tables that do not exist without inertia are null.
     pub fn members(&self) -> Vec<(&'static str, Json)> {
         let cube = |table: &Cube| Json::List(table.iter().map(|rows| Json::matrix(rows)).collect());
         let mut members = vec![
@@ -81,21 +81,21 @@ impl Geometry {
     }
 }
 
-/// Numbers for the symbols of the full model; the tables depend on x alone.
+/// Values of the symbols of the full model; the tables depend on x alone.
 fn numbers(model: &Model, state: &State) -> Vec<f64> {
     let still = vec![0.0; model.n()];
     model.numbers(&state.params, &state.x, &still, &state.u, &still)
 }
 
-/// The i-th column of A, for all symbols.
+/// The i-th column of A, as a direction in all symbols.
 fn direction(model: &Model, a: &[Vec<f64>], i: usize) -> Vec<f64> {
     let mut direction = vec![0.0; 1 + model.defaults.len()];
     direction.extend(a.iter().map(|row| row[i]));
     direction
 }
 
-/// M by rows, with its slopes: that of the program, or that of the full frame where constraints have
-/// been solved.
+/// M by rows, with its derivatives: the mass matrix of the program, or that of the full frame if constraints have been
+/// solved.
 fn mass(
     generated: &Generated,
     state: &State,
@@ -185,7 +185,7 @@ fn lower(n: usize, gamma: &[f64], mass: &[Sloped]) -> Vec<f64> {
     (0..n).map(product).collect()
 }
 
-/// A sum; what is rounding of its terms is 0.
+/// A sum, rounded to 0 if it is within the rounding error of its terms.
 fn sum(terms: &[f64]) -> f64 {
     let (sum, size) = terms.iter().fold((0.0, 0.0), |(sum, size), term| {
         (sum + term, size + term.abs())

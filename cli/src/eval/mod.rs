@@ -1,4 +1,4 @@
-//! `hamel eval`: numbers of everything at a state.
+//! `hamel eval`: evaluates all quantities at a state.
 
 mod frames;
 mod geometry;
@@ -22,32 +22,32 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use std::path::PathBuf;
 
-/// γ and Γ have n³ entries each: of systems with more velocities they are printed where --tables asks.
+/// Number of velocities above which γ and Γ, with n³ entries each, are printed only with --tables.
 const MOST_SHOWN: usize = 64;
 
-/// Prints the numbers of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
+/// Prints the values of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
 ///
-/// The state is the description's start with default parameters and zero input, changed by what
-/// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…},
+/// The state is the description's start with default parameters and zero input, changed by the entries of
+/// STATE.json: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…},
 /// "state": {…}, "input": {…}}.
 /// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
-/// Velocities of joints are known by the joint's name, too, that of the URDF file for a robot. A state is the start
-/// that the description would have if it contained these numbers: they and the other exact starts are kept, what is
-/// prescribed follows, loops are closed and constraints kept by the rest. Where the numbers contradict exact starts of
-/// the text, the ones that loops and constraints tie to them move to the nearest values; a state that contradicts
-/// loops or constraints by itself is refused. Of a list of samples, as `hamel simulate --out` writes it to a .json
-/// file, the last is taken. Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k]
-/// is Γ_ijk. A, γ, M and Γ are those of all velocities, which `frame` names; forces, bias and accel are of those that
-/// constraints leave, which `velocities` names. `undetermined` names the rows of `constraints` whose forces are not unique: what
-/// stands for them is one of many solutions.
+/// Velocities of joints may also be given by the joint's name (for a robot, its name in the URDF file). The state is the
+/// start that the description would have if it contained these numbers: they and the other exact starts are kept,
+/// prescribed motions are followed, and the remaining numbers close the loops and satisfy the constraints. Where the
+/// numbers contradict exact starts of the text, the starts that loops and constraints tie to them move to the nearest
+/// values; a state that by itself contradicts loops or constraints is refused. From a list of samples, as
+/// `hamel simulate --out` writes it to a .json file, the last is taken. Matrices are written by rows; gamma[i][j][k] is
+/// γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk. A, γ, M and Γ refer to all velocities, named in `frame`;
+/// forces, bias and accel to the velocities that constraints leave, named in `velocities`. `undetermined` names the
+/// rows of `constraints` whose forces are not unique: their values are one of many solutions.
 ///
-/// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3,
+/// STATE.json may also be given by joints, for every command that takes a state: {"configuration": {"elbow": 0.3,
 /// "root_joint": {"position": […], "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […],
 /// "angular": […]}}, "param": {…}, "force": […]}, angles in rad, forces by joint or in the order of the rows; a planar
 /// joint has {"position": [x, y], "angle": a} and {"linear": [vx, vy], "angular": w}. Then `velocities` names
-/// each row by its joint, `bias` is Γ ξ ξ + ∂V, gravity in it, and `accel` is M⁻¹ (force − bias): force is
-/// all of the generalised force, friction in it. `force`, and a list {"samples": […]} of such states, are
-/// for `eval` alone.
+/// each row by its joint, `bias` is Γ ξ ξ + ∂V, including gravity, and `accel` is M⁻¹ (force − bias): force is the
+/// whole generalised force, including friction. `force`, and a list {"samples": […]} of such states, are for `eval`
+/// alone.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel eval heavy_top.eom
@@ -62,18 +62,18 @@ pub struct Arguments {
     /// State, by coordinates or by joints; `-` for standard input.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// Pose, twist, Jacobian and bias acceleration of a frame, or of a robot's link by its name in the URDF file; once
-    /// for each.
+    /// Print pose, twist, Jacobian and bias acceleration of a frame, or of a robot's link by its name in the URDF file;
+    /// once for each.
     #[arg(long, value_name = "NAME")]
     frame: Vec<String>,
-    /// Print γ and Γ of systems with more than 64 velocities, too.
+    /// Print γ and Γ even for systems with more than 64 velocities.
     #[arg(long)]
     tables: bool,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
-/// Evaluates and prints; where something has no value it is `null`, and the command fails.
+/// Evaluates and prints; values that do not exist are `null`, and make the command fail.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     if !arguments.frame.is_empty() {
@@ -110,8 +110,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The numbers of everything at a state and of frames, γ and Γ among them where they are wanted, and what has no value;
-/// `shown` is the text that messages give lines of.
+/// The values of all quantities at a state and of frames, with γ and Γ on request, and messages about missing values;
+/// `shown` is the text whose line numbers messages give.
 pub fn numbers(
     (generated, shown): (&Generated, &str),
     state: &State,
@@ -136,7 +136,7 @@ pub fn numbers(
         ("xi", Json::vector(&state.xi)),
     ];
     members.retain(|(name, _)| *name != "states" || !states.is_empty());
-    // Rows by joint, where there are any.
+    // Rows by joint, if there are joints.
     let known = joints(&generated.active, &[]);
     if !known.is_empty() {
         let rows = rows(&generated.active, &known);
@@ -154,7 +154,7 @@ pub fn numbers(
     Ok((Json::object(members), missing))
 }
 
-/// Forces, rates, energies, outputs.
+/// The values of forces, rates, energies and outputs.
 fn motion(
     generated: &Generated,
     (state, text): (&State, &str),
@@ -170,14 +170,14 @@ fn motion(
     let has_inertia = generated.model.has_inertia;
     let accel = match system.motion(x, xi, u) {
         Ok(accel) => Json::vector(&accel),
-        // That there is none was said before.
+        // That the function is missing has been reported before.
         Err(_) if generated.program.function(FunctionId::Accel).is_none() => Json::Null,
         Err(why) => {
             missing.push(format!("{why}: `accel` has no value"));
             Json::Null
         }
     };
-    // λ of constraints on the velocities and forces of drives; none where there are none.
+    // λ of constraints on the velocities and forces of drives; absent without multipliers.
     let constraint_force = match generated.program.function("constraint_force") {
         _ if !generated.model.has_multipliers() => None,
         Some(_) => Some(vector("constraint_force")?),
@@ -224,7 +224,7 @@ fn motion(
         ("outputs", Json::object(outputs)),
     ];
     if let Some(force) = constraint_force {
-        // The rows that say something, as they are written, and the velocities whose rates are given.
+        // The independent rows as they are written, and the velocities whose rates are prescribed.
         let model = &generated.model;
         let rows = model.constraints.iter().filter(|row| !row.redundant);
         let rows = rows.map(|row| row.label());

@@ -1,4 +1,4 @@
-//! Numbers at a state that is given by joints: what other programs call M, bias and acceleration.
+//! Evaluates states given by joints: M, bias and acceleration as other programs define them.
 
 use super::finite;
 use super::frames::{Named, asked, kinematics};
@@ -17,7 +17,7 @@ use hamel_codegen::generate::Generated;
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 
-/// All that is evaluated; nothing else is derived.
+/// The evaluated functions; no others are derived.
 const FUNCTIONS: [FunctionId; 8] = [
     FunctionId::Rate,
     FunctionId::Accel,
@@ -28,14 +28,13 @@ const FUNCTIONS: [FunctionId; 8] = [
     FunctionId::KineticEnergy,
     FunctionId::PotentialEnergy,
 ];
-/// Inputs reach a force when they miss it by no more than this part of it.
+/// Largest relative residual of a force that inputs produce.
 const REACHED: f64 = 1e-9;
 
-/// Evaluates and prints one state, or each of a list `samples`.
+/// Evaluates and prints one state, or each state of a list `samples`.
 ///
-/// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
-/// friction and other loads of the description are part of it, not added to it. Without a force
-/// the loads of the description act, with zero input.
+/// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force: it includes friction
+/// and other loads of the description. Without a force the loads of the description act, with zero input.
 pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> {
     let File { path, json } = at;
     let generated = source.derive_only(&FUNCTIONS, &asked(frames))?;
@@ -43,7 +42,7 @@ pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> 
         Some(Value::Array(list)) => (list.as_slice(), true),
         _ => (std::slice::from_ref(json), false),
     };
-    // What is said once about all of them.
+    // Entries that are common to all samples.
     let order = json.get(ORDER).filter(|_| several);
     let mut errors = Vec::new();
     let mut samples = Vec::new();
@@ -98,7 +97,7 @@ pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> 
     }
 }
 
-/// What is printed of a state, and what has no value there.
+/// The printed members of a state, and messages about missing values.
 type Members = (Vec<(&'static str, Json)>, Vec<String>);
 
 fn members(
@@ -115,7 +114,7 @@ fn members(
             .unwrap_or_default())
     };
     let n = model.n();
-    // What has no inertia has no M, and nothing that is made of it.
+    // Without inertia there is no M, nor anything derived from it.
     let with_inertia = |name: &str| match generated.model.has_inertia {
         true => call(name).map(Some),
         false => Ok(None),
@@ -155,7 +154,7 @@ fn members(
     ];
     members.extend(kinematics(generated, state, frames)?.map(|all| ("kinematics", all)));
     let mut missing = Vec::new();
-    // Where there is no such function, that was said before.
+    // A missing function has been reported before.
     let is_there = generated.program.function(FunctionId::Accel).is_some();
     if let (None, true, Some(mass)) = (&accel.value, is_there, &mass) {
         let why = singular::of(generated, &state.params, mass, text);
@@ -169,7 +168,7 @@ fn members(
     Ok((members, missing))
 }
 
-/// ξ̇ with the force that causes it.
+/// ξ̇ and the force that causes it.
 struct Accel {
     value: Option<Vec<f64>>,
     force: Vec<f64>,
@@ -200,7 +199,7 @@ fn accel(
             force: own.as_slice().to_vec(),
         });
     };
-    // Loads are affine in the inputs: those that make the force, if there are any.
+    // Loads are affine in the inputs: find the inputs that produce the force, if any.
     let wanted = DVector::from_column_slice(force);
     let missing = &wanted - &own;
     let columns: Vec<DVector<f64>> = (0..state.u.len())
@@ -223,7 +222,7 @@ fn accel(
     };
     let value = match inputs {
         Some(inputs) => accel(inputs.as_slice()),
-        // No motor makes this force: M ξ̇ = M ξ̇₀ + what is missing.
+        // No inputs produce this force: M ξ̇ = M ξ̇₀ + the missing force.
         None => accel(&state.u).and_then(|start| {
             let more = mass?.clone().cholesky()?.solve(&missing);
             Some((DVector::from_vec(start) + more).as_slice().to_vec())
@@ -235,7 +234,7 @@ fn accel(
     })
 }
 
-/// Entries of an n × n matrix.
+/// Checks that there are n × n entries.
 fn square(entries: Vec<f64>, n: usize) -> Result<Vec<f64>, Failure> {
     if entries.len() == n * n {
         Ok(entries)

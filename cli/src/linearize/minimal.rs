@@ -1,10 +1,10 @@
-//! The minimal form of a linearisation where constraints act: what they leave of displacements and velocities.
+//! Minimal form of a linearisation with constraints: the independent displacements and velocities.
 //!
-//! Rows B h = 0 of position, loops and coordinates that are given, leave the displacements h = T η. Rows
-//! g = B(x) ξ + b = 0 of any kind leave δξ with B δξ = −(∂g/∂h) h, that is δξ = T δζ + S η. So
-//! (h, δξ, δz) = L (η, δζ, δz), and the independent rows of A L and B are those of d/dt (η, δζ, δz), n_q displacements
-//! and d velocities: 2 d where all constraints are on position. Independent are those that the description names, and
-//! of the others those that elimination with the largest pivots at the state leaves.
+//! Rows B h = 0 of position constraints, loops and prescribed coordinates leave the displacements h = T η. Rows
+//! g = B(x) ξ + b = 0 of any kind leave δξ with B δξ = −(∂g/∂h) h, that is δξ = T δζ + S η. Hence
+//! (h, δξ, δz) = L (η, δζ, δz), and the independent rows of A L and B are those of d/dt (η, δζ, δz), with n_q
+//! displacements and d velocities: 2 d if all constraints act on position. The variables that the description names are
+//! independent; elimination with the largest pivots at the state chooses the others.
 
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate;
@@ -13,30 +13,30 @@ use hamel_codegen::generate::Generated;
 
 use crate::state::State;
 
-/// Smaller pivots, beside rows whose largest entry is 1, are those of rows that follow from others.
+/// Pivots below this, in rows whose largest entry is 1, belong to dependent rows.
 const REDUNDANT: f64 = 1e-8;
 
-/// Rows that are so many times smaller than the largest vanish at the state: what is left of them is rounding, and is not
-/// scaled to 1.
+/// Rows smaller than the largest by this factor vanish at the state: they consist of rounding errors and are not scaled
+/// to 1.
 const VANISHING: f64 = 1e-6;
 
-/// What constraints leave of (h, δξ, δz).
+/// The independent part of (h, δξ, δz) under constraints.
 pub struct Tangent {
-    /// Places of η, δζ and δz among h, δξ and δz.
+    /// Indices of η, δζ and δz in (h, δξ, δz).
     pub kept: Vec<usize>,
     /// L, by rows.
     pub lift: Vec<Vec<f64>>,
 }
 
-/// What constraints leave at a state; `None` where none are kept by multipliers or act on displacements. `frame` are
-/// the rows of A(x) that displacements are measured along.
+/// The independent part at a state; `None` if no constraint acts on displacements or is enforced by multipliers.
+/// `frame` is A(x) by rows, along whose columns displacements are measured.
 pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Option<Tangent> {
     let (full, active) = (&generated.model, &generated.active);
     let time = full.clock.map(|clock| clock.xi);
     let places: Vec<usize> = (0..full.n()).filter(|&i| Some(i) != time).collect();
     let (n, na) = (places.len(), active.n());
     let named = |place: &usize| full.independent.iter().any(|(named, _)| named == place);
-    // Velocities of the state, by their places in the full frame.
+    // Velocities of the state, by their indices in the full frame.
     let solved = |place: &usize| {
         generated
             .solved
@@ -58,7 +58,7 @@ pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Opti
     }
     let free = position.free(n);
     let lift_h = position.lift(n, &free);
-    // g and its slopes along h, then along η.
+    // g and its derivatives along h, then along η.
     let numbers = active.numbers(&state.params, &state.x, &state.xi, &state.u, &vec![0.0; na]);
     let first = active.points.first;
     let directions: Vec<Vec<f64>> = (0..n)
@@ -136,7 +136,7 @@ pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Opti
 }
 
 impl Tangent {
-    /// The independent rows of a matrix times L.
+    /// The independent rows of a matrix, times L.
     pub fn of_square(&self, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let kept: Vec<Vec<f64>> = self.kept.iter().map(|&row| rows[row].clone()).collect();
         self.of_columns(&kept)
@@ -155,22 +155,21 @@ impl Tangent {
         lifted.collect()
     }
 
-    /// The independent ones of a list.
+    /// The independent entries of a list.
     pub fn of_list<T: Clone>(&self, list: &[T]) -> Vec<T> {
         self.kept.iter().map(|&place| list[place].clone()).collect()
     }
 }
 
-/// Rows after elimination: 1 in the column of each pivot, 0 there in all other rows.
+/// Rows after elimination: each pivot is 1, and all other entries of its column are 0.
 struct Eliminated {
     rows: Vec<Vec<f64>>,
-    /// Rows and columns.
+    /// Rows and columns of the pivots.
     pivots: Vec<(usize, usize)>,
 }
 
 impl Eliminated {
-    /// Eliminates with the largest pivots among the first n columns; in those that are spared only where there is no
-    /// other.
+    /// Eliminates with the largest pivots among the first n columns, taking `spared` columns only if there is no other.
     fn new(mut rows: Vec<Vec<f64>>, n: usize, spared: &[usize]) -> Self {
         let size = |row: &Vec<f64>| row[..n].iter().fold(0.0_f64, |most, e| most.max(e.abs()));
         let largest = rows.iter().map(size).fold(0.0, f64::max);
@@ -219,7 +218,7 @@ impl Eliminated {
         (0..n).filter(|column| !pivot(column)).collect()
     }
 
-    /// What the entries of all columns are by those of the free ones, by rows.
+    /// The matrix that gives the entries of all columns from those of the free ones, by rows.
     fn lift(&self, n: usize, free: &[usize]) -> Vec<Vec<f64>> {
         let row = |place: usize| -> Vec<f64> {
             match self.pivots.iter().find(|(_, column)| *column == place) {

@@ -1,4 +1,4 @@
-//! `hamel linearize`: the motion near a state, with its eigenvalues.
+//! `hamel linearize`: linearises the motion at a state, with eigenvalues.
 
 mod minimal;
 
@@ -18,18 +18,18 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use std::path::PathBuf;
 
-/// A larger acceleration is no rounding of zero.
+/// Largest acceleration that counts as a rounding error of zero.
 const AT_REST: f64 = 1e-9;
 
 /// Prints the linearisation at a state: matrices A and B, and the eigenvalues of A.
 ///
 /// The state (h, δξ) has no redundant directions: h are displacements along the columns of A(x),
 /// δx = A(x) h, one for each velocity coordinate, and δξ the changes of the velocities. Then
-/// d/dt (h, δξ) = A (h, δξ) + B δu, and δy = C (h, δξ) + D δu of all outputs. Where the system is
-/// neither at rest nor in steady motion, the matrices hold for that instant alone.
+/// d/dt (h, δξ) = A (h, δξ) + B δu, and δy = C (h, δξ) + D δu for all outputs. If the system is
+/// neither at rest nor in steady motion, the matrices hold only at that instant.
 ///
-/// Loops and other constraints leave some displacements and velocities, which the matrices are about: those that
-/// `independent` names in the description, of the others those with the best-conditioned equations at the state.
+/// Under loops and other constraints the matrices refer to the independent displacements and velocities: those that the
+/// description names as `independent`, and then those with the best-conditioned equations at the state.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel linearize heavy_top.eom
@@ -42,10 +42,10 @@ pub struct Arguments {
     /// State, by coordinates or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// All displacements and velocities, also those that constraints determine by others.
+    /// Include all displacements and velocities, even those that constraints determine.
     #[arg(long)]
     full: bool,
-    /// How to write the matrices.
+    /// Output format of the matrices.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
     #[command(flatten)]
@@ -58,14 +58,14 @@ enum Format {
     Json,
 }
 
-/// Parts of eigenvalues that are smaller, relative to the largest entry of A, are shown as zero.
+/// Real or imaginary parts below this, relative to the largest entry of A, are shown as zero.
 const ROUNDING: f64 = 1e-14;
 
-/// Eigenvalues that are smaller, relative to the largest entry of A, are zeros to rounding: of a zero that is a double root of
-/// the characteristic polynomial, rounding leaves the root of what it is.
+/// Eigenvalues below this, relative to the largest entry of A, are zero to rounding: a rounding error ε moves a double
+/// zero of the characteristic polynomial by √ε.
 const ZERO: f64 = 1e-7;
 
-/// The numbers of a linearisation.
+/// Numbers of a linearisation.
 #[derive(Clone, Debug)]
 pub struct Linear {
     /// Name of the system.
@@ -84,9 +84,9 @@ pub struct Linear {
     pub c: Vec<Vec<f64>>,
     /// D, by rows.
     pub d: Vec<Vec<f64>>,
-    /// How many displacements and velocities constraints give by these; none in the full form.
+    /// Number of displacements and velocities that constraints determine from these; 0 in the full form.
     pub given: usize,
-    /// Real and imaginary parts, the fastest growing first; `None` where they were not found.
+    /// Real and imaginary parts, the fastest growing first; `None` if they were not found.
     pub eigenvalues: Option<Vec<(f64, f64)>>,
     /// Whether there are states of first order.
     pub with_states: bool,
@@ -94,7 +94,7 @@ pub struct Linear {
     pub xi_dot: Vec<f64>,
 }
 
-/// Linearises and prints.
+/// Linearises and prints the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_linearized()?;
@@ -107,11 +107,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     complete(&linear)
 }
 
-/// The linearisation at a state, of all displacements and velocities where it is `full`; `shown` is the text that
-/// messages give lines of.
+/// The linearisation at a state, of all displacements and velocities if `full`; `shown` is the text whose line numbers
+/// messages give.
 ///
 /// # Errors
-/// Where the motion has no value at the state.
+/// If the motion has no value at the state.
 pub fn linear(
     generated: &Generated,
     state: &State,
@@ -132,7 +132,7 @@ pub fn linear(
         .iter()
         .flat_map(names::group)
         .collect();
-    // Displacements along the full frame, changes of the velocities that constraints leave.
+    // Displacements along the full frame, and changes of the velocities that constraints leave.
     let mut frame = names::velocities(&generated.model);
     if let Some(clock) = generated.model.clock {
         // The time is not displaced.
@@ -201,7 +201,7 @@ pub fn linear(
     Ok(linear)
 }
 
-/// The failure that ends the command where eigenvalues are missing; A and B are printed before.
+/// Fails if eigenvalues are missing, after A and B have been printed.
 fn complete(linear: &Linear) -> Result<(), Failure> {
     match linear.eigenvalues {
         Some(_) => Ok(()),
@@ -260,7 +260,7 @@ fn text(linear: &Linear) -> String {
     let mut zeros = zeroes(&zeros, ROUNDING * size);
     for &&(re, im) in &others {
         let re = clean(re);
-        // Where they stand in the order.
+        // Zeros stand at their place in the order.
         if re < 0.0 {
             text.push_str(&std::mem::take(&mut zeros));
         }
@@ -282,7 +282,7 @@ fn text(linear: &Linear) -> String {
     text
 }
 
-/// All eigenvalues that are zero in one line, with how far rounding leaves them from it; empty where there are none.
+/// All zero eigenvalues on one line, with the largest deviation that rounding left; empty if there are none.
 fn zeroes(zeros: &[&(f64, f64)], rounding: f64) -> String {
     let off = zeros.iter().map(|(re, im)| re.hypot(*im));
     let off = off.fold(0.0, f64::max);
@@ -297,7 +297,7 @@ fn zeroes(zeros: &[&(f64, f64)], rounding: f64) -> String {
     }
 }
 
-/// A matrix with its name; one of zeros alone in one line.
+/// A matrix with its name; a zero matrix takes one line.
 fn matrix(name: &str, rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
     if values.iter().flatten().all(|&value| value == 0.0) {
         return format!("\n\x1b[1m{name}\x1b[0m = 0\n");
@@ -342,8 +342,7 @@ fn json(linear: &Linear) -> Json {
 mod tests {
     use super::*;
 
-    /// What is known is printed where the eigenvalues are not, in both formats, and the command fails with the
-    /// reason.
+    /// Without eigenvalues, both formats print the rest of the result, and the command fails with the reason.
     #[test]
     fn matrices_stand_without_their_eigenvalues() {
         let mut linear = Linear {

@@ -1,18 +1,18 @@
-//! Functions of a program with its parameters set, as machine code where this machine has any.
+//! Functions of a program with their parameters set, as machine code if the machine supports it.
 
 use super::numbers::Numbers;
 use crate::failure::Failure;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_native::{Compiled, Constants};
 
-/// Functions that were compiled together, for given parameters.
+/// Functions compiled together, with their parameters.
 #[derive(Clone, Debug)]
 pub struct Functions {
     compiled: Compiled,
     constants: Constants,
 }
 
-/// Those with these names that the program has.
+/// Compiles the functions of the program that have these names.
 pub fn compiled(program: &Program, names: &[&str]) -> Result<Compiled, Failure> {
     let all = names.iter().filter_map(|name| program.function(name));
     let all: Vec<&Function> = all.collect();
@@ -24,7 +24,7 @@ pub fn compiled(program: &Program, names: &[&str]) -> Result<Compiled, Failure> 
     })
 }
 
-/// Where a function is.
+/// The place of a function, if it was compiled.
 pub fn place(compiled: &Compiled, name: &str) -> Option<Place> {
     let index = compiled.place(name)?;
     let tape = compiled.tapes().functions.get(index)?;
@@ -34,28 +34,28 @@ pub fn place(compiled: &Compiled, name: &str) -> Option<Place> {
     })
 }
 
-/// One of them.
+/// The place of one compiled function.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     index: usize,
-    /// How many numbers its result has.
+    /// Number of entries of its result.
     length: usize,
 }
 
 impl Place {
-    /// Its place among the tapes.
+    /// Index among the tapes.
     pub fn index(self) -> usize {
         self.index
     }
 
-    /// How many numbers its result has.
+    /// Number of entries of its result.
     pub fn length(self) -> usize {
         self.length
     }
 }
 
 impl Functions {
-    /// The functions with these parameters.
+    /// Sets the parameters of compiled functions.
     pub fn new(compiled: &Compiled, params: &[f64]) -> Self {
         Functions {
             constants: compiled.constants(params),
@@ -76,7 +76,7 @@ impl Functions {
         self.compiled.singular(&self.constants).is_some()
     }
 
-    /// The result for x, ξ and z, u, ξ̇ and p; what it means that a pivot is not positive.
+    /// The result for x, ξ and z, u, ξ̇ and p, or the cause of a pivot that is not positive.
     pub fn call(&self, place: Place, arguments: [&[f64]; 5]) -> Result<Numbers, Cause> {
         let mut out = Numbers::filled(f64::NAN, place.length);
         let constants = &self.constants;
@@ -85,7 +85,7 @@ impl Functions {
         Ok(out)
     }
 
-    /// The result of a function that is one number; NaN where it has none.
+    /// The result of a function with one entry; NaN if it has no value.
     pub fn number(&self, place: Place, arguments: [&[f64]; 5]) -> f64 {
         let mut out = [f64::NAN];
         if place.length == 1 {

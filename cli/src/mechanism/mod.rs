@@ -1,4 +1,4 @@
-//! A described system that the integrators can run: its functions become machine code at once.
+//! A described system as the integrators run it, with its functions compiled to machine code.
 
 mod functions;
 mod momenta;
@@ -29,41 +29,41 @@ use std::sync::Arc;
 pub use varied::{End, Varied};
 pub use whole::{Glance, Whole};
 
-/// What runs of a description have in common, whatever their parameters: its functions, compiled.
+/// The compiled functions of a description, shared by its runs for all parameters.
 pub struct Mechanism {
     compiled: Compiled,
-    /// Steps of methods that were compiled.
+    /// Compiled steps of methods.
     steps: steps::Steps,
     blocks: Vec<Block>,
     chart: usize,
     rate: Place,
     chart_rate: Place,
-    /// None where M is not positive definite.
+    /// `None` if M is not positive definite.
     accel: Option<Place>,
     correction: Place,
-    /// The place in x of the time that the description declares.
+    /// Index in x of the time that the description declares.
     clock: Option<usize>,
-    /// Whether the correction leads back to constraints that no chart keeps.
+    /// Whether the correction restores constraints that no chart satisfies.
     embedded: bool,
     project_position: Option<Place>,
     project_velocity: Option<Place>,
     constraint: Place,
-    /// None where nothing has inertia.
+    /// `None` if nothing has inertia.
     momentum: Option<Place>,
     force: Place,
-    /// None where nothing has inertia.
+    /// `None` if nothing has inertia.
     kinetic: Option<Place>,
     potential: Place,
     outputs: Vec<Output>,
     invariants: Vec<Output>,
     momenta: Momenta,
     velocity_labels: Vec<String>,
-    /// What is said where constraints depend on one another.
+    /// The message for dependent constraints.
     dependent: String,
-    /// What constraints were divided by.
+    /// The divisors of solved constraints.
     divisors: Option<Divisors>,
     constrained: bool,
-    /// Whether energy changes otherwise than by loads: with the time, or by drives.
+    /// Whether energy changes by other causes than loads: with the time, or by drives.
     driven: bool,
 }
 
@@ -74,23 +74,23 @@ pub struct Instance {
     rotors: Vec<Rotor<f64>>,
     start: (Numbers, Numbers),
     inputs: Numbers,
-    /// What inputs are, where they do not keep these values.
+    /// Inputs that vary during a run, if any.
     given: Option<Inputs>,
-    /// Where they jump next.
+    /// The next time at which they jump.
     before: Cell<f64>,
     evaluations: Cell<u64>,
     constant_singular: bool,
-    /// What is said of a constraint that was divided by 0.
+    /// The message about a constraint that was divided by 0.
     divided: Option<String>,
-    /// What had no value last.
+    /// The function that last had no value.
     failed: RefCell<Option<Failed>>,
 }
 
 /// An output of the description, or an invariant.
 pub struct Output {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its shape.
+    /// Shape.
     pub shape: Shape,
     function: Place,
     accelerated: bool,
@@ -101,7 +101,7 @@ impl Mechanism {
     pub fn new(generated: &Generated, text: &str) -> Result<Self, Failure> {
         let program = &generated.program;
         let model = &generated.model;
-        // The energy is watched anyway.
+        // The energy is monitored in any case.
         let invariants = model.invariants.iter().map(|claim| &claim.name);
         let invariants: Vec<&String> = invariants.filter(|name| *name != "energy").collect();
         let outputs: Vec<&String> = model.outputs.iter().map(|(name, _)| name).collect();
@@ -152,7 +152,7 @@ impl Mechanism {
         })
     }
 
-    /// Whether this machine rounds a product and a sum once.
+    /// Whether this machine has a fused multiply-add.
     pub fn is_fused(&self) -> bool {
         self.compiled.is_fused()
     }
@@ -185,17 +185,17 @@ impl Instance {
         })
     }
 
-    /// How often ξ̇, a kick or ṗ was evaluated.
+    /// Number of evaluations of ξ̇, of kicks or of ṗ.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
     }
 
-    /// The entries of ξ as messages call them.
+    /// Names of the entries of ξ in messages.
     pub fn velocity_labels(&self) -> &[String] {
         &self.of.velocity_labels
     }
 
-    /// What is said where constraints depend on one another.
+    /// The message for dependent constraints.
     pub fn dependent(&self) -> &str {
         &self.of.dependent
     }
@@ -205,7 +205,7 @@ impl Instance {
         self.constant_singular
     }
 
-    /// What is said of a constraint that was solved by dividing by 0, where one was.
+    /// The message about a constraint that was solved by dividing by 0, if any.
     pub fn divided(&self) -> Option<&str> {
         self.divided.as_deref()
     }
@@ -215,12 +215,12 @@ impl Instance {
         self.of.constrained
     }
 
-    /// Whether energy changes otherwise than by loads: with the time, or by drives.
+    /// Whether energy changes by other causes than loads: with the time, or by drives.
     pub fn is_driven(&self) -> bool {
         self.of.driven
     }
 
-    /// What had no value last, where something had none.
+    /// The function that last had no value, if any.
     pub fn failed(&self) -> Option<Failed> {
         self.failed.borrow().clone()
     }
@@ -230,7 +230,7 @@ impl Instance {
         singular(cause)
     }
 
-    /// The value of a function that has one everywhere.
+    /// The value of a function that is defined everywhere.
     fn value(&self, function: Place, x: &[f64], xi: &[f64], u: &[f64]) -> Numbers {
         let value = self.functions.call(function, [x, xi, u, &[], &[]]);
         value.unwrap_or_else(|_| Numbers::filled(f64::NAN, function.length()))
@@ -248,12 +248,12 @@ impl Instance {
         self.evaluations.set(self.evaluations.get() + 1);
     }
 
-    /// The same with inputs that change.
+    /// The same instance with varying inputs.
     pub fn with(self, given: Option<Inputs>) -> Self {
         Instance { given, ..self }
     }
 
-    /// What acts from outside, where inputs do not keep their values.
+    /// The varying inputs, if any.
     pub fn given(&self) -> Option<&Inputs> {
         self.given.as_ref()
     }
@@ -263,13 +263,13 @@ impl Instance {
         self.given.as_ref().map_or(&[], Inputs::jumps)
     }
 
-    /// From now on a run goes from this time to the next jump of its inputs, where they are what they are before it.
+    /// Tells the inputs that a run proceeds from this time to their next jump, before which they keep their values.
     pub fn go_from(&self, t: f64) {
         let next = self.jumps().iter().find(|jump| **jump > t);
         self.before.set(next.copied().unwrap_or(f64::INFINITY));
     }
 
-    /// u.
+    /// The inputs u.
     pub fn inputs(&self, t: f64, x: &[f64], xi: &[f64]) -> Numbers {
         let kept = self.inputs.clone();
         let t = match t >= self.before.get() {
@@ -286,7 +286,7 @@ impl Instance {
         }
     }
 
-    /// p = M ξ; no number where nothing has inertia.
+    /// p = M ξ; NaN if nothing has inertia.
     pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Numbers {
         match self.of.momentum {
             Some(momentum) => self.value(momentum, x, xi, &[]),
@@ -310,13 +310,13 @@ impl Instance {
         &self.of.outputs
     }
 
-    /// What the description claims to be constant, but the energy.
+    /// The quantities that the description claims to be constant, except the energy.
     pub fn invariants(&self) -> &[Output] {
         &self.of.invariants
     }
 
-    /// The value of an output, matrices by rows; of accelerations, those of the forward dynamics,
-    /// NaN where they have no value.
+    /// The value of an output, matrices by rows; accelerations are those of the forward dynamics, NaN if they do not
+    /// exist.
     pub fn output(&self, output: &Output, t: f64, x: &[f64], xi: &[f64]) -> Numbers {
         let u = self.inputs(t, x, xi);
         let mut xi_dot = Numbers::filled(0.0, 0);
@@ -335,7 +335,7 @@ impl Instance {
     }
 }
 
-/// The functions that every run takes.
+/// The functions that every run needs.
 const SYSTEM: &[&str] = &[
     "rate",
     "chart_rate",
@@ -350,12 +350,12 @@ const SYSTEM: &[&str] = &[
     "potential_energy",
 ];
 
-/// What it means for a run that a pivot is not positive.
+/// Converts the cause of a failed pivot to the error of a run.
 fn singular(cause: Cause) -> Singular {
     match cause {
         Cause::Kinematics(pivot) => Singular::Kinematics { pivot },
         Cause::Constraint(row) => Singular::Constraints { row },
-        // The velocity is named where the failure is told, with its line.
+        // The message names the velocity and its line.
         Cause::Velocity(_) | Cause::Mass => Singular::Mass,
     }
 }
@@ -383,7 +383,7 @@ pub fn constant_singular(program: &Program, params: &[f64]) -> bool {
         .any(|&pivot| !(pivot.is_finite() && pivot > 0.0))
 }
 
-/// The largest size of an entry; a NaN stays.
+/// The largest absolute value of the entries; NaN if there is one.
 fn largest(entries: &[f64]) -> f64 {
     let sizes = entries.iter().map(|entry| entry.abs());
     sizes.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })

@@ -1,5 +1,4 @@
-//! The traits by which methods step momenta; a system that lacks their functions is refused before a
-//! run begins.
+//! The traits for methods that step momenta; a system without their functions is refused before a run begins.
 
 use super::functions::place;
 use super::{Functions, Instance, Numbers, Place};
@@ -16,7 +15,7 @@ use hamel_native::Compiled;
 #[derive(Default)]
 pub struct Momenta {
     forms: Vec<Inertia>,
-    /// Whether a kick is ever more than zeros.
+    /// Whether kicks are ever nonzero.
     has_forces: bool,
     inertia: Option<Place>,
     centre: Option<Place>,
@@ -28,7 +27,7 @@ pub struct Momenta {
     velocity: Option<Place>,
 }
 
-/// Their names.
+/// Names of these functions.
 pub const NAMES: &[&str] = &[
     "rotor_inertia",
     "centre",
@@ -41,7 +40,7 @@ pub const NAMES: &[&str] = &[
 ];
 
 impl Momenta {
-    /// Those that a program has.
+    /// Finds the functions that a program has.
     pub fn new(program: &Program, compiled: &Compiled) -> Self {
         let known = |name: &str| place(compiled, name);
         let split = program.structure.split.as_ref().ok();
@@ -61,7 +60,7 @@ impl Momenta {
         }
     }
 
-    /// The rotors with the parameters of functions.
+    /// The rotors for the parameters of the functions.
     pub fn rotors(&self, functions: &Functions) -> Result<Vec<Rotor<f64>>, Failure> {
         let Some(inertia) = self.inertia else {
             return Ok(Vec::new());
@@ -94,14 +93,14 @@ fn rotor(inertia: Inertia, numbers: &[f64]) -> Result<Rotor<f64>, Failure> {
 }
 
 impl Instance {
-    /// The value of a function; NaN where there is none, which ends a run with an error.
+    /// The value of a function; NaN, which ends a run with an error, if there is none.
     fn found(&self, function: Option<Place>, arguments: [&[f64]; 5], length: usize) -> Numbers {
         let value = function.map(|function| self.functions.call(function, arguments));
         let value = value.and_then(Result::ok);
         value.unwrap_or_else(|| Numbers::filled(f64::NAN, length))
     }
 
-    /// The structure with the symmetry that the inertias have for these parameters.
+    /// The structure, including the symmetries of the inertias for these parameters.
     pub fn structure(&self, program: &Program) -> Structure {
         let mut structure = program.structure.clone();
         if let Ok(splitting) = &mut structure.split {
@@ -119,7 +118,7 @@ impl Instance {
         structure
     }
 
-    /// The structure by which a method is chosen: a controller of another program may depend on velocities.
+    /// The structure for choosing a method: an external controller is assumed to depend on velocities.
     pub fn cautious(&self, program: &Program) -> Structure {
         let mut structure = self.structure(program);
         if structure.split.is_ok() && self.given().is_some_and(Inputs::is_law) {
@@ -129,7 +128,7 @@ impl Instance {
     }
 }
 
-/// Forces depend on velocities by something that acts from outside, unless nothing does.
+/// Marks forces as dependent on velocities because of `what`, unless no force acts.
 fn moved(structure: &mut Structure, what: String) {
     let reason = Reason::Velocities { what };
     match &mut structure.split {
@@ -143,7 +142,7 @@ fn moved(structure: &mut Structure, what: String) {
 impl Split for Instance {
     type Rotors = Vec<Rotor<f64>>;
 
-    // Known at run time only; the method `free` asks the structure.
+    // Known only at run time; the method `free` checks the structure.
     const FREE: bool = false;
 
     fn rotors(&self) -> Vec<Rotor<f64>> {

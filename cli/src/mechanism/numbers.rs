@@ -1,22 +1,22 @@
-//! Lists of numbers whose length is known at run time: short ones do without an allocation.
+//! Lists of numbers whose length is known at run time; short ones need no allocation.
 
 use hamel::Store;
 use std::ops::Deref;
 
-/// So many numbers stand in the list itself: the coordinates of a free body, a robot's arm.
+/// Largest length of a list without allocation: the coordinates of a free body or of a robot's arm.
 const SHORT: usize = 12;
 
 /// A list of numbers.
 #[derive(Clone, Debug)]
 pub enum Numbers {
-    /// The first so many of these.
+    /// A length, and an array that begins with the numbers.
     Short(usize, [f64; SHORT]),
-    /// Any number of them.
+    /// A list of any length.
     Long(Vec<f64>),
 }
 
 impl Numbers {
-    /// So many times a number.
+    /// Repeats a number `length` times.
     #[inline]
     pub fn filled(number: f64, length: usize) -> Self {
         match length <= SHORT {

@@ -1,4 +1,4 @@
-//! A step of a method as machine code: the method is run once on numbers that write down what it does with them.
+//! Steps of methods as machine code: the method runs once on numbers that record its operations.
 
 use super::Mechanism;
 use super::taped::{Places, Taped, Tapes};
@@ -10,28 +10,28 @@ use hamel_native::{Compiled, Paired, Traced, inlined, traced};
 use std::cell::Cell;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Steps of so many statements and more are not worth a compilation.
+/// Number of statements from which a step is not worth compiling.
 const MOST: usize = 20_000;
-/// Lengths of steps that are kept.
+/// Number of compiled steps that are kept.
 const KEPT: usize = 64;
 
-/// A method's step of one length as machine code.
+/// A step of a method with a fixed length, as machine code.
 pub struct Code {
     method: General,
     /// The length of the step.
     pub h: f64,
-    /// None where there can be none.
+    /// `None` if it cannot be compiled.
     pub compiled: Option<Compiled>,
-    /// The same for two states at once, made when it is first asked for.
+    /// The step for two states at once, compiled on first use.
     paired: OnceLock<Option<Paired>>,
-    /// The same with T, V and the entries of φ at its end, made when it is first asked for.
+    /// The step followed by T, V and the entries of φ at its end, compiled on first use.
     watched: OnceLock<Option<Compiled>>,
-    /// How often ξ̇ is evaluated in it.
+    /// Number of evaluations of ξ̇ in the step.
     pub evaluations: u64,
 }
 
 impl Code {
-    /// The same for two states at once, where there is code for one.
+    /// The step for two states at once, if the single step was compiled.
     pub fn paired(&self) -> Option<&Paired> {
         let make = || self.compiled.as_ref().and_then(Paired::new);
         self.paired.get_or_init(make).as_ref()
@@ -39,7 +39,7 @@ impl Code {
 }
 
 impl Mechanism {
-    /// A step of a method as machine code, made when it is first asked for.
+    /// A step of a method as machine code, compiled on first use.
     pub fn step(&self, method: General, h: f64) -> Arc<Code> {
         let mut known = self.steps.0.lock().unwrap_or_else(PoisonError::into_inner);
         let same = |code: &&Arc<Code>| code.method == method && code.h == h;
@@ -62,7 +62,7 @@ impl Mechanism {
         code
     }
 
-    /// Such a step with T, V and the entries of φ behind the state at its end.
+    /// The step with T, V and the entries of φ appended to the state at its end.
     pub fn watched<'c>(&self, code: &'c Code) -> Option<&'c Compiled> {
         let make = || {
             let (tape, _) = self.tape(&code.method, code.h, true)?;
@@ -71,22 +71,22 @@ impl Mechanism {
         code.watched.get_or_init(make).as_ref()
     }
 
-    /// A tape as machine code.
+    /// Compiles a tape to machine code.
     fn alone(&self, tape: Tape) -> Option<Compiled> {
         let tapes = hamel_native::Tapes {
             functions: vec![tape],
             ..self.compiled.tapes().clone()
         };
         let compiled = Compiled::of(tapes);
-        // Step by step the method itself is as fast.
+        // The interpreted step is no faster than the method itself.
         compiled.interpreted_because().is_none().then_some(compiled)
     }
 
-    /// What a step does, and how often it evaluates ξ̇. Where the description declares a time, its value at the end is given,
-    /// in the place of accelerations, so that a run does not add up the lengths of steps. With T, V and φ at its end where it is
-    /// `watched`.
+    /// Records a step, and counts its evaluations of ξ̇. If the description declares a time, its value at the end is an
+    /// argument, in place of accelerations, so that a run does not accumulate the lengths of steps. With `watched`, T,
+    /// V and φ at the end are appended.
     fn tape(&self, method: &General, h: f64, watched: bool) -> Option<(Tape, u64)> {
-        // What follows is for machine code alone, which some builds never have.
+        // Only machine code is of use here, which some builds do not have.
         if cfg!(not(feature = "machine")) {
             return None;
         }
@@ -101,7 +101,7 @@ impl Mechanism {
         );
         let accel = self.accel.filter(|_| explicit)?;
         let tapes = self.compiled.tapes();
-        // Before it is written: a step has a few evaluations.
+        // Check the size before recording: a step has a few evaluations.
         if tapes.functions.get(accel.index())?.steps.len() > MOST {
             return None;
         }
@@ -123,7 +123,7 @@ impl Mechanism {
                 constraint: self.constraint.index(),
                 kinetic: self.kinetic?.index(),
                 potential: self.potential.index(),
-                // A step of a method projects nothing: that is done behind it.
+                // A step of a method does not project: projections follow it.
                 embedded: false,
                 project_position: None,
                 project_velocity: None,
@@ -168,7 +168,7 @@ impl Mechanism {
     }
 }
 
-/// A mechanism whose numbers write down what is done with them.
+/// A mechanism whose numbers record the operations on them.
 struct Written<'a> {
     of: &'a Mechanism,
     places: Places,
@@ -191,6 +191,6 @@ impl Tapes for Written<'_> {
     }
 }
 
-/// Steps that were made of a mechanism.
+/// The compiled steps of a mechanism.
 #[derive(Default)]
 pub struct Steps(Mutex<Vec<Arc<Code>>>);

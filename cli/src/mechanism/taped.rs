@@ -1,15 +1,15 @@
-//! A mechanism in numbers of another kind: its functions are tapes, and who has the numbers says what a tape makes of them.
+//! A mechanism over another number type: its functions are tapes, which the implementor of [`Tapes`] evaluates.
 
 use super::singular;
 use hamel::{Block, Scalar, Singular, System};
 use hamel_codegen::program::Cause;
 
-/// Where functions stand among the tapes, and the shape of what they take.
+/// Indices of functions among the tapes, and the shapes of their arguments.
 #[derive(Clone, Debug)]
 pub struct Places {
     pub blocks: Vec<Block>,
     pub chart: usize,
-    /// Of x, ξ with z, and u.
+    /// Numbers of entries of x, of ξ with z, and of u.
     pub lengths: [usize; 3],
     pub rate: usize,
     pub chart_rate: usize,
@@ -18,21 +18,21 @@ pub struct Places {
     pub constraint: usize,
     pub kinetic: usize,
     pub potential: usize,
-    /// Whether the correction leads back to constraints that no chart keeps.
+    /// Whether the correction restores constraints that no chart satisfies.
     pub embedded: bool,
     pub project_position: Option<usize>,
     pub project_velocity: Option<usize>,
 }
 
-/// Tapes in numbers of a kind.
+/// Tapes evaluated in a number type.
 pub trait Tapes {
-    /// The kind.
+    /// The number type.
     type Number: Scalar;
 
-    /// Where they are.
+    /// The indices of the functions.
     fn places(&self) -> &Places;
 
-    /// The result of one for x, ξ and u.
+    /// The result of a function for x, ξ and u.
     fn call(
         &self,
         function: usize,
@@ -40,11 +40,11 @@ pub trait Tapes {
     ) -> Result<Vec<Self::Number>, Cause>;
 }
 
-/// The system that tapes are.
+/// A system made of tapes.
 pub struct Taped<T>(pub T);
 
 impl<T: Tapes> Taped<T> {
-    /// The value of a function with so many entries; where it has none they are NaN.
+    /// The value of a function with `length` entries; NaN if it has no value.
     fn value(
         &self,
         function: usize,

@@ -1,5 +1,5 @@
-//! Steps with their slopes: functions as tapes that are evaluated in dual numbers, as many directions at a time as such a
-//! number has.
+//! Steps with their derivatives: tapes evaluated in dual numbers, with as many directions at a time as such a number
+//! has.
 
 use super::block;
 use super::taped::{Places, Taped, Tapes};
@@ -10,10 +10,10 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::{Cause, Function};
 use hamel_native::{Compiled, Constants, evaluate, evaluate_in};
 
-/// Directions of a number.
+/// Number of directions of a dual number.
 const WIDTH: usize = 8;
 
-/// The functions that a step takes.
+/// The functions that a step needs.
 const NEEDED: &[&str] = &[
     "rate",
     "chart_rate",
@@ -28,10 +28,10 @@ const NEEDED: &[&str] = &[
     "project_velocity",
 ];
 
-/// A number with its slopes.
+/// A number with its derivatives.
 type Number = Dual<f64, WIDTH>;
 
-/// A system whose steps have slopes.
+/// A system whose steps have derivatives.
 pub struct Varied {
     compiled: Compiled,
     params: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct Varied {
     coframe: usize,
 }
 
-/// x and ξ at the end of a step, and its slopes by rows of (η, ξ, z) and columns of (η, ξ, z, u).
+/// x and ξ at the end of a step, and its derivatives by rows of (η, ξ, z) and columns of (η, ξ, z, u).
 pub type End = (Vec<f64>, Vec<f64>, Vec<Vec<f64>>);
 
 impl Varied {
@@ -95,10 +95,10 @@ impl Varied {
         &self.params
     }
 
-    /// A step of length h from a state at inputs that are held, with its slopes.
+    /// A step of length h from a state with inputs held constant, with its derivatives.
     ///
     /// # Errors
-    /// Those of the step.
+    /// The errors of the step.
     pub fn step(
         &self,
         method: &General,
@@ -112,7 +112,7 @@ impl Varied {
         let columns = rows + inputs;
         let mut slopes = vec![vec![0.0; columns]; rows];
         let (mut end_x, mut end_xi) = (x.to_vec(), xi.to_vec());
-        // One pass even where nothing can vary.
+        // At least one pass, even without directions.
         for first in (0..columns.max(1)).step_by(WIDTH) {
             let along = |value: f64, column: usize| Number {
                 value,
@@ -147,13 +147,13 @@ impl Varied {
         Ok((end_x, end_xi, slopes))
     }
 
-    /// A matrix of so many rows that depends on x.
+    /// A matrix with `rows` rows that depends on x.
     fn matrix(&self, function: usize, x: &[f64], rows: usize) -> Vec<Vec<f64>> {
         let tapes = self.compiled.tapes();
         let mut flat = vec![f64::NAN; tapes.functions[function].outputs.len()];
         let arguments = [x, &[], &[], &[], &[]];
         let constants = self.constants.known();
-        // It has no pivots but those of A, which are those of its own columns.
+        // Its only pivots are those of A.
         let tape = &tapes.functions[function];
         if evaluate(tape, false, constants, arguments, &mut flat).is_err() {
             flat.fill(f64::NAN);

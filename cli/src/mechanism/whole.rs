@@ -1,4 +1,4 @@
-//! Runs by whole steps as machine code: step by step, many in one call, or those of two systems side by side.
+//! Runs steps as machine code: one by one, many in one call, or those of two systems together.
 
 use super::steps::Code;
 use super::{Instance, largest};
@@ -9,15 +9,15 @@ use hamel_native::{Compiled, Constants};
 use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 
-/// Fewer steps of one length are not worth a compilation.
+/// Least number of equal steps that is worth a compilation.
 const FEWEST: f64 = 1000.0;
 
-/// Code with the parameters of one system.
+/// A compiled step with the parameters of one system.
 struct Ready {
     code: Arc<Code>,
     compiled: Compiled,
     constants: Constants,
-    /// Steps with energies at their ends.
+    /// The step with energies at its end.
     watched: OnceCell<Option<(Compiled, Constants)>>,
 }
 
@@ -32,19 +32,19 @@ pub struct Glance {
     pub constraint: f64,
 }
 
-/// A method whose steps are machine code where all of them are of one length and inputs are constant.
+/// A method that runs as machine code if all steps have the same length and inputs are constant.
 pub struct Whole<'a> {
     stepper: &'a Stepper,
-    /// The code for steps of the length of the first.
+    /// The code for the length of the first step.
     code: OnceCell<Option<Ready>>,
-    /// Room for x and ξ at its end.
+    /// Buffer for x and ξ at the end of a step.
     end: RefCell<Vec<f64>>,
     worthwhile: bool,
     length: f64,
 }
 
 impl<'a> Whole<'a> {
-    /// A method for steps of this length over a time.
+    /// A method for steps of this length over a total time.
     pub fn new(system: &Instance, stepper: &'a Stepper, length: f64, time: f64) -> Self {
         Whole {
             stepper,
@@ -76,9 +76,9 @@ impl<'a> Whole<'a> {
         ready.as_ref().filter(|ready| ready.code.h == h)
     }
 
-    /// The code of all steps to a time, and what they are, where they can be taken at once.
+    /// The code of all steps to a time and their grid, if they can be taken at once.
     fn at_once(&self, system: &Instance, from: f64, until: f64) -> Option<(&Ready, Grid)> {
-        // What a projection moves after a step, or an input that changes, is not in the code.
+        // The code contains neither projections after a step nor varying inputs.
         let of = &system.of;
         if of.embedded || of.project_position.is_some() || of.project_velocity.is_some() {
             return None;
@@ -87,8 +87,8 @@ impl<'a> Whole<'a> {
         Some((self.code(system, grid.step())?, grid))
     }
 
-    /// Takes all steps to a time at once, where nobody looks at what is between and all of them are machine code; whether
-    /// it did. Where one of them fails the state stays as it was, and steps one by one say why.
+    /// Takes all steps to a time at once if they are compiled and no intermediate state is observed; returns whether it
+    /// did. If a step fails, the state is unchanged, and single steps report the reason.
     pub fn run(&self, system: &Instance, state: &mut State<Instance>, until: f64) -> bool {
         let Some((ready, grid)) = self.at_once(system, state.t, until) else {
             return false;
@@ -115,8 +115,9 @@ impl<'a> Whole<'a> {
         ready.is_some_and(|(ready, _)| ready.watched(system).is_some())
     }
 
-    /// Takes so many steps of a grid from one of its times on, with the clock of its start, where nobody looks at more than
-    /// energies and constraints at their ends; how many there were. The next one, if one is missing, has no end by code.
+    /// Takes `count` steps of a grid from one of its times on, with the clock of its start, while only energies and
+    /// constraints at their ends are observed; returns the number of steps taken. If it is smaller, the code failed at
+    /// the next step.
     pub fn glide(
         &self,
         system: &Instance,
@@ -150,8 +151,8 @@ impl<'a> Whole<'a> {
         done
     }
 
-    /// The same for two systems of one mechanism, by code that takes both of their steps at once. Where a step of either
-    /// fails, both states stay as they were.
+    /// Like [`run`](Self::run) for two systems of one mechanism, by code that takes both of their steps at once. If a
+    /// step of either fails, both states are unchanged.
     pub fn run_both(
         of: &[Whole; 2],
         systems: [&Instance; 2],
@@ -192,7 +193,7 @@ impl<'a> Whole<'a> {
     }
 }
 
-/// The time of the description at a time of a run; any number where it declares none.
+/// The description's time at a time of a run; an arbitrary number if it declares none.
 fn at(clock: Option<Clock<f64>>, t: f64) -> f64 {
     clock.map_or(0.0, |clock| clock.at(t))
 }
@@ -207,7 +208,7 @@ impl Ready {
         self.watched.get_or_init(make).as_ref()
     }
 
-    /// Where a state is after so many steps.
+    /// Sets the state to that after `count` steps.
     fn end(
         &self,
         system: &Instance,
@@ -280,7 +281,7 @@ impl Method<Instance> for Whole<'_> {
             let mut end = self.end.borrow_mut();
             end.resize(state.x.len() + state.xi.len(), f64::NAN);
             let ended = compiled.call(0, constants, arguments, &mut end);
-            // Where it has no end, the method says why.
+            // If the code fails, the method reports the reason.
             if ended.is_ok() && end.iter().all(|number| number.is_finite()) {
                 let evaluated = system.evaluations.get() + code.evaluations;
                 system.evaluations.set(evaluated);

@@ -1,4 +1,4 @@
-//! `hamel ops --advise`: what ξ̇ costs in other velocity coordinates.
+//! `hamel ops --advise`: compares the cost of ξ̇ in other velocity coordinates.
 
 use crate::columns;
 use crate::failure::Failure;
@@ -8,7 +8,7 @@ use hamel_codegen::derive::adviser::{Choice, advise};
 use hamel_codegen::model::Model;
 use hamel_codegen::program::count::Count;
 
-/// Compares; the choices as a table or as JSON.
+/// Compares the choices and writes them as a table or as JSON.
 pub fn written(source: &Source, model: &Model, as_json: bool) -> Result<String, Failure> {
     let choices = advise(model).map_err(|why| {
         Failure::failed(format!(
@@ -35,7 +35,7 @@ fn text(choices: &[Choice]) -> String {
         ];
         counts.map(|count| count.to_string()).to_vec()
     };
-    // The first column is to the left elsewhere: here it is empty, so that all numbers are to the right.
+    // Tables align the first column left: it is left empty here, so that all numbers are aligned right.
     let first = |row: Vec<String>| [vec![String::new()], row].concat();
     let heading = ["accel", "mul", "add", "div", "sincos", "rate"].map(String::from);
     let rows: Vec<Vec<String>> = std::iter::once(heading.to_vec())
@@ -118,7 +118,7 @@ mod tests {
         let lines: Vec<&str> = table.lines().collect();
         let cells = |line: &str| line.split("  ").filter(|cell| !cell.is_empty()).count();
         assert_eq!((cells(lines[0]), cells(lines[1])), (7, 7), "{table}");
-        // Statements stand below the labels.
+        // Statements are aligned below the labels.
         assert_eq!(lines[1].find("angles"), lines[2].find("rate q"), "{table}");
     }
 }

@@ -1,4 +1,4 @@
-//! `hamel ops`: what a call of each generated function costs.
+//! `hamel ops`: counts the operations of a call of each generated function.
 
 mod advice;
 
@@ -19,10 +19,9 @@ use std::path::PathBuf;
 
 /// Counts the operations of every generated function.
 ///
-/// "shared" is what the generated code does on a call; "unshared" is the same result with every
-/// expression written out, where nothing is computed once for several uses and nothing when
-/// parameters are set. flops are add + mul + div; negation is free. A count that does not fit into
-/// 128 bits is written as `> 3.4e38`, and as null in JSON.
+/// "shared" counts the operations of a call of the generated code; "unshared" those of the same expressions written out
+/// in full, where nothing is reused and nothing is precomputed when parameters are set. flops are add + mul + div;
+/// negation is free. A count that does not fit into 128 bits is written as `> 3.4e38`, and as null in JSON.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json\n  hamel ops heavy_top.eom --advise"
@@ -31,11 +30,11 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// How to write the counts.
+    /// Output format of the counts.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    /// Compare ξ̇ in other velocity coordinates: rotations in body or world axes, points in either,
-    /// angles absolute or relative; the cheapest first, with the statements to write.
+    /// Compare ξ̇ in other velocity coordinates: rotations in body or world axes, points in either, angles absolute or
+    /// relative; the cheapest first, with the statements to write.
     #[arg(long)]
     advise: bool,
     #[command(flatten)]
@@ -48,13 +47,13 @@ enum Format {
     Json,
 }
 
-/// add, mul, div, sqrt, sincos, other.
+/// Counts of add, mul, div, sqrt, sincos, other.
 type Operations = [u128; 6];
-/// The same of expressions written out; `None` where a count does not fit into 128 bits.
+/// Counts of the expressions written out; `None` if a count does not fit into 128 bits.
 type Written = [Option<u128>; 6];
 const KINDS: [&str; 6] = ["add", "mul", "div", "sqrt", "sincos", "other"];
 
-/// One row: a function with its counts.
+/// A function with its counts.
 struct Row {
     name: String,
     shared: Operations,
@@ -72,18 +71,18 @@ pub fn advised(source: &Source) -> Result<String, Failure> {
     advice::written(source, &model, true)
 }
 
-/// What the functions of a description cost.
+/// The counts of all functions of a description.
 struct Counts {
     generated: Generated,
     rows: Vec<Row>,
-    /// What is done when parameters are set, and how many constants are kept.
+    /// Operations performed when parameters are set, and the number of constants kept.
     hoisted: Operations,
     kept: usize,
 }
 
 impl Counts {
     fn of(source: &Source) -> Result<Self, Failure> {
-        // What is generated on demand alone is counted as well, unless functions were chosen.
+        // Count functions that are generated only on request as well, unless functions were chosen.
         let generated = match source.model()?.asked == Asked::everything() {
             true => source.derive_counted()?,
             false => source.derive()?,
@@ -103,7 +102,7 @@ impl Counts {
     }
 }
 
-/// Counts and prints.
+/// Counts and prints the operations.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
     if arguments.advise {
@@ -164,7 +163,7 @@ fn sum(a: Written, b: Written) -> Written {
     std::array::from_fn(|kind| a[kind]?.checked_add(b[kind]?))
 }
 
-/// The operations of the roots as trees: every use of a node counts again.
+/// Counts the operations of the roots as trees, each use of a node anew.
 fn tree(graph: &Graph, roots: &[Edge]) -> Written {
     const NONE: Written = [Some(0); 6];
     let mut costs = vec![NONE; graph.len()];
@@ -198,7 +197,7 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
         .fold(NONE, |cost, root| sum(cost, costs[root.node() as usize]))
 }
 
-/// A count in few characters: `123456`, `1.2e9`, `> 3.4e38`.
+/// Formats a count in few characters: `123456`, `1.2e9`, `> 3.4e38`.
 fn compact(count: Option<u128>) -> String {
     match count {
         Some(count) if count < 10_000_000 => count.to_string(),

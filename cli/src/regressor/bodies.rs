@@ -1,10 +1,10 @@
-//! From base parameters back to standard ones: bodies that have given base parameters.
+//! Finds bodies with given base parameters.
 //!
-//! Many standard parameters π have the same base parameters β = K π. Of those whose pseudo-inertias
-//! J = [[tr(Θ)/2 I − Θ, h], [hᵀ, m]] are positive definite, as those of all bodies are, the ones nearest to given bodies π₀
-//! are found, in the sense of D = Σ tr(J J₀⁻¹) − log det(J J₀⁻¹) − 4 over the links: it depends on no choice of units or
-//! axes. Noise may have led to a β that no bodies have: then D + ½ Σ (K π − β)²/r is minimised, with small r.
-//! Newton's method, damped where a step is long: D is self-concordant, so that J stays positive definite. Sources:
+//! Many standard parameters π have the same base parameters β = K π. Among those whose pseudo-inertias
+//! J = [[tr(Θ)/2 I − Θ, h], [hᵀ, m]] are positive definite, as those of all bodies are, the nearest to given bodies π₀ are
+//! found, in the sense of D = Σ tr(J J₀⁻¹) − log det(J J₀⁻¹) − 4 over the links, which depends on no choice of units or
+//! axes. Noise may lead to a β that no bodies have: then D + ½ Σ (K π − β)²/r is minimised, with small r.
+//! Newton's method is damped for long steps: D is self-concordant, so that J stays positive definite. Sources:
 //! P. Wensing, S. Kim, J.-J. Slotine, *Linear matrix inequalities for physically consistent inertial parameter
 //! identification*, IEEE RA-L 3 (2018) 60; T. Lee, P. Wensing, F. Park, *Geometric robot dynamic identification*, IEEE T-RO
 //! 36 (2020) 348; S. Boyd, L. Vandenberghe, *Convex Optimization* (2004), 9.6, 10.3.
@@ -14,53 +14,54 @@ use nalgebra::{DMatrix, DVector, Matrix4, SMatrix, SVector};
 
 /// Parameters of a link: Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h, m.
 const TEN: usize = 10;
-/// Newton steps before it is given up.
+/// Iteration limit of Newton's method.
 const MOST: usize = 1000;
-/// The square of the last step, in the norm of the function's second derivative: its error is far below rounding.
+/// Square of the last step, in the norm of the second derivative: the remaining error is far below rounding.
 const CONVERGED: f64 = 1e-20;
-/// r over the square of a base parameter's scale, β and its terms in π₀; each from the result of the one before.
+/// Values of r relative to the squared scale of a base parameter (β and its terms in π₀), each warm-started from the
+/// last.
 const SLACK: [f64; 7] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-/// The smallest scale of a base parameter, over that of the largest.
+/// Smallest scale of a base parameter, relative to the largest.
 const LEAST: f64 = 1e-6;
-/// How far K π may be from β, over the largest sum of absolute terms.
+/// Largest error of K π, relative to the largest sum of absolute terms.
 const KEPT: f64 = 1e-10;
 
-/// Base parameters of standard ones: for each β the places and factors of its terms.
+/// The map from standard to base parameters: the places and factors of the terms of each β.
 pub type Map = [Vec<(usize, f64)>];
 
-/// Why there are none.
+/// Reason why no bodies were found.
 #[derive(Debug, PartialEq, Eq)]
 pub enum NoBodies {
     /// The pseudo-inertia of this link is not positive definite in π₀.
     Nominal(usize),
-    /// The iteration has not converged, as where a number is none.
+    /// The iteration does not converge, for example because of a NaN.
     NotConverged,
 }
 
 /// Standard parameters of bodies.
 #[derive(Debug)]
 pub struct Bodies {
-    /// Ten of each link, and behind them those of joints.
+    /// Ten for each link, followed by those of joints.
     pub standard: Vec<f64>,
-    /// Whether they have the base parameters, or only nearly.
+    /// Whether they have the base parameters exactly, or only approximately.
     pub exact: bool,
 }
 
 /// The pseudo-inertia of a link's ten parameters, or of a change of them.
 fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
     let rows = tables::regressor::pseudo_inertia(std::array::from_fn(|k| ten[k]));
-    // It is symmetric: columns are rows.
+    // It is symmetric: columns equal rows.
     Matrix4::from(rows)
 }
 
-/// The inverse of a pseudo-inertia; none where it is not positive definite.
+/// The inverse of a pseudo-inertia; `None` if it is not positive definite.
 fn inverse(ten: &[f64]) -> Option<Matrix4<f64>> {
     pseudo_inertia(ten)
         .cholesky()
         .map(|factor| factor.inverse())
 }
 
-/// The slopes of the function by the parameters of a link, and its second derivatives.
+/// The gradient of D by the parameters of a link, and its second derivatives.
 fn of_link(
     inverse: &Matrix4<f64>,
     nominal: &Matrix4<f64>,
@@ -76,7 +77,7 @@ fn of_link(
     (slopes, second)
 }
 
-/// The same of a joint's parameter: r − log r − 1 with r = π/π₀ keeps it positive where it was; ½ (π − π₀)² elsewhere.
+/// Derivatives for a joint parameter: r − log r − 1 with r = π/π₀ keeps it positive if π₀ is; otherwise ½ (π − π₀)².
 fn of_joint(value: f64, nominal: f64) -> (f64, f64) {
     match nominal > 0.0 {
         true => (1.0 / nominal - 1.0 / value, 1.0 / (value * value)),
@@ -84,7 +85,7 @@ fn of_joint(value: f64, nominal: f64) -> (f64, f64) {
     }
 }
 
-/// What is asked for.
+/// The optimisation problem.
 struct Problem<'a> {
     nominal: &'a [f64],
     /// J₀⁻¹ of the links.
@@ -93,8 +94,8 @@ struct Problem<'a> {
     beta: DVector<f64>,
 }
 
-/// The standard parameters nearest to `nominal` that have the base parameters `beta`, or nearly have them where none do, and
-/// are those of bodies; both have ten of each link, and behind them those of joints.
+/// The standard parameters of bodies nearest to `nominal` that have the base parameters `beta`, or approximate them if
+/// no bodies have them; both lists contain ten for each link, followed by those of joints.
 ///
 /// # Errors
 /// See [`NoBodies`].
@@ -123,7 +124,7 @@ pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result
         let from = near.as_ref().unwrap_or(&start).clone();
         match problem.solved(from, &r) {
             Some(pi) => near = Some(pi),
-            // The result before is that of a larger r.
+            // Keep the previous result, for a larger r.
             None => break,
         }
     }
@@ -141,7 +142,7 @@ pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result
 }
 
 impl Problem<'_> {
-    /// The minimum of D + ½ Σ (K π − β)²/r, with K π = β where r is 0; none where the method does not converge.
+    /// The minimum of D + ½ Σ (K π − β)²/r, with K π = β where r is 0; `None` if the method does not converge.
     fn solved(&self, mut pi: DVector<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
         let (size, k) = (pi.len(), &self.k);
         let joints = TEN * self.links.len()..size;
@@ -199,7 +200,7 @@ impl Problem<'_> {
 mod tests {
     use super::{NoBodies, TEN, inverse, nearest, pseudo_inertia};
 
-    /// Θ about the frame's origin, h and m of points with masses: a body, where they are four or more in general position.
+    /// Θ about the frame's origin, h and m of point masses: a body, if there are four or more in general position.
     fn body(points: &[([f64; 3], f64)]) -> Vec<f64> {
         let mut ten = vec![0.0; TEN];
         for &([x, y, z], m) in points {
@@ -274,7 +275,7 @@ mod tests {
         link(0) + link(1) + drive - drive.ln() - 1.0 + rest * rest / 2.0
     }
 
-    /// Others with the same β are further away: the parameters in which β is free go along with those that keep it.
+    /// Other parameters with the same β are further away: free parameters are varied, and the dependent ones keep β.
     #[test]
     fn what_is_found_is_the_nearest() {
         let (nominal, other) = two();
@@ -287,7 +288,7 @@ mod tests {
         }
         let least = distance(&found, &nominal);
         assert!(least > 0.01 && least < distance(&other, &nominal));
-        // Along each parameter that is none of the last of a row, those correct β.
+        // Vary each parameter except the last of each row, which corrects β.
         let last = [20, 15, 16, 17, 21];
         for place in (0..22).filter(|place| !last.contains(place)) {
             for by in [1e-4, -1e-4] {
@@ -302,7 +303,7 @@ mod tests {
         }
     }
 
-    /// A negative moment of inertia: bodies come as near as they can.
+    /// A negative moment of inertia: the result approximates β.
     #[test]
     fn what_no_bodies_have_is_told() {
         let (nominal, other) = two();

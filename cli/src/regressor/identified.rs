@@ -1,4 +1,4 @@
-//! Identified base parameters from a file, and the standard parameters that have them.
+//! Reads identified base parameters from a file and finds standard parameters that have them.
 
 use super::bodies::{Map, NoBodies, nearest};
 use crate::failure::{Failure, print};
@@ -10,7 +10,7 @@ use hamel_codegen::tables::regressor::BaseParameters;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Prints the standard parameters.
+/// Prints the standard parameters with the identified base parameters.
 pub fn print_bodies(
     all: &BaseParameters,
     description: &Source,
@@ -83,7 +83,7 @@ pub fn print_bodies(
     })
 }
 
-/// β = K π.
+/// The base parameters β = K π.
 fn base(map: &Map, standard: &[f64]) -> Vec<f64> {
     let sum = |terms: &Vec<(usize, f64)>| {
         let terms = terms.iter();
@@ -92,7 +92,7 @@ fn base(map: &Map, standard: &[f64]) -> Vec<f64> {
     map.iter().map(sum).collect()
 }
 
-/// β of a file's text.
+/// Reads β from the text of a file.
 fn read(all: &BaseParameters, path: &str, text: &str) -> Result<Vec<f64>, Failure> {
     let json = strict::parse(text).map_err(|error| Failure::usages(path, &[error]))?;
     let kept: Vec<&str> = all.names().collect();

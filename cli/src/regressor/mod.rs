@@ -1,5 +1,5 @@
-//! `hamel regressor`: base parameters, the combinations of inertial parameters that forces depend on, and back from
-//! identified ones to bodies.
+//! `hamel regressor`: finds the base parameters, the combinations of inertial parameters on which forces depend, and
+//! bodies with identified ones.
 
 mod bodies;
 mod identified;
@@ -14,14 +14,14 @@ use hamel_codegen::proof::regressor::prove;
 use hamel_codegen::tables::regressor::{BaseParameters, json, latex, markdown, text};
 use std::path::PathBuf;
 
-/// Prints the base parameters: which inertial parameters forces can identify, alone or in combinations.
+/// Prints the base parameters: the inertial parameters, or combinations of them, that forces can identify.
 ///
 /// Inverse dynamics is linear in m, h = m s and Theta (about the frame's origin) of every link, and in armatures,
-/// damping and stiffness of joints: F = Y(x, xi, xi_dot) beta. A link is all that moves rigidly together, in the frame
-/// that its joint carries. The factors are exact: fractions, or expressions in run-time parameters.
+/// damping and stiffness of joints: F = Y(x, xi, xi_dot) beta. A link comprises all parts that move rigidly together,
+/// in the frame that its joint carries. The factors are exact: fractions, or expressions in run-time parameters.
 ///
-/// With --identified, the other way round: of all masses, centres of mass and inertias that have the base parameters of
-/// a file, and that rigid bodies can have (their pseudo-inertias are positive definite), those nearest to the
+/// --identified does the reverse: among all masses, centres of mass and inertias that have the base parameters of a
+/// file and that rigid bodies can have (with positive definite pseudo-inertias), it prints those nearest to the
 /// description.
 #[derive(Args)]
 #[command(after_help = "Examples:
@@ -34,18 +34,18 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Identified base parameters, as JSON (`-` for standard input): a list, or an object by the names of the
-    /// parameters kept; those that are not in the object are as in the description.
+    /// Identified base parameters, as JSON (`-` for standard input): a list, or an object by the names of the base
+    /// parameters; those missing from the object are as in the description.
     #[arg(long, value_name = "FILE")]
     identified: Option<PathBuf>,
-    /// How to write them.
+    /// Output format of the parameters.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
-/// Derives and prints.
+/// Derives and prints the parameters.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
     let all = base(&source)?;
@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The base parameters of a description.
 ///
 /// # Errors
-/// Where it has none: with constraints, or with forces that are no robot's.
+/// If the system has constraints, or forces that robots do not have.
 pub fn base(source: &Source) -> Result<BaseParameters, Failure> {
     let model = source.model()?;
     let derived = regressor(&model).and_then(|regressor| {

@@ -1,4 +1,4 @@
-//! One function of a description as machine code.
+//! A single function of a description, compiled to machine code.
 
 use crate::failure::Failure;
 use crate::mechanism;
@@ -8,25 +8,25 @@ use hamel_native::{Compiled, Constants, Paired};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// Code for two states at once takes about as long to make as so many states take without it.
+/// Number of states whose evaluation takes about as long as compiling code for two states at once.
 const MANY: u64 = 1 << 15;
 
-/// A function of the description as machine code.
+/// A function of the description, compiled to machine code.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it evaluates.
+    /// Documentation of the result.
     pub docs: String,
-    /// What it takes.
+    /// Arguments.
     pub arguments: Vec<Argument>,
-    /// The shape of its result.
+    /// Shape of the result.
     pub shape: Shape,
     compiled: Compiled,
     lanes: Arc<Lanes>,
 }
 
-/// Code for two states at once, and how many states were asked for before there was any.
+/// Code for two states at once, and the number of states requested before it existed.
 #[derive(Debug, Default)]
 struct Lanes {
     states: AtomicU64,
@@ -34,7 +34,7 @@ struct Lanes {
 }
 
 impl Function {
-    /// How many entries an argument has.
+    /// Number of entries of an argument.
     pub fn length(&self, argument: Argument) -> usize {
         let all = hamel_native::ARGUMENTS.iter();
         let lengths = all.zip(self.compiled.tapes().lengths);
@@ -44,10 +44,10 @@ impl Function {
             .sum()
     }
 
-    /// Parameters, with what depends on them alone.
+    /// The parameters, with all values that depend on them alone.
     ///
     /// # Errors
-    /// Where M is constant, and not positive definite with them.
+    /// If M is constant, and not positive definite with these parameters.
     pub fn constants(&self, params: &[f64]) -> Result<Constants, Cause> {
         let constants = self.compiled.constants(params);
         match self.compiled.singular(&constants) {
@@ -56,10 +56,10 @@ impl Function {
         }
     }
 
-    /// Its result for x, ξ and z, u, ξ̇ and p, of which those that it takes are read.
+    /// The result for x, ξ and z, u, ξ̇ and p; only the arguments of the function are read.
     ///
     /// # Errors
-    /// What it means that a pivot is not positive.
+    /// The cause of a pivot that is not positive.
     pub fn call(
         &self,
         constants: &Constants,
@@ -69,8 +69,8 @@ impl Function {
         self.compiled.call(0, constants, arguments, out)
     }
 
-    /// The results for two states at once: all lists hold pairs, constants are those of [`Paired::constants`]. Whether both
-    /// have one; else `out` has no meaning.
+    /// The results for two states at once: all lists contain pairs, constants are those of [`Paired::constants`].
+    /// Returns whether both exist; otherwise `out` is unspecified.
     pub fn both(
         &self,
         paired: &Paired,
@@ -81,7 +81,7 @@ impl Function {
         paired.call(0, constants, arguments, out)
     }
 
-    /// Code for two states at once, where so many states more are worth it and this machine has such code.
+    /// Code for two states at once, if this many more states are worth it and the machine supports it.
     pub fn paired(&self, states: u64) -> Option<&Paired> {
         if self.lanes.code.get().is_none() {
             let before = self.lanes.states.fetch_add(states, Ordering::Relaxed);
@@ -94,7 +94,7 @@ impl Function {
     }
 }
 
-/// A function of a program by its name.
+/// Compiles a function of a program by its name.
 pub(super) fn compiled(generated: &Generated, name: &str) -> Result<Function, Failure> {
     let program = &generated.program;
     let Some(function) = program.function(name) else {

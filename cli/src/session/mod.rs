@@ -1,4 +1,4 @@
-//! A description as another program works with it: what the commands do, with numbers in place of texts.
+//! The commands for use by other programs: a description as an object, with numbers instead of text.
 
 mod function;
 mod motion;
@@ -47,41 +47,41 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// A description, derived, with what was compiled of it.
+/// A derived description with its compiled functions.
 pub struct Session {
     source: Source,
     generated: Generated,
     /// The same with its linearisation.
     linearized: OnceLock<Generated>,
     mechanism: OnceLock<Arc<Mechanism>>,
-    /// Steps with slopes, for the parameters that were asked for last.
+    /// Steps with derivatives, for the last requested parameters.
     varied: Mutex<Option<Arc<Varied>>>,
     functions: Mutex<BTreeMap<String, Function>>,
-    /// With the expressions of events that were asked for last.
+    /// Systems extended by the expressions of recent events.
     observed: AllObserved,
     drawing: OnceLock<Drawing>,
 }
 
-/// Names of entries, and groups of them: name, place of the first, number.
+/// Names of entries, and their groups: name, index of the first entry, number of entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Names {
-    /// Every entry, as in `w[2]`.
+    /// Names of all entries, such as `w[2]`.
     pub entries: Vec<String>,
-    /// What they belong to, as in `w`.
+    /// Groups of entries, such as `w`.
     pub groups: Vec<(String, usize, usize)>,
 }
 
-/// What one step of a method is taken with.
+/// A method with a system, for single steps.
 pub struct Stepped {
     instance: Instance,
     stepper: Stepper,
 }
 
 impl Stepped {
-    /// x and ξ after a step of this length, in place.
+    /// Replaces x and ξ by their values after a step of length h.
     ///
     /// # Errors
-    /// Why there is no such step.
+    /// The reason why the step fails.
     pub fn step(&self, x: &mut [f64], xi: &mut [f64], u: &[f64], h: f64) -> Result<(), String> {
         let mut state = hamel::State::<Instance> {
             t: 0.0,
@@ -99,19 +99,19 @@ impl Stepped {
 }
 
 impl Session {
-    /// A description or a robot in URDF from a file, with warnings.
+    /// Reads a description or a robot in URDF from a file; returns it with its warnings.
     ///
     /// # Errors
-    /// What is wrong with it, with its source underlined.
+    /// Errors in the file, with its source underlined.
     pub fn open(path: &Path, options: &RobotOptions) -> Result<(Self, String), Failure> {
         let (read, said) = Session::of(|| Source::open(path, options));
         Ok((read?, said.warnings))
     }
 
-    /// A description or a robot in URDF from its text, which messages call `name`, with warnings.
+    /// Reads a description or a robot in URDF from a text, called `name` in messages; returns it with its warnings.
     ///
     /// # Errors
-    /// What is wrong with it, with its source underlined.
+    /// Errors in the text, with its source underlined.
     pub fn read(
         text: String,
         name: &str,
@@ -121,7 +121,7 @@ impl Session {
         Ok((read?, said.warnings))
     }
 
-    /// As [`read`](Self::read), with the places of errors and warnings.
+    /// Like [`read`](Self::read), with the places of errors and warnings.
     pub fn marked(
         text: String,
         name: &str,
@@ -152,7 +152,7 @@ impl Session {
         &self.generated.model.name
     }
 
-    /// The text of the description, that of the importer for a robot.
+    /// The text of the description; for a robot, that of the importer.
     pub fn text(&self) -> &str {
         &self.source.text
     }
@@ -161,7 +161,7 @@ impl Session {
         &self.generated.active
     }
 
-    /// The entries of x.
+    /// Names of the entries of x.
     pub fn coordinates(&self) -> Names {
         let coordinates = &self.generated.model.coordinates;
         let groups = coordinates.iter().map(|coordinate| {
@@ -174,7 +174,7 @@ impl Session {
         }
     }
 
-    /// The entries of ξ, and of the states of first order behind it.
+    /// Names of the entries of ξ, followed by those of the states of first order.
     pub fn velocities(&self) -> Names {
         Names {
             entries: names::moving(self.active()),
@@ -182,7 +182,7 @@ impl Session {
         }
     }
 
-    /// The entries of u.
+    /// Names of the entries of u.
     pub fn inputs(&self) -> Names {
         let inputs = &self.active().inputs;
         Names {
@@ -191,7 +191,7 @@ impl Session {
         }
     }
 
-    /// The entries of the parameters.
+    /// Names of the parameters.
     pub fn parameters(&self) -> Names {
         let params = &self.generated.program.params;
         Names {
@@ -200,7 +200,7 @@ impl Session {
         }
     }
 
-    /// Joints, with the place of their velocities in ξ and their number.
+    /// Joints, each with the index of its first velocity in ξ and the number of its velocities.
     pub fn joints(&self) -> Vec<(String, usize, usize)> {
         let joints = joints(self.active(), self.source.joints()).into_iter();
         joints
@@ -208,28 +208,28 @@ impl Session {
             .collect()
     }
 
-    /// The frames of the description.
+    /// Names of the frames of the description.
     pub fn frames(&self) -> Vec<String> {
         let frames = self.active().frames.iter();
         frames.map(|frame| frame.name.clone()).collect()
     }
 
-    /// The outputs of the description.
+    /// Names of the outputs of the description.
     pub fn outputs(&self) -> Vec<String> {
         let outputs = self.active().outputs.iter();
         outputs.map(|(name, _)| name.clone()).collect()
     }
 
-    /// Parameters, start and zero inputs.
+    /// Default parameters, start and zero inputs.
     pub fn start(&self) -> State {
         State::start(self.active())
     }
 
-    /// The start with these parameters, changed by what a JSON text says; see `hamel eval --help`. Messages call the text
-    /// `name`.
+    /// The start with these parameters, changed by a JSON text, which messages call `name`; see `hamel eval --help` for
+    /// its form.
     ///
     /// # Errors
-    /// All that is wrong with it.
+    /// All errors in the text.
     pub fn state(&self, params: &[f64], json: &str, name: &str) -> Result<State, Failure> {
         let start = State {
             params: params.to_vec(),
@@ -238,15 +238,15 @@ impl Session {
         self.changed(start, json, name)
     }
 
-    /// Another state, changed by what a JSON text says.
+    /// A state, changed by a JSON text.
     ///
     /// # Errors
-    /// All that is wrong with it.
+    /// All errors in the text.
     pub fn changed(&self, from: State, json: &str, name: &str) -> Result<State, Failure> {
         File::of(name.into(), json, &self.source)?.changes(from, &self.source, &self.generated)
     }
 
-    /// Names of all functions that there are, also of those that are derived when they are asked for.
+    /// Names of all available functions, including those that are derived on request.
     pub fn functions(&self) -> Vec<String> {
         let program = &self.generated.program;
         let is_public = |id: Option<FunctionId>| id.is_none_or(|id| id.row().named);
@@ -268,10 +268,10 @@ impl Session {
         all
     }
 
-    /// A function by its name, compiled.
+    /// Compiles a function by its name.
     ///
     /// # Errors
-    /// Where there is none of this name, or where it does not exist for this system.
+    /// If no function has this name, or it does not exist for this system.
     pub fn function(&self, name: &str) -> Result<Function, Failure> {
         let known = || {
             self.functions
@@ -289,7 +289,7 @@ impl Session {
         Ok(function)
     }
 
-    /// What has a function that is not derived unless it is asked for.
+    /// Derives a function that is derived only on request.
     fn asked(&self, name: &str) -> Result<Generated, Failure> {
         let mut wanted = Wanted::only(&[]);
         let frames = self.frames();
@@ -327,7 +327,7 @@ impl Session {
         self.source.derive_asked(&wanted)
     }
 
-    /// What it means that a pivot is not positive, in the names of the description.
+    /// Explains a pivot that is not positive, in the names of the description.
     pub fn meaning(&self, cause: Cause) -> String {
         let shown = self.source.shown();
         singular::meaning(cause, self.active(), shown)
@@ -348,11 +348,11 @@ impl Session {
         Ok(instance)
     }
 
-    /// A run from a state; inputs are those of the state, of what is asked for, or of a law; it may end at an event, or be
-    /// given up.
+    /// Runs from a state; inputs are those of the state, of `asked`, or of a law. The run may end at an event, or be
+    /// cancelled.
     ///
     /// # Errors
-    /// What cannot be run; a run that ends early has its reason in [`Motion::failure`].
+    /// If the run is impossible; a run that ends early has its reason in [`Motion::failure`].
     pub fn simulate(
         &self,
         state: &State,
@@ -375,7 +375,7 @@ impl Session {
         };
         let system = system.with(given);
         let mut plan = stepping.plan(generated, &system, every)?;
-        // All samples that are asked for are kept.
+        // All requested samples are kept.
         if let Some(times) = times {
             plan.spacing = Spacing::at(times, until)?;
         }
@@ -385,16 +385,16 @@ impl Session {
         Ok(Motion::of(&run, &system))
     }
 
-    /// Steps of a method, by its name or `auto`, with the parameters of a state.
+    /// Prepares single steps of a method, given by its name or `auto`, with the parameters of a state.
     ///
     /// # Errors
-    /// Where the method does not fit.
+    /// If the method does not fit.
     pub fn stepped(&self, state: &State, method: &str) -> Result<Stepped, Failure> {
         let instance = self.instance(state)?;
         let structure = instance.structure(&self.generated.program);
         let mut chosen = Chosen::new(method, &instance, &structure, 1)?;
         if method == AUTO && matches!(chosen.stepper, Stepper::Closed { .. }) {
-            // It moves from the start alone.
+            // The closed form always moves from the start.
             chosen = Chosen::new("rkmk4", &instance, &structure, 1)?;
         }
         Ok(Stepped {
@@ -403,10 +403,10 @@ impl Session {
         })
     }
 
-    /// The linearisation at a state, of all displacements and velocities where it is `full`.
+    /// The linearisation at a state, of all displacements and velocities if `full`.
     ///
     /// # Errors
-    /// Where the motion has no value there.
+    /// If the motion has no value there.
     pub fn linearize(&self, state: &State, full: bool) -> Result<Linear, Failure> {
         linearize::linear(self.linearized()?, state, self.source.shown(), full)
     }
@@ -419,10 +419,10 @@ impl Session {
         Ok(self.linearized.get_or_init(|| derived))
     }
 
-    /// Steps with slopes, with the parameters of a state, by one of the methods that are for any system.
+    /// Prepares steps with derivatives, with the parameters of a state, by one of the methods for any system.
     ///
     /// # Errors
-    /// Where there is no linearisation, or the method has no slopes.
+    /// If there is no linearisation, or the method has no derivatives.
     pub fn varied(&self, state: &State, method: &str) -> Result<(Arc<Varied>, General), Failure> {
         let mut general = General::ALL.iter();
         let in_chart = |method: &&General| !matches!(method, General::Rk4 { .. });
@@ -444,10 +444,10 @@ impl Session {
         Ok((varied, *found))
     }
 
-    /// What `hamel eval` prints of a state, with all of γ and Γ; where something has no value it is `null`.
+    /// The output of `hamel eval` for a state, including γ and Γ; missing values are `null`.
     ///
     /// # Errors
-    /// Where functions in Rust have no numbers.
+    /// If functions in Rust have no values.
     pub fn evaluate(&self, state: &State) -> Result<String, Failure> {
         let shown = self.source.shown();
         let (value, _) = numbers((&self.generated, shown), state, &[], true)?;
@@ -457,15 +457,15 @@ impl Session {
     /// The base parameters.
     ///
     /// # Errors
-    /// Where there are none.
+    /// If the system has none.
     pub fn base_parameters(&self) -> Result<BaseParameters, Failure> {
         base(&self.source)
     }
 
-    /// Tables by their names, those that matter where none is named; every entry, where `all`.
+    /// Tables by name, the most important ones if none is named; with `all`, every entry.
     ///
     /// # Errors
-    /// Where a table is not known, or cannot be had.
+    /// If a table is unknown, or does not exist.
     pub fn tables(&self, of: &[String], format: Format, all: bool) -> Result<String, Failure> {
         let named = of.iter().map(|name| Table::parse(name));
         let named: Result<Vec<Table>, String> = named.collect();
@@ -474,10 +474,10 @@ impl Session {
         Ok(crate::tables::written(&tables, format, all))
     }
 
-    /// What of the mechanism can be drawn, compiled for any parameters and states.
+    /// The drawable parts of the mechanism, compiled for any parameters and states.
     ///
     /// # Errors
-    /// Where a frame depends on a function in Rust.
+    /// If a frame depends on a function in Rust.
     pub fn drawing(&self) -> Result<&Drawing, Failure> {
         if let Some(drawing) = self.drawing.get() {
             return Ok(drawing);

@@ -1,4 +1,4 @@
-//! What a run has been, as lists of numbers.
+//! Results of runs, as lists of numbers.
 
 use crate::added;
 use crate::mechanism::{Instance, Output};
@@ -6,7 +6,7 @@ use crate::simulate::record::Run;
 use crate::simulate::sample::Sample;
 use hamel_codegen::program::Shape;
 
-/// A run: samples one after the other, each entry of a list beside the time.
+/// A run. Lists contain one sample after another, and entries correspond to the times.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// Times of the samples.
@@ -17,36 +17,36 @@ pub struct Motion {
     pub xi: Vec<f64>,
     /// Kinetic and potential energy of each sample, their sum.
     pub energy: Vec<f64>,
-    /// Outputs by their names with the entries of each sample.
+    /// Outputs: name, shape, and the entries of all samples.
     pub outputs: Vec<(String, Shape, Vec<f64>)>,
-    /// The same of what the description claims to be constant.
+    /// Likewise the quantities that the description claims to be constant.
     pub invariants: Vec<(String, Shape, Vec<f64>)>,
     /// The method.
     pub method: &'static str,
-    /// Why it was taken, where it was not asked for.
+    /// Reason for the choice, if it was not requested.
     pub reason: Option<&'static str>,
-    /// How many steps there were.
+    /// Number of steps.
     pub steps: u64,
-    /// How often accelerations, forces or rates of momenta were evaluated.
+    /// Number of evaluations of accelerations, forces or rates of momenta.
     pub evaluations: u64,
-    /// The largest change of the energy, relative; infinite where the run has got all of it from outside.
+    /// The largest relative change of the energy; infinite if all of it was supplied during the run.
     pub energy_deviation: f64,
     /// The largest |φ|.
     pub constraint: f64,
-    /// Why it ended early.
+    /// Reason of an early end.
     pub failure: Option<String>,
-    /// Events by their names, in the order in which they were asked for: times, and x and ξ at them.
+    /// Events in the order of the request: times, and x and ξ at them.
     pub events: Vec<Happened>,
-    /// The event at which it ended.
+    /// The event that ended the run.
     pub stopped_by: Option<String>,
 }
 
-/// What became of an event.
+/// Occurrences of an event.
 #[derive(Clone, Debug)]
 pub struct Happened {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Times, in order.
+    /// Times, in increasing order.
     pub t: Vec<f64>,
     /// x at each of them.
     pub x: Vec<f64>,
@@ -55,7 +55,7 @@ pub struct Happened {
 }
 
 impl Motion {
-    /// That of a run.
+    /// Collects the results of a run.
     pub(super) fn of(run: &Run, system: &Instance) -> Self {
         let all = |of: fn(&Sample) -> &[f64]| -> Vec<f64> {
             let entries = run.samples.iter().flat_map(of);
@@ -67,7 +67,7 @@ impl Motion {
             for output in list {
                 let place = first..first + output.shape.entries();
                 first = place.end;
-                // What events watch is no output of the description.
+                // Expressions of events are not outputs of the description.
                 if added::is_added(&output.name) {
                     continue;
                 }

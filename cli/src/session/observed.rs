@@ -1,4 +1,4 @@
-//! A description with the expressions of events as outputs, derived and compiled anew.
+//! Derives and compiles a description with the expressions of events as additional outputs.
 
 use crate::added::{self, Added};
 use crate::failure::Failure;
@@ -11,18 +11,18 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Sets of expressions that are kept.
+/// Number of sets of expressions that are kept.
 const KEPT: usize = 8;
 
-/// What messages call the texts of all events.
+/// Name of the texts of all events in messages.
 const EVENTS: &str = "events";
 
-/// Those that were asked for last, by the texts of their events.
+/// The recent systems, by the texts of their events.
 #[derive(Default)]
 pub struct AllObserved(Mutex<Vec<(Vec<String>, Arc<Observed>)>>);
 
 impl AllObserved {
-    /// The one for these events; none where no event is an expression.
+    /// The system for these events; `None` if no event is an expression.
     pub fn of(&self, source: &Source, events: &[Event]) -> Result<Option<Arc<Observed>>, Failure> {
         let texts: Vec<&str> = events.iter().filter_map(Event::expression).collect();
         if texts.is_empty() {
@@ -43,14 +43,14 @@ impl AllObserved {
     }
 }
 
-/// The description with its expressions.
+/// A description extended by expressions.
 pub struct Observed {
     pub generated: Generated,
     mechanism: Arc<Mechanism>,
 }
 
 impl Observed {
-    /// With these expressions, which stand one behind another in a text.
+    /// Adds these expressions, which follow one another in the text `said`.
     pub fn new(source: &Source, said: &str, expressions: &[&str]) -> Result<Self, Failure> {
         let mut errors = Vec::new();
         let (mut outputs, mut start) = (Vec::new(), 0);
@@ -90,7 +90,7 @@ impl Observed {
         })
     }
 
-    /// A run's system, with the numbers of a state.
+    /// The system of a run, with the values of a state.
     pub fn instance(&self, state: &State) -> Result<Instance, Failure> {
         let instance = Instance::of(&self.mechanism, state)?;
         instance.check_parameters(&state.x)?;

@@ -1,9 +1,10 @@
-//! A mechanism that is pulled by one of its points, as by hand: it moves along its own velocities, as far as they let it.
+//! Pulls a mechanism by one of its points, as by hand: it moves along its velocities, within its constraints.
 //!
-//! A picture does not show depth: whoever drags in one means the line of sight through a place, and only the distance from that line
-//! counts. With p(x) the point and J its slopes along δx = A h, each round moves by h = Jᵀ (J Jᵀ + λ² I)⁻¹ (target − p), where
-//! λ keeps h small near singular positions. Directions that constraints do not allow are projected out, so that loops
-//! stay closed and wheels roll. Slopes are differences, whose digits suffice for what is dragged by hand.
+//! A picture does not show depth: dragging in it specifies the line of sight through a place, and only the distance
+//! from that line counts. With p(x) the point and J its derivative along δx = A h, each round moves by
+//! h = Jᵀ (J Jᵀ + λ² I)⁻¹ (target − p), where λ keeps h small near singular positions. Directions that violate constraints
+//! are projected out, so that loops stay closed and wheels roll. Derivatives are finite differences, whose accuracy
+//! suffices for dragging by hand.
 
 use super::Session;
 use crate::drawing::{Drawn, Scene, Vector};
@@ -13,28 +14,28 @@ use crate::state::State;
 use hamel::{System, manifold};
 use nalgebra::{Matrix3, Vector3};
 
-/// Rounds of one pull.
+/// Largest number of rounds of one pull.
 const ROUNDS: usize = 6;
-/// The step of differences, in units of velocity times time.
+/// Step of the finite differences, in units of velocity times time.
 const STEP: f64 = 1e-6;
 /// The longest move of a round, in the same units: a third of a turn about a joint.
 const FAR: f64 = 2.0;
-/// λ² over the mean square of the slopes.
+/// λ² relative to the mean square of the derivatives.
 const DAMPED: f64 = 1e-4;
-/// How far constraints may be off after a move.
+/// Largest residual of constraints after a move.
 const CLOSED: f64 = 1e-10;
 
 /// A point by which a mechanism is pulled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
-    /// A point of a frame, by the place of the frame in [`Scene::frames`], in its axes (m).
+    /// A point of a frame, by the index of the frame in [`Scene::frames`], in its axes (m).
     Frame(usize, Vector),
-    /// A particle, by its place in [`Scene::particles`].
+    /// A particle, by its index in [`Scene::particles`].
     Particle(usize),
 }
 
 impl Grip {
-    /// Where it is.
+    /// Position of the point.
     fn of(self, scene: &Scene) -> Option<Vector3<f64>> {
         match self {
             Grip::Frame(frame, at) => {
@@ -50,12 +51,12 @@ impl Grip {
 }
 
 impl Session {
-    /// The state that is reached where a mechanism is pulled by a point towards a place in the world (m), as near as its
-    /// joints, loops and constraints let it come; with a line of sight, as near to the line through the place along it. Its
-    /// velocities are kept where constraints let them be.
+    /// The state reached when a mechanism is pulled by a point towards a place in the world (m), as near as its joints,
+    /// loops and constraints permit; with a line of sight, as near to that line through the place. Velocities are kept
+    /// as far as constraints permit.
     ///
     /// # Errors
-    /// Where there is no such point, and where the kinematics are singular.
+    /// If there is no such point, or the kinematics are singular.
     pub fn pulled(
         &self,
         state: &State,
@@ -89,7 +90,7 @@ impl Session {
     }
 }
 
-/// A mechanism on its way.
+/// A mechanism during a pull.
 struct Pulled<'a> {
     instance: &'a Instance,
     drawn: Drawn<'a>,
@@ -100,7 +101,7 @@ struct Pulled<'a> {
 }
 
 impl Pulled<'_> {
-    /// Moves once; whether that brought the point nearer.
+    /// Moves once; returns whether the point came nearer.
     fn round(&mut self, n: usize, target: Vector3<f64>) -> Result<bool, Failure> {
         let from = self.point(&self.x)?;
         let away = self.seen * (target - from);
@@ -144,7 +145,7 @@ impl Pulled<'_> {
         point.ok_or_else(|| Failure::usage("there is no such point to pull at"))
     }
 
-    /// What constraints leave of the velocity ξⁱ = 1.
+    /// The projection of the velocity ξⁱ = 1 on the constraints.
     fn direction(&self, i: usize) -> Result<Numbers, Failure> {
         let projected = |xi: &Numbers| -> Result<Option<Numbers>, Failure> {
             let kept = self.instance.project_velocity(&self.x, xi);
@@ -156,16 +157,16 @@ impl Pulled<'_> {
         let (Some(mut kept), Some(drift)) = (projected(&unit)?, projected(&still)?) else {
             return Ok(unit);
         };
-        // Of velocities that are given only what can be chosen is left.
+        // Remove the prescribed velocities.
         let entries = kept.as_mut().iter_mut().zip(drift.iter());
         entries.for_each(|(entry, drift)| *entry -= drift);
         Ok(kept)
     }
 
-    /// x moved along A h.
+    /// Moves x along A h.
     fn moved(&self, x: &Numbers, h: &Numbers, share: f64) -> Numbers {
         let mut chart = self.instance.chart_rate(x, h);
-        // A alone: where the time is a coordinate, rates have terms without ξ.
+        // Use A alone: if time is a coordinate, rates have terms without ξ.
         let still = self
             .instance
             .chart_rate(x, &self.instance.zero_velocities());
@@ -176,7 +177,7 @@ impl Pulled<'_> {
         next
     }
 
-    /// x back on its constraints, by Newton's method; none where that leads nowhere.
+    /// Restores the constraints by Newton's method; `None` if it does not converge.
     fn closed(&self, x: Numbers) -> Option<Numbers> {
         let mut x = x;
         for _ in 0..2 * ROUNDS {
@@ -200,7 +201,7 @@ impl Pulled<'_> {
     }
 }
 
-/// The projection along a line of sight; without one everything is seen.
+/// The projection along a line of sight; the identity without one.
 fn seen(sight: Option<Vector>) -> Matrix3<f64> {
     let sight = sight.and_then(|sight| Vector3::from(sight).try_normalize(0.0));
     sight.map_or_else(Matrix3::identity, |sight| {

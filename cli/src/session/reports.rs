@@ -1,4 +1,4 @@
-//! What commands report of a description: identities, costs, generated code, comparisons; and robots as descriptions.
+//! Reports of the commands about a description: identities, costs, generated code, comparisons; imports of robots.
 
 use super::Session;
 use crate::check::{self, Checked};
@@ -14,58 +14,58 @@ use hamel_codegen::syntax::ast::CoordKind;
 use hamel_codegen::tables::{self, Table};
 
 impl Session {
-    /// What `hamel check` says: the identities with their verdicts, and the lines below them.
+    /// The results of `hamel check`: the identities with their verdicts, and the lines below them.
     pub fn check(&self) -> (Vec<Checked>, String) {
         let remarks = check::remarks(&self.generated, self.source.shown());
         (check::checked(&self.generated), remarks)
     }
 
-    /// What `hamel ops --format json` prints.
+    /// The output of `hamel ops --format json`.
     ///
     /// # Errors
-    /// What cannot be derived.
+    /// Errors of the derivation.
     pub fn operations(&self) -> Result<String, Failure> {
         ops::counted(&self.source)
     }
 
-    /// What `hamel ops --advise --format json` prints.
+    /// The output of `hamel ops --advise --format json`.
     ///
     /// # Errors
-    /// Where there are no velocities to compare.
+    /// If there are no velocities to compare.
     pub fn advice(&self) -> Result<String, Failure> {
         ops::advised(&self.source)
     }
 
-    /// The generated Rust, as of a description in a file of this name.
+    /// The generated Rust, as for a description in a file of this name.
     ///
     /// # Errors
-    /// What cannot be derived or written.
+    /// Errors of the derivation or of the generated code.
     pub fn rust(&self, name: &str) -> Result<String, Failure> {
         let generated = self.source.derive()?;
         builder::written(&generated, name).map_err(|errors| self.source.refused(&errors))
     }
 
-    /// The generated C99, as of a description in a file of this name.
+    /// The generated C99, as for a description in a file of this name.
     ///
     /// # Errors
-    /// What cannot be derived or written.
+    /// Errors of the derivation or of the generated code.
     pub fn c(&self, name: &str, stem: &str) -> Result<Files, Failure> {
         let generated = self.source.derive()?;
         builder::written_in_c(&generated, name, Some(stem), Precision::default())
             .map_err(|errors| self.source.refused(&errors))
     }
 
-    /// Methods compared on a run from a state, as `hamel compare --format json` has them for one description.
+    /// Compares methods on a run from a state, as `hamel compare --format json` does for one description.
     ///
     /// # Errors
-    /// Methods that do not exist, and runs that cannot begin.
+    /// Unknown methods, and runs that cannot begin.
     pub fn compare(&self, state: &State, asked: &Comparison) -> Result<String, Failure> {
         crate::method::known(&asked.methods)?;
         let case = compare::case(&self.generated, self.source.shown(), state, asked, None)?;
         compare::one(&case)
     }
 
-    /// What each coordinate is, as the language writes it: `real`, `R3`, `S1`, `S3`, `SO3` or `SE3`.
+    /// Kinds of the coordinates, as the language writes them: `real`, `R3`, `S1`, `S3`, `SO3` or `SE3`.
     pub fn kinds(&self) -> Vec<String> {
         let coordinates = self.generated.model.coordinates.iter();
         let named = coordinates.map(|coordinate| match coordinate.kind {
@@ -79,10 +79,10 @@ impl Session {
         named.collect()
     }
 
-    /// Tables by their names as JSON whose formulas are LaTeX.
+    /// Tables by name, as JSON with formulas in LaTeX.
     ///
     /// # Errors
-    /// Where a table is not known, or cannot be had.
+    /// If a table is unknown, or does not exist.
     pub fn typeset(&self, of: &[String]) -> Result<String, Failure> {
         let named: Result<Vec<Table>, String> = of.iter().map(|name| Table::parse(name)).collect();
         let tables = named.and_then(|of| self.generated.tables(&of));
@@ -91,7 +91,7 @@ impl Session {
     }
 }
 
-/// A robot in URDF as a description, which messages call `name`.
+/// Converts a robot in URDF, which messages call `name`, into a description.
 pub fn imported(
     text: String,
     name: &str,

@@ -1,4 +1,4 @@
-//! A run from its start to its end: in equal steps, or in those that a tolerance asks for.
+//! Advances a run from its start to its end, in equal steps or in steps chosen by a tolerance.
 
 use super::balance::Balance;
 use super::events::Events;
@@ -12,28 +12,28 @@ use hamel::methods::General;
 use hamel::{Clock, State, StepError};
 use std::cell::Cell;
 
-/// Where an observed state is.
+/// Kind of an observed state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// At the start, or at the end of a step.
+    /// The start, or the end of a step.
     End,
-    /// Between, for plots: steps chosen by their error may be few.
+    /// A state within a step, for plots: steps chosen by their error may be few.
     Within,
-    /// Where a sample was asked for.
+    /// A requested sample.
     Sample,
 }
 
-/// Who looks at a run.
+/// Observer of a run.
 pub trait Observer {
-    /// Sees a state.
+    /// Observes a state.
     fn look(&mut self, state: &State<Instance>, place: Place);
 
-    /// Of how many steps that are next it wants no more than a [`glance`](Self::glance) at their ends.
+    /// The number of following steps for which a [`glance`](Self::glance) at their ends suffices.
     fn leisure(&self) -> u64 {
         0
     }
 
-    /// Sees the energies and constraints at the end of a step.
+    /// Observes the energies and constraints at the end of a step.
     fn glance(&mut self, _: Glance) {}
 }
 
@@ -43,7 +43,7 @@ impl<F: FnMut(&State<Instance>, Place)> Observer for F {
     }
 }
 
-/// Shows the end of a step that a tolerance has chosen, and before it what a plot needs of its path.
+/// Shows the end of a step chosen by a tolerance, preceded by intermediate points for a plot.
 fn show<const D: usize>(
     report: Report<'_, Instance, D>,
     spacing: f64,
@@ -65,8 +65,8 @@ fn show<const D: usize>(
     observer.look(step.end(), Place::End);
 }
 
-/// The run from the start to its end, in equal steps or in those that a tolerance asks for. Where `plan.quiet` says that
-/// nobody looks at equal steps, only the start, samples and ends of such stretches are shown.
+/// Runs from the start to the end, in equal steps or in steps chosen by a tolerance. If `plan.quiet`, only the start,
+/// samples and the ends of stretches of equal steps are shown.
 pub fn advance(
     system: &Instance,
     plan: &Plan,
@@ -74,7 +74,7 @@ pub fn advance(
     (balance, watched): (&Cell<Balance>, &mut Events),
     observer: &mut dyn Observer,
 ) -> Result<(), StepError> {
-    // As the methods are given them: compiled once.
+    // In the form for which methods are compiled.
     let inputs: Given<Instance> = &|t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
@@ -95,7 +95,7 @@ pub fn advance(
     }
     let until = plan.until;
     let spacing = until / plan.points as f64;
-    // A run that has lost the motion ends there, and so does one that is given up.
+    // The run ends when it has lost the motion, or when it is cancelled.
     let followed = |state: &State<Instance>| {
         if plan.is_given_up() {
             return f64::NAN;
@@ -114,7 +114,7 @@ pub fn advance(
             move |state: &State<Instance>| watched.value(index, system, state)
         })
         .collect();
-    // The one that is followed is the last.
+    // The event that follows the motion is the last.
     let mut events = Vec::with_capacity(gauges.len() + 1);
     for (event, gauge) in watched.list().iter().zip(&gauges) {
         events.push(event.looked_for(gauge));
@@ -158,7 +158,7 @@ pub fn advance(
     outcome
 }
 
-/// Notes an event of those that are watched.
+/// Records an occurrence of an event.
 fn note<const D: usize>(
     report: &Report<'_, Instance, D>,
     system: &Instance,

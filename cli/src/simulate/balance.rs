@@ -1,22 +1,22 @@
-//! Whether a run still follows the motion: its energy may change by the work of loads alone, and does so otherwise where a
-//! step has jumped across a singularity, or is far too long.
+//! Detects runs that no longer follow the motion: energy changes not accounted for by loads occur if a step has jumped
+//! across a singularity, or is far too long.
 
 use crate::mechanism::Instance;
 use hamel::{State, System};
 
-/// A change of energy that no load accounts for means that the motion is lost where it is larger than this
-/// part of the energy that moves on average, or than so many tolerances of what moves here.
+/// Largest unexplained change of energy relative to the mean kinetic energy, and the same in multiples of the
+/// tolerance.
 const LOST: f64 = 1e-2;
 const TOLERANCES: f64 = 100.0;
-/// In equal steps nobody says what a step may err by, and methods of low order gain or lose energy as they go: the motion
-/// is lost where the change is so many times the energy.
+/// Likewise for equal steps, where no tolerance is known and methods of low order gain or lose energy: the motion is
+/// lost only if the change exceeds the energy by this factor.
 const GROSS: f64 = 10.0;
-/// A mechanism at rest may have no energy at all: what rounding makes of it is no loss.
+/// Absolute limit for a mechanism at rest without energy: rounding errors are not a loss.
 const ROUNDING: f64 = 1e-13;
-/// The work of loads is estimated from the ends of steps, and may be so many times as much.
+/// Safety factor for the work of loads, which is estimated from the ends of steps.
 const WORK: f64 = 10.0;
 
-/// What is known of the energy so far.
+/// The energy balance so far.
 #[derive(Clone, Copy, Debug)]
 pub struct Balance {
     start: f64,
@@ -25,9 +25,9 @@ pub struct Balance {
     power: f64,
     /// ∫ |f ξ| dt.
     work: f64,
-    /// ∫ T dt, without what the run has made of nothing.
+    /// ∫ T dt, without energy created by the run.
     moving: f64,
-    /// Whether T + V changes with the time, or by drives: then it says nothing of the run.
+    /// Whether T + V changes with the time, or by drives; then it is not checked.
     driven: bool,
     /// T and the change of T + V at the last state.
     kinetic: f64,
@@ -35,7 +35,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Starts at a state.
+    /// The balance at the start.
     pub fn new(system: &Instance, state: &State<Instance>) -> Self {
         Balance {
             start: state.t,
@@ -50,7 +50,7 @@ impl Balance {
         }
     }
 
-    /// What is known with one more state.
+    /// The balance after one more state.
     pub fn after(mut self, system: &Instance, state: &State<Instance>) -> Self {
         let h = (state.t - self.time).abs();
         let power = system.power(state.t, &state.x, &state.xi).abs();
@@ -65,7 +65,7 @@ impl Balance {
         self
     }
 
-    /// The change of energy here, where no load accounts for it; without a tolerance, where steps are equal.
+    /// The change of energy at this state if no load accounts for it; `tolerance` is `None` for equal steps.
     pub fn lost(&self, tolerance: Option<f64>) -> Option<f64> {
         if self.driven {
             return None;
@@ -84,7 +84,7 @@ impl Balance {
             }
             None => GROSS * scale + ROUNDING,
         };
-        // What is not a number is said by the method itself.
+        // The method itself reports NaN.
         let lost = self.change.abs() > allowed + WORK * self.work;
         lost.then_some(self.change)
     }

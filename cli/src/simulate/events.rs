@@ -1,4 +1,4 @@
-//! Events of a run: where a number that is watched changes its sign.
+//! Events of a run: sign changes of a watched quantity.
 
 use super::sample::Sample;
 use crate::mechanism::{Instance, Numbers};
@@ -9,29 +9,29 @@ use std::cell::Cell;
 use std::fmt;
 use std::sync::Arc;
 
-/// Halvings of a step in which an event is: more are below rounding.
+/// Number of bisections of a step that contains an event: more are below rounding.
 const HALVINGS: usize = 60;
 
-/// A function of t, x and ξ of another program.
+/// A function of t, x and ξ supplied by another program.
 pub type Gauge = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
 
-/// What is watched.
+/// The watched quantity.
 #[derive(Clone)]
 pub enum Watched {
-    /// An expression of the description's names.
+    /// An expression in names of the description.
     Expression(String),
     /// A function.
     Function(Arc<Gauge>),
 }
 
-/// A change of sign that is looked for.
+/// A sign change to look for.
 #[derive(Clone, Debug)]
 pub struct Event {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Of what.
+    /// Watched quantity.
     pub of: Watched,
-    /// Which changes count.
+    /// Sign changes that count.
     pub direction: Direction,
     /// Whether the run ends there.
     pub terminal: bool,
@@ -47,7 +47,7 @@ impl fmt::Debug for Watched {
 }
 
 impl Event {
-    /// The expression that it watches.
+    /// The watched expression, if it is one.
     pub fn expression(&self) -> Option<&str> {
         match &self.of {
             Watched::Expression(text) => Some(text),
@@ -55,7 +55,7 @@ impl Event {
         }
     }
 
-    /// The same for runs whose steps a tolerance chooses.
+    /// The event for runs with steps chosen by a tolerance.
     pub fn looked_for<'g>(
         &self,
         gauge: &'g dyn Fn(&State<Instance>) -> f64,
@@ -72,7 +72,7 @@ impl Event {
         }
     }
 
-    /// The sign that counts on the way from one value to another; a zero that a value comes from is no event.
+    /// The sign of a counted change from one value to another; leaving a zero is not an event.
     fn sign(&self, from: f64, to: f64) -> Option<f64> {
         let rises = from < 0.0 && to >= 0.0 && self.direction != Direction::Falling;
         let falls = from > 0.0 && to <= 0.0 && self.direction != Direction::Rising;
@@ -84,24 +84,24 @@ impl Event {
     }
 }
 
-/// The events of one run, and what of them has happened.
+/// The events of one run, and their occurrences.
 #[derive(Default)]
 pub struct Events {
     list: Vec<Event>,
-    /// The place of an expression among the outputs of the system.
+    /// Index of each expression among the outputs of the system.
     outputs: Vec<Option<usize>>,
     /// The last state, with the values of all events.
     last: Option<(State<Instance>, Vec<f64>)>,
     /// The states at each event, in order of time.
     pub happened: Vec<Vec<Sample>>,
-    /// The event at which the run has ended.
+    /// The event that ended the run.
     pub stopped_by: Option<usize>,
-    /// An event that had no value.
+    /// An event without a value.
     undefined: Cell<Option<usize>>,
 }
 
 impl Events {
-    /// Events of a system; expressions are outputs of it, in this order with these names.
+    /// Events of a system; expressions are outputs of the system, in this order with the names `name(i)`.
     pub fn new(list: Vec<Event>, system: &Instance, name: impl Fn(usize) -> String) -> Self {
         let mut expressions = 0..;
         let outputs = list.iter().map(|event| match event.of {
@@ -120,18 +120,18 @@ impl Events {
         }
     }
 
-    /// All of them.
+    /// All events.
     pub fn list(&self) -> &[Event] {
         &self.list
     }
 
-    /// The name of an event that had no value, where one had none.
+    /// The name of an event without a value, if any.
     pub fn undefined(&self) -> Option<&str> {
         let event = self.list.get(self.undefined.get()?)?;
         Some(&event.name)
     }
 
-    /// The value of what an event watches.
+    /// The value of the quantity that an event watches.
     pub fn value(&self, index: usize, system: &Instance, state: &State<Instance>) -> f64 {
         let output = self.outputs.get(index).copied().flatten();
         let value = match (self.list.get(index).map(|event| &event.of), output) {
@@ -149,10 +149,10 @@ impl Events {
         value
     }
 
-    /// Begins to watch, from a state.
+    /// Begins to watch at a state.
     ///
     /// # Errors
-    /// Where an event has no value there.
+    /// If an event has no value there.
     pub fn begin(&mut self, system: &Instance, state: &State<Instance>) -> Result<(), StepError> {
         if !self.list.is_empty() {
             let values = self.values(system, state)?;
@@ -161,10 +161,10 @@ impl Events {
         Ok(())
     }
 
-    /// Sees the end of a step; the state at which the run ends, where it ends within the step.
+    /// Observes the end of a step; returns the final state if the run ends within the step.
     ///
     /// # Errors
-    /// Where an event has no value.
+    /// If an event has no value.
     pub fn see(
         &mut self,
         system: &Instance,
@@ -208,8 +208,8 @@ impl Events {
     }
 }
 
-/// The first state known on the way from one state to another in which something holds that does not hold in the former,
-/// and does in the latter: by shorter and shorter steps of the method itself.
+/// The first state between two others at which a condition holds that is false at the former and true at the latter;
+/// found by bisection with steps of the method.
 pub fn first(
     system: &Instance,
     stepper: &Stepper,
@@ -232,7 +232,7 @@ pub fn first(
                     false => before = middle,
                 }
             }
-            // A step that cannot be taken cannot be divided.
+            // A step that fails cannot be divided.
             Err(_) => break,
         }
     }

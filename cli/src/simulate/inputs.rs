@@ -1,4 +1,4 @@
-//! What acts on a run from outside: columns of a file over time, and expressions of time and state.
+//! Inputs of a run: columns of a file over time, and expressions in time and state.
 
 mod expressions;
 mod file;
@@ -16,18 +16,18 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What inputs are in a run.
+/// Options for the inputs of a run.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Asked {
-    /// Inputs over time: a column `t` and columns with names of inputs, as in `t,F,tau[2]`; between two rows on a
-    /// straight line. Inputs without a column keep their values. Where the description declares a time, `t` is that
-    /// time, as in --input.
+    /// Read inputs over time: a column `t` and columns with names of inputs, as in `t,F,tau[2]`; linear between two
+    /// rows. Inputs without a column keep their values. If the description declares a time, `t` is that time, as in
+    /// --input.
     #[arg(long, value_name = "F.csv")]
     pub inputs: Option<PathBuf>,
-    /// Values of --inputs hold until the next row, and after the last.
+    /// Hold the values of --inputs until the next row, and after the last.
     #[arg(long, requires = "inputs")]
     pub hold: bool,
-    /// An input as an expression of `t`, parameters, coordinates, velocities and states.
+    /// Set an input to an expression in `t`, parameters, coordinates, velocities and states.
     #[arg(long, value_name = "NAME = EXPR")]
     pub input: Vec<String>,
 }
@@ -38,17 +38,17 @@ pub struct Inputs {
     table: Option<Table>,
     expressions: Option<Expressions>,
     law: Option<Law>,
-    /// The place in x of the time that the description declares.
+    /// Index in x of the time that the description declares.
     clock: Option<usize>,
     /// The description's time at the start of a run.
     begin: f64,
 }
 
-/// A function of t, x and ξ that sets entries of u: a controller of another program.
+/// A function of t, x and ξ that sets entries of u: an external controller.
 #[derive(Clone)]
 pub struct Law(pub Arc<Control>);
 
-/// What such a function is.
+/// Signature of a controller.
 pub type Control = dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync;
 
 impl fmt::Debug for Law {
@@ -70,7 +70,7 @@ impl From<Law> for Inputs {
 }
 
 impl Inputs {
-    /// Reads what was asked for in a run of this length; none where all inputs keep their values.
+    /// Reads the requested inputs of a run of this length; `None` if all inputs are constant.
     pub fn new(
         asked: &Asked,
         until: f64,
@@ -114,18 +114,18 @@ impl Inputs {
         self.table.as_ref().map_or(&[], Table::jumps)
     }
 
-    /// What makes forces depend on velocities, as far as that is known: an expression that mentions one.
+    /// The known reason why forces depend on velocities: an expression that mentions one.
     pub fn moving(&self) -> Option<String> {
         let name = self.expressions.as_ref()?.moving()?;
         Some(format!("the input `{name}`"))
     }
 
-    /// Whether a controller of another program sets them, of which nothing is known.
+    /// Whether an external controller sets inputs, whose dependence is unknown.
     pub fn is_law(&self) -> bool {
         self.law.is_some()
     }
 
-    /// The same for a run from another state; why there is none.
+    /// The inputs for a run from another state; fails if they do not cover it.
     pub fn started(mut self, state: &State) -> Result<Self, String> {
         self.begin = begin(self.clock, state);
         if let Some(expressions) = &mut self.expressions {
@@ -146,7 +146,7 @@ impl Inputs {
                 .any(|known| known == place)
     }
 
-    /// Sets the entries of u that change, where a run has come to t; the others keep their values.
+    /// Sets the varying entries of u at time t of a run; the others keep their values.
     pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
         if let Some(table) = &self.table {
             table.set(t, u);
@@ -160,7 +160,7 @@ impl Inputs {
     }
 }
 
-/// The numbers of an expression that mentions parameters alone.
+/// The value of an expression in parameters alone.
 pub fn constant(
     expression: &str,
     generated: &Generated,
@@ -180,7 +180,7 @@ pub fn times(
     file::times(path, begin(clock, state), until)
 }
 
-/// The description's time at a state; 0 where it declares none.
+/// The description's time at a state; 0 if it declares none.
 fn begin(clock: Option<usize>, state: &State) -> f64 {
     clock
         .and_then(|place| state.x.get(place))
@@ -188,7 +188,7 @@ fn begin(clock: Option<usize>, state: &State) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// The place of an entry of the inputs, as it is written or plainly; why there is none.
+/// The index of an input entry, by its written or plain name.
 fn place(name: &str, entries: &[String]) -> Result<usize, String> {
     let found = |entry: &String| entry == name || plain(entry) == plain(name);
     entries.iter().position(found).ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! `hamel simulate`: a run in time.
+//! `hamel simulate`: runs a system over time.
 
 pub mod advance;
 pub mod balance;
@@ -40,9 +40,9 @@ use write::Format;
 
 /// Integrates the equations of motion from a start.
 ///
-/// The functions of the description become machine code at once, and so do whole steps of explicit methods where inputs
-/// are constant: a run takes about as long as generated Rust. Inputs keep the value that
-/// STATE.json gives them, or zero, where no --inputs and no --input says what they are.
+/// The functions of the description are compiled to machine code in memory, and so are whole steps of explicit methods
+/// if inputs are constant: a run takes about as long as generated Rust. Inputs keep the value that STATE.json gives
+/// them, or zero, unless --inputs or --input sets them.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel simulate dzhanibekov.eom --until 100 --plot flip.svg
@@ -62,33 +62,33 @@ pub struct Arguments {
     /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// Samples as .csv or .json, or a plot as .svg. No two columns have one name: `t` is the time of a description that
-    /// declares `time t;`, and otherwise the time since the start of the run; it is `t_run` where something else is
+    /// Write samples as .csv or .json, or a plot as .svg. Column names are unique: `t` is the time of a description
+    /// that declares `time t;`, and otherwise the time since the start of the run; it is `t_run` if something else is
     /// called `t`.
     #[arg(long, value_name = "F")]
     out: Option<PathBuf>,
     /// Print γ, M and Γ before the run.
     #[arg(long)]
     tables: bool,
-    /// A sample every N steps, or with an `s`, as in 0.01s, at multiples of that time; by default about 1000
+    /// Take a sample every N steps, or, with an `s` as in 0.01s, at multiples of that time; default: about 1000
     /// samples.
     #[arg(long, value_name = "N", value_parser = every, allow_negative_numbers = true)]
     every: Option<Every>,
-    /// Samples at the times in the column `t` of this file, and nowhere else; where the description declares a time,
-    /// at these times of it.
+    /// Take samples only at the times in the column `t` of this file; if the description declares a time,
+    /// at these values of it.
     #[arg(long, value_name = "F.csv", conflicts_with = "every")]
     times: Option<PathBuf>,
     #[command(flatten)]
     inputs: inputs::Asked,
-    /// Plot of coordinates, velocities, outputs and what is conserved over time, with the path of a body
-    /// axis where there is one attitude, and with Poinsot's construction of a body that is nearly free.
+    /// Plot coordinates, velocities, outputs and conserved quantities over time, with the path of a body
+    /// axis if there is exactly one attitude, and with Poinsot's construction of a body that is nearly free.
     #[arg(long, value_name = "F.svg")]
     plot: Option<PathBuf>,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
-/// Runs and reports.
+/// Runs and reports the results.
 #[cfg(feature = "command")]
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.stepping.check()?;
@@ -149,7 +149,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The SVG text of a picture.
+/// The SVG of a picture.
 #[cfg(feature = "command")]
 fn drawn(picture: &hamel_report::plot::Picture) -> Result<String, Failure> {
     let figure =
@@ -157,7 +157,7 @@ fn drawn(picture: &hamel_report::plot::Picture) -> Result<String, Failure> {
     Ok(figure.standalone())
 }
 
-/// γ, M and Γ; empty where A has dependent columns.
+/// γ, M and Γ as text; empty if A has dependent columns.
 fn coefficients(generated: &Generated) -> String {
     let of = [Table::Gamma, Table::Mass, Table::Connection];
     match generated.tables(&of) {
@@ -166,7 +166,7 @@ fn coefficients(generated: &Generated) -> String {
     }
 }
 
-/// `10`: steps; `0.01s`: a time.
+/// Parses `10` as steps and `0.01s` as a time.
 fn every(text: &str) -> Result<Every, String> {
     match text.strip_suffix('s') {
         Some(time) => positive(time).map(Every::Time),

@@ -1,4 +1,4 @@
-//! The panels of a plot over time: coordinates, velocities, outputs.
+//! Panels of a plot over time: coordinates, velocities, outputs.
 
 use super::record::Run;
 use super::sample::Sample;
@@ -13,8 +13,8 @@ use std::f64::consts::{PI, TAU};
 type Line = (String, Vec<f64>);
 
 impl Run<'_> {
-    /// Coordinates, velocities and outputs, vectors in panels of their own. Where the only attitude is drawn
-    /// on a sphere it has no line here.
+    /// Panels of coordinates, velocities and outputs, with a separate one for each vector. If the only attitude is
+    /// drawn on a sphere, it is omitted here.
     pub fn panels(&self, system: &Instance, on_sphere: bool) -> Vec<Panel> {
         let mut panels = self.coordinates(on_sphere);
         let groups = self.program.velocities.iter();
@@ -39,7 +39,7 @@ impl Run<'_> {
         (name.to_string(), self.track.iter().map(of).collect())
     }
 
-    /// Coordinates as they are, circles by their angles, attitudes by how far they are from the axes of
+    /// Coordinates: numbers directly, circles by their angles, attitudes by their angles from the axes of
     /// the world or of the joint.
     fn coordinates(&self, on_sphere: bool) -> Vec<Panel> {
         let mut panels = Vec::new();
@@ -56,7 +56,7 @@ impl Run<'_> {
         };
         for coordinate in &self.program.coordinates {
             let (name, at) = (coordinate.name.as_str(), coordinate.offset);
-            // It is what everything is drawn over.
+            // It is the horizontal axis.
             if self.time.place == Some(at) {
                 continue;
             }
@@ -95,7 +95,7 @@ impl Run<'_> {
     }
 }
 
-/// One panel for each vector, then one for all single numbers; groups stand one after the other.
+/// One panel for each vector, then one for all scalars; groups follow one another.
 fn grouped<'a>(
     [one, several]: [&str; 2],
     groups: impl Iterator<Item = (&'a str, usize)>,
@@ -125,7 +125,7 @@ fn entries(shape: Shape) -> usize {
     }
 }
 
-/// Angles without jumps by a full turn.
+/// Removes jumps by full turns from angles.
 fn unwound(mut angles: Vec<f64>) -> Vec<f64> {
     let mut before = None;
     for angle in &mut angles {
@@ -133,7 +133,7 @@ fn unwound(mut angles: Vec<f64>) -> Vec<f64> {
             let change: f64 = *angle - before;
             *angle = before + (change + PI).rem_euclid(TAU) - PI;
         }
-        // After a value that is not finite the count of turns begins anew.
+        // Turns are counted anew after a value that is not finite.
         before = Some(*angle).filter(|angle| angle.is_finite());
     }
     angles

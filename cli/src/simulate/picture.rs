@@ -1,4 +1,4 @@
-//! What a plot of a run shows.
+//! Contents of the plot of a run.
 
 use super::record::Run;
 use super::rotor::poinsot;
@@ -9,7 +9,7 @@ use hamel_codegen::model::layout::Block;
 use hamel_report::plot::{Panel, Path, Picture};
 
 impl Run<'_> {
-    /// What a plot shows: coordinates, velocities, outputs, what is conserved, and how a body turns.
+    /// The plot: coordinates, velocities, outputs, conserved quantities, and the rotation of a body.
     pub fn picture(&self, system: &Instance) -> Picture {
         let time = self.track.iter();
         let time: Vec<f64> = time.map(|s| self.time.at(s.t, &s.x)).collect();
@@ -31,12 +31,12 @@ impl Run<'_> {
         }
     }
 
-    /// Relative changes of the energy and of the invariants that the description claims; changes themselves where there is
-    /// nothing to compare with.
+    /// Relative changes of the energy and of the invariants that the description claims; absolute changes if there is
+    /// no reference value.
     fn drift(&self) -> Panel {
         let first = self.monitor.initial_energy();
         let scale = self.monitor.energy_deviation() / self.monitor.relative_energy_deviation();
-        // All energy has come from outside.
+        // All energy was supplied during the run.
         let from_nothing = scale == 0.0;
         let scale = match scale.is_finite() && !from_nothing {
             true => scale,
@@ -67,7 +67,7 @@ impl Run<'_> {
         panel
     }
 
-    /// The path of a body axis in the world, where exactly one coordinate is an attitude: the axis
+    /// The path of a body axis in the world, if exactly one coordinate is an attitude: the axis
     /// about which the body turns most at first.
     fn attitude(&self) -> Option<Path> {
         let (mut offset, mut found) = (0, Vec::new());

@@ -1,4 +1,4 @@
-//! What is to be run: the method, its steps, and where samples are taken.
+//! The plan of a run: the method, its steps, and the samples.
 
 use super::inputs::Inputs;
 use super::stop::Stop;
@@ -6,21 +6,21 @@ use crate::failure::Failure;
 use crate::mechanism::Instance;
 use crate::method::Chosen;
 
-/// Samples where nothing else is asked for.
+/// Default number of samples.
 const SAMPLES: u64 = 1000;
-/// Points of a plot.
+/// Number of points of a plot.
 pub const POINTS: u64 = 4000;
 
-/// How often samples are taken.
+/// Interval of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Every {
-    /// Every so many steps.
+    /// Number of steps between samples.
     Steps(u64),
     /// At multiples of this time.
     Time(f64),
 }
 
-/// What is to be run.
+/// The plan of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub method: Chosen,
@@ -28,23 +28,23 @@ pub struct Plan {
     pub step: f64,
     /// Expected number of steps.
     pub steps: u64,
-    /// A sample every so many steps, where samples are at ends of steps.
+    /// Number of steps between samples, if samples are at ends of steps.
     pub every: u64,
-    /// Whether that was left to the plan, which may then take fewer.
+    /// Whether that was chosen by the plan, which may then take fewer samples.
     pub chosen: bool,
-    /// The error that a step may make, where steps are chosen by it.
+    /// Permitted error per step, if steps are chosen by it.
     pub tolerance: Option<f64>,
-    /// Where samples are that are not at the ends of steps.
+    /// Samples that are not at ends of steps.
     pub spacing: Spacing,
-    /// Steps chosen by their error are shown at no fewer points than that.
+    /// Least number of points at which steps chosen by their error are shown.
     pub points: u64,
-    /// Whether nobody looks at the ends of steps.
+    /// Whether the ends of steps are not observed.
     pub quiet: bool,
-    /// What may give up the run on its way, where nobody is quiet.
+    /// Cancellation of the run, if steps are observed.
     pub stop: Option<Stop>,
 }
 
-/// Where samples are.
+/// Times of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spacing {
     /// At ends of steps.
@@ -56,10 +56,10 @@ pub enum Spacing {
 }
 
 impl Spacing {
-    /// At these times.
+    /// Samples at these times.
     ///
     /// # Errors
-    /// Where they do not increase, or are outside of a run until this time.
+    /// If the times do not increase, or lie outside a run until this time.
     pub fn at(times: Vec<f64>, until: f64) -> Result<Self, Failure> {
         let outside = times.iter().find(|time| !(0.0..=until).contains(*time));
         let falling = times.windows(2).find(|pair| pair[0] >= pair[1]);
@@ -98,14 +98,14 @@ impl Spacing {
 }
 
 impl Plan {
-    /// Whether the energy of a run is watched. Where nobody looks at equal steps, nothing is known of the work of loads; and
-    /// a controller of another program is called by the method alone.
+    /// Whether the energy of a run is monitored. Without observed steps the work of loads is unknown, and an external
+    /// controller is called only by the method.
     pub fn watches(&self, system: &Instance) -> bool {
         let is_law = system.given().is_some_and(Inputs::is_law);
         self.tolerance.is_some() || !self.quiet && !is_law
     }
 
-    /// Whether the run is given up.
+    /// Whether the run is cancelled.
     pub fn is_given_up(&self) -> bool {
         self.stop.as_ref().is_some_and(|Stop(asked)| asked())
     }
@@ -115,8 +115,8 @@ impl Plan {
         matches!(self.spacing, Spacing::Every(_))
     }
 
-    /// A plan with about a thousand samples, or as many as are asked for. Equal steps are shortened so that samples are
-    /// at their ends: where they are at multiples of a time, a whole number of steps leads from one to the next.
+    /// A plan with about a thousand samples, or as many as requested. Equal steps are shortened so that samples fall on
+    /// their ends: for multiples of a time, a whole number of steps leads from one to the next.
     pub fn new(
         method: Chosen,
         until: f64,
@@ -128,7 +128,7 @@ impl Plan {
             (None, _) => (None, Spacing::Steps),
             (Some(Every::Steps(steps)), _) => (Some(steps), Spacing::Steps),
             (Some(Every::Time(time)), Some(_)) => (Some(1), Spacing::Every(time)),
-            // As many equal steps as are needed from one sample to the next.
+            // The number of equal steps needed from one sample to the next.
             (Some(Every::Time(time)), None) => {
                 if time < until {
                     step = time / (time / step * (1.0 - 1e-9)).ceil().max(1.0);
@@ -136,10 +136,10 @@ impl Plan {
                 (Some(1), Spacing::Every(time))
             }
         };
-        // As the integrator counts: a ratio that is whole but for rounding is whole.
+        // Like the integrator: a ratio that is whole up to rounding counts as whole.
         let steps = ((until / step) * (1.0 - 1e-9)).ceil().max(1.0) as u64;
         let default = match tolerance {
-            // How many steps there will be is not known.
+            // The number of steps is not known in advance.
             Some(_) => 1,
             None => (steps / SAMPLES).max(1),
         };

@@ -1,4 +1,4 @@
-//! The run itself, and what is kept of it.
+//! Runs the plan and keeps the results.
 
 use super::advance::advance;
 use super::balance::Balance;
@@ -15,7 +15,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
 use std::cell::Cell;
 
-/// A run that is over.
+/// A finished run.
 pub struct Run<'a> {
     pub program: &'a Program,
     pub plan: Plan,
@@ -24,26 +24,26 @@ pub struct Run<'a> {
     pub velocity_names: Vec<String>,
     pub output_names: Vec<String>,
     pub invariant_names: Vec<String>,
-    /// In order of time; the first and the last state among them.
+    /// In order of time, including the first and the last state.
     pub samples: Vec<Sample>,
-    /// A finer list for plots.
+    /// A finer list of samples for plots.
     pub track: Vec<Sample>,
     pub monitor: Monitor<f64>,
     pub steps: u64,
     pub evaluations: u64,
-    /// Why it ended early.
+    /// Reason of an early end.
     pub failure: Option<String>,
-    /// What of the events has happened.
+    /// Events with their occurrences.
     pub events: Events,
 }
 
 impl<'a> Run<'a> {
-    /// Integrates; a numerical failure is part of the run, an impossible plan an error.
+    /// Integrates; a numerical failure is part of the run, an impossible plan is an error.
     pub fn new(generated: &'a Generated, system: &Instance, plan: Plan) -> Result<Self, Failure> {
         Run::watched(generated, system, plan, Events::default())
     }
 
-    /// The same with events, whose expressions are outputs of the system.
+    /// Integrates with events, whose expressions are outputs of the system.
     pub fn watched(
         generated: &'a Generated,
         system: &Instance,
@@ -109,16 +109,16 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Why a run ended before its time.
+/// Reason why a run ended early.
 #[derive(Clone, Debug)]
 pub struct Early {
-    /// What happened, in a word or two.
+    /// Kind of failure, in a word or two.
     pub kind: &'static str,
-    /// The same in a sentence.
+    /// Message, in a sentence.
     pub why: String,
 }
 
-/// What became of a run that has come to a state; an impossible plan is an error.
+/// The outcome of a run that has reached a state; an impossible plan is an error.
 pub fn ended(
     system: &Instance,
     plan: &Plan,

@@ -1,4 +1,4 @@
-//! Who records a run: samples of those states that are asked for, and what is monitored of all of them.
+//! Records a run: the requested samples, and monitored values of all states.
 
 use super::advance::{Observer, Place};
 use super::balance::Balance;
@@ -9,42 +9,42 @@ use crate::progress::{self, Bar};
 use hamel::{Monitor, State};
 use std::cell::Cell;
 
-/// Samples that are kept at most, where their number is not asked for.
+/// Largest number of samples kept if their number is not requested.
 const MOST: usize = 20_000;
-/// Shorter runs show no progress.
+/// Number of steps from which a run shows progress.
 const LONG: u64 = 20_000;
-/// Steps between two movements of the progress bar.
+/// Number of steps between updates of the progress bar.
 const TICK: u64 = 500;
 
-/// What has been recorded so far.
+/// Recorder of a run.
 pub struct Recorder<'a> {
     system: &'a Instance,
     plan: &'a Plan,
     balance: &'a Cell<Balance>,
     recorded: Recorded,
-    /// A sample every so many steps, and a point of the finer list.
+    /// Numbers of steps between samples, and between points of the finer list.
     every: u64,
     stride: u64,
     bar: Bar,
-    /// Whether the bar is there from the start.
+    /// Whether the bar is shown from the start.
     long: bool,
-    /// Whether the energy is watched.
+    /// Whether the energy is monitored.
     watches: bool,
 }
 
-/// What is left of it.
+/// The recorded results.
 pub struct Recorded {
     pub samples: Vec<Sample>,
     pub track: Vec<Sample>,
     pub monitor: Monitor<f64>,
-    /// One more than there were steps.
+    /// The number of steps plus one.
     pub steps: u64,
 }
 
 impl<'a> Recorder<'a> {
-    /// Before a run.
+    /// A recorder before the run.
     pub fn new(system: &'a Instance, plan: &'a Plan, balance: &'a Cell<Balance>) -> Self {
-        // How many steps a tolerance takes is not known: the bar comes when they are many.
+        // The number of steps with a tolerance is unknown: the bar appears after many steps.
         let long = plan.tolerance.is_none() && plan.steps >= LONG;
         Recorder {
             recorded: Recorded {
@@ -70,7 +70,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// After it.
+    /// The results after the run.
     pub fn finish(self) -> Recorded {
         self.bar.finish_and_clear();
         self.recorded
@@ -100,7 +100,7 @@ impl Observer for Recorder<'_> {
             self.balance.set(self.balance.get().after(system, state));
         }
         let steps = self.recorded.steps;
-        // Times that are given say all of it.
+        // Given times determine the samples completely.
         let asked = match plan.spacing {
             Spacing::Steps => steps.is_multiple_of(self.every),
             Spacing::Every(_) => steps == 0,
@@ -129,7 +129,7 @@ impl Observer for Recorder<'_> {
 
     fn leisure(&self) -> u64 {
         let steps = self.recorded.steps;
-        // Zero where this step is looked at itself.
+        // Zero if this step itself is to be observed.
         let ahead = |every: u64| (every - steps % every) % every;
         let asked = match self.plan.spacing {
             Spacing::Steps => ahead(self.every),
@@ -146,7 +146,7 @@ impl Observer for Recorder<'_> {
     }
 }
 
-/// Drops every second sample where there are more than a run shows; whether it did.
+/// Drops every second sample if there are more than the limit; returns whether it did.
 fn thin(samples: &mut Vec<Sample>) -> bool {
     if samples.len() < MOST {
         return false;
@@ -171,7 +171,7 @@ mod tests {
     use hamel::StepError;
     use std::path::Path;
 
-    /// Looks at every step.
+    /// An observer that looks at every step.
     struct Watchful<'a>(Recorder<'a>);
 
     impl Observer for Watchful<'_> {
@@ -206,8 +206,8 @@ mod tests {
         (run, bits, system.evaluations() - before, monitored)
     }
 
-    /// What is recorded of a run whose steps are taken without a look at most of them is, to the bit, what is recorded of one
-    /// that is looked at step by step; also where it has no end.
+    /// The record of a run with unobserved steps is bitwise equal to that of a run observed step by step, even if a
+    /// step has no end.
     #[test]
     fn a_glance_sees_what_a_look_sees() {
         let mut failed = 0;

@@ -1,5 +1,4 @@
-//! The angular momentum of a single body, and whether it is nearly free: what Poinsot's construction
-//! needs.
+//! The angular momentum of a single body, and whether the body is nearly free, for Poinsot's construction.
 
 use super::sample::Sample;
 use crate::mechanism::{Instance, Numbers};
@@ -7,13 +6,13 @@ use hamel::{Block, System};
 use hamel_report::plot::Poinsot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-/// |P| of a body that is nearly free changes by no more than this, relative.
+/// Largest relative change of |P| for a body that is nearly free.
 const NEARLY: f64 = 0.05;
-/// Rounding of an inertia, relative.
+/// Relative rounding error of an inertia.
 const ROUNDING: f64 = 1e-9;
 
-/// Poinsot's construction of a run, where exactly one coordinate is an attitude, T = ½ ωᵀJω + (the rest) with
-/// a constant J in body axes, and |P| of P = J ω nearly constant.
+/// Poinsot's construction of a run, if exactly one coordinate is an attitude, T = ½ ωᵀJω + (the rest) with
+/// a constant J in body axes, and |P| of P = J ω is nearly constant.
 pub fn poinsot(system: &Instance, track: &[Sample]) -> Option<Poinsot> {
     let row = attitude(system.blocks())?;
     let (first, last) = (track.first()?, track.last()?);
@@ -44,7 +43,7 @@ pub fn poinsot(system: &Instance, track: &[Sample]) -> Option<Poinsot> {
     })
 }
 
-/// Where the only attitude stands in the chart.
+/// The row of the only attitude in the chart.
 fn attitude(blocks: &[Block]) -> Option<usize> {
     let (mut row, mut found) = (0, None);
     for block in blocks {
@@ -59,7 +58,7 @@ fn attitude(blocks: &[Block]) -> Option<usize> {
     found
 }
 
-/// J of T in the rates of the chart, C⁻ᵀ M C⁻¹, where nothing couples the attitude to the rest.
+/// J of T in the rates of the chart, C⁻ᵀ M C⁻¹, if the attitude is decoupled from the rest.
 fn inertia(system: &Instance, at: &Sample, row: usize) -> Option<Matrix3<f64>> {
     let n = at.xi.len();
     let columns = |of: &dyn Fn(&Numbers) -> Numbers| -> Vec<DVector<f64>> {

@@ -1,24 +1,24 @@
-//! The state of a run at one time, and what follows from it.
+//! The state of a run at one time, and derived quantities.
 
 use crate::mechanism::{Instance, Output};
 use hamel::{State, System};
 
-/// The state at one time, and what follows from it.
+/// The state at one time, and derived quantities.
 #[derive(Clone, Debug)]
 pub struct Sample {
     pub t: f64,
     pub x: Vec<f64>,
     pub xi: Vec<f64>,
-    /// Entries of all outputs, one after the other.
+    /// Entries of all outputs, in sequence.
     pub outputs: Vec<f64>,
-    /// Entries of all invariants but the energy.
+    /// Entries of all invariants except the energy.
     pub invariants: Vec<f64>,
     pub momentum: Vec<f64>,
     pub energy: f64,
 }
 
 impl Sample {
-    /// That of a state.
+    /// The sample of a state.
     pub fn of(system: &Instance, state: &State<Instance>) -> Self {
         let (x, xi) = (&state.x, &state.xi);
         let values = |list: &[Output]| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Runs in equal steps, from each time that matters to the next: one on its own, or two side by side.
+//! Runs in equal steps between the times that matter, one alone or two together.
 
 use super::advance::{Observer, Place};
 use super::events::Events;
@@ -9,25 +9,25 @@ use hamel::methods::Method;
 use hamel::{Clock, State, StepError, integrate_while};
 use std::ops::ControlFlow;
 
-/// A run in equal steps, who looks at it, and where it is.
+/// A run in equal steps, with its observer and current state.
 pub struct Steady<'a> {
-    /// What moves.
+    /// System.
     pub system: &'a Instance,
-    /// How.
+    /// Plan.
     pub plan: &'a Plan,
-    /// Where it is.
+    /// Current state.
     pub state: &'a mut State<Instance>,
-    /// What it may end at before its time.
+    /// Events that may end the run early.
     pub events: Option<&'a mut Events>,
-    /// Is shown the start and the ends of steps, or of stretches where nobody looks at steps; and samples.
+    /// Observer of the start, of the ends of steps or unobserved stretches, and of samples.
     pub observer: &'a mut dyn Observer,
 }
 
 impl<'a> Steady<'a> {
-    /// The run on its own, to its end.
+    /// Runs to the end, alone.
     ///
     /// # Errors
-    /// Why it has ended early; its state is then the last one that it had.
+    /// The reason of an early end; the state is then the last one reached.
     pub fn alone(mut self) -> Result<(), StepError> {
         self.observer.look(self.state, Place::End);
         if let Some(events) = &mut self.events {
@@ -43,14 +43,14 @@ impl<'a> Steady<'a> {
         Ok(())
     }
 
-    /// Whether an event has ended it, or it is given up.
+    /// Whether an event has ended the run, or it is cancelled.
     fn is_stopped(&self) -> bool {
         let events = self.events.as_ref();
         events.is_some_and(|events| events.stopped_by.is_some()) || self.plan.is_given_up()
     }
 
-    /// Two runs of one mechanism to their ends. As long as both of them take the same steps, two of these are taken by one
-    /// call of machine code. Each run is, to the bit, what it would be on its own.
+    /// Runs two systems of one mechanism to their ends. While both take the same steps, machine code takes two of these
+    /// in one call. Each run is bitwise equal to that alone.
     pub fn both([mut first, mut second]: [Self; 2]) -> [Result<(), StepError>; 2] {
         let ends = first.ends();
         if ends != second.ends() {
@@ -71,7 +71,7 @@ impl<'a> Steady<'a> {
         outcomes
     }
 
-    /// Times that steps end at: those of samples, those at which inputs jump, and the last one.
+    /// Times at which steps end: those of samples, those at which inputs jump, and the last one.
     fn ends(&self) -> Vec<f64> {
         let Plan { until, .. } = *self.plan;
         let mut ends = [self.samples(), self.system.jumps(), &[until]].concat();
@@ -93,7 +93,7 @@ impl<'a> Steady<'a> {
         Whole::new(self.system, &method.stepper, *step, end - self.state.t)
     }
 
-    /// To a time, with the clock of the run.
+    /// Runs to a time, with the clock of the run.
     fn go(&mut self, end: f64, clock: Option<Clock<f64>>) -> Result<(), StepError> {
         let from = self.state.t;
         if end > from {
@@ -112,7 +112,7 @@ impl<'a> Steady<'a> {
         Ok(())
     }
 
-    /// To the end of a stretch.
+    /// Runs to the end of a stretch.
     fn cover(&mut self, stretch: &Stretch) -> Result<(), StepError> {
         let (from, end) = (self.state.t, stretch.end);
         let whole = self.whole(end);
@@ -129,7 +129,7 @@ impl<'a> Steady<'a> {
         let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
         let (stepper, observer) = (&self.plan.method.stepper, &mut self.observer);
         let events = &mut self.events;
-        // Where an event ends the run, or why it cannot be watched.
+        // The state at which an event ends the run, or the reason why it cannot be watched.
         let mut stop = None;
         let mut index = 0;
         let clock = Clock::new(system, self.state);
@@ -170,13 +170,13 @@ impl<'a> Steady<'a> {
         Ok(())
     }
 
-    /// Whether most of the steps to a time may be taken without a look at their ends.
+    /// Whether most steps to a time may be taken without observing their ends.
     fn glides(&self, whole: &Whole, watches: bool, end: f64) -> bool {
         let free = !watches && self.observer.leisure() > 0 && self.state.is_finite();
         free && whole.glides(self.system, self.state.t, end)
     }
 
-    /// Takes the steps of a stretch: as many at once as the observer has no wish to see, and the others one by one.
+    /// Takes the steps of a stretch: unobserved steps many at once, the others one by one.
     fn glide(&mut self, whole: &Whole, stretch: &Stretch) -> Result<(), StepError> {
         let (system, grid) = (self.system, &stretch.grid);
         let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
@@ -196,7 +196,7 @@ impl<'a> Steady<'a> {
                     continue;
                 }
             }
-            // Where code has no end, the method says why.
+            // If the code fails, the method reports the reason.
             let mut next = whole.follow(system, self.state, grid.step(), &inputs, &mut None)?;
             if !next.is_finite() {
                 return Err(StepError::NonFinite { time: next.t });
@@ -212,14 +212,15 @@ impl<'a> Steady<'a> {
         Ok(())
     }
 
-    /// Sets the time of the description, which the end of a stretch has but for rounding, to that of the run.
+    /// Sets the description's time, which equals that of the run up to rounding at the end of a stretch, to the time of
+    /// the run.
     fn set(&mut self, clock: Option<Clock<f64>>) {
         if let Some(clock) = clock {
             clock.set(self.state);
         }
     }
 
-    /// To a time together with another run; whether both are there. Else neither has moved.
+    /// Runs to a time together with another run; returns whether both did, otherwise both are unchanged.
     fn go_with(&mut self, other: &mut Self, end: f64, clocks: [Option<Clock<f64>>; 2]) -> bool {
         let quiet = self.plan.quiet && other.plan.quiet;
         if !quiet || self.plan.has_multiples() || end <= self.state.t {
@@ -241,7 +242,7 @@ impl<'a> Steady<'a> {
         true
     }
 
-    /// Shows a sample where one is asked for.
+    /// Shows a sample if one is requested at this time.
     fn sample(&mut self, end: f64) {
         if self.samples().contains(&end) {
             self.observer.look(self.state, Place::Sample);
@@ -249,7 +250,7 @@ impl<'a> Steady<'a> {
     }
 }
 
-/// Shows the sample after so many steps of a stretch, where there is one.
+/// Shows the sample after `index` steps of a stretch, if there is one.
 fn show(
     observer: &mut dyn Observer,
     (stretch, clock): (&Stretch, Option<Clock<f64>>),

@@ -1,4 +1,4 @@
-//! How a run is stepped: its length, the method, the step or the tolerance.
+//! Options for stepping a run: its length, the method, the step or the tolerance.
 
 use super::plan::{Every, Plan};
 use crate::failure::Failure;
@@ -10,43 +10,43 @@ use clap::builder::PossibleValuesParser;
 use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 
-/// The default of --step, made shorter or longer where a run would take fewer or more steps than these.
+/// Default of --step, adjusted so that a run takes a number of steps between these limits.
 const STEP: f64 = 1e-3;
 const FEWEST: f64 = 1e3;
 const MOST: f64 = 1e6;
-/// Samples that are kept at most: what is more is a slip, and fills the memory.
+/// Largest number of samples: more would be a mistake, and fill the memory.
 const SAMPLES: f64 = 1e8;
-/// The default of --lambda.
+/// Default of --lambda.
 const LAMBDA: f64 = 10.0;
-/// The tolerance where `auto` takes a method that chooses its steps.
+/// Tolerance if `auto` takes a method that chooses its steps.
 const TOLERANCE: f64 = 1e-9;
-/// What `auto` takes where a tolerance is given and the method that fits has equal steps.
+/// Choice of `auto` if a tolerance is given and the best method has equal steps.
 const BY_TOLERANCE: &str = "rkmk8";
 
 /// Length, method and steps of a run.
 #[derive(Args, Clone, Debug)]
 pub struct Stepping {
-    /// Length of the run, in the unit of time of the description (s).
+    /// Length of the run, in the description's unit of time (s).
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     pub until: f64,
-    /// Length of a step; default 0.001, adjusted so that a run takes 10³ to 10⁶ steps.
+    /// Length of a step; default: 0.001, adjusted so that a run takes 10³ to 10⁶ steps.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// The integrator; `auto` takes what fits the system and says why, one that chooses its steps where
-    /// --tol is given. `--help` describes them all.
+    /// Integrator; `auto` takes the one that fits the system, with --tol one that chooses its steps, and prints the
+    /// reason. `--help` describes them all.
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(method::names()), default_value = AUTO)]
     pub method: String,
-    /// Permitted error per step, for rkmk54 and rkmk8, which then choose their steps themselves; 1e-9 where `auto`
+    /// Permitted error per step, for rkmk54 and rkmk8, which then choose their steps; 1e-9 if `auto`
     /// takes one of them and no --step is given.
     #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true, conflicts_with = "step")]
     pub tol: Option<f64>,
-    /// Rate at which rk4 leads back to the constraint (1/s); default 10.
+    /// Rate at which rk4 returns to the constraint (1/s); default: 10.
     #[arg(long, value_name = "L", value_parser = rate, allow_negative_numbers = true)]
     pub lambda: Option<f64>,
 }
 
 impl Stepping {
-    /// What can be said before anything is derived.
+    /// Checks the options that do not depend on the system.
     pub fn check(&self) -> Result<(), Failure> {
         let lengths = [
             ("the length of a run", Some(self.until)),
@@ -85,7 +85,7 @@ impl Stepping {
         }
     }
 
-    /// The plan of a run of a system, with the method that is asked for, or that fits.
+    /// The plan of a run of a system, with the requested or the best method.
     pub fn plan(
         &self,
         generated: &Generated,
@@ -113,7 +113,7 @@ impl Stepping {
         Ok(Plan::new(method, self.until, step, every, tolerance))
     }
 
-    /// The method that is asked for, or that fits; checked against the structure of the system.
+    /// The requested or the best method, checked against the structure of the system.
     fn chosen(
         &self,
         generated: &Generated,
@@ -166,7 +166,7 @@ fn is_rate(value: f64) -> bool {
     value.is_finite() && value >= 0.0
 }
 
-/// A number greater than zero.
+/// Parses a number greater than zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if is_positive(value) => Ok(value),

@@ -1,9 +1,9 @@
-//! Runs that nobody wants any more.
+//! Cancellation of runs.
 
 use std::fmt;
 use std::sync::Arc;
 
-/// A function that is asked on the way of a run whether the run is to end there: often, so that it has to be quick.
+/// A callback that returns whether to cancel a run. It is called often, and has to be fast.
 #[derive(Clone)]
 pub struct Stop(pub Arc<dyn Fn() -> bool + Send + Sync>);
 

@@ -1,4 +1,4 @@
-//! The stretches of a run in equal steps: between two times that steps have to end at.
+//! Stretches of a run in equal steps, between two times at which steps have to end.
 
 use super::plan::Spacing;
 use hamel::{Grid, StepError};
@@ -6,13 +6,13 @@ use hamel::{Grid, StepError};
 /// Equal steps to a time, with samples at the ends of some of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// The time that it leads to.
+    /// End time.
     pub end: f64,
-    /// Its steps.
+    /// Grid of the steps.
     pub grid: Grid,
-    /// A sample after every so many of them.
+    /// Number of steps between samples.
     every: u64,
-    /// The multiple of the time between samples that it starts at, and that time.
+    /// The multiple of the sample interval at which it starts, and this interval.
     first: f64,
     time: f64,
 }
@@ -29,7 +29,7 @@ impl Stretch {
         })
     }
 
-    /// The time of the sample after so many steps, where there is one.
+    /// The time of the sample after `index` steps, if there is one.
     pub fn sample(&self, index: u64) -> Option<f64> {
         let at = match index == self.grid.count() {
             true => self.end,
@@ -38,15 +38,15 @@ impl Stretch {
         index.is_multiple_of(self.every).then_some(at)
     }
 
-    /// How many steps there are from one of them to the next sample, or to the end.
+    /// Number of steps from the end of step `done` to the next sample, or to the end.
     pub fn ahead(&self, done: u64) -> u64 {
         (self.grid.count() - done).min(self.every - done % self.every)
     }
 }
 
-/// The stretches between two times at which something else happens, in steps no longer than this one. Where samples are at
-/// multiples of a time, all steps between the first and the last of these multiples are equal, and so many of them lead from
-/// one to the next; what is before and behind is covered by steps that are no longer.
+/// The stretches between two times, in steps no longer than `step`. For samples at multiples of a time, all steps
+/// between the first and the last of these multiples are equal, with the same number from one to the next; the parts
+/// before and after are covered by steps that are no longer.
 pub fn stretches(
     spacing: &Spacing,
     step: f64,
@@ -56,7 +56,7 @@ pub fn stretches(
     let Spacing::Every(time) = *spacing else {
         return Ok(vec![Stretch::bare(from, end, step)?]);
     };
-    // A time that is a multiple but for rounding is that multiple.
+    // A time that is a multiple up to rounding is that multiple.
     let is_near = |multiple: f64, t: f64| (multiple * time - t).abs() <= 4.0 * f64::EPSILON * t;
     let nearest = |t: f64| Some((t / time).round()).filter(|multiple| is_near(*multiple, t));
     let (before, behind) = (nearest(from), nearest(end));
@@ -112,24 +112,24 @@ mod tests {
 
     #[test]
     fn samples_are_at_multiples_of_their_time() {
-        // Two steps of 1/8 from sample to sample: what is before and behind is no multiple.
+        // Two steps of 1/8 from sample to sample; the parts before and after are not multiples.
         let (samples, steps) = cut(0.25, 0.125, 0.1875, 1.125);
         assert_eq!(samples, [0.25, 0.5, 0.75, 1.0]);
         assert_eq!(steps, [(1, 0.0625), (6, 0.125), (1, 0.125)]);
-        // From a multiple to another one there is nothing else.
+        // From one multiple to another there are no other parts.
         let (samples, steps) = cut(0.25, 0.125, 0.25, 0.75);
         assert_eq!(samples, [0.5, 0.75]);
         assert_eq!(steps, [(4, 0.125)]);
-        // No sample, one at the end, and one on the way.
+        // No sample, one at the end, and one in between.
         assert_eq!(cut(1.0, 0.25, 0.125, 0.5).0, [0.0; 0]);
         assert_eq!(cut(1.0, 0.25, 0.0, 0.5), (vec![], vec![(2, 0.25)]));
         assert_eq!(cut(1.0, 0.25, 0.5, 1.0), (vec![1.0], vec![(2, 0.25)]));
         assert_eq!(cut(1.0, 0.25, 0.5, 1.25).0, [1.0]);
-        // A step that is longer than the whole.
+        // A step longer than the whole stretch.
         assert_eq!(cut(1.0, 0.25, 0.0, 0.125), (vec![], vec![(1, 0.125)]));
     }
 
-    /// 3 times 0.1 is not 0.3 in binary numbers: no step is as short as that.
+    /// 3 times 0.1 is not 0.3 in binary: no step covers only this difference.
     #[test]
     fn a_multiple_but_for_rounding_is_a_multiple() {
         for n in 1..2000 {

@@ -1,4 +1,4 @@
-//! What a run comes to, for a terminal.
+//! Summary of a run for a terminal.
 
 use super::record::Run;
 use super::sample::Sample;
@@ -6,14 +6,14 @@ use crate::columns::aligned;
 use crate::number::{digits, error, grouped, short};
 use hamel_codegen::syntax::ast::CoordKind;
 
-/// Rows of the table.
+/// Number of rows of the table.
 const ROWS: usize = 20;
-/// Columns of velocities.
+/// Number of columns of velocities.
 const COLUMNS: usize = 8;
-/// A momentum that changes by less, relative to its size, is said to be kept.
+/// Relative change below which a momentum is reported as conserved.
 const KEPT: f64 = 1e-6;
 
-/// About twenty rows of t and velocities.
+/// A table of about twenty rows of t and velocities.
 pub fn table(run: &Run) -> String {
     let shown = run.velocity_names.len().min(COLUMNS);
     let header = std::iter::once(run.time.name.clone())
@@ -40,7 +40,7 @@ pub fn table(run: &Run) -> String {
     text
 }
 
-/// Method, last state, invariants.
+/// The method, the last state and the invariants.
 pub fn text(run: &Run, default_step: bool) -> String {
     let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
         return String::new();
@@ -86,7 +86,7 @@ pub fn text(run: &Run, default_step: bool) -> String {
     text
 }
 
-/// The last state by names, rotation matrices as matrices.
+/// The last state by names, with rotation matrices as matrices.
 fn state(run: &Run, last: &Sample) -> String {
     let mut groups: Vec<(String, Vec<&[f64]>)> = Vec::new();
     for coordinate in &run.program.coordinates {
@@ -131,7 +131,7 @@ fn state(run: &Run, last: &Sample) -> String {
     aligned(&rows, "  ")
 }
 
-/// Energy, momenta that are kept, outputs, φ.
+/// Energy, conserved momenta, outputs, φ.
 fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
     let row = |name: &str, start: f64, end: f64, change: String| {
         vec![name.to_string(), digits(start, 9), digits(end, 9), change]
@@ -143,7 +143,7 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
     ];
     let mut change = error(run.monitor.energy_deviation());
     let relative = run.monitor.relative_energy_deviation();
-    // There is nothing to compare with where all energy has come from outside.
+    // There is no reference value if all energy was supplied during the run.
     if !relative.is_infinite() {
         change.push_str(&format!(", {} relative", error(relative)));
     }
@@ -193,7 +193,7 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
     text
 }
 
-/// Where a quantity has no value, as beyond the end of a table or where a root is that of a negative number.
+/// Reports samples without a value, as beyond the end of a table or for the root of a negative number.
 fn gaps(run: &Run, of: impl Fn(&Sample) -> f64) -> Option<String> {
     let missing = run.samples.iter().filter(|sample| !of(sample).is_finite());
     let first = missing.clone().next()?;
@@ -206,7 +206,7 @@ fn gaps(run: &Run, of: impl Fn(&Sample) -> f64) -> Option<String> {
     ))
 }
 
-/// Largest size of a quantity, and its largest distance from the first value.
+/// Largest absolute value of a quantity, and its largest distance from the first value.
 fn spread(run: &Run, of: impl Fn(&Sample) -> f64) -> (f64, f64) {
     let first = run.samples.first().map_or(0.0, &of);
     run.samples

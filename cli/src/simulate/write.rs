@@ -1,4 +1,4 @@
-//! Samples as files.
+//! Writes samples to files.
 
 use super::record::Run;
 use super::sample::Sample;
@@ -7,10 +7,10 @@ use crate::json::Json;
 use crate::number::exact;
 use std::path::Path;
 
-/// What a file holds, by the end of its name.
+/// Format of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Format {
-    /// One row a sample.
+    /// One row for each sample.
     Csv,
     /// A list of samples.
     Json,
@@ -19,7 +19,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format of a path.
+    /// The format for a path.
     pub fn of(path: &Path) -> Result<Self, Failure> {
         let extension = path
             .extension()
@@ -46,7 +46,7 @@ fn columns<'a>(run: &'a Run) -> impl Iterator<Item = &'a String> {
         .chain(&run.output_names)
 }
 
-/// What stands in them.
+/// Values of the columns.
 fn values(run: &Run, sample: &Sample) -> impl Iterator<Item = f64> {
     let coordinates = sample.x.iter().enumerate();
     let coordinates = coordinates.filter(|(place, _)| run.time.place != Some(*place));
@@ -56,7 +56,7 @@ fn values(run: &Run, sample: &Sample) -> impl Iterator<Item = f64> {
         .chain(sample.outputs.iter().copied())
 }
 
-/// A header and one row a sample: time, coordinates, velocities, outputs.
+/// A header and one row for each sample: time, coordinates, velocities, outputs.
 pub fn csv(run: &Run) -> String {
     let names: Vec<String> = columns(run)
         .map(|name| {
@@ -76,7 +76,7 @@ pub fn csv(run: &Run) -> String {
     text
 }
 
-/// A list of objects with the members of the CSV columns, one a line.
+/// A list of objects with the members of the CSV columns, one on each line.
 pub fn json(run: &Run) -> String {
     let rows: Vec<String> = run
         .samples

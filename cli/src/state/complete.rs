@@ -1,7 +1,7 @@
-//! What a state does not give follows from what it gives, as if the description had these values for its parameters and
-//! starts: exact starts of the description stay, prescribed motion is followed, loops are closed, constraints on velocities
-//! kept. Where a state contradicts exact starts, those give way that equations in error tie to one another, to the nearest
-//! values that satisfy these.
+//! Completes a partially given state, as if the description had the given values for its parameters and starts: exact
+//! starts of the description stay, prescribed motion is followed, loops are closed, constraints on velocities are
+//! satisfied. If the given values contradict exact starts, those starts are released that violated equations tie to one
+//! another, and move to the nearest values that satisfy these.
 
 use super::State;
 use super::given::{Given, places};
@@ -17,12 +17,12 @@ use hamel_codegen::model::opening::Opening;
 use hamel_codegen::model::pfaffian::Kind;
 use hamel_codegen::model::twists::Moving;
 
-/// Smaller values of |φ(x)| are left as they are.
+/// Values of |φ(x)| up to this are not corrected.
 const EXACT: f64 = 1e-12;
-/// Larger rates of constraints are no rounding.
+/// Largest rate of a constraint that counts as rounding.
 const KEPT: f64 = 1e-9;
 
-/// A state on its way.
+/// A state being completed.
 struct Completion<'a> {
     generated: &'a Generated,
     given: &'a Given,
@@ -30,8 +30,8 @@ struct Completion<'a> {
 }
 
 impl State {
-    /// Completes a state whose entries of x have been put in where they were given; what contradicts the description is
-    /// refused, with the residual. `from` is the state that is changed.
+    /// Completes a state whose given entries of x have been set; contradictions of the description are refused, with
+    /// the residual. `from` is the state that is changed.
     pub(super) fn complete(
         &mut self,
         generated: &Generated,
@@ -65,8 +65,8 @@ impl State {
     }
 }
 
-/// The start of the description with the parameters of a state, and with what it gives in place of what the text gives; from
-/// another state than the start, that one has the values.
+/// The start of the description with the parameters of a state, in which given values replace those of the text; if
+/// `from` is not the start, its values replace those of the start.
 fn opening(generated: &Generated, state: &State, given: &Given, from: &State) -> Opening {
     let (model, active) = (&generated.model, &generated.active);
     let mut opening = model.opening.at(&state.params);
@@ -94,7 +94,7 @@ fn opening(generated: &Generated, state: &State, given: &Given, from: &State) ->
 }
 
 impl Completion<'_> {
-    /// x as the start of the description would be with what is given in its text.
+    /// x as the start of the description with the given values in its text.
     fn as_written(&self, opening: &Opening) -> Result<Vec<f64>, Vec<String>> {
         let model = &self.generated.model;
         let mut opening = opening.clone();
@@ -110,8 +110,8 @@ impl Completion<'_> {
         Ok(opening.x)
     }
 
-    /// x where what is given contradicts what the description gives: nearest to its start, first with all that is exact, then
-    /// without those exact starts that are tied to what is open.
+    /// x if given values contradict those of the description: nearest to its start, first with all exact starts, then
+    /// without the exact starts that are tied to violated equations.
     fn giving_way(&self, opening: &Opening) -> Result<Vec<f64>, Vec<String>> {
         let mut from = self.state.x.clone();
         let all = 0..from.len();
@@ -132,7 +132,7 @@ impl Completion<'_> {
         self.near(from, &given)
     }
 
-    /// The x nearest to another one that satisfies the constraints and closes the loops, where what is given stays.
+    /// The x nearest to another one that satisfies the constraints and closes the loops, with the given entries fixed.
     fn near(&self, mut x: Vec<f64>, given: &[bool]) -> Result<Vec<f64>, Vec<String>> {
         let model = &self.generated.model;
         let free = given.contains(&false);
@@ -144,7 +144,7 @@ impl Completion<'_> {
         let mut straight = x.clone();
         let mut closed = closure.close_loops(&mut straight, given);
         if free && model.constraints.iter().any(|row| row.is_holonomic()) {
-            // As the guesses of a description: nearest to its start, in the metric of M.
+            // Like the guesses of a description: nearest to its start, in the metric of M.
             let mass = self.mass(&x);
             let assembled = closure.assemble(&mut x, given, &mass);
             if assembled.is_ok() || closed.is_err() {
@@ -171,7 +171,7 @@ impl Completion<'_> {
         let Err(first) = opening.settle(&closure, &mass) else {
             return Ok(opening.xi);
         };
-        // What is tied to a constraint that is violated gives way.
+        // Velocities tied to a violated constraint are released.
         let mut xi = model.start_xi.clone();
         if from.xi[..active.n()] != active.start_xi {
             xi.clone_from(&opening.xi);
@@ -205,7 +205,7 @@ impl Completion<'_> {
         Ok(xi)
     }
 
-    /// Puts x on the manifold by `mend`, where it is off by more than the rounding of numbers that were written.
+    /// Restores x to the manifold by `mend` if its distance exceeds the rounding of written numbers.
     fn restore(
         &self,
         x: &mut Vec<f64>,
@@ -225,7 +225,7 @@ impl Completion<'_> {
         Ok(())
     }
 
-    /// Steps along the loops may leave constraints that are no loops.
+    /// Checks the constraints other than loops, which steps along the loops may violate.
     fn on_manifold(&self, x: &[f64]) -> Result<(), Vec<String>> {
         let active = &self.generated.active;
         let state = self.with(x);
@@ -248,7 +248,7 @@ impl Completion<'_> {
         closure.with_inputs(&self.state.u)
     }
 
-    /// The coordinates that equations tie to one another which x violates.
+    /// The coordinates tied to one another by equations that x violates.
     fn tied(&self, x: &[f64]) -> std::collections::BTreeSet<usize> {
         let model = &self.generated.model;
         let numbers = self.numbers(x);
@@ -269,7 +269,7 @@ impl Completion<'_> {
         ties.of(|row| open[row].is_nan() || open[row].abs() > EXACT)
     }
 
-    /// The rows of B, and what is left of them, beside 1 or their terms.
+    /// The rows of B, and their residuals relative to 1 or their terms.
     fn rates(&self, x: &[f64], xi: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let model = &self.generated.model;
         let numbers = self.numbers(x);
@@ -291,7 +291,7 @@ impl Completion<'_> {
         model.numbers(&self.state.params, x, &still, &self.state.u, &still)
     }
 
-    /// The nearest x that satisfies the description's constraints, where what is given stays.
+    /// The nearest x that satisfies the description's constraints, with the given entries fixed.
     fn satisfied(&self, x: &[f64], given: &[bool]) -> Option<Vec<f64>> {
         let full = &self.generated.model;
         let numbers = self.numbers(x);
@@ -337,7 +337,7 @@ impl Completion<'_> {
         )
     }
 
-    /// A constraint as it was written.
+    /// A constraint as written.
     fn text(&self, open: Open) -> String {
         let number = open.constraint + 1;
         match self.generated.model.constraints.get(open.constraint) {

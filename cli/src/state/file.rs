@@ -1,4 +1,4 @@
-//! A file that gives a state, in either of its forms: by coordinates, or by joints.
+//! Reads the file of a state, in either of its forms: by coordinates, or by joints.
 
 use super::sample::{Sample, is_sample};
 use super::samples;
@@ -11,7 +11,7 @@ use hamel_codegen::generate::Generated;
 use serde_json::Value;
 use std::path::Path;
 
-/// What only `hamel eval` takes, with what is said elsewhere.
+/// Members that only `hamel eval` takes, with the errors of other commands.
 const OF_EVAL: [(&str, &str); 2] = [
     (
         "force",
@@ -23,24 +23,24 @@ const OF_EVAL: [(&str, &str); 2] = [
     ),
 ];
 
-/// A file that was read, and is JSON.
+/// A file that was parsed as JSON.
 pub struct File {
-    /// Its path as given, or `<stdin>`.
+    /// Path as given, or `<stdin>`.
     pub path: String,
-    /// What it holds.
+    /// Contents.
     pub json: Value,
 }
 
 impl File {
-    /// Reads a file beside a description, or standard input where the path is `-`.
+    /// Reads a file for a description, or standard input if the path is `-`.
     pub fn read(path: &Path, description: &Source) -> Result<Self, Failure> {
         let Source { path, text, .. } = description.beside(path, "state")?;
         File::of(path, &text, description)
     }
 
-    /// A text for a description, and what messages call it.
+    /// Parses a text for a description; messages call it `path`.
     pub fn of(path: String, text: &str, description: &Source) -> Result<Self, Failure> {
-        // Joints of a robot have any names.
+        // Joints of a robot may have any names.
         let json = strict::parse(text).and_then(|json| match description.robot {
             None => plainly(json),
             Some(_) => Ok(json),
@@ -51,17 +51,17 @@ impl File {
         }
     }
 
-    /// Whether it is about joints.
+    /// Whether the state is given by joints.
     pub fn is_by_joints(&self) -> bool {
         is_sample(&self.json)
     }
 
-    /// The state, in whichever form it is given; a force, or a list of states, is refused.
+    /// The state, in either form; a force, or a list of states, is refused.
     pub fn state(&self, source: &Source, generated: &Generated) -> Result<State, Failure> {
         self.changes(State::start(&generated.active), source, generated)
     }
 
-    /// Another state, changed by what the file gives.
+    /// Another state, changed by the file.
     pub fn changes(
         &self,
         start: State,

@@ -1,22 +1,22 @@
-//! What was given of a state, by the velocities of the full frame.
+//! The given entries of a state, by the velocities of the full frame.
 
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::{Group, Model};
 use hamel_codegen::syntax::ast::JointKind;
 
-/// The entries of x that were given, and what was given of ξ.
+/// The given entries of x, and the given values of ξ.
 #[derive(Clone, Debug)]
 pub struct Given {
-    /// Entries of x.
+    /// Given entries of x.
     pub x: Vec<bool>,
-    /// Values of ξ of the full frame.
+    /// Given values of ξ of the full frame.
     pub xi: Vec<Option<f64>>,
-    /// Entries of z.
+    /// Given entries of z.
     pub z: Vec<bool>,
 }
 
 impl Given {
-    /// Nothing.
+    /// No given entries.
     pub fn nothing(generated: &Generated) -> Self {
         let model = &generated.model;
         Given {
@@ -27,7 +27,7 @@ impl Given {
     }
 }
 
-/// Places of the velocities of states in ξ of the full frame.
+/// Indices of the velocities of states in ξ of the full frame.
 pub fn places(generated: &Generated) -> Vec<usize> {
     let full = &generated.model;
     let solved = |place: &usize| generated.solved.iter().any(|(solved, _)| solved == place);
@@ -39,8 +39,8 @@ pub fn places(generated: &Generated) -> Vec<usize> {
     all.collect()
 }
 
-/// Velocities that a state may give, by their places in ξ of the full frame: all of the description but the rate of time,
-/// and those that constraints leave of them.
+/// Velocities that a state may contain, by their indices in ξ of the full frame: all of the description except the rate
+/// of time, and the entries that constraints leave of them.
 pub fn velocities(generated: &Generated) -> Vec<Group> {
     let (full, active) = (&generated.model, &generated.active);
     let places = places(generated);
@@ -63,18 +63,18 @@ pub fn velocities(generated: &Generated) -> Vec<Group> {
     all
 }
 
-/// A joint that has velocities, by one of its names.
+/// A joint with velocities, by one of its names.
 pub struct Moving<'a> {
-    /// The name.
+    /// Name.
     pub name: &'a str,
-    /// Places of its velocities in ξ.
+    /// Indices of its velocities in ξ.
     pub places: Vec<usize>,
-    /// How many of them are linear, where the others are angular.
+    /// Number of linear velocities, if the others are angular.
     pub linear: Option<usize>,
 }
 
-/// The joints that have velocities, by their names in the robot's file and by those in the description that are no
-/// other's there; `names` are pairs of these.
+/// The joints with velocities, by their names in the robot's file and by those in the description unless another joint
+/// has that name in the file; `names` are pairs of these.
 pub fn joints<'a>(model: &'a Model, names: &'a [(String, String)]) -> Vec<Moving<'a>> {
     let mut all = Vec::new();
     for joint in &model.joints {
@@ -85,7 +85,7 @@ pub fn joints<'a>(model: &'a Model, names: &'a [(String, String)]) -> Vec<Moving
         let places: Vec<usize> = groups
             .flat_map(|group| group.offset..group.offset + group.len)
             .collect();
-        // Constraints may leave a part of them.
+        // Constraints may leave only some of them.
         let linear = match (joint.kind, places.len()) {
             (JointKind::Free, 6) => Some(3),
             (JointKind::Planar, 3) => Some(2),

@@ -1,4 +1,4 @@
-//! Coordinates and velocities of one name: what files of joint angles are about.
+//! Coordinates and velocities of the same name, for files of joint angles.
 //!
 //! | velocity | coordinate | as a joint |
 //! |---|---|---|
@@ -16,10 +16,10 @@ use crate::names;
 use hamel_codegen::model::{Coordinate, Group, Model};
 use hamel_codegen::syntax::ast::{CoordKind, JointKind, ShapeKind};
 
-/// What a joint's coordinates are, with their places in x.
+/// The form of a joint's coordinates, with their indices in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Numbers as they are.
+    /// Plain numbers.
     Plain(usize),
     /// Cosine and sine.
     Circle(usize),
@@ -34,7 +34,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// How many of the velocities are `linear`, where the others are `angular`.
+    /// Number of the `linear` velocities, if the others are `angular`.
     pub fn linear(self) -> Option<usize> {
         match self {
             Place::Free(..) => Some(3),
@@ -47,11 +47,11 @@ impl Place {
 /// A joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// Its name, that of the robot's file where there is one.
+    /// Name; for a robot, that in its file.
     pub name: String,
-    /// Its coordinates.
+    /// Coordinates.
     pub place: Place,
-    /// The place of its velocities in ξ, and their number.
+    /// Index of its first velocity in ξ, and the number of velocities.
     pub velocities: (usize, usize),
 }
 
@@ -82,7 +82,7 @@ pub fn joints(model: &Model, names: &[(String, String)]) -> Vec<Joint> {
     joints
 }
 
-/// Each row of M by its joint's name; velocities of no joint by their own.
+/// The name of the joint for each row of M; rows without a joint have the names of their velocities.
 pub fn rows(model: &Model, joints: &[Joint]) -> Vec<String> {
     let mut rows = names::velocities(model);
     for joint in joints {

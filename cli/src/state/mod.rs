@@ -1,10 +1,9 @@
-//! The numbers of a state: the description's own, changed by what a JSON file says.
+//! The values of a state: those of the description, changed by a JSON file.
 //!
 //! `{"param": {…}, "coord": {…}, "velocity": {…}, "state": {…}, "input": {…}}`, all optional, or, by joints,
 //! `{"configuration": {…}, "velocity": {…}, "param": {…}}`; or a list of samples, of which the last counts. Every mistake is reported with its path in the file, all at
-//! once. What a file does not give is completed as the
-//! start of a description is, so that loops are closed and constraints on velocities are kept; what it
-//! gives is kept, and refused where it contradicts them.
+//! once. Values that a file does not give are completed like the start of a description, so that loops are closed and
+//! constraints on velocities are satisfied; given values are kept, and refused if they contradict these.
 
 mod complete;
 pub mod file;
@@ -36,11 +35,11 @@ use read::Reader;
 use serde_json::Value;
 use std::path::Path;
 
-/// Larger values of |φ(x)| are no rounding of a state that was written down.
+/// Largest |φ(x)| that counts as rounding in a state that was written down.
 const OFF: f64 = 1e-6;
 
 impl State {
-    /// Defaults, start and zero input.
+    /// Default parameters, start and zero input.
     pub fn start(model: &Model) -> Self {
         State {
             params: model.defaults.clone(),
@@ -50,7 +49,7 @@ impl State {
         }
     }
 
-    /// The start of a description, changed by a file where there is one.
+    /// The start of a description, changed by a file if one is given.
     pub fn read(
         source: &Source,
         generated: &Generated,
@@ -67,8 +66,8 @@ impl State {
         State::start(&generated.active).changed((generated, text), &[], json)
     }
 
-    /// The same, changed by a JSON value with coordinates; `names` are those of joints in the robot's file, with those in
-    /// the description.
+    /// Like [`of`](Self::of) for another state; `names` are those of joints in the robot's file, with those in the
+    /// description.
     pub fn changed(
         self,
         (generated, text): (&Generated, &str),
@@ -82,13 +81,13 @@ impl State {
         Ok(state)
     }
 
-    /// Where x leaves the configuration manifold, which it does by these residuals.
+    /// The violations of the configuration manifold, from the residuals.
     fn violations(&self, model: &Model, residuals: &[f64]) -> Vec<String> {
         let mut errors: Vec<String> = Vec::new();
         let differences = self.phi(model, evaluate);
         for (((_, text), residual), difference) in model.phi.iter().zip(residuals).zip(differences)
         {
-            // A NaN is off, too.
+            // NaN is a violation, too.
             if residual.is_nan() || residual.abs() > OFF {
                 errors.push(format!(
                     "{}: violates {text}, the difference is {difference:.2e}",
@@ -112,7 +111,7 @@ impl State {
         errors
     }
 
-    /// φ(x) beside its terms.
+    /// φ(x) relative to its terms.
     fn residuals(&self, model: &Model) -> Vec<f64> {
         let places = model.points.places();
         self.phi(model, |graph, phi, numbers| {

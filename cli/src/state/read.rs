@@ -1,4 +1,4 @@
-//! JSON values to numbers, with the path of every mistake.
+//! Reads JSON values as numbers, and reports every error with its path.
 
 use super::given::{Given, joints, velocities};
 use super::solved::solved;
@@ -9,22 +9,22 @@ use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::suggest::closest;
 use serde_json::{Map, Value};
 
-/// Entries (i, j) and (j, i) of a symmetric matrix may differ by rounding alone.
+/// Largest relative difference of the entries (i, j) and (j, i) of a symmetric matrix.
 const SYMMETRY: f64 = 1e-12;
 
-/// The mistakes found so far, and what was given.
+/// The errors found so far, and the given entries.
 #[derive(Debug)]
 pub struct Reader {
-    /// One line each, its path first.
+    /// One line for each error, beginning with its path.
     errors: Vec<String>,
-    /// What was given.
+    /// Given entries.
     given: Given,
-    /// Velocities that no state has, with the reason.
+    /// Velocities that are not part of states, with the reason.
     solved: Vec<(String, String)>,
 }
 
 impl Reader {
-    /// Nothing was given yet; `text` is that of the description.
+    /// A reader before any entry; `text` is that of the description.
     pub fn new(generated: &Generated, text: &str) -> Self {
         Reader {
             errors: Vec::new(),
@@ -33,7 +33,7 @@ impl Reader {
         }
     }
 
-    /// Completes the state that was read by changes of another one, or hands out all mistakes.
+    /// Completes the state that was read as changes of another one, or returns all errors.
     pub fn finish(
         self,
         generated: &Generated,
@@ -46,13 +46,13 @@ impl Reader {
         }
     }
 
-    /// Entries of x from a place on.
+    /// Sets entries of x from an index on.
     pub(super) fn put_x(&mut self, x: &mut [f64], offset: usize, values: &[f64]) {
         put(x, offset, values);
         self.given.x[offset..offset + values.len()].fill(true);
     }
 
-    /// Entries of ξ of the full frame from a place on.
+    /// Sets entries of ξ of the full frame from an index on.
     pub(super) fn put_xi(&mut self, offset: usize, values: &[f64]) {
         let places = self.given.xi.iter_mut().skip(offset);
         places
@@ -60,14 +60,14 @@ impl Reader {
             .for_each(|(place, value)| *place = Some(*value));
     }
 
-    /// An entry of z, which stands behind ξ.
+    /// Sets an entry of z, which follows ξ.
     pub(super) fn put_z(&mut self, xi: &mut [f64], place: usize, value: f64) {
         let n = xi.len() - self.given.z.len();
         xi[n + place] = value;
         self.given.z[place] = true;
     }
 
-    /// A whole file; `names` are those of joints in the robot's file, with those in the description.
+    /// Reads a whole file; `names` are those of joints in the robot's file, with those in the description.
     pub fn state(
         &mut self,
         json: &Value,
@@ -93,7 +93,7 @@ impl Reader {
             let numbers = match part {
                 "param" => &mut state.params,
                 "input" => &mut state.u,
-                // The states behind ξ.
+                // The states that follow ξ.
                 _ => &mut state.xi,
             };
             let joints = if part == "velocity" {
@@ -102,7 +102,7 @@ impl Reader {
                 Vec::new()
             };
             let mut known: Vec<&str> = joints.iter().map(|joint| joint.name).collect();
-            // Where the file calls a joint as the description calls a velocity, the joint is meant.
+            // If the file's name of a joint is the description's name of another velocity, the joint is meant.
             let groups = groups.iter();
             let groups = groups.filter(|group| !joints.iter().any(|one| one.name == group.name));
             let groups: Vec<&Group> = groups.collect();
@@ -169,7 +169,7 @@ impl Reader {
         }
     }
 
-    /// An object with one member for each name, or fewer.
+    /// Reads an object with at most one member for each name.
     pub(super) fn part<'a>(
         &mut self,
         parts: &'a Map<String, Value>,
@@ -188,7 +188,7 @@ impl Reader {
         }
     }
 
-    /// Reports members that have no such name.
+    /// Reports members with unknown names.
     pub(super) fn known(&mut self, at: &str, given: &Map<String, Value>, names: &[&str]) {
         for name in given.keys().filter(|name| !names.contains(&name.as_str())) {
             let path = if at.is_empty() {
@@ -208,7 +208,7 @@ impl Reader {
         }
     }
 
-    /// Numbers of a coordinate, with the place in it where they begin.
+    /// Numbers of a coordinate, with the index in it at which they begin.
     fn coordinate(&mut self, at: &str, value: &Value, kind: CoordKind) -> Vec<(usize, Vec<f64>)> {
         let whole = match kind {
             CoordKind::Real => self.number(at, value).map(|number| vec![number]),
@@ -236,7 +236,7 @@ impl Reader {
         whole.map(|values| (0, values)).into_iter().collect()
     }
 
-    /// `{"p": [3], "R": [3 × 3]}`; what is left out keeps its value.
+    /// Reads `{"p": [3], "R": [3 × 3]}`; missing members keep their values.
     fn pose(&mut self, at: &str, value: &Value) -> Vec<(usize, Vec<f64>)> {
         let Value::Object(parts) = value else {
             self.error(
@@ -351,14 +351,14 @@ impl Reader {
     }
 }
 
-/// Values from a place on.
+/// Sets values from an index on.
 pub(super) fn put(target: &mut [f64], offset: usize, values: &[f64]) {
     for (place, value) in target.iter_mut().skip(offset).zip(values) {
         *place = *value;
     }
 }
 
-/// A JSON value in words.
+/// The type of a JSON value, for messages.
 pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",

@@ -1,4 +1,4 @@
-//! States by the names of joints: `{"configuration": {…}, "velocity": {…}, "force": […]}`.
+//! Reads states by the names of joints: `{"configuration": {…}, "velocity": {…}, "force": […]}`.
 
 use super::joints::{Joint, Place, joints};
 use super::read::{Reader, kind, put};
@@ -7,9 +7,9 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use serde_json::{Map, Value};
 
-/// What a sample can have, and what is read of it.
+/// Members of a sample that are read.
 const READ: [&str; 4] = ["configuration", "velocity", "force", "param"];
-/// Results that stand beside them in files of reference values.
+/// Results that accompany them in files of reference values; they are ignored.
 const RESULTS: [&str; 6] = [
     "mass_matrix",
     "bias",
@@ -18,7 +18,7 @@ const RESULTS: [&str; 6] = [
     "kinetic_energy",
     "potential_energy",
 ];
-/// Order of a list of forces, by joint.
+/// Member for the order of a list of forces, by joint.
 pub const ORDER: &str = "velocity_order";
 
 /// A state with the generalised force that acts on it.
@@ -26,13 +26,13 @@ pub const ORDER: &str = "velocity_order";
 pub struct Sample {
     /// The state; its inputs are zero.
     pub state: State,
-    /// Its joints.
+    /// Joints.
     pub joints: Vec<Joint>,
-    /// The whole generalised force, in the order of ξ; what the description says where it is `None`.
+    /// The whole generalised force, in the order of ξ; `None` for that of the description.
     pub force: Option<Vec<f64>>,
 }
 
-/// Whether a file is about joints.
+/// Whether a file is given by joints.
 pub fn is_sample(json: &Value) -> bool {
     let Value::Object(parts) = json else {
         return false;
@@ -43,8 +43,8 @@ pub fn is_sample(json: &Value) -> bool {
 }
 
 impl Sample {
-    /// Reads a sample, what changes a start; all mistakes at once. `order` is that of lists of forces, where the sample
-    /// does not say one.
+    /// Reads a sample as changes of a start, and collects all errors. `order` is the order of lists of forces, unless
+    /// the sample contains one.
     pub fn parse(
         start: State,
         json: &Value,
@@ -124,7 +124,7 @@ impl Reader {
                 }
             }
         }
-        // A force is about the velocities that constraints leave.
+        // Forces correspond to the velocities that constraints leave.
         let joints = sample.joints.clone();
         let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
         let mut force = vec![0.0; model.n()];
@@ -150,7 +150,7 @@ impl Reader {
         sample.force = Some(force);
     }
 
-    /// A list in the order of ξ, or in the order that the file says by joint for each entry.
+    /// Reads a list in the order of ξ, or in the order of joints that the file gives for its entries.
     fn forces(
         &mut self,
         parts: &Map<String, Value>,
@@ -246,7 +246,7 @@ impl Reader {
         }
     }
 
-    /// Rates, or forces, with their places in ξ.
+    /// Reads rates or forces, with their indices in ξ.
     fn motion(&mut self, at: &str, value: &Value, joint: &Joint) -> Vec<(usize, Vec<f64>)> {
         let (first, count) = joint.velocities;
         let mut found = self.moving(at, value, count, joint.place.linear());
@@ -256,8 +256,8 @@ impl Reader {
         found
     }
 
-    /// So many rates, or forces, of a joint, each with its place among them: a number, a list, or `linear`, the first of
-    /// them, and `angular`.
+    /// Reads `count` rates or forces of a joint, each with its index among them: a number, a list, or `linear`, for the
+    /// first ones, and `angular`.
     pub(super) fn moving(
         &mut self,
         at: &str,
@@ -281,7 +281,7 @@ impl Reader {
         self.numbers(at, value, count, 0).into_iter().collect()
     }
 
-    /// A number, or a list where several are expected, with the place where they begin.
+    /// Reads a number, or a list if several are expected, with the index at which they begin.
     fn numbers(
         &mut self,
         at: &str,

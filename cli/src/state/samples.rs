@@ -1,4 +1,4 @@
-//! The last of the samples that `hamel simulate --out` writes as JSON, as a state.
+//! Reads the last of the samples that `hamel simulate --out` writes as JSON, as a state.
 
 use super::given::places;
 use super::read::{Reader, kind};
@@ -8,7 +8,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::syntax::path::plain;
 use serde_json::Value;
 
-/// What a list of samples changes of a state: all coordinates, velocities and states of first order; `text` is that of the
+/// Changes all coordinates, velocities and states of first order to those of the last sample; `text` is that of the
 /// description.
 pub fn last(
     start: State,

@@ -1,11 +1,11 @@
-//! Velocities that follow from constraints: a state has no place for them.
+//! Velocities determined by constraints, which are not part of states.
 
 use crate::names;
 use hamel_codegen::derive::undetermined::undetermined;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 
-/// Names listed at most.
+/// Largest number of names listed.
 const LISTED: usize = 12;
 
 /// A constraint with its place in the text of the description.
@@ -29,7 +29,7 @@ pub fn shown(constraint: &Pfaffian, text: &str) -> String {
     }
 }
 
-/// The velocities that constraints give by others, each with its constraint, and those that stay.
+/// The velocities determined by constraints, each with its constraint, and the remaining ones.
 pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
     let (full, active) = (&generated.model, &generated.active);
     if full.constraints.is_empty() {
@@ -76,8 +76,8 @@ pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
     lines
 }
 
-/// The names of velocities that were solved for, and of joints that have no others, each with what to do
-/// where a state gives it.
+/// The names of velocities that were solved for, and of joints without other velocities, each with the help for a
+/// state that gives it.
 pub fn solved(generated: &Generated, text: &str) -> Vec<(String, String)> {
     let full = &generated.model;
     let stay: Vec<String> = {

@@ -1,10 +1,10 @@
-//! JSON in which no name stands twice in one object: which of the two is meant nobody knows.
+//! JSON without repeated names in an object, whose meaning would be ambiguous.
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::fmt;
 
-/// The value of a text, with or without a byte order mark; the error says what is wrong, and where.
+/// Parses a text, with or without a byte order mark; the error contains its place.
 pub fn parse(text: &str) -> Result<Value, String> {
     match serde_json::from_str::<Strict>(text.strip_prefix('\u{feff}').unwrap_or(text)) {
         Ok(Strict(value)) => Ok(value),
@@ -86,7 +86,7 @@ mod tests {
     fn a_name_that_stands_twice_is_refused_with_its_place() {
         let error = parse("{\"coord\": {\"q\": 1,\n \"q\": 2}}").expect_err("twice");
         assert_eq!(error, "`q` stands twice in one object at line 2 column 4");
-        // The same name in two objects is two names.
+        // The same name in two objects is not repeated.
         assert!(parse("{\"a\": {\"q\": 1}, \"b\": {\"q\": 1}}").is_ok());
         assert!(parse("\u{feff}{\"q\": 1}").is_ok());
         let error = parse("{\"q\": NaN}").expect_err("no JSON");

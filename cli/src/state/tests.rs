@@ -1,4 +1,4 @@
-//! States as users write them: what is read, and what is refused.
+//! States as users write them: accepted and refused ones.
 
 use super::{State, strict};
 use hamel_codegen::generate::{Generated, from_text};
@@ -76,7 +76,7 @@ fn states_off_the_manifold_are_refused() {
     assert_eq!(errors, ["coord.X: a reflection, its determinant is -1"]);
 }
 
-/// A blade that cannot slip sideways; its angular velocity has one component that is not zero.
+/// A blade that cannot slip sideways; its angular velocity has one nonzero component.
 const SLEIGH: &str = "system Sleigh {
     coord x, y, q;
     velocity u, v, w: vec3;
@@ -90,7 +90,7 @@ const SLEIGH: &str = "system Sleigh {
     kinetic (u^2 + v^2 + dot(w, w)) / 2;
 }";
 
-/// What constraints give may be given where it agrees with them, by its own name or those of entries that stay.
+/// Velocities determined by constraints may be given if they agree, by the vector's name or by those of its entries.
 #[test]
 fn velocities_that_follow_are_read_and_judged() {
     let generated = from_text(SLEIGH).expect("a sound description");

@@ -1,18 +1,18 @@
-//! Which coordinates, and which velocities, are tied to one another: what may have to follow where some of them are given.
+//! Coordinates or velocities that equations tie to one another, and that may have to follow when others are given.
 
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
 use std::collections::BTreeSet;
 
-/// What each equation is about, by places.
+/// The indices that occur in each equation.
 pub struct Ties(Vec<BTreeSet<usize>>);
 
 impl Ties {
-    /// Equations of which it is known what each is about.
+    /// Equations, each given by the indices that occur in it.
     pub fn new(equations: impl IntoIterator<Item = BTreeSet<usize>>) -> Self {
         Ties(equations.into_iter().collect())
     }
 
-    /// The places that equations in error tie together, by one another and by other equations.
+    /// The indices that violated equations tie together, directly and through other equations.
     pub fn of(&self, wrong: impl Fn(usize) -> bool) -> BTreeSet<usize> {
         let start = (0..self.0.len()).filter(|&row| wrong(row));
         let mut tied: BTreeSet<usize> = start.flat_map(|row| self.0[row].clone()).collect();
@@ -30,7 +30,7 @@ impl Ties {
     }
 }
 
-/// The symbols of an expression among those that stand from one place on, but one of them.
+/// The indices of the symbols in an expression, relative to `first` and below `count`, except `but`.
 pub fn symbols(
     graph: &Graph,
     edge: Edge,

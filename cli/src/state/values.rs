@@ -1,13 +1,13 @@
 //! The numbers of a state.
 
-/// Numbers for everything that a model takes.
+/// Values of all quantities that a model takes.
 #[derive(Clone, Debug)]
 pub struct State {
     /// Parameters, in order of their symbols.
     pub params: Vec<f64>,
     /// x.
     pub x: Vec<f64>,
-    /// ξ, and behind it the states of first order.
+    /// ξ, followed by the states of first order.
     pub xi: Vec<f64>,
     /// u.
     pub u: Vec<f64>,

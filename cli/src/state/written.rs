@@ -1,9 +1,9 @@
-//! Names in files as descriptions write them: `leg[3].knee` for `leg_3_knee`.
+//! Converts names in files from the notation of descriptions: `leg[3].knee` to `leg_3_knee`.
 
 use hamel_codegen::syntax::path::plain;
 use serde_json::{Map, Value};
 
-/// The same value with the names that things have in the end; an error where one of them is given twice.
+/// The value with resolved names; an error if a name occurs twice.
 pub fn plainly(value: Value) -> Result<Value, String> {
     Ok(match value {
         Value::Object(members) => {

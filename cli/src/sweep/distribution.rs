@@ -1,4 +1,4 @@
-//! How one entry is distributed: `normal(mean, sd)`, `uniform(a, b)`, `latin(a, b)`, `grid(a, b, n)`.
+//! Distributions of an entry: `normal(mean, sd)`, `uniform(a, b)`, `latin(a, b)`, `grid(a, b, n)`.
 
 use super::draws::Draws;
 use super::permutation::Permutation;
@@ -6,10 +6,10 @@ use crate::text::Piece;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
 
-/// Most points of one grid.
+/// Largest number of points of one grid.
 const MOST: f64 = 1e9;
 
-/// The names with their arguments, as messages list them.
+/// The names with their arguments, for messages.
 const KNOWN: [(&str, &[&str]); 4] = [
     ("normal", &["mean", "sd"]),
     ("uniform", &["a", "b"]),
@@ -22,16 +22,16 @@ const KNOWN: [(&str, &[&str]); 4] = [
 pub enum Distribution {
     /// Mean and standard deviation.
     Normal(f64, f64),
-    /// Anywhere between two numbers.
+    /// Uniform between two numbers.
     Uniform(f64, f64),
-    /// The same with exactly one member in each of as many equal parts as there are members.
+    /// Latin hypercube: uniform, with exactly one member in each of as many equal parts as there are members.
     Latin(f64, f64),
-    /// So many numbers from the first to the last.
+    /// This many equidistant numbers from the first to the last.
     Grid(f64, f64, u64),
 }
 
 impl Distribution {
-    /// The distributions of the entries of something; `numbers` evaluates an argument.
+    /// Reads the distributions of the entries of a target; `numbers` evaluates an argument.
     pub fn read(
         piece: Piece,
         entries: usize,
@@ -98,7 +98,7 @@ impl Distribution {
         Ok(all)
     }
 
-    /// The value of a member, at its point of the grid, and with the permutation of its stratum.
+    /// The value for a member, at its point of the grid, and with the permutation of its strata.
     pub fn value(
         &self,
         draws: &Draws,
@@ -107,7 +107,7 @@ impl Distribution {
         point: u64,
         strata: Option<(&Permutation, u64)>,
     ) -> f64 {
-        // The sum of two parts: the difference of two numbers may be too large for one.
+        // Interpolate as a sum: the difference b − a may overflow.
         let between = |a: f64, b: f64, part: f64| a * (1.0 - part) + b * part;
         match (self, strata) {
             (Distribution::Normal(mean, sd), _) => mean + sd * draws.normal(member, entry),
@@ -126,7 +126,7 @@ impl Distribution {
     }
 }
 
-/// One number for each entry.
+/// Reads an argument: one number for each entry.
 fn argument(
     piece: Piece,
     entries: usize,
@@ -162,7 +162,7 @@ fn written() -> String {
     format!("there are {}", all.join(", "))
 }
 
-/// `1 number`, `2 numbers`.
+/// Formats a count: `1 number`, `2 numbers`.
 pub fn count(count: usize, word: &str) -> String {
     match count {
         1 => format!("1 {word}"),
@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Mean and deviation of 20,000 draws, within five deviations of theirs.
+    /// Mean and deviation of 20,000 draws are within five standard errors of the requested values.
     #[test]
     fn moments_are_those_asked_for() {
         let (draws, count) = (Draws::new(1), 20_000);

@@ -1,16 +1,16 @@
-//! Random numbers that depend on the seed, the member and the varied entry alone, whoever computes them and when.
+//! Random numbers that depend only on the seed, the member and the varied entry, not on the order of computation.
 //!
-//! The generator is ChaCha with 8 rounds: the seed is its key, the member its stream, the entry its place in the stream.
-//! Functions are those of `libm`, so that numbers are the same on every machine.
+//! The generator is ChaCha with 8 rounds: the seed is the key, the member the stream, the entry the position in the
+//! stream. Functions are those of `libm`, so that the numbers are the same on every machine.
 
 use super::permutation::Permutation;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
 
-/// Words of the stream that belong to one entry; no entry takes more.
+/// Words of the stream reserved for each entry; no entry uses more.
 const WORDS: u128 = 16;
-/// What keys are for.
+/// Purposes of keys.
 const OF_MEMBERS: u8 = 1;
 const OF_PERMUTATIONS: u8 = 2;
 
@@ -21,7 +21,7 @@ pub struct Draws {
 }
 
 impl Draws {
-    /// Those of a seed.
+    /// The draws for a seed.
     pub fn new(seed: u64) -> Self {
         Draws { seed }
     }
@@ -36,27 +36,27 @@ impl Draws {
         generator
     }
 
-    /// A uniform number, 0 ≤ u < 1.
+    /// A uniform number in 0 ≤ u < 1.
     pub fn uniform(&self, member: u64, entry: usize) -> f64 {
         unit(&mut self.at(OF_MEMBERS, member, entry))
     }
 
-    /// A normal number with mean 0 and deviation 1 (G. E. P. Box, M. E. Muller, 1958).
+    /// A normal number with mean 0 and standard deviation 1 (G. E. P. Box, M. E. Muller, 1958).
     pub fn normal(&self, member: u64, entry: usize) -> f64 {
         let mut generator = self.at(OF_MEMBERS, member, entry);
-        // Not 0, whose logarithm is none.
+        // Avoid the logarithm of 0.
         let (length, angle) = (1.0 - unit(&mut generator), unit(&mut generator));
         libm::sqrt(-2.0 * libm::log(length)) * libm::cos(TAU * angle)
     }
 
-    /// The permutation of members that belongs to an entry.
+    /// The permutation of members for an entry.
     pub fn permutation(&self, entry: usize, members: u64) -> Permutation {
         let mut generator = self.at(OF_PERMUTATIONS, 0, entry);
         Permutation::new(members, || generator.next_u64())
     }
 }
 
-/// 53 bits, 0 ≤ u < 1.
+/// A number of 53 bits, 0 ≤ u < 1.
 fn unit(generator: &mut ChaCha8Rng) -> f64 {
     (generator.next_u64() >> 11) as f64 * f64::EPSILON / 2.0
 }
@@ -65,7 +65,7 @@ fn unit(generator: &mut ChaCha8Rng) -> f64 {
 mod tests {
     use super::Draws;
 
-    /// The numbers of this seed are those of every later version: sweeps go on where they were.
+    /// The numbers for this seed must not change between versions, so that sweeps can be resumed.
     #[test]
     fn draws_are_fixed() {
         let draws = Draws::new(7);

@@ -6,15 +6,15 @@ use crate::failure::{self, Failure};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// Readers of tables leave out what begins with a dot or `_`.
+/// Readers of tables skip names that begin with a dot or `_`.
 const MANIFEST: &str = "_sweep.json";
 const LOCK: &str = ".lock";
 const LOCK_OF_PARTS: &str = ".lock-part-";
 const LOCK_OF_MANIFEST: &str = ".lock-manifest";
-/// What files are called before they are whole, in `hamel-files`.
+/// Prefix and suffix of unfinished files, as in `hamel-files`.
 const UNFINISHED: (&str, &str) = (".hamel-", ".tmp");
 
-/// One part of the shards: every N-th of them, from the i-th on.
+/// A part of the shards: every N-th one, beginning with the i-th.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
     /// i, from 1.
@@ -24,15 +24,15 @@ pub struct Part {
 }
 
 impl Part {
-    /// All of them.
+    /// All shards.
     pub const WHOLE: Part = Part { number: 1, of: 1 };
 
-    /// Whether a shard belongs to it.
+    /// Whether a shard belongs to this part.
     pub fn has(self, shard: u64) -> bool {
         shard % self.of == self.number - 1
     }
 
-    /// Whether some shard belongs to both.
+    /// Whether both parts have a shard in common.
     fn meets(self, other: Part) -> bool {
         let (mut a, mut b) = (self.of, other.of);
         while b > 0 {
@@ -41,7 +41,7 @@ impl Part {
         self.number % a == other.number % a
     }
 
-    /// `i/N`.
+    /// Parses `i/N`.
     pub fn read(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/');
         let numbers = numbers.and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
@@ -52,16 +52,16 @@ impl Part {
     }
 }
 
-/// A folder that this process may write shards of a part to.
+/// A folder to which this process may write the shards of a part.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// They are held as long as the folder is.
+    /// Locks, held as long as the folder.
     _locks: Vec<File>,
 }
 
 impl Folder {
-    /// Takes a part of a folder, and makes it the folder of this sweep where it is new.
+    /// Locks a part of a folder, and writes the manifest if the folder is new.
     pub fn take(path: &Path, manifest: &Manifest, part: Part) -> Result<Self, Failure> {
         fs::create_dir_all(path).map_err(|error| unwritable(path, &error))?;
         let locks = lock(path, part)?;
@@ -100,13 +100,13 @@ impl Folder {
         })
     }
 
-    /// Where a shard is, or will be.
+    /// Path of the file of a shard.
     pub fn place(&self, shard: u64) -> PathBuf {
         self.path.join(named(shard))
     }
 }
 
-/// The manifest of a folder, where there is one.
+/// The manifest of a folder, if there is one.
 pub fn known(path: &Path) -> Result<Option<Manifest>, Failure> {
     let place = path.join(MANIFEST);
     let text = match fs::read_to_string(&place) {
@@ -122,18 +122,18 @@ pub fn known(path: &Path) -> Result<Option<Manifest>, Failure> {
     Ok(Some(manifest))
 }
 
-/// What there is of a sweep.
+/// The finished work of a sweep.
 #[derive(Clone, Debug, Default)]
 pub struct There {
-    /// Shards that are done.
+    /// Finished shards.
     pub shards: Vec<u64>,
-    /// Their members.
+    /// Number of their members.
     pub members: u64,
-    /// Those that failed.
+    /// Number of members that failed.
     pub failed: u64,
 }
 
-/// Looks at all shards of a folder; what is no shard of the sweep is refused.
+/// Inspects all shards of a folder; fails if one does not belong to the sweep.
 pub fn there(path: &Path, manifest: &Manifest) -> Result<There, Failure> {
     let mut there = There::default();
     let mut wrong = Vec::new();
@@ -170,12 +170,12 @@ pub fn there(path: &Path, manifest: &Manifest) -> Result<There, Failure> {
     }
 }
 
-/// The name of a shard's file.
+/// File name of a shard.
 fn named(shard: u64) -> String {
     format!("shard-{shard:06}.parquet")
 }
 
-/// The numbers of all shards in a folder, in order.
+/// The numbers of all shards in a folder, sorted.
 fn shards(path: &Path) -> Result<Vec<u64>, Failure> {
     let unreadable =
         |error: std::io::Error| Failure::usage(format!("cannot read {}: {error}", path.display()));
@@ -192,7 +192,7 @@ fn shards(path: &Path) -> Result<Vec<u64>, Failure> {
     Ok(numbers)
 }
 
-/// The locks of a part: no other process has a part with a shard of it.
+/// Locks a part, so that no other process can lock a part that shares a shard with it.
 fn lock(path: &Path, part: Part) -> Result<Vec<File>, Failure> {
     let busy = || {
         Failure::usage(format!(
@@ -218,7 +218,7 @@ fn lock(path: &Path, part: Part) -> Result<Vec<File>, Failure> {
     let name = format!("{LOCK_OF_PARTS}{}-{}", part.number, part.of);
     let own = lock_file(path, &name)?;
     tried(&path.join(&name), own.try_lock())?;
-    // Parts of another division.
+    // Parts of other divisions.
     let entries = fs::read_dir(path).map_err(|error| unwritable(path, &error))?;
     for entry in entries.flatten() {
         let other = entry.file_name();
@@ -249,14 +249,14 @@ fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
     Failure::usage(format!("cannot write {}: {error}", path.display()))
 }
 
-/// Removes files that were never whole: nobody else writes any now.
+/// Removes unfinished files: no other process writes to the folder now.
 fn sweep_up(path: &Path) {
     let (before, behind) = UNFINISHED;
     for entry in fs::read_dir(path).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if name.starts_with(before) && name.ends_with(behind) {
-            // One that stays is in nobody's way.
+            // A file that cannot be removed does no harm.
             let _ = fs::remove_file(entry.path());
         }
     }

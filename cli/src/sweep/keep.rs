@@ -1,4 +1,4 @@
-//! `--keep`: what is kept of each member.
+//! `--keep`: the results kept of each member.
 
 use crate::added::{self, Added};
 use crate::text::Piece;
@@ -7,42 +7,42 @@ use hamel_codegen::syntax::suggest::closest;
 
 pub const OPTION: &str = "--keep";
 
-/// What can be kept, as messages list it.
+/// The possible items, as messages list them.
 const KNOWN: &str =
     "there are end, max(EXPR), min(EXPR), mean(EXPR), at(TIME, EXPR), event(EXPR < EXPR)";
 const NAMES: [&str; 6] = ["end", "max", "min", "mean", "at", "event"];
 
-/// What is made of an expression.
+/// The quantity derived from an expression.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Of {
-    /// Its greatest value.
+    /// Maximum.
     Max,
-    /// Its least value.
+    /// Minimum.
     Min,
-    /// Its mean over the time.
+    /// Mean over time.
     Mean,
-    /// Its value at a time.
+    /// Value at a time.
     At(f64),
-    /// The first time at which a comparison begins to hold: that it is less than 0, or at most 0.
+    /// The first time at which a comparison becomes true: value less than 0, or at most 0.
     Event {
         /// Whether 0 counts.
         equal: bool,
     },
 }
 
-/// One thing that is kept.
+/// A kept item.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item<'a> {
-    /// The time at which a member ended, x and ξ.
+    /// The end time of a member, x and ξ.
     End,
-    /// Something of an expression; of an event, the difference of two.
+    /// A quantity of an expression; for an event, of the difference of two.
     Of(Of, Vec<Piece<'a>>),
 }
 
 /// An item with its text.
 pub type Kept<'a> = (Piece<'a>, Item<'a>);
 
-/// The outputs that are added for what is kept.
+/// The outputs to add for the kept items.
 pub fn added<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
     let of = |(index, (whole, item)): (usize, &Kept<'a>)| match item {
         Item::End => None,
@@ -55,7 +55,7 @@ pub fn added<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
     kept.iter().enumerate().filter_map(of).collect()
 }
 
-/// Reads the option for runs of this length: items, and what is wrong with others.
+/// Reads the option for runs of length `until`: items, and the errors of others.
 pub fn read(text: &str, until: f64) -> (Vec<Kept<'_>>, Vec<Diagnostic>) {
     let (mut kept, mut errors): (Vec<Kept>, Vec<Diagnostic>) = Default::default();
     let whole = match Piece::of(text) {
@@ -123,7 +123,7 @@ fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
     Ok(Item::Of(of, vec![inner]))
 }
 
-/// `A < B`: what is kept is about A − B, and about B − A for the other direction.
+/// Parses `A < B`, which becomes A − B < 0; the other direction becomes B − A < 0.
 fn event(inner: Piece) -> Result<Item, Diagnostic> {
     let outside = inner.outside();
     let bytes = inner.text.as_bytes();
@@ -192,7 +192,7 @@ mod tests {
         assert!(matches!(kept[3].1, Item::Of(Of::At(2.5), _)));
     }
 
-    /// Random texts are read or refused, and what is said can be shown.
+    /// Random texts are read or refused, and their errors can be rendered.
     #[test]
     fn no_text_panics() {
         let words = [

@@ -1,28 +1,28 @@
-//! The file in a sweep's folder that says what the sweep is: all on which a row depends.
+//! The file in a sweep's folder that specifies the sweep: everything on which a row depends.
 
 use crate::json::Json;
 use crate::state::strict;
 use serde_json::{Map, Value};
 
-/// The form of this file; another form is another number.
+/// Version of the file's format.
 const FORMAT: u128 = 1;
-/// Longer texts are told apart by the first line that differs.
+/// Longer texts are compared by their first differing line.
 const SHORT: usize = 60;
 
-/// What a sweep is.
+/// The specification of a sweep.
 #[derive(Clone, Debug)]
 pub struct Manifest {
-    /// Its text.
+    /// Text of the file.
     pub text: String,
     members: Map<String, Value>,
-    /// How many members there are.
+    /// Number of members.
     pub count: u64,
-    /// How many of them a shard has; the last one may have fewer.
+    /// Number of members in a shard; the last one may have fewer.
     pub size: u64,
 }
 
 impl Manifest {
-    /// What is to be fixed, in order: names with values.
+    /// A manifest with these values to be fixed, in this order.
     pub fn new(count: u64, size: u64, fixed: Vec<(&str, Json)>) -> Result<Self, String> {
         let own = [
             ("format", Json::Count(FORMAT)),
@@ -61,7 +61,7 @@ impl Manifest {
         })
     }
 
-    /// How many shards there are.
+    /// Number of shards.
     pub fn shards(&self) -> u64 {
         self.count.div_ceil(self.size)
     }
@@ -72,12 +72,12 @@ impl Manifest {
         first..(first + self.size).min(self.count)
     }
 
-    /// A text of it.
+    /// A string of the manifest.
     pub fn word(&self, name: &str) -> Option<&str> {
         self.members.get(name)?.as_str()
     }
 
-    /// In which it differs from the one that is there.
+    /// The differences from the manifest that exists.
     pub fn differences(&self, there: &Manifest) -> Vec<String> {
         let names = self.members.keys().chain(there.members.keys());
         let mut names: Vec<&String> = names.collect();

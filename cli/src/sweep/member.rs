@@ -1,4 +1,4 @@
-//! One member: its state, its run, and the row that is kept of it.
+//! A member: its state, its run, and its row of results.
 
 use super::vary::Vary;
 use super::watch::{Keeping, Watch};
@@ -19,42 +19,42 @@ use std::cell::Cell;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What systems of all members are made of.
+/// The parts from which the systems of all members are made.
 pub struct Family {
-    /// The system, with outputs for what is kept.
+    /// The system, with outputs for the kept items.
     pub generated: Generated,
-    /// Its functions, compiled.
+    /// Its compiled functions.
     pub mechanism: Arc<Mechanism>,
-    /// The text of the description, for states and for messages.
+    /// The text of the description, for states and messages.
     pub text: String,
-    /// What acts on members from outside.
+    /// The inputs, which act on members from outside.
     pub given: Option<Inputs>,
 }
 
-/// All that members share.
+/// Data that all members share.
 pub struct Sweep {
-    /// Their systems.
+    /// The source of their systems.
     pub family: Family,
-    /// What is varied.
+    /// The varied entries.
     pub vary: Vary,
-    /// What is kept.
+    /// The kept items.
     pub keeping: Keeping,
-    /// How members are run, by the method of the first one.
+    /// The plan of runs, with the method of the first member.
     pub plan: Plan,
-    /// The state that members are changes of, in JSON.
+    /// The state that members modify, in JSON.
     pub base: Map<String, Value>,
 }
 
-/// What is kept of a member.
+/// The results of a member.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Its number.
+    /// Number of the member.
     pub index: u64,
-    /// What was varied.
+    /// Varied values.
     pub varied: Vec<f64>,
-    /// What was kept; empty where it failed.
+    /// Kept values; empty if the member failed.
     pub kept: Vec<Option<f64>>,
-    /// Why it failed.
+    /// Reason of the failure.
     pub error: Option<String>,
 }
 
@@ -66,7 +66,7 @@ struct Member {
     plan: Plan,
 }
 
-/// A member that runs.
+/// A running member.
 struct Running<'a> {
     member: &'a Member,
     state: State<Instance>,
@@ -75,7 +75,7 @@ struct Running<'a> {
 }
 
 impl Sweep {
-    /// Runs members, two side by side where nobody looks at single steps; their rows in any order.
+    /// Runs members and returns their rows in any order; two run in parallel lanes if single steps are not observed.
     pub fn rows(&self, members: Range<u64>) -> Vec<Row> {
         let side_by_side = self.plan.quiet && self.plan.tolerance.is_none();
         let mut rows = Vec::new();
@@ -95,7 +95,7 @@ impl Sweep {
         rows
     }
 
-    /// A member at its start, or the row of one that has none.
+    /// A member at its start, or its row if it cannot start.
     fn begin(&self, index: u64) -> Result<Member, Row> {
         let varied = self.vary.values(index);
         match self.family.member(&self.vary.state(&varied, &self.base)) {
@@ -142,7 +142,7 @@ impl<'a> Running<'a> {
         let Member { system, plan, .. } = self.member;
         let balance = &self.balance;
         let watches = plan.watches(system);
-        // What is kept looks for its own events.
+        // Kept items detect their events themselves.
         let watched = (balance, &mut Events::default());
         let watch = &mut self.watch;
         let mut observe = |state: &State<Instance>, place| {
@@ -197,7 +197,7 @@ impl Row {
 }
 
 impl Family {
-    /// The system of a member whose state is this: the only place where one is made.
+    /// The system of a member with this state: the only place where systems of members are made.
     pub fn member(&self, state: &Value) -> Result<Instance, Early> {
         let state =
             state::State::of(&self.generated, &self.text, state).map_err(|errors| Early {
@@ -228,7 +228,7 @@ fn of_start(failure: &Failure) -> Early {
     }
 }
 
-/// A failure in one line, without what it has for a terminal.
+/// A failure in one line, without the formatting for a terminal.
 fn said(failure: &Failure) -> String {
     let text = match failure {
         Failure::Failed(text) | Failure::Usage(text) => text.as_str(),
@@ -270,7 +270,7 @@ mod tests {
         Path::new("../tests/models").join(format!("{name}.eom"))
     }
 
-    /// A description that no file has.
+    /// Writes a description to a temporary file.
     fn written(name: &str, text: &str) -> PathBuf {
         let path = std::env::temp_dir().join(format!("hamel-{name}-{}.eom", std::process::id()));
         std::fs::write(&path, text).expect("a description");
@@ -288,7 +288,7 @@ mod tests {
         )
     }
 
-    /// The rows of members who share lanes, which have to be those of members alone, to the bit.
+    /// The rows of members that share lanes, checked to be bitwise equal to those of members that run alone.
     fn rows(path: &Path, options: &[&str]) -> Vec<Row> {
         let sweep = sweep(path, options);
         let members = sweep.vary.members();
@@ -321,7 +321,7 @@ mod tests {
             ),
             ("rolling_disk", "a = uniform(0.4, 0.6)"),
             ("four_bar_loop", "start q1 = uniform(1, 1.2)"),
-            // Beyond a million turns a sine is not computed in line.
+            // Beyond a million turns a sine is not computed inline.
             ("double_pendulum_angles", "start th1 = grid(0, 2e6, 7)"),
         ];
         for (case, (name, vary)) in cases.into_iter().enumerate() {
@@ -330,7 +330,7 @@ mod tests {
             let until = if long { "2" } else { "1" };
             let options = ["--vary", vary, "--until", until, "--step", "1e-3"];
             let methods = ["rkmk4", "rk4", "auto"].into_iter().enumerate();
-            // Each by one of them in its turn, and by all with `HAMEL_ATTACK`.
+            // One of these methods in turn, and all with `HAMEL_ATTACK`.
             for (_, method) in methods.filter(|(turn, _)| long || case % 3 == *turn) {
                 let options = [&options[..], &count, &["--method", method]].concat();
                 let rows = rows(&model(name), &options);
@@ -341,7 +341,7 @@ mod tests {
         }
     }
 
-    /// Samples in between, one of them at the start, and stretches that are too short for code of their own.
+    /// Intermediate samples, one of them at the start, and stretches that are too short to be compiled.
     #[test]
     fn samples_are_those_of_members_alone() {
         let options = "--members 5 --until 3 --step 1e-3 --method rkmk4".split(' ');
@@ -359,8 +359,8 @@ mod tests {
         }
     }
 
-    /// Members that cannot start, that come to where M is singular, or to numbers that are not finite, beside those that
-    /// do not.
+    /// Members that cannot start, that reach a singular M, or that reach infinite numbers, together with members that
+    /// succeed.
     #[test]
     fn members_that_fail_do_so_alone() {
         let text = "system Bead {

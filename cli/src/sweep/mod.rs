@@ -1,12 +1,12 @@
-//! `hamel sweep`: many runs of one system, which differ in parameters, starts and inputs.
+//! `hamel sweep`: runs one system many times, with different parameters, starts and inputs.
 //!
 //! | file | owns |
 //! |---|---|
-//! | `vary`, `target`, `distribution` | what is varied, and how |
-//! | `draws`, `permutation` | random numbers that depend on the seed and the member alone |
-//! | `keep`, `watch` | what is kept of a member, compiled as outputs of the description |
-//! | `member`, `work` | one run, or two side by side, and all of them on threads |
-//! | `shard`, `manifest`, `folder` | what is written, and what is there |
+//! | `vary`, `target`, `distribution` | the varied entries and their distributions |
+//! | `draws`, `permutation` | random numbers that depend only on the seed and the member |
+//! | `keep`, `watch` | the kept results of a member, compiled as outputs of the description |
+//! | `member`, `work` | one run, or two in parallel lanes, and all runs on threads |
+//! | `shard`, `manifest`, `folder` | the files that are written, and those that exist |
 //! | `status`, `submit`, `plot` | `--status`, `--submit` and `--plot` |
 
 mod distribution;
@@ -56,19 +56,19 @@ use vary::Vary;
 use watch::Keeping;
 use work::{Done, Stopping, Work};
 
-/// The default of --shard-size: a part of all, but no fewer and no more than these.
+/// The default of --shard-size: this fraction of all members, within these limits.
 const SHARDS: u64 = 64;
 const FEWEST: u64 = 64;
 const MOST: u64 = 10_000;
-/// Most shards of a folder.
+/// Largest number of shards in a folder.
 const MOST_SHARDS: u64 = 1_000_000;
-/// The default of --tasks.
+/// Default of --tasks.
 const TASKS: u64 = 16;
 
 /// Runs a system many times, with parameters, starts and inputs that differ from run to run.
 ///
-/// What is kept of each run, called a member, is a row of a table in Parquet files, in a folder. A member depends on the
-/// seed and on its number alone. The command may be stopped at any time: given again, it computes what is missing.
+/// Each run, called a member, gives a row of a table in Parquet files, in a folder. A member depends only on the seed
+/// and on its number. The command may be stopped at any time: run again, it computes the missing members.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel sweep drone.eom --vary \"m = normal(1.3, 0.1); start w = uniform([-1, -1, -1], [1, 1, 1])\" \\
@@ -81,7 +81,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE", required_unless_present = "status")]
     file: Option<PathBuf>,
-    /// What differs from member to member; --help tells how it is written.
+    /// Entries that differ from member to member; see --help for the syntax.
     #[arg(
         long,
         value_name = "ITEMS",
@@ -89,12 +89,12 @@ pub struct Arguments {
         allow_hyphen_values = true
     )]
     vary: Option<String>,
-    /// How many members there are; by default, the points of all grids.
+    /// Number of members; default: the points of all grids.
     #[arg(long, value_name = "N", value_parser = members, allow_negative_numbers = true)]
     members: Option<u64>,
     #[command(flatten)]
     stepping: Option<Stepping>,
-    /// What is kept of each member; --help tells how it is written.
+    /// Results to keep of each member; see --help for the syntax.
     #[arg(
         long,
         value_name = "ITEMS",
@@ -105,38 +105,38 @@ pub struct Arguments {
     /// Folder of the results.
     #[arg(long, value_name = "FOLDER", required_unless_present = "status")]
     out: Option<PathBuf>,
-    /// Another seed makes other random numbers.
+    /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
-    /// Start and parameters where they are not varied, by coordinates; see `hamel eval --help`.
+    /// Start and parameters that are not varied, by coordinates; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     #[command(flatten)]
     inputs: inputs::Asked,
-    /// Threads that members run on; by default, one for each core.
+    /// Threads that run members; default: one for each core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     threads: Option<u16>,
-    /// Members in each file; they are held in memory until it is written; by default, 64 to 10,000.
+    /// Members in each file, held in memory until it is written; default: 64 to 10,000.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), allow_negative_numbers = true)]
     shard_size: Option<u64>,
-    /// Compute the i-th of N parts of the files, and no other; several machines may do so at once. They all have to have
-    /// a fused multiply-add, or none of them: last digits differ, and a machine of the other kind is refused.
+    /// Compute only the i-th of N parts of the files; several machines may do so at once. Either all of them or none
+    /// must have a fused multiply-add: the last digits differ, and a machine of the other kind is refused.
     #[arg(long, value_name = "i/N", value_parser = Part::read)]
     shard: Option<Part>,
-    /// Draw what is kept over what is varied, as SVG: a diagram for each pair of the first columns, with a point for each
-    /// member that there is.
+    /// Draw the kept results over the varied entries, as SVG: a diagram for each pair of the first columns, with a
+    /// point for each finished member.
     #[arg(long, value_name = "F.svg", conflicts_with = "submit")]
     plot: Option<PathBuf>,
-    /// Let an engine compute the parts, as an array of tasks; the folder has to be one that all machines share.
+    /// Let an engine compute the parts, as an array of tasks; all machines must share the folder.
     #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
     submit: Option<Engine>,
-    /// How many tasks --submit makes; by default 16.
+    /// Number of tasks of --submit; default: 16.
     #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MOST_SHARDS), allow_negative_numbers = true)]
     tasks: Option<u64>,
     /// With --submit, return when all tasks have finished.
     #[arg(long, requires = "submit")]
     wait: bool,
-    /// Tell what a folder has, and what is missing.
+    /// Show the finished and the missing parts of a folder.
     #[arg(long, value_name = "FOLDER", exclusive = true)]
     status: Option<PathBuf>,
     #[command(flatten)]
@@ -173,7 +173,7 @@ it is empty, and `error` says why. Readers take all files of a folder at once:
   duckdb.sql(\"SELECT * FROM 'runs/*.parquet'\")
   pandas.read_parquet(\"runs\")";
 
-/// Computes, submits, or tells what is there. What is computed may be given up.
+/// Runs the command: computes, submits or shows the status. `stop` can cancel the computation.
 pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     if let Some(folder) = &arguments.status {
         return status::run(folder);
@@ -208,7 +208,7 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     let part = arguments.shard.unwrap_or(Part::WHOLE);
     let threads = arguments.threads.map(usize::from);
     if let Some(engine) = arguments.submit {
-        // The folder is made here, and is nobody's until tasks begin.
+        // Create the folder here, and release its lock before tasks begin.
         drop(Folder::take(out, &manifest, Part::WHOLE)?);
         let tasks = arguments.tasks.unwrap_or(TASKS).min(manifest.shards());
         let job = Job {
@@ -250,20 +250,20 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A number of members.
+/// Parses a number of members.
 fn members(text: &str) -> Result<u64, String> {
     let number = text.parse::<u64>().ok();
     let number = number.filter(|number| (1..=i64::MAX as u64).contains(number));
     number.ok_or_else(|| "a whole number from 1 to 2^63 - 1 is needed".into())
 }
 
-/// A seed.
+/// Parses a seed.
 fn seed(text: &str) -> Result<u64, String> {
     text.parse()
         .map_err(|_| "a whole number from 0 to 2^64 - 1 is needed".into())
 }
 
-/// What members share, and the columns of their rows.
+/// Prepares the data that members share, and the columns of their rows.
 fn prepared(
     arguments: &Arguments,
     source: &Source,
@@ -275,7 +275,7 @@ fn prepared(
         let vary = Vary::read(vary, generated, &state, arguments.seed, arguments.members)?;
         Ok((base, state, vary))
     };
-    // What is wrong with --keep, with what is wrong with --vary, too.
+    // Report errors in --vary together with those in --keep.
     let both = |failure: Failure, generated: &Generated| match varied(generated) {
         Err(more) => failure.and(more),
         Ok(_) => failure,
@@ -342,7 +342,7 @@ fn prepared(
     Ok((sweep, columns))
 }
 
-/// The start of all members, as --at has it in JSON, and in numbers.
+/// The start of all members, in JSON as in --at, and in numbers.
 fn start(
     arguments: &Arguments,
     source: &Source,
@@ -362,7 +362,7 @@ fn start(
     }
 }
 
-/// All on which rows depend.
+/// The manifest: everything on which rows depend.
 fn fixed(
     arguments: &Arguments,
     source: &Source,
@@ -391,7 +391,7 @@ fn fixed(
         Some(_) => None,
         None => Some(sweep.plan.step),
     };
-    // Functions as this machine has it, methods as this program was compiled.
+    // Functions use this machine's arithmetic, methods that for which this program was compiled.
     let compiled = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
     let arithmetic = match (sweep.family.mechanism.is_fused(), compiled) {
         (true, true) => "fused multiply-add",
@@ -412,7 +412,7 @@ fn fixed(
         ("input", Json::texts(&asked.input)),
         ("inputs", text(inputs)),
         ("hold", Json::Text(asked.hold.to_string())),
-        // Last digits differ between machines that round a product before they add, and those that do not.
+        // Last digits differ between machines with and without a fused multiply-add.
         ("arithmetic", Json::Text(arithmetic.into())),
         (
             "start",
@@ -425,7 +425,7 @@ fn fixed(
     manifest.map_err(|why| Failure::usage(format!("this sweep cannot be written down: {why}")))
 }
 
-/// Operations of each function that members are made of.
+/// Operations of each function that members evaluate.
 fn operations(generated: &Generated) -> Vec<(String, String)> {
     let program = &generated.program;
     let counted = program.functions.iter().map(|function| {
@@ -436,7 +436,7 @@ fn operations(generated: &Generated) -> Vec<(String, String)> {
     vec![("hamel.operations".into(), counts)]
 }
 
-/// What was done now, and what had been done before.
+/// Summarises the new and the earlier work.
 fn summary(out: &Path, done: Done, before: u64) -> String {
     let mut text = format!(
         "{}: {} {} computed, {} of them failed",

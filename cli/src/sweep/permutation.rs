@@ -1,7 +1,7 @@
-//! A permutation of the numbers below any count, computed at one of them without the others.
+//! A permutation of the numbers below any count, evaluated at single numbers.
 //!
-//! It is a network of Feistel's: what it shuffles are the numbers of an even count of bits, and where one is not below
-//! the count it goes on from there until it is (J. Black, P. Rogaway, *Ciphers with arbitrary finite domains*, 2002).
+//! It is a Feistel network on numbers with an even count of bits, iterated until the result is below the count
+//! (J. Black, P. Rogaway, *Ciphers with arbitrary finite domains*, 2002).
 
 /// Rounds of the network.
 const ROUNDS: usize = 8;
@@ -10,13 +10,13 @@ const ROUNDS: usize = 8;
 #[derive(Clone, Debug)]
 pub struct Permutation {
     count: u64,
-    /// Half of the bits of the numbers that are shuffled.
+    /// Half the number of bits of the permuted numbers.
     half: u32,
     keys: [u64; ROUNDS],
 }
 
 impl Permutation {
-    /// The permutation of the numbers below a count that belongs to a source of keys.
+    /// The permutation of the numbers below a count, with keys from a generator.
     pub fn new(count: u64, mut key: impl FnMut() -> u64) -> Self {
         let bits = u64::BITS - count.saturating_sub(1).leading_zeros();
         Permutation {
@@ -26,7 +26,7 @@ impl Permutation {
         }
     }
 
-    /// Where a number goes; it has to be below the count.
+    /// The image of a number, which must be below the count.
     pub fn at(&self, index: u64) -> u64 {
         let mut place = index;
         loop {
@@ -47,7 +47,7 @@ impl Permutation {
     }
 }
 
-/// The finaliser of SplitMix64: every bit depends on all others.
+/// The finaliser of SplitMix64: every bit of the result depends on all bits of z.
 fn mixed(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn places_are_spread() {
-        // Of 0 over all keys, and of neighbours for one key: the mean of a uniform variable within five deviations.
+        // Images of 0 for all keys, and of neighbours for one key: the mean of a uniform variable within five standard
+        // errors.
         let count = 1000;
         let of_zero: Vec<u64> = (0..2000).map(|seed| keyed(count, seed).at(0)).collect();
         let mean = of_zero.iter().sum::<u64>() as f64 / 2000.0;

@@ -1,4 +1,4 @@
-//! `--plot`: what is kept of each member over what is varied, as a picture.
+//! `--plot`: draws the kept results over the varied entries.
 
 use super::folder::{Folder, There};
 use super::shard::{Columns, numbers};
@@ -7,13 +7,13 @@ use crate::number::grouped;
 use hamel_report::plot::{Scatter, scatter};
 use std::path::Path;
 
-/// So many members are drawn at most, evenly spread over all that there are.
+/// Largest number of members drawn, evenly spread over all.
 const POINTS: u64 = 4000;
-/// So many causes and results at most; the title says how many there are.
+/// Largest numbers of causes and results drawn; the title gives the totals.
 const CAUSES: usize = 3;
 const RESULTS: usize = 4;
 
-/// Draws the members that a folder has.
+/// Draws the finished members of a folder.
 pub fn run(
     place: &Path,
     name: &str,
@@ -54,7 +54,7 @@ pub fn run(
     failure::write(place, &figure.standalone())
 }
 
-/// Whether a result is not the same everywhere: the time of the end is, where all members reach it.
+/// Whether a result varies: the end time does not if all members reach it.
 fn differ(values: &[f64]) -> bool {
     let mut finite = values.iter().filter(|value| value.is_finite());
     let first = finite.next();

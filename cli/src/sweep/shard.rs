@@ -1,4 +1,4 @@
-//! Shards: rows of members as columns of a Parquet file, written from its first byte to its last in memory.
+//! Shards: rows of members as columns of a Parquet file, composed entirely in memory.
 
 use super::member::Row;
 use parquet::basic::{LogicalType, Repetition, Type};
@@ -15,26 +15,26 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The column of members' numbers.
+/// The column of member numbers.
 pub const INDEX: &str = "index";
-/// The column of reasons why members failed.
+/// The column of failure reasons.
 pub const ERROR: &str = "error";
-/// What the manifest is called in a file.
+/// Metadata key of the manifest.
 const SWEEP: &str = "hamel.sweep";
-/// How many members of a file failed.
+/// Metadata key of the number of failed members.
 const FAILED: &str = "hamel.failed";
 
-/// The names of the columns of a sweep.
+/// Names of the columns of a sweep.
 #[derive(Clone, Debug)]
 pub struct Columns {
-    /// What was varied.
+    /// Varied entries.
     pub varied: Vec<String>,
-    /// What is kept.
+    /// Kept results.
     pub kept: Vec<String>,
 }
 
 impl Columns {
-    /// A name that two columns would have.
+    /// A column name that occurs twice.
     pub fn twice(&self) -> Option<&str> {
         let own = [INDEX, ERROR].into_iter();
         let asked = self.varied.iter().chain(&self.kept).map(String::as_str);
@@ -63,7 +63,7 @@ impl Columns {
         root.build().map(Arc::new)
     }
 
-    /// The bytes of a file; they depend on nothing but what is given here.
+    /// The bytes of a file, a pure function of the arguments.
     pub fn bytes(
         &self,
         rows: &[Row],
@@ -78,7 +78,7 @@ impl Columns {
         let about = about.iter();
         metadata.extend(about.map(|(key, value)| KeyValue::new(key.clone(), value.clone())));
         let properties = WriterProperties::builder()
-            // Numbers that were drawn do not repeat.
+            // Random numbers do not repeat.
             .set_dictionary_enabled(false)
             .set_created_by(format!("hamel {}", env!("CARGO_PKG_VERSION")))
             .set_key_value_metadata(Some(metadata))
@@ -127,7 +127,7 @@ impl Columns {
     }
 }
 
-/// For each value whether there is one, and those that there are.
+/// For each value whether it is present, and the present values.
 fn optional<T>(values: impl Iterator<Item = Option<T>>) -> (Vec<i16>, Vec<T>) {
     let (mut levels, mut present) = (Vec::new(), Vec::new());
     for value in values {
@@ -137,7 +137,7 @@ fn optional<T>(values: impl Iterator<Item = Option<T>>) -> (Vec<i16>, Vec<T>) {
     (levels, present)
 }
 
-/// The first columns of numbers of a file, behind that of the index; NaN where there is none.
+/// The first columns of numbers of a file, after that of the index; missing values are NaN.
 pub fn numbers(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, String> {
     let read = || -> Result<Vec<Vec<f64>>, ParquetError> {
         let reader = SerializedFileReader::new(File::open(path)?)?;
@@ -173,19 +173,19 @@ pub fn numbers(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, String> {
     read().map_err(|error| error.to_string())
 }
 
-/// What the end of a file says of it.
+/// The footer of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Footer {
-    /// The manifest of the sweep that it is of.
+    /// Manifest of its sweep.
     pub sweep: Option<String>,
-    /// Its rows.
+    /// Number of rows.
     pub members: u64,
-    /// Those that failed.
+    /// Number of failed members.
     pub failed: u64,
 }
 
 impl Footer {
-    /// Reads the end of a file.
+    /// Reads the footer of a file.
     pub fn read(path: &Path) -> Result<Self, String> {
         let file = File::open(path).map_err(|error| error.to_string())?;
         let read = ParquetMetaDataReader::new().parse_and_finish(&file);

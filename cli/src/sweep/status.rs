@@ -1,4 +1,4 @@
-//! `hamel sweep --status`: what there is of a sweep.
+//! `hamel sweep --status`: shows the progress of a sweep.
 
 use super::folder::{known, there};
 use crate::columns::aligned;
@@ -6,10 +6,10 @@ use crate::failure::{Failure, print};
 use crate::number::grouped;
 use std::path::Path;
 
-/// Ranges of missing shards that are listed.
+/// Largest number of ranges of missing shards listed.
 const LISTED: usize = 8;
 
-/// Prints what a folder has, and what is missing.
+/// Prints the finished and the missing parts of a folder.
 pub fn run(path: &Path) -> Result<(), Failure> {
     let Some(manifest) = known(path)? else {
         return Err(Failure::usage(format!(
@@ -43,7 +43,7 @@ pub fn run(path: &Path) -> Result<(), Failure> {
     ))
 }
 
-/// The shards that are not there, as ranges.
+/// The missing shards, as ranges.
 fn missing(there: &[u64], all: u64) -> Vec<String> {
     let mut ranges = Vec::new();
     let mut next = 0;

@@ -1,4 +1,4 @@
-//! `--submit`: the shards as an array of tasks of an engine that exists, each of which is `hamel sweep … --shard i/N`.
+//! `--submit`: submits the shards as an array of tasks of an engine; each task runs `hamel sweep … --shard i/N`.
 
 use crate::failure::{self, Failure, print};
 use clap::ValueEnum;
@@ -8,7 +8,7 @@ use std::process::Command;
 
 /// The script that each task runs, in the folder of the sweep.
 const SCRIPT: &str = "_task.sh";
-/// Options of the command line that tasks do not get, with whether a value stands behind them.
+/// Options that are not passed to tasks, with whether they take a value.
 const OWN: [(&str, bool); 4] = [
     ("--submit", true),
     ("--tasks", true),
@@ -16,7 +16,7 @@ const OWN: [(&str, bool); 4] = [
     ("--threads", true),
 ];
 
-/// An engine that distributes tasks.
+/// Engine that distributes tasks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Engine {
     /// Job arrays, `sbatch --array`.
@@ -25,23 +25,23 @@ pub enum Engine {
     Hyperqueue,
 }
 
-/// What is submitted.
+/// A submission.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {
-    /// By what.
+    /// Engine.
     pub engine: Engine,
-    /// The folder of the sweep.
+    /// Folder of the sweep.
     pub folder: &'a Path,
-    /// How many tasks there are.
+    /// Number of tasks.
     pub tasks: u64,
-    /// How many cores each of them has.
+    /// Number of cores of each task.
     pub threads: usize,
-    /// Whether the command ends when all of them have.
+    /// Whether to return only when all tasks have finished.
     pub wait: bool,
 }
 
 impl Job<'_> {
-    /// Writes the script of a task, and submits the array.
+    /// Writes the script of a task and submits the array.
     pub fn submit(&self) -> Result<(), Failure> {
         let script = self.folder.join(SCRIPT);
         let own: Vec<OsString> = std::env::args_os().skip(1).collect();
@@ -72,7 +72,7 @@ impl Job<'_> {
         }
     }
 
-    /// The shell's text of one task.
+    /// The shell script of a task.
     fn script(&self, words: &[OsString]) -> Result<String, Failure> {
         let mut text = String::from("#!/bin/sh\n# One part of a sweep: hamel sweep --submit\nexec");
         for word in words {
@@ -130,7 +130,7 @@ impl Job<'_> {
     }
 }
 
-/// The arguments without those that are about the submission.
+/// The arguments without the options of the submission.
 fn of_task(words: &[OsString]) -> Vec<OsString> {
     let mut task = Vec::new();
     let mut words = words.iter();
@@ -151,7 +151,7 @@ fn of_task(words: &[OsString]) -> Vec<OsString> {
     task
 }
 
-/// A word for the shell.
+/// A word, quoted for the shell.
 fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }

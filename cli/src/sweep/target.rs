@@ -1,4 +1,5 @@
-//! What can be varied: parameters, starts and inputs, by their names or by those of their entries; as states in JSON.
+//! Variable targets: parameters, starts and inputs, by their names or those of their entries; written as states in
+//! JSON.
 
 use crate::names;
 use crate::state::State;
@@ -10,7 +11,7 @@ use hamel_codegen::syntax::path::plain;
 use hamel_codegen::syntax::suggest::closest;
 use serde_json::{Map, Value};
 
-/// What a name is looked for among.
+/// The kind of symbol that a name refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Parameters.
@@ -22,7 +23,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// The word before the name, with the space behind it.
+    /// The keyword before the name, with a space after it.
     pub fn word(self) -> &'static str {
         match self {
             Part::Parameter => "",
@@ -32,39 +33,39 @@ impl Part {
     }
 }
 
-/// Something of the description with the numbers that it has where nothing is varied.
+/// A group of symbols with its values when nothing is varied.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// Where it stands in a state in JSON.
+    /// Key of its section in a state in JSON.
     pub part: &'static str,
-    /// Its plain name.
+    /// Plain name.
     pub name: String,
-    /// Which part of a pose it is.
+    /// For a pose, which part of it.
     pub of_pose: Option<&'static str>,
-    /// Names of its entries, as columns are called.
+    /// Names of the entries, used as column names.
     pub entries: Vec<String>,
-    /// Its numbers.
+    /// Values.
     pub base: Vec<f64>,
     form: Form,
 }
 
-/// How numbers are written in a state.
+/// How values are written in a state.
 #[derive(Clone, Debug, PartialEq)]
 enum Form {
     Scalar,
     Vector,
-    /// Rows of a matrix.
+    /// A matrix with rows of this length.
     Matrix(usize),
-    /// Rows from the diagonal on.
+    /// A symmetric matrix, rows from the diagonal on.
     Symmetric(usize),
-    /// A turn from this attitude, by the vector of its axis and angle in body axes.
+    /// A rotation from this attitude, by a rotation vector in body axes.
     Rotation(so3::Matrix<f64>),
-    /// The same of a unit quaternion.
+    /// Likewise for a unit quaternion.
     Quaternion([f64; 4]),
 }
 
 impl Target {
-    /// What a name means, with the entries of it that are meant.
+    /// Resolves a name to a target and the indices of its entries.
     pub fn find(
         part: Part,
         name: &str,
@@ -116,7 +117,7 @@ impl Target {
         )
     }
 
-    /// All of a part.
+    /// All targets of a kind.
     fn all(part: Part, model: &Model, state: &State) -> Vec<Self> {
         let groups = |part: &'static str, groups: &[Group], numbers: &[f64]| -> Vec<Target> {
             let target = |group: &Group| Target {
@@ -147,7 +148,7 @@ impl Target {
         }
     }
 
-    /// Its name as descriptions have it.
+    /// Name as in descriptions.
     fn written(&self) -> String {
         match self.of_pose {
             Some(part) => format!("{}.{part}", self.name),
@@ -155,13 +156,13 @@ impl Target {
         }
     }
 
-    /// Whether another one is the same.
+    /// Whether both are the same symbol.
     pub fn is(&self, other: &Target) -> bool {
         let key = |target: &'_ Target| (target.part, target.name.clone(), target.of_pose);
         key(self) == key(other)
     }
 
-    /// Puts these numbers into a state in JSON.
+    /// Puts values into a state in JSON.
     pub fn put(&self, state: &mut Map<String, Value>, numbers: &[f64]) {
         fn within<'a>(
             map: &'a mut Map<String, Value>,
@@ -185,7 +186,7 @@ impl Target {
         }
     }
 
-    /// These numbers as a state gives them.
+    /// The JSON form of values.
     fn json(&self, numbers: &[f64]) -> Value {
         let list = |numbers: &[f64]| Value::from(numbers.to_vec());
         match &self.form {
@@ -193,7 +194,7 @@ impl Target {
             Form::Vector => list(numbers),
             Form::Matrix(n) => numbers.chunks(*n).map(list).collect(),
             Form::Symmetric(n) => {
-                // Row i begins behind n + (n − 1) + … entries.
+                // Row i begins after n + (n − 1) + … entries.
                 let entry = |i: usize, j: usize| {
                     let (i, j) = (i.min(j), i.max(j));
                     numbers[i * n - i * (i + 1) / 2 + j]
@@ -214,7 +215,7 @@ fn vector(numbers: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0))
 }
 
-/// A coordinate; of a pose its position and its rotation.
+/// The targets of a coordinate; for a pose, its position and its rotation.
 fn coordinate(coordinate: &Coordinate, x: &[f64]) -> Vec<Target> {
     let (name, at) = (&coordinate.name, coordinate.offset);
     let target = |of_pose, entries, base, form| Target {

@@ -1,4 +1,4 @@
-//! `--vary`: what differs from member to member, and the state of each of them.
+//! `--vary`: the entries that differ from member to member, and the state of each member.
 
 use super::distribution::{Distribution, count};
 use super::draws::Draws;
@@ -14,7 +14,7 @@ use serde_json::{Map, Value};
 
 const OPTION: &str = "--vary";
 
-/// One number that is varied.
+/// A varied number.
 #[derive(Clone, Debug)]
 struct Entry {
     target: usize,
@@ -22,17 +22,17 @@ struct Entry {
     column: String,
     distribution: Distribution,
     strata: Option<Permutation>,
-    /// Members of one value of a grid that follow one another.
+    /// Number of consecutive members with the same value of a grid.
     stride: u64,
 }
 
-/// What is varied, and how.
+/// The varied entries and their distributions.
 #[derive(Clone, Debug)]
 pub struct Vary {
     targets: Vec<Target>,
     entries: Vec<Entry>,
     draws: Draws,
-    /// Members of the sweep.
+    /// Number of members.
     members: u64,
 }
 
@@ -44,7 +44,7 @@ fn parameter<'a>(item: Piece<'a>) -> Option<&'a str> {
 }
 
 impl Vary {
-    /// Reads the option; `members` is how many are asked for, where that is said.
+    /// Reads the option; `members` is the requested number of members, if given.
     pub fn read(
         text: &str,
         generated: &Generated,
@@ -143,11 +143,11 @@ impl Vary {
         Ok(())
     }
 
-    /// Counts the members: those that are asked for, or the points of all grids.
+    /// Counts the members: the requested number, or the points of all grids.
     fn count(&mut self, asked: Option<u64>) -> Result<(), String> {
         let mut points: u64 = 1;
         let mut grids = false;
-        // The last one goes through its values first.
+        // The last grid varies fastest.
         for entry in self.entries.iter_mut().rev() {
             if let Distribution::Grid(_, _, n) = entry.distribution {
                 entry.stride = points;
@@ -172,17 +172,17 @@ impl Vary {
         Ok(())
     }
 
-    /// How many members there are.
+    /// Number of members.
     pub fn members(&self) -> u64 {
         self.members
     }
 
-    /// Names of the numbers that are varied, as the option calls them.
+    /// Names of the varied numbers, as in the option.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.column.as_str())
     }
 
-    /// Places in u of the inputs that are varied, with their names.
+    /// Indices in u of the varied inputs, with their names.
     pub fn inputs(&self, generated: &Generated) -> Vec<(usize, &str)> {
         let place = |entry: &Entry| {
             let target = &self.targets[entry.target];
@@ -195,7 +195,7 @@ impl Vary {
             .collect()
     }
 
-    /// The numbers of a member, in the order of the columns.
+    /// The values for a member, in the order of the columns.
     pub fn values(&self, member: u64) -> Vec<f64> {
         let value = |(index, entry): (usize, &Entry)| {
             let point = match entry.distribution {
@@ -210,7 +210,7 @@ impl Vary {
         self.entries.iter().enumerate().map(value).collect()
     }
 
-    /// The state in JSON that has these numbers, and else what another one says.
+    /// The state in JSON with these values, and otherwise the entries of `base`.
     pub fn state(&self, values: &[f64], base: &Map<String, Value>) -> Value {
         let mut numbers: Vec<Vec<f64>> = self.targets.iter().map(|t| t.base.clone()).collect();
         for (entry, value) in self.entries.iter().zip(values) {
@@ -223,7 +223,7 @@ impl Vary {
         state.into()
     }
 
-    /// The same with nothing varied.
+    /// The state with nothing varied.
     pub fn unvaried(&self, base: &Map<String, Value>) -> Value {
         let values: Vec<f64> = self
             .entries

@@ -1,4 +1,4 @@
-//! What is kept of one member while it runs.
+//! Collects the kept results of a member while it runs.
 
 use super::keep::{Item, Kept, Of};
 use crate::added;
@@ -11,24 +11,24 @@ use hamel::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 
-/// What is made of one item, without the texts that it was read from.
+/// The kind of an item, without its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     End,
     Of(Of),
 }
 
-/// The columns of what is kept, and how they are filled.
+/// The columns of the kept results, and how to fill them.
 #[derive(Clone, Debug)]
 pub struct Keeping {
     items: Vec<(Kind, String)>,
     columns: Vec<String>,
-    /// Whether the time at the end has a column of its own: where the time is a coordinate it is one anyway.
+    /// Whether the end time has a separate column: not if the time is a coordinate.
     timed: bool,
 }
 
 impl Keeping {
-    /// Names the columns; refused where an event compares anything but numbers.
+    /// Names the columns; fails if an event compares anything other than numbers.
     pub fn new(kept: &[Kept], generated: &Generated) -> Result<Self, (usize, String)> {
         let (mut items, mut columns, mut timed) = (Vec::new(), Vec::new(), true);
         for (index, (piece, item)) in kept.iter().enumerate() {
@@ -68,7 +68,7 @@ impl Keeping {
         &self.columns
     }
 
-    /// Times at which values are asked for, in order.
+    /// Sorted times at which values are requested.
     pub fn times(&self) -> Vec<f64> {
         let mut times: Vec<f64> = self
             .items
@@ -83,7 +83,7 @@ impl Keeping {
         times
     }
 
-    /// Whether anything happens between the ends of steps.
+    /// Whether an item depends on states within steps.
     pub fn looks_within(&self) -> bool {
         self.items
             .iter()
@@ -91,30 +91,30 @@ impl Keeping {
     }
 }
 
-/// What is known of one item.
+/// Results of an item so far.
 #[derive(Clone, Debug)]
 struct Known {
     of: Of,
-    /// Its place among the outputs of the system.
+    /// Index among the outputs of the system.
     output: usize,
     values: Vec<f64>,
     /// The values of the expression at the last state.
     last: Vec<f64>,
 }
 
-/// A member that is watched.
+/// The observer of a running member.
 pub struct Watch<'a> {
     keeping: &'a Keeping,
     system: &'a Instance,
     stepper: &'a Stepper,
     known: Vec<Known>,
-    /// The first and the last state that were seen.
+    /// The time of the first, and the last observed state.
     begin: f64,
     last: Option<State<Instance>>,
 }
 
 impl<'a> Watch<'a> {
-    /// Before the run.
+    /// The observer before the run.
     pub fn new(keeping: &'a Keeping, system: &'a Instance, stepper: &'a Stepper) -> Self {
         let known = keeping.items.iter().filter_map(|(kind, name)| {
             let Kind::Of(of) = kind else {
@@ -139,7 +139,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Sees a state.
+    /// Observes a state.
     pub fn see(&mut self, state: &State<Instance>, place: Place) {
         let value = |output: usize, state: &State<Instance>| match self.system.outputs().get(output)
         {
@@ -172,7 +172,7 @@ impl<'a> Watch<'a> {
                 Of::Min => extreme(&mut known.values, &now, |new, old| new < old),
                 Of::Mean => {
                     known.values.resize(now.len(), 0.0);
-                    // By trapezia.
+                    // Trapezoidal rule.
                     let ends = now.iter().zip(&known.last);
                     for (sum, (b, a)) in known.values.iter_mut().zip(ends) {
                         *sum += 0.5 * h * (a + b);
@@ -202,7 +202,7 @@ impl<'a> Watch<'a> {
         self.last = Some(state.clone());
     }
 
-    /// What is kept of a member that has ended in a state.
+    /// The kept results of a member that ended in a state.
     pub fn finish(self, end: &State<Instance>) -> Vec<Option<f64>> {
         let mut row = Vec::with_capacity(self.keeping.columns.len());
         let mut known = self.known.into_iter();
@@ -236,7 +236,7 @@ fn value(system: &Instance, output: &Output, state: &State<Instance>) -> Vec<f64
     system.output(output, state.t, &state.x, &state.xi).to_vec()
 }
 
-/// The greater or the lesser of each entry; what is not a number stays.
+/// The greater or smaller of each entry; NaN is kept.
 fn extreme(values: &mut Vec<f64>, now: &[f64], beyond: impl Fn(f64, f64) -> bool) {
     if values.is_empty() {
         values.extend_from_slice(now);

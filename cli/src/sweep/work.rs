@@ -1,4 +1,4 @@
-//! The work on a part of a sweep: members on threads, shards as soon as they are whole.
+//! Computes a part of a sweep: members on threads, shards written as soon as they are complete.
 
 use super::folder::Folder;
 use super::manifest::Manifest;
@@ -14,47 +14,47 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
-/// Members that a thread takes at once, at most.
+/// Largest number of members that a thread takes at once.
 const MOST: u64 = 64;
-/// How long it takes at most to see that work is done, or given up.
+/// Interval at which the end of work, or a cancellation, is checked.
 const WAIT: Duration = Duration::from_millis(2);
-/// In how many portions a shard is taken at least, by a thread.
+/// Least number of portions of a shard for each thread.
 const PORTIONS: u64 = 4;
 
-/// What threads share.
+/// Data shared by the threads.
 struct Desk {
-    /// Shards that nobody has begun.
+    /// Shards not yet begun.
     waiting: VecDeque<u64>,
-    /// The shard that members are taken from, and the next of them.
+    /// The shard from which members are taken, and the next member.
     begun: Option<(u64, u64)>,
-    /// Rows of shards that are not whole; there are no more of them than threads, and one.
+    /// Rows of incomplete shards, at most one more than there are threads.
     open: BTreeMap<u64, Vec<Row>>,
-    /// What went wrong; nobody goes on then.
+    /// The first error; all threads stop then.
     failure: Option<Failure>,
     done: Done,
 }
 
-/// What was done.
+/// Finished work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Done {
-    /// Members.
+    /// Number of members.
     pub members: u64,
-    /// Those that failed.
+    /// Number of failed members.
     pub failed: u64,
-    /// Shards.
+    /// Number of shards.
     pub shards: u64,
 }
 
-/// What gives up the work.
+/// Cancellation of the work.
 pub struct Stopping<'a> {
-    /// Asked by the thread that the work was asked of.
+    /// Polled by the thread that started the work.
     asked: &'a Stop,
-    /// What members are told.
+    /// Flag that the members check.
     told: Arc<AtomicBool>,
 }
 
 impl<'a> Stopping<'a> {
-    /// That of a program.
+    /// A cancellation by a program's callback.
     pub fn new(asked: &'a Stop) -> Self {
         Stopping {
             asked,
@@ -62,7 +62,7 @@ impl<'a> Stopping<'a> {
         }
     }
 
-    /// The same for runs of members, on any thread.
+    /// The cancellation as runs of members check it, on any thread.
     pub fn of_members(&self) -> Stop {
         let told = Arc::clone(&self.told);
         Stop(Arc::new(move || told.load(Ordering::Relaxed)))
@@ -72,7 +72,7 @@ impl<'a> Stopping<'a> {
         self.told.load(Ordering::Relaxed)
     }
 
-    /// Waits for threads, or for the end of all work.
+    /// Waits until the threads finish or the work is cancelled.
     fn wait(&self, desk: &Mutex<Desk>, threads: &[ScopedJoinHandle<'_, ()>]) {
         let Stop(asked) = self.asked;
         while !threads.iter().all(ScopedJoinHandle::is_finished) {
@@ -90,24 +90,24 @@ impl<'a> Stopping<'a> {
     }
 }
 
-/// All that a thread needs.
+/// The work of all threads.
 pub struct Work<'a> {
-    /// What may give it up.
+    /// Cancellation, if possible.
     pub stopping: Option<Stopping<'a>>,
-    /// What members have in common.
+    /// Data that members share.
     pub sweep: &'a Sweep,
-    /// Their shards.
+    /// Manifest with their shards.
     pub manifest: &'a Manifest,
-    /// Their columns.
+    /// Columns of their rows.
     pub columns: &'a Columns,
-    /// What files say of them, beside the manifest.
+    /// Metadata of files, in addition to the manifest.
     pub about: &'a [(String, String)],
-    /// Where files go.
+    /// Destination of the files.
     pub folder: &'a Folder,
 }
 
 impl Work<'_> {
-    /// Computes shards; those that are whole stay, whatever happens to others.
+    /// Computes shards; completed ones remain even if others fail.
     pub fn on(&self, shards: Vec<u64>, threads: usize) -> Result<Done, Failure> {
         let size = |shard: &u64| {
             let range = self.manifest.range(*shard);
@@ -125,7 +125,7 @@ impl Work<'_> {
             let work = |_| {
                 scope.spawn(|| {
                     loop {
-                        // The desk is free again before members run.
+                        // Release the lock before members run.
                         let next = self.next(&mut at(&desk), threads);
                         let Some((shard, members)) = next else {
                             break;
@@ -149,7 +149,7 @@ impl Work<'_> {
         }
     }
 
-    /// The next members, and their shard.
+    /// The next members to run, and their shard.
     fn next(&self, desk: &mut Desk, threads: usize) -> Option<(u64, std::ops::Range<u64>)> {
         if desk.failure.is_some() {
             return None;
@@ -172,12 +172,12 @@ impl Work<'_> {
         Some((shard, first..last))
     }
 
-    /// Takes rows, and writes their shard where they are its last ones.
+    /// Takes rows, and writes their shard if it is complete.
     fn hand_in(&self, desk: &Mutex<Desk>, shard: u64, rows: Vec<Row>) {
         let range = self.manifest.range(shard);
         let mut whole = {
             let mut desk = at(desk);
-            // Members that are told to stop have no end.
+            // Cancelled members have no result.
             if self.stopping.as_ref().is_some_and(Stopping::is_told) {
                 return;
             }
@@ -214,6 +214,6 @@ impl Work<'_> {
 }
 
 fn at(desk: &Mutex<Desk>) -> MutexGuard<'_, Desk> {
-    // Nothing is left half changed by a thread that ends.
+    // A thread that panics leaves no inconsistent data.
     desk.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,10 +1,10 @@
-//! What there is without M⁻¹, and what comes along with what is asked for.
+//! Systems without M⁻¹: the functions that remain, and the errors about the others.
 
 use crate::common::{hamel, text};
 use hamel_cli::{RobotOptions, Session};
 use serde_json::Value;
 
-/// A pendulum with a second link that has no mass.
+/// A pendulum with a massless second link.
 const MASSLESS: &str = "system Arm {
     joint a: revolute [0, 0, 1] moves f;
     joint b: revolute [0, 0, 1] on f at pose(identity(3), [1, 0, 0]) moves g;
@@ -12,7 +12,7 @@ const MASSLESS: &str = "system Arm {
     gravity [-9.81, 0, 0];
 }";
 
-/// M = diag(I + m l², 0) and ∂V = (−m g l, 0) for the hanging link, whatever the other one does.
+/// M = diag(I + m l², 0) and ∂V = (−m g l, 0) for the hanging link, for any motion of the other one.
 #[test]
 fn numbers_without_accelerations_where_m_is_singular() {
     let output = hamel(&["eval", "-"], MASSLESS);
@@ -36,7 +36,7 @@ fn numbers_without_accelerations_where_m_is_singular() {
     }
 }
 
-/// What needs M⁻¹ is refused, with what to write instead; what is written then is generated.
+/// Functions that need M⁻¹ are refused with a suggestion, which is then accepted.
 #[test]
 fn what_needs_the_inverse_of_a_singular_matrix_is_refused() {
     for command in [&["emit", "-"][..], &["simulate", "-", "--until", "1"]] {
@@ -55,7 +55,7 @@ fn what_needs_the_inverse_of_a_singular_matrix_is_refused() {
     assert!(emitted.contains("fn inverse_dynamics") && !emitted.contains("fn accel"));
 }
 
-/// One type is simulated and linearised.
+/// The same system can be simulated and linearised.
 #[test]
 fn what_is_linearised_can_be_simulated() {
     let described = |generate: &str| {
@@ -93,7 +93,7 @@ fn what_is_linearised_can_be_simulated() {
     assert_eq!(whole(""), whole("generate all;"));
 }
 
-/// A particle on a plane whose velocities are tied: its energy is constant, and x is not.
+/// A particle on a plane with constrained velocities: its energy is constant, and x is not.
 const TIED: &str = "system Tied {
     coord x, y; velocity u, v; rate x = u, y = v;
     particle mass 1 at [x, y, 0];
@@ -102,7 +102,7 @@ const TIED: &str = "system Tied {
     generate GENERATE;
 }";
 
-/// What is generated does not decide what can be proved.
+/// Claims can be proved whatever functions are generated.
 #[test]
 fn claims_beside_constraints_are_proved_whatever_is_generated() {
     for generate in ["inverse_dynamics", "rate", "mass_matrix, CLAIM", "all"] {
@@ -124,7 +124,7 @@ fn claims_beside_constraints_are_proved_whatever_is_generated() {
     }
 }
 
-/// A picture of a state says nothing of the motion.
+/// A picture of a state makes no statement about the motion.
 #[test]
 fn pictures_of_a_state_prove_no_claims() {
     let described = TIED.replace("CLAIM", "energy");
@@ -134,7 +134,7 @@ fn pictures_of_a_state_prove_no_claims() {
     assert!(output.status.success() && said.is_empty(), "{said}");
 }
 
-/// Nothing is claimed of a motion that is not determined, and that is said.
+/// Claims about an undetermined motion are reported as unproved.
 #[test]
 fn claims_of_a_singular_system_are_named() {
     let described = MASSLESS.replace("gravity", "invariant energy; gravity");
@@ -147,7 +147,7 @@ fn claims_of_a_singular_system_are_named() {
     assert!(!output.status.success());
 }
 
-/// Every function that a session lists is there, or is refused by its name.
+/// Every function that a session lists exists, or is refused by name.
 #[test]
 fn functions_that_a_session_lists_are_there() {
     let described = "system Pendulum { param m = 1; coord q; velocity v; rate q = v; frame f = pose(rotz(q), [cos(q), sin(q), 0]);

@@ -1,4 +1,4 @@
-//! `hamel emit --language c`: two files, or one text that compiles alone; what is refused.
+//! `hamel emit --language c`: two files, or one text that compiles alone; refused descriptions.
 
 use crate::common::{hamel, text};
 use std::fs;
@@ -35,7 +35,7 @@ fn gcc(folder: &Path, file: &str) {
     assert!(output.status.success(), "{}", text(&output.stderr));
 }
 
-/// What a command says, and its exit status.
+/// Exit status and standard error of a command.
 fn said(arguments: &[&str]) -> (Option<i32>, String) {
     let output = hamel(arguments, "");
     (output.status.code(), text(&output.stderr))
@@ -73,7 +73,7 @@ fn the_files_are_called_what_was_asked_for() {
         files.sort();
         assert_eq!(files, [format!("{stem}.c"), format!("{stem}.h")]);
         gcc(&folder, &format!("{stem}.c"));
-        // The same bytes once more, and then others.
+        // The same bytes once more, and then different ones.
         let checked = [arguments.as_slice(), &["--check"]].concat();
         assert_eq!(said(&checked).0, Some(0));
         let source = folder.join(format!("{stem}.c"));
@@ -141,7 +141,7 @@ fn what_makes_no_sense_is_refused_with_the_way_out() {
     }
 }
 
-/// Functions in Rust have no C: each is named where it stands, and nothing is written.
+/// Functions in Rust have no C: each is reported at its place, and nothing is written.
 #[test]
 fn functions_in_rust_are_refused() {
     let folder = folder("functions");

@@ -1,11 +1,11 @@
-//! The binary as it is used: results that obey laws, exit statuses, messages.
+//! The binary as users run it: results that satisfy physical laws, exit statuses, messages.
 
 use crate::common::text;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-/// Laws that hold but for rounding, relative to the largest term.
+/// Rounding error of exact laws, relative to the largest term.
 const ROUNDING: f64 = 1e-12;
 
 fn models() -> PathBuf {
@@ -16,7 +16,7 @@ fn model(name: &str) -> String {
     models().join(name).display().to_string()
 }
 
-/// All descriptions among the fixtures, by name.
+/// The names of all descriptions among the fixtures.
 fn fixtures() -> Vec<String> {
     let entries = std::fs::read_dir(models()).expect("tests/models");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -29,7 +29,7 @@ fn fixtures() -> Vec<String> {
     names
 }
 
-/// A quarter of a list, and all of it with `HAMEL_ATTACK`: other tests look at every model without a process for each.
+/// A quarter of a list, and all of it with `HAMEL_ATTACK`: other tests cover every model without a process for each.
 fn some(all: Vec<String>) -> impl Iterator<Item = String> {
     let apart = if std::env::var_os("HAMEL_ATTACK").is_some() {
         1
@@ -39,7 +39,7 @@ fn some(all: Vec<String>) -> impl Iterator<Item = String> {
     all.into_iter().step_by(apart)
 }
 
-/// A path for a file of one test.
+/// A path for a temporary file of one test.
 fn scratch(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
@@ -48,7 +48,7 @@ fn hamel(arguments: &[&str]) -> Output {
     crate::common::hamel(arguments, "")
 }
 
-/// Standard output of a command that succeeds without a word on standard error.
+/// Standard output of a command that succeeds and writes nothing to standard error.
 fn stdout(arguments: &[&str]) -> String {
     let output = hamel(arguments);
     let errors = text(&output.stderr);
@@ -60,7 +60,7 @@ fn stdout(arguments: &[&str]) -> String {
     text(&output.stdout)
 }
 
-/// Standard error of a command that fails with a status.
+/// Standard error of a command that fails with this status.
 fn stderr(arguments: &[&str], input: &str, status: i32) -> String {
     let output = crate::common::hamel(arguments, input);
     let errors = text(&output.stderr);
@@ -137,7 +137,7 @@ fn several_files_have_headings_and_one_bad_one_fails_all() {
     );
 }
 
-/// What stands right of a heading in a report of two columns.
+/// The text under a heading in a report of two columns.
 fn under<'a>(report: &'a str, heading: &str) -> &'a str {
     let line = report.lines().find(|line| line.contains(heading));
     let line = line.unwrap_or_else(|| panic!("no `{heading}` in {report}"));
@@ -198,12 +198,12 @@ fn lie_algebras_are_named_with_their_side() {
 fn evaluation_obeys_the_laws() {
     for file in some(fixtures()) {
         let all: Value = serde_json::from_str(&stdout(&["eval", &file])).expect("JSON");
-        // Constraints on the velocities: M and Γ are of the full frame, the forces have multipliers.
+        // With constraints on velocities, M and Γ refer to the full frame, and the forces include multipliers.
         if all.get("constraint_force").is_some() {
             continue;
         }
         let (a, m) = (matrix(&all["A"]), matrix(&all["M"]));
-        // With time the tables are of the extended frame: ξ⁰ = 1, and its row is no equation of motion.
+        // With time, the tables refer to the extended frame: ξ⁰ = 1, and its row is not an equation of motion.
         let names = |of: &str| -> Vec<String> {
             let list = all[of].as_array().expect("names").iter();
             list.map(|name| name.as_str().expect("a name").to_owned())
@@ -225,7 +225,7 @@ fn evaluation_obeys_the_laws() {
                 .collect()
         };
         let (mut velocities, mut accel) = (vector(&all["xi"]), vector(&all["accel"]));
-        // Behind them stand states of first order.
+        // They are followed by states of first order.
         let states = all.get("states").map_or(0, |_| names("states").len());
         assert_eq!(velocities.len(), free.len() + states);
         velocities.truncate(free.len());
@@ -349,7 +349,7 @@ fn the_heavy_top_keeps_its_energy() {
         );
         let drawing = std::fs::read_to_string(&svg).expect("the plot");
         assert!(drawing.starts_with("<svg") && drawing.contains("body axis 3"));
-        // |P| of this top swings by far more than a nearly free body's.
+        // P| of this top varies far more than that of a nearly free body.
         assert!(!drawing.contains("Poinsot"));
     }
 }
@@ -360,7 +360,7 @@ fn a_free_body_is_drawn_with_poinsots_construction() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/dzhanibekov.eom");
     let file = file.display().to_string();
     let said = stdout(&["simulate", &file, "--until", "10", "--plot", &plot]);
-    // In closed form no force is ever evaluated.
+    // The closed form never evaluates a force.
     assert!(said.contains(" 0 evaluations of the forces"), "{said}");
     let drawing = std::fs::read_to_string(&plot).expect("the plot");
     assert!(drawing.contains("Poinsot") && drawing.contains("polhode"));
@@ -387,7 +387,7 @@ fn samples_as_json_hold_outputs() {
         (&first["t"], &last["t"]),
         (&Value::from(0.0), &Value::from(30.0))
     );
-    // It has flipped, and its angular momentum is where it was.
+    // It has flipped, and its angular momentum is unchanged.
     assert!(last["w[2]"].as_f64().expect("w") < -0.99);
     let drift = last["angular_momentum[2]"].as_f64().expect("L") - 2.0;
     assert!(drift.abs() < 1e-9, "{drift:e}");
@@ -512,7 +512,7 @@ fn check_prints_what_rounding_takes() {
         lines("heavy_top.eom"),
         ["rounding       no function loses a digit"]
     );
-    // Digits are said where some are lost.
+    // Lost digits are reported if there are any.
     let some = lines("bricard.eom");
     let digits = |line: &String| -> Option<f64> {
         let digits = line.split("loses ").nth(1)?.split(' ').next()?;

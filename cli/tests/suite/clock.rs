@@ -1,10 +1,10 @@
-//! The time of a description in what is written of runs, and in inputs over time.
+//! The time of a description in the output of runs, and in inputs over time.
 
 use crate::common::{hamel, text};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// A mass of 1 that is pushed from the time 0.9 on.
+/// A mass of 1, pushed from time 0.9 on.
 const PUSHED: &str = "system Pushed {
     time t;
     input F;
@@ -24,7 +24,7 @@ fn file(name: &str, content: &str) -> PathBuf {
     path
 }
 
-/// A run of so long, as it is written.
+/// The output of a run of length 1.
 fn run(name: &str, description: &str, options: &[&str]) -> String {
     let out = file(name, "").display().to_string();
     let fixed = ["simulate", "-", "--until", "1", "--out", &out];
@@ -58,7 +58,7 @@ fn every_name_stands_once() {
     );
     let rows: Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!(rows[0]["t"], 0.9);
-    // A clock of another name stands beside the time of the run.
+    // A clock with another name appears in addition to the time of the run.
     let named = PUSHED
         .replace("time t", "time s")
         .replace("start t", "start s");
@@ -66,7 +66,7 @@ fn every_name_stands_once() {
     assert_eq!(header(&csv), "t,s,q,x,q_dot");
     let end = last(&csv);
     assert!(end[0] == 1.0 && (end[1] - 1.9).abs() < 1e-12, "{end:?}");
-    // Where another thing has its name, the time of the run gets another one.
+    // If another quantity has its name, the time of the run is renamed.
     let taken = "system Taken {
         joint t: prismatic [1, 0, 0] moves block;
         body on block { mass 1; }
@@ -78,17 +78,17 @@ fn every_name_stands_once() {
     assert_eq!(last(&csv), [1.0, 3.0, 0.0, 6.0]);
 }
 
-/// `t` names the axis, and no line.
+/// `t` labels the axis, and no line.
 #[test]
 fn plots_are_over_the_time_of_the_description() {
     let svg = run("own.svg", PUSHED, &[]);
     let labelled = |label: &str| svg.lines().filter(|line| *line == label).count();
     assert_eq!([labelled("t"), labelled("q"), labelled("x")], [1, 1, 1]);
-    // Marks of the axis from 0.9 to 1.9.
+    // Axis labels from 0.9 to 1.9.
     assert_eq!([labelled("1.8"), labelled("0.2")], [1, 0]);
 }
 
-/// F = t from 0.9 on: q̇ = (t² − 0.81)/2, however F is said to be the time.
+/// F = t from 0.9 on: q̇ = (t² − 0.81)/2, however the input refers to the time.
 #[test]
 fn inputs_are_over_the_time_of_the_description() {
     let straight = file("straight.csv", "t,F\n0,0\n2,2\n");
@@ -108,7 +108,7 @@ fn inputs_are_over_the_time_of_the_description() {
             );
         }
     }
-    // 1 until 1.4, and 3 from there on, which the steps of the run do not meet.
+    // 1 until 1.4, and then 3; no step of the run ends at 1.4.
     let steps = file("steps.csv", "t,F\n0,1\n1.4,3\n");
     let options = [
         "--inputs",
@@ -160,7 +160,7 @@ const LATE: &str = "system Late {
     generalized force w = cos(t - t0); start t = 1.7e9;
 }";
 
-/// How far neighbouring numbers are apart at such times.
+/// Spacing of floating-point numbers at such times.
 const APART: f64 = 2.4e-7;
 
 /// The columns t, q and w of all samples.
@@ -171,8 +171,8 @@ fn columns(csv: &str) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The time of the description is that of the run, whatever its steps and however they are taken: by machine code many at
-/// once (`rkmk4`), with samples at multiples of a time, by the method itself where they are few, by a tolerance.
+/// The time of the description equals that of the run for all ways of stepping: many steps at once by machine code
+/// (`rkmk4`), samples at multiples of a time, few steps by the method itself, a tolerance.
 #[test]
 fn the_time_of_the_description_does_not_drift() {
     let all: [&[&str]; 6] = [
@@ -196,7 +196,7 @@ fn the_time_of_the_description_does_not_drift() {
         let last = samples.last().expect("a sample");
         assert_eq!(last[0], 1.7e9 + 1.0, "{options:?}");
     }
-    // At the end of steps of 0.001 from 0, and of samples at multiples of 1/8.
+    // At the ends of steps of 0.001 from 0, and of samples at multiples of 1/8.
     let early = LATE.replace("1.7e9", "0");
     let fixed = ["simulate", "-", "--until", "3", "--method", "rkmk4"];
     for (every, at) in [("1", 1e-3), ("0.125s", 0.125)] {
@@ -216,7 +216,7 @@ fn the_time_of_the_description_does_not_drift() {
     }
 }
 
-/// Steps of 1e-7 are shorter than what a time of 1.7e9 can tell apart: the clock goes on all the same.
+/// Steps of 1e-7 are below the spacing of numbers near 1.7e9: the clock still advances.
 #[test]
 fn the_time_of_the_description_does_not_stand_still() {
     let out = file("still.csv", "").display().to_string();

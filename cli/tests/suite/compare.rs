@@ -1,4 +1,4 @@
-//! `hamel compare`: errors that are known, files that are complete, mistakes that are named.
+//! `hamel compare`: known errors, complete files, reported mistakes.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -38,12 +38,12 @@ fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// Orders seen between runs with doubled steps may be off by so much.
+/// Largest deviation of an order measured between runs with doubled steps.
 const ORDER: f64 = 0.1;
 
 #[test]
 fn errors_against_a_reference_have_the_order_of_the_method() {
-    // The model carries the parameters of the benchmark.
+    // The model has the parameters of the benchmark.
     let text = stdout(&[
         &file("models/heavy_top_axis.eom"),
         "--reference",
@@ -69,7 +69,7 @@ fn errors_against_a_reference_have_the_order_of_the_method() {
         assert_eq!(coarse["evaluations"], 16000);
         let order = (number(&coarse["error"]) / number(&fine["error"])).log2();
         assert!((order - 4.0).abs() < ORDER, "{method}: {order}");
-        // x is on its manifold after every step, to rounding.
+        // x lies on its manifold after every step, to rounding.
         assert!(number(&fine["defect"]) < 1e-14, "{method}");
     }
     assert_eq!(report["machine"]["code"], "made into machine code at once");
@@ -107,7 +107,7 @@ fn without_a_reference_a_finer_run_serves_and_says_its_error() {
     let own = number(&report["cases"][0]["reference_error"]);
     let (coarse, end) = (number(&coarse["error"]), number(&fine["error"]));
     assert!(own < end && end < coarse, "{own} {end} {coarse}");
-    // The description claims invariants: their drift is there.
+    // The description claims invariants, whose drift is reported.
     assert!(number(&fine["momentum"]) < 1e-6);
     assert!(read("lagrangetop.svg").starts_with("<svg"));
     let page = read("index.html");

@@ -1,7 +1,7 @@
-//! What controllers ask for, of real robots against Pinocchio: poses, Jacobians and bias accelerations of frames, the
-//! centre of mass, momenta and the centroidal map, and the slopes of ξ̇ and of inverse dynamics.
+//! Quantities for controllers, for real robots against Pinocchio: poses, Jacobians and bias accelerations of frames,
+//! centre of mass, momenta, centroidal map, and the derivatives of ξ̇ and of inverse dynamics.
 //!
-//! `HAMEL_CONTROL_REFERENCE` names a folder with further robots.
+//! `HAMEL_CONTROL_REFERENCE` names a folder with more robots.
 
 use crate::installed::installed;
 use crate::pinocchio::{control, coordinates, list, velocities};
@@ -14,7 +14,7 @@ use hamel_codegen::urdf::{Options, import};
 use serde_json::Value;
 use std::path::Path;
 
-/// Of the largest entry of an array.
+/// Relative to the largest entry of an array.
 const TOLERANCE: f64 = 1e-10;
 
 #[test]
@@ -28,7 +28,7 @@ fn quantities_for_control_agree_with_pinocchio() {
     }
 }
 
-/// A robot without damping, and all that is compared.
+/// A robot without damping, and the compared quantities.
 fn described(folder: &Path, reference: &Value) -> (Generated, Vec<(String, String)>, String) {
     let (text, joints) = undamped(folder, reference);
     let frames = reference["samples"][0]["frames"]
@@ -140,7 +140,7 @@ fn agrees(folder: &Path, reference: &Value) {
     );
 }
 
-/// The name of a link in a description: that of a joint is taken.
+/// The name of a link in a description, with a suffix if a joint has this name.
 fn word(link: &str, text: &str) -> String {
     let word = link.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_");
     match text.contains(&format!("joint {word}:")) {
@@ -155,12 +155,12 @@ fn product(rows: &[f64], vector: &[f64]) -> Vec<f64> {
     rows.chunks(vector.len()).map(entry).collect()
 }
 
-/// Linear rows, then angular ones.
+/// The linear rows, followed by the angular ones.
 fn both(value: &Value) -> Vec<f64> {
     [list(&value["linear"]), list(&value["angular"])].concat()
 }
 
-/// What a Jacobian of a last link takes, in axes of the world and in its own.
+/// The operations of the Jacobian of a last link, in world axes and in body axes.
 #[test]
 fn jacobians_cost_no_more_than_they_did() {
     let Some(folder) = installed() else {
@@ -207,7 +207,7 @@ fn jacobians_cost_no_more_than_they_did() {
         let asked = format!("generate jacobian {link}, jacobian {link} in {link};");
         let generated = from_text(&format!("{text} {asked} }}")).expect("a program");
         let program = &generated.program;
-        // Nothing else of the robot.
+        // No other function of the robot is generated.
         assert_eq!(program.functions.len(), 7, "{link}");
         for (function, most) in [("jacobian", world), ("body_jacobian", own)] {
             let function = program.function(format!("{link}_{function}"));

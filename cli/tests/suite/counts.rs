@@ -1,8 +1,8 @@
 //! Operation counts of robots and of spatial chains, as `hamel ops` prints them: exact, and below
-//! their bars.
+//! their limits.
 //!
 //! The robots are those of the wheel `example-robot-data`, which `tests/robots/install.sh` installs;
-//! without them their test says so and ends.
+//! without them the test prints this and ends.
 
 use crate::common::{hamel, text};
 use crate::installed::installed;
@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 const FUNCTIONS: [&str; 4] = ["inverse_dynamics", "mass_matrix", "accel", "linearize"];
 
-/// A robot with the most operations of `FUNCTIONS`, and the most divisions of `accel`.
+/// A robot with the largest numbers of operations of `FUNCTIONS`, and of divisions of `accel`.
 struct Bars {
     name: &'static str,
     urdf: &'static str,
@@ -21,7 +21,7 @@ struct Bars {
 }
 
 /// Multiplications, additions and divisions with the numbers of the URDF folded. The best of the other
-/// generators that were measured needs 468, 286, 1,024 and 6,547 for UR5, 810, 1,049 and 1,826 for
+/// generators measured needs 468, 286, 1,024 and 6,547 for UR5, 810, 1,049 and 1,826 for
 /// Panda, 2,051, 1,133, 4,441 and 37,411 for Solo12 and 5,057 for the motion of ANYmal B.
 const ROBOTS: [Bars; 4] = [
     Bars {
@@ -59,12 +59,12 @@ const ROBOTS: [Bars; 4] = [
     },
 ];
 
-/// Links of the chains.
+/// Numbers of links of the chains.
 const LENGTHS: [usize; 5] = [2, 4, 8, 16, 32];
-/// Most operations that a further link adds to the inverse dynamics and to the motion.
+/// Largest number of operations that each link adds to the inverse dynamics and to the motion.
 const GROWTH: [(&str, u64); 2] = [("inverse_dynamics", 195), ("accel", 470)];
 
-/// What `hamel ops` counts in every function.
+/// The counts that `hamel ops` prints for every function.
 fn counts(file: &str, options: &[&str], text_of: &str) -> Value {
     let mut arguments = vec!["ops", file, "--format", "json"];
     arguments.extend(options);
@@ -81,8 +81,8 @@ fn number(counts: &Value, function: &str, kind: &str) -> u64 {
         .unwrap_or_else(|| panic!("{function} has no {kind}"))
 }
 
-/// ξ = M⁻¹ p is ξ̇ without bias and gravity, p = M ξ a recursion outwards and inwards as inverse dynamics
-/// is, and ṗ two of them.
+/// ξ = M⁻¹ p costs as much as ξ̇ without bias and gravity; p = M ξ is an outward and an inward recursion like inverse
+/// dynamics, and ṗ two of them.
 fn momenta_cost_no_more_than_motions(name: &str, counts: &Value) {
     let flops = |function: &str| number(counts, function, "flops");
     let inverse = flops("inverse_dynamics");
@@ -145,8 +145,7 @@ fn robots_cost_no_more_than_their_bars() {
     insta::assert_snapshot!(table);
 }
 
-/// A chain of hinges at random places and in random directions, no number of it zero or equal to
-/// another one but by chance.
+/// A chain of hinges at random places with random axes, whose numbers are neither zero nor equal except by chance.
 fn chain(links: usize) -> String {
     let mut seed = 0x5eed_u64;
     let mut number = |most: f64| {
@@ -177,7 +176,7 @@ fn chain(links: usize) -> String {
     text + "gravity [0.5, -0.25, -9.81];\ngenerate inverse_dynamics, mass_matrix, accel;\n}\n"
 }
 
-/// Multibody systems of the literature, every parameter a run-time one.
+/// Multibody systems of the literature, with all parameters set at run time.
 #[test]
 fn fixtures() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/models/multibody/");
@@ -200,7 +199,7 @@ fn fixtures() {
     insta::assert_snapshot!(table);
 }
 
-/// Joints with two freedoms each, whose M is long as it is written.
+/// Joints with two freedoms each, whose M is long when written out.
 #[test]
 fn a_chain_of_universal_joints() {
     let mut text = String::from("system Chain {\n");
@@ -219,7 +218,7 @@ fn a_chain_of_universal_joints() {
     momenta_cost_no_more_than_motions("chain", &counts("-", &[], &text));
 }
 
-/// A cart with n pendulums in a row, point masses at the ends of rods.
+/// A cart with n pendulums in a row, with point masses at the ends of rods.
 fn cart(rods: usize) -> String {
     let mut text = String::from(
         "system Cart {\nparam g = 9.81, m0 = 2;\ninput u;\njoint cart: prismatic [1, 0, 0] moves f0 { force u; };\nbody on f0 { mass m0; }\n",

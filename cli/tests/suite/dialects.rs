@@ -1,11 +1,11 @@
-//! Terms that the dialects of URDF have and URDF has not, against closed forms and against trees of the same mechanism; every
-//! output says what was taken and what was left out.
+//! Elements of URDF dialects that plain URDF does not have, against closed forms and against trees of the same
+//! mechanism; every output reports the elements read and left out.
 
 use crate::common::{hamel, text};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Results of some hundred roundings.
+/// Rounding error of results of some hundred operations.
 const ROUNDING: f64 = 1e-12;
 
 type Matrix = [[f64; 3]; 3];
@@ -28,7 +28,7 @@ fn near(value: &Value, expected: f64) {
     assert!((value - expected).abs() < close, "{value} {expected}");
 }
 
-/// A robot with the declarations of the dialects.
+/// A robot with the namespace declarations of the dialects.
 fn robot(inside: &str) -> String {
     format!(
         "<robot name=\"r\" xmlns:drake=\"http://drake.mit.edu\">\n<link name=\"base\"/>\n{inside}\n</robot>"
@@ -43,7 +43,7 @@ fn link(name: &str, com: [f64; 3], mass: f64) -> String {
     )
 }
 
-/// A pendulum of 1.5 kg at 0.3 m below a hinge about y, 0.02 kg m² about its centre of mass.
+/// A pendulum of 1.5 kg at 0.3 m below a hinge about y, with 0.02 kg m² about its centre of mass.
 fn pendulum(joint: &str, beside: &str) -> String {
     robot(&format!(
         "<link name=\"arm\"><inertial><origin xyz=\"0 0 -0.3\"/><mass value=\"1.5\"/>\
@@ -52,7 +52,7 @@ fn pendulum(joint: &str, beside: &str) -> String {
     ))
 }
 
-/// M = I + m l² + N² J and M q̈ = −m g l sin q − d q̇ − k (q − q₀), for every way to write rotors, damping and springs.
+/// M = I + m l² + N² J and M q̈ = −m g l sin q − d q̇ − k (q − q₀), for all notations of rotors, damping and springs.
 #[test]
 fn rotors_dampers_and_springs_of_joints() {
     let transmission = |drive: &str| {
@@ -109,7 +109,7 @@ fn rotors_dampers_and_springs_of_joints() {
     }
 }
 
-/// A rotor on a joint that follows another one with the factor r adds r² N² J to that one.
+/// A rotor on a joint that follows another one with factor r adds r² N² J to the inertia of that joint.
 #[test]
 fn rotors_of_joints_that_follow() {
     let rotor = "<transmission name=\"t\"><joint name=\"second\"/><actuator name=\"m\">\
@@ -129,7 +129,7 @@ fn rotors_of_joints_that_follow() {
     near(&with["M"][0][0], plain + 9.0 * 400.0 * 0.001);
 }
 
-/// ½ k (ℓ − l)² between a point of the world and one of the pendulum, by its derivative.
+/// ½ k (ℓ − l)² between a world point and a point of the pendulum, by its derivative.
 #[test]
 fn springs_between_points() {
     let part = |name: &str, value: &str| format!("<drake:linear_spring_damper_{name} {value}/>");
@@ -172,7 +172,7 @@ fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// Rotation by Rodrigues' formula.
+/// Rotation matrix by Rodrigues' formula.
 fn turn(axis: [f64; 3], angle: f64) -> Matrix {
     let norm = axis.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
     let [x, y, z] = axis.map(|entry| entry / norm);
@@ -187,7 +187,7 @@ fn turn(axis: [f64; 3], angle: f64) -> Matrix {
     })
 }
 
-/// A hand on an arm by a joint of the tree moves as a free hand that a closing joint ties to the arm.
+/// A hand connected to an arm by a tree joint moves like a free hand that a closing joint connects to the arm.
 #[test]
 fn closing_joints_are_the_joints_of_a_tree() {
     let (axis, written) = ([1.0, 2.0, -1.0], "<axis xyz=\"1 2 -1\"/>");
@@ -259,7 +259,7 @@ fn closing_joints_are_the_joints_of_a_tree() {
     }
 }
 
-/// Drake's universal joint is a hinge about x that carries one about y.
+/// Drake's universal joint is a hinge about x followed by a hinge about y.
 #[test]
 fn universal_joints_are_two_hinges() {
     let damping = "<dynamics damping=\"0.3\"/>";
@@ -283,7 +283,7 @@ fn universal_joints_are_two_hinges() {
     }
 }
 
-/// Every command says on standard error what `import` also writes to the description.
+/// Every command prints on standard error the warnings that `import` also writes to the description.
 #[test]
 fn warnings_are_everywhere() {
     let inside = pendulum(

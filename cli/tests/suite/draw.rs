@@ -1,4 +1,4 @@
-//! `hamel draw`: pictures are SVG whose parts are where the mechanism is, within the picture, and the same every time.
+//! `hamel draw`: pictures are reproducible SVG whose parts are placed like those of the mechanism, within the picture.
 
 use crate::common::text;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn refused(arguments: &[&str], input: &str) -> String {
     text(&output.stderr)
 }
 
-/// Numbers of elements of this name, by attributes.
+/// Attributes of elements with this name, as numbers.
 fn elements<const N: usize>(picture: &str, name: &str, attributes: [&str; N]) -> Vec<[f64; N]> {
     let document = roxmltree::Document::parse(picture).expect("well-formed XML");
     let found = document
@@ -35,7 +35,7 @@ fn elements<const N: usize>(picture: &str, name: &str, attributes: [&str; N]) ->
         .collect()
 }
 
-/// Every ellipse is within the view box.
+/// Asserts that every ellipse is within the view box, and counts the ellipses.
 fn within(picture: &str) -> usize {
     let document = roxmltree::Document::parse(picture).expect("well-formed XML");
     let size = document
@@ -92,7 +92,7 @@ fn points_are_where_the_isometric_projection_has_them() {
     }";
     let picture = drawn(&["-"], particles);
     let balls = elements(&picture, "circle", ["cx", "cy", "r"]);
-    // The heaviest one is at the origin: places are tenths of a pixel.
+    // The heaviest one is at the origin; coordinates are tenths of a pixel.
     let heaviest = |ball: &&[f64; 3]| ball[2] == 70.0;
     let middle = balls.iter().find(heaviest).expect("the heaviest");
     let mut others: Vec<(f64, f64)> = balls
@@ -102,7 +102,7 @@ fn points_are_where_the_isometric_projection_has_them() {
         .collect();
     others.sort_by(|a, b| a.1.total_cmp(&b.1));
     assert_eq!(others.len(), 3);
-    // z straight up, the other two to the right, one up and one down by half.
+    // z points straight up, the other two to the right, one up and one down by half.
     let length = -others[0].1;
     assert!(others[0].0.abs() <= 1.0 && length > 100.0, "{others:?}");
     let side = length * 0.75_f64.sqrt();
@@ -151,7 +151,7 @@ fn a_motion_has_faint_poses_and_paths() {
     let lines = |picture: &str| picture.matches("class=\"line\"").count();
     assert!(lines(&moving) > lines(&later) + 30);
     within(&moving);
-    // The pose that is drawn strongly is the last one: without the others the picture is that at its time.
+    // The pose drawn in full is the last one: without the others the picture equals that at its time.
     let last = drawn(&[file, "--motion", "0.5", "--poses", "0"], "");
     let parts = |picture: &str| elements(picture, "ellipse", ["rx", "ry"]);
     assert_eq!(parts(&last), parts(&later));
@@ -195,7 +195,7 @@ fn what_cannot_be_drawn_is_said() {
         "{said}"
     );
     assert!(said.contains("`kinetic` has no place"), "{said}");
-    // What a picture leaves out is said beside it; a frame that is there to be seen is of use.
+    // Parts that a picture leaves out are reported; a frame shown in the picture counts as used.
     let partly = energies.replace(
         "kinetic",
         "frame mark = pose(identity(3), [q, 0, 0]); kinetic",

@@ -1,4 +1,4 @@
-//! What is drawn of a mechanism is where the mechanism's own functions say that it is.
+//! Drawn parts are placed as the mechanism's functions compute them.
 
 use hamel_cli::drawing::{Acts, Scene, Vector};
 use hamel_cli::{Asked, Grip, RobotOptions, Session, Stepping};
@@ -20,7 +20,7 @@ fn models() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models")
 }
 
-/// The scene at the state that a text says.
+/// The scene at a state given as text.
 fn scene(session: &Session, state: &str) -> (Scene, Vec<f64>) {
     let start = session.start();
     let state = session.state(&start.params, state, "state.json");
@@ -30,7 +30,7 @@ fn scene(session: &Session, state: &str) -> (Scene, Vec<f64>) {
     (drawing.with(&state.params).scene(&state.x), state.x)
 }
 
-/// The value of a function at the start's parameters, u = 0, ξ = 0.
+/// The value of a function at the start's parameters, with u = 0 and ξ = 0.
 fn value(session: &Session, name: &str, x: &[f64]) -> Vec<f64> {
     let function = session.function(name);
     let function = function.unwrap_or_else(|failure| panic!("{}", failure.text()));
@@ -84,7 +84,7 @@ fn the_kinetic_energy_of_the_ellipsoids_is_that_of_the_body() {
     let session = session(&models().join("free_body.eom"));
     let (scene, x) = scene(&session, "{}");
     let body = &scene.bodies[0];
-    // About each axis of the world through the origin of the frame, which does not move.
+    // About each world axis through the origin of the frame, which is at rest.
     let mass = value(&session, "mass_matrix", &x);
     let n = session.start().xi.len();
     let origin = scene.frames[body.frame].position;
@@ -104,7 +104,7 @@ fn the_kinetic_energy_of_the_ellipsoids_is_that_of_the_body() {
                 0.0
             };
             let moved = body.mass * (same - arm[i] * arm[j]);
-            // R is the identity at the start, so that body axes are those of the world.
+            // R is the identity at the start, so that body axes coincide with world axes.
             close(about_centre + moved, mass[(3 + i) * n + 3 + j]);
         }
     }
@@ -196,7 +196,7 @@ fn rods_and_loops_are_found() {
         panic!("{:?}", planar.loops);
     };
     assert!(distance(one, other) < 1e-10 && distance(one, [0.0; 3]) > 0.1);
-    // A rail closes one component of two points that differ in another one: they do not meet.
+    // A rail closes one component of two points that differ in another one: they do not coincide.
     let rail = "pub system Rail {
         joint a: revolute [0, 1, 0] moves upper;
         joint b: revolute [0, 1, 0] on upper at [0, 0, -0.7] moves lower;
@@ -229,7 +229,7 @@ fn scenes_are_plain_data() {
     assert_eq!(names, expected);
 }
 
-/// Where a point of a frame is.
+/// The position of a point of a frame.
 fn at(scene: &Scene, frame: usize, point: Vector) -> Vector {
     let Scene { frames, .. } = scene;
     std::array::from_fn(|k| {
@@ -241,8 +241,8 @@ fn at(scene: &Scene, frame: usize, point: Vector) -> Vector {
 
 #[test]
 fn a_point_that_is_pulled_comes_to_where_it_can_be() {
-    // Two joints, a free body, six joints, a particle on a spring, and loops that are closed by multipliers; each is pulled to where
-    // its motion would take the point.
+    // Two joints, a free body, six joints, a particle on a spring, and loops closed by multipliers; each is pulled to
+    // where its motion would take the point.
     for name in [
         "double_pendulum",
         "wing_nut",
@@ -284,12 +284,12 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
         let after = distance(place(&there), target);
         assert!(before > 1e-4, "{name} does not move");
         assert!(after < 1e-2 * before, "{name}: {before} becomes {after}");
-        // What was reached is a state of the description: no loop is open.
+        // The reached state is a state of the description: no loop is open.
         let gaps = there.loops.iter().map(|[a, b]| distance(*a, *b));
         let gap = gaps.fold(0.0, f64::max);
         assert!(gap < 1e-9, "{name}: {gap}");
     }
-    // A wheel that rolls does not come sideways.
+    // A rolling wheel does not move sideways.
     let session = session(&models().join("../../examples/gallery/sleigh.eom"));
     let start = session.start();
     let drawn = session.drawing().expect("a drawing").with(&start.params);
@@ -299,7 +299,7 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
     let to = drawn.scene(&pulled.expect("a state").x).frames[0].position;
     close(to[2], from[2]);
     assert!(distance(to, target) < 1.02, "{to:?}");
-    // Seen from above it is as far as it can roll: how high the place is does not count.
+    // Seen from above it moves as far as it can roll: the height of the target does not count.
     let seen = session.pulled(
         &start,
         Grip::Frame(0, [0.0; 3]),

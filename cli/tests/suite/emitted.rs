@@ -1,10 +1,10 @@
-//! What `hamel emit` writes is Rust, or nothing is written.
+//! `hamel emit` writes valid Rust, or nothing.
 
 use crate::common::{hamel, text};
 use crate::installed::installed;
 use std::path::PathBuf;
 
-/// The robots that lost a bracket where a row ended in `k[15]`.
+/// Robots for which rows that end in `k[15]` once lost a bracket.
 const ROBOTS: &[&str] = &["solo12.urdf", "anymal.urdf", "go1.urdf", "a1.urdf"];
 
 fn emitted(arguments: &[&str], input: &str) -> String {
@@ -40,8 +40,8 @@ fn robots() -> Vec<PathBuf> {
     found
 }
 
-/// The text that `hamel emit` makes of UR5: frames of the generator's choice, recursions over a tree, folded
-/// numbers. Other code that is locked stands in `tests/tests/suite/snapshots.rs`.
+/// The output of `hamel emit` for UR5: frames chosen by the generator, recursions over a tree, folded numbers. Other
+/// snapshots of code are in `tests/tests/suite/snapshots.rs`.
 #[test]
 fn code_of_ur5() {
     let Some(folder) = installed() else {
@@ -52,11 +52,11 @@ fn code_of_ur5() {
     };
     let path = folder.join("ur_description/urdf/ur5_robot.urdf");
     let robot = std::fs::read_to_string(path).expect("UR5");
-    // From standard input, so that no path stands in the text.
+    // From standard input, so that the text contains no path.
     insta::assert_snapshot!(emitted(&["-"], &robot));
 }
 
-/// With `HAMEL_ATTACK=full` all robots, in all ways of reading them.
+/// With `HAMEL_ATTACK=full` all robots, with all options of reading.
 #[test]
 fn robots_are_rust() {
     let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
@@ -83,7 +83,7 @@ fn robots_are_rust() {
                 parsed(&text(&output.stdout));
                 written += 1;
             } else {
-                // What is refused is the business of other tests, but for this reason.
+                // Other refusals are tested elsewhere.
                 let said = text(&output.stderr);
                 assert!(!said.contains("no Rust"), "{name} {way:?} {said}");
             }
@@ -96,7 +96,7 @@ fn robots_are_rust() {
     );
 }
 
-/// φ of a joint whose mount has the sine and cosine of a number: they are several nodes.
+/// φ of a joint with the sine and cosine of a number in its mount, which are several nodes.
 #[test]
 fn constants_that_are_copied_are_computed() {
     let text = "system A { joint j: free at pose(rotx(1), [0, 0, 0]) moves f; body on f { mass 1; inertia diag(1, 1, 1); } }";
@@ -108,8 +108,8 @@ fn constants_that_are_copied_are_computed() {
     assert_eq!(constants.matches(".sin_cos()").count(), 1, "{constants}");
 }
 
-/// In the weight of a link on a slider ξ̇ takes part where it cancels: equal expressions are one node. The
-/// function takes no ξ̇.
+/// In the weight of a link on a slider ξ̇ occurs but cancels: equal expressions are one node. The function does not
+/// take ξ̇ as an argument.
 #[test]
 fn functions_read_what_they_take() {
     let text = "system A {
@@ -132,7 +132,7 @@ fn functions_read_what_they_take() {
     }
 }
 
-/// Keywords are refused where they stand; names of primitive types are not taken from Rust.
+/// Keywords are refused at their place; names of primitive types do not shadow those of Rust.
 #[test]
 fn types_get_names_that_are_free() {
     let named =

@@ -1,7 +1,7 @@
-//! Every description of the repository by every command, and every option of every command at least once.
+//! Every description of the repository with every command, and every option of every command at least once.
 //!
-//! A third of all pairs of a file and a command by default, each file with some command; all with `HAMEL_ATTACK`. A command that
-//! is rightly refused stands in a table with its reason, and so does an option that can only be refused here.
+//! By default a third of all pairs of a file and a command, each file with some command; all with `HAMEL_ATTACK`.
+//! Expected refusals of commands and of options are listed in tables, with their reasons.
 
 use crate::common::{hamel, text};
 use std::collections::BTreeSet;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What is run for each file; `OUT` is a folder.
+/// Commands run for each file; `OUT` is a folder.
 const COMMANDS: [&str; 6] = [
     "draw FILE --out OUT/picture.svg",
     "check FILE",
@@ -19,7 +19,7 @@ const COMMANDS: [&str; 6] = [
     "emit FILE --out OUT/code.rs",
 ];
 
-/// Refusals that are right: a file, the command, a part of the message, and the reason.
+/// Expected refusals: a file, the command, a part of the message, and the reason.
 const REFUSED: [[&str; 4]; 4] = [
     [
         "tests/models/drifting_oscillator.eom",
@@ -47,10 +47,10 @@ const REFUSED: [[&str; 4]; 4] = [
     ],
 ];
 
-/// Possible values of an option that have to be used, each one, unless there are more.
+/// Options with at most this many possible values must be used with each of them.
 const MOST_VALUES: usize = 4;
 
-/// A description whose every part some option is about.
+/// A description with parts for all options.
 const TOY: &str = "system Toy {
     const n = 2;
     param m = 1.5;
@@ -70,16 +70,16 @@ const ROBOT: &str = r#"<robot name="toy"><link name="base">INERTIA</link><link n
 <joint name="b" type="continuous"><parent link="one"/><child link="two"/><axis xyz="0 1 0"/><origin xyz="0.2 0 0"/></joint>
 <joint name="c" type="continuous"><parent link="two"/><child link="three"/><axis xyz="0 1 0"/><origin xyz="0.2 0 0"/><mimic joint="a" multiplier="2"/></joint></robot>"#;
 
-/// Mass and inertia of each of its links.
+/// Mass and inertia of each link.
 const INERTIA: &str = r#"<inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>"#;
 
-/// The options for robots, which all commands have.
+/// Options for robots, common to all commands.
 const FOR_ROBOTS: [&str; 2] = [
     "--lock b=0.1 --params --mimic free --name Named",
     "--floating --lock a=0.1 --lock b=0.1 --mimic follow --rounding 0",
 ];
 
-/// What commands need beside a file.
+/// Required arguments of commands in addition to a file.
 const NEEDED: [(&str, &str); 5] = [
     ("simulate", "--until 0.01"),
     ("compare", "--until 0.01 --steps 4 --methods rkmk4"),
@@ -91,7 +91,7 @@ const NEEDED: [(&str, &str); 5] = [
     ("emit", "--out OUT/robot.rs"),
 ];
 
-/// Uses of all other options, in words that stand between blanks; `~` is a blank within a word.
+/// Uses of all other options, as words separated by spaces; `~` is a space within a word.
 const USES: [&str; 35] = [
     "tables TOY --of A,M --format text --all",
     "tables TOY --format markdown",
@@ -130,13 +130,13 @@ const USES: [&str; 35] = [
     "draw TOY --view isometric",
 ];
 
-/// Uses that read what others have written.
+/// Uses that read the output of others.
 const LATER: [&str; 2] = [
     "emit TOY --out OUT/toy.rs --check",
     "sweep --status OUT/runs",
 ];
 
-/// Uses that can only be refused here: the words that they contain, a part of what is said, and why.
+/// Uses that are always refused here: the words that they contain, a part of the message, and the reason.
 const NO_USE: [[&str; 3]; 3] = [
     [
         "--submit slurm",
@@ -155,10 +155,10 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// A new folder of one test.
+/// An empty folder for one test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    // There is none at first.
+    // It may not exist yet.
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
     folder
@@ -181,14 +181,14 @@ fn descriptions(below: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Whether a file is a system, and not a part that others include.
+/// Whether a file is a system, as opposed to a part that others include.
 fn is_whole(name: &str) -> bool {
     let text = std::fs::read_to_string(root().join(name)).expect("a text");
     let starts = |line: &str| line.starts_with("system ") || line.starts_with("pub system ");
     text.lines().any(starts)
 }
 
-/// What went wrong with a command, if anything did: it does what it should, or is refused as it should be.
+/// Runs a command and returns its fault, unless it succeeds or is refused as expected.
 fn fault(words: &[String], refused: Option<(&str, &str)>) -> Option<String> {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let output = hamel(&words, "");
@@ -213,7 +213,7 @@ fn fault(words: &[String], refused: Option<(&str, &str)>) -> Option<String> {
     })
 }
 
-/// The faults of all of these, on all cores.
+/// The faults of all of these, computed in parallel.
 fn faults<T: Sync>(all: &[T], fault: impl Fn(usize, &T) -> Option<String> + Sync) -> Vec<String> {
     let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let workers = std::thread::available_parallelism().map_or(1, |n| n.get().min(8));
@@ -270,7 +270,7 @@ fn every_description_by_every_command() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// What is refused is there.
+/// The files of expected refusals exist.
 #[test]
 fn refused_descriptions_exist() {
     for [file, command, ..] in REFUSED {
@@ -280,7 +280,7 @@ fn refused_descriptions_exist() {
     }
 }
 
-/// An option by its long name, with the values that are listed for it.
+/// An option by its long name, with its possible values.
 type Listed = (String, Vec<String>);
 
 /// The subcommands with their options.
@@ -303,7 +303,7 @@ fn options() -> Vec<(String, Vec<Listed>)> {
         .collect()
 }
 
-/// All uses but the later ones: those of the table, and for each command those for robots and of another constant.
+/// All uses except the later ones: those of the table, and for each command those of robots and of constants.
 fn uses() -> Vec<String> {
     let mut all: Vec<String> = USES.iter().map(ToString::to_string).collect();
     for (command, _) in options() {
@@ -325,7 +325,7 @@ fn uses() -> Vec<String> {
     all
 }
 
-/// An option that is new has no use here, and has to get one.
+/// A new option must be added to the uses.
 #[test]
 fn every_option_has_a_use() {
     let mut uses = uses();

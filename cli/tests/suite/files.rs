@@ -1,4 +1,4 @@
-//! Files that commands write: whole, or not at all; what cannot be written is an error, and nothing waits.
+//! Files that commands write: completely, or not at all; failures to write are errors, and no command hangs.
 
 use crate::common::{hamel, text};
 use std::fs::{self, File};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Time for one command, generous: the machine may be busy.
+/// Time limit for one command, generous because the machine may be busy.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 const CART: &str = r#"<robot name="cart">
@@ -20,7 +20,7 @@ fn model(name: &str) -> String {
     folder.join(name).display().to_string()
 }
 
-/// An empty folder of a test's own.
+/// An empty folder for one test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("files")
@@ -30,7 +30,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Ends a command that waits for ever.
+/// Waits for a command, and kills it after the time limit.
 fn in_time(mut child: Child) -> Output {
     let start = Instant::now();
     while child.try_wait().expect("a child").is_none() {
@@ -48,7 +48,7 @@ fn spawn(command: &mut Command) -> Output {
     in_time(piped.spawn().expect("the command runs"))
 }
 
-/// A command that writes to a file, the file last; robots come from a file beside it.
+/// Commands that write to a file, which is the last argument; robots come from a file next to it.
 fn writers(folder: &Path, file: &str) -> Vec<Vec<String>> {
     let robot = folder.parent().expect("a folder").join("cart.urdf");
     fs::write(&robot, CART).expect("a robot");
@@ -65,7 +65,7 @@ fn writers(folder: &Path, file: &str) -> Vec<Vec<String>> {
     lines.iter().map(owned).collect()
 }
 
-/// What the shell does before it becomes the command.
+/// Runs the command after shell commands that set a limit.
 fn under(limit: &str, arguments: &[String]) -> Output {
     let script = format!("{limit}; exec \"$@\"");
     let mut shell = Command::new("sh");
@@ -75,7 +75,7 @@ fn under(limit: &str, arguments: &[String]) -> Output {
     spawn(shell.stdout(Stdio::piped()))
 }
 
-/// A sum of as many operands as are allowed needs more stack than Windows gives the main thread, 1 MB.
+/// A sum of as many operands as are allowed needs more stack than the 1 MB that Windows gives the main thread.
 #[test]
 fn deep_descriptions_need_no_stack_of_the_system() {
     let sum: Vec<String> = (1..500).map(|k| format!("sin({k} * x)")).collect();
@@ -92,7 +92,7 @@ fn deep_descriptions_need_no_stack_of_the_system() {
     assert!(output.status.success(), "{}", text(&output.stderr));
 }
 
-/// The disk is full after the first byte: writes fail, or the system ends the process within one.
+/// The disk is full after the first byte: writes fail, or the system kills the process during one.
 #[test]
 fn a_full_disk_and_a_kill_leave_the_old_file() {
     for (name, limit, killed) in [
@@ -118,7 +118,7 @@ fn a_full_disk_and_a_kill_leave_the_old_file() {
                 "the old text",
                 "{arguments:?}"
             );
-            // Without the limit it is written.
+            // Without the limit the file is written.
             let output = under("true", &arguments);
             assert!(output.status.success(), "{}", text(&output.stderr));
             assert_ne!(fs::read_to_string(&out).expect("a file"), "the old text");
@@ -154,7 +154,7 @@ fn what_is_no_file_is_refused_with_its_reason() {
             );
         }
     }
-    // To compare with a pipe would wait for a writer.
+    // Comparing with a pipe would wait for a writer.
     let pipe = folder.join("pipe.svg").display().to_string();
     let check = ["emit", &model("pendulum.eom"), "--check", "-o", &pipe].map(String::from);
     let output = under("true", &check);
@@ -219,7 +219,7 @@ fn standard_output_may_be_named() {
     };
     assert_eq!(emit(&["-o", "/dev/stdout"]), emit(&[]));
     assert!(emit(&["-o", "/dev/null"]).is_empty());
-    // A file that the shell appends to keeps what it has.
+    // A file to which the shell appends keeps its content.
     let log = folder("named").join("log");
     fs::write(&log, "old\n").expect("a file");
     let file = File::options().append(true).open(&log).expect("a file");

@@ -1,13 +1,13 @@
-//! What a first run meets: states of closed loops and of constraints that leave coordinates out, and velocities that
-//! follow from others.
+//! Common situations of first runs: states of closed loops, constraints that determine coordinates, and dependent
+//! velocities.
 
 use crate::common::{hamel, text};
 use serde_json::Value;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The numbers of a member of what `eval` prints for a description at a state.
+/// The numbers of a member in the output of `eval` for a description at a state.
 fn evaluated(description: &str, state: &str, member: &str) -> Vec<f64> {
-    // Tests of one process run at the same time.
+    // Tests of one process run concurrently.
     static STATES: AtomicUsize = AtomicUsize::new(0);
     let number = STATES.fetch_add(1, Ordering::Relaxed);
     let path = format!("{}/first-run-{number}.json", env!("CARGO_TARGET_TMPDIR"));
@@ -21,7 +21,7 @@ fn evaluated(description: &str, state: &str, member: &str) -> Vec<f64> {
 
 const FIVE_BAR: &str = include_str!("../../../tests/models/five_bar.eom");
 
-/// The two rods meet, in the assembly of the start, for cranks that were moved and kept.
+/// The two rods meet in the assembly of the start, with the given cranks kept.
 #[test]
 fn states_on_loops_are_closed_in_the_assembly_of_the_start() {
     let state = r#"{"coord": {"q1": 1.9, "q2": 1.1}, "velocity": {"w1": 1, "w2": -0.5}}"#;
@@ -39,7 +39,7 @@ fn states_on_loops_are_closed_in_the_assembly_of_the_start() {
         (0..2).all(|k| (left[k] - right[k]).abs() < 1e-11),
         "{left:?} {right:?}"
     );
-    // Above the cranks, not below.
+    // Above the cranks, not below them.
     assert!(left[1] > 0.5, "{left:?}");
     let xi = evaluated(FIVE_BAR, state, "xi");
     let speed = |q: f64, p: f64, w: f64, u: f64| {
@@ -58,7 +58,7 @@ fn states_on_loops_are_closed_in_the_assembly_of_the_start() {
     );
 }
 
-/// A bead on an ellipse: of x alone, y follows, on the side of the start.
+/// A bead on an ellipse: for a given x, y follows, on the side of the start.
 #[test]
 fn coordinates_that_constraints_give_are_solved_for() {
     let bead = "system Bead {
@@ -74,7 +74,7 @@ fn coordinates_that_constraints_give_are_solved_for() {
     assert!(!output.status.success());
 }
 
-/// `check` says what a velocity follows from.
+/// `check` shows the origin of a dependent velocity.
 #[test]
 fn velocities_that_follow_are_shown_with_their_line() {
     let sleigh = include_str!("../../../tests/models/sleigh_choice.eom");
@@ -90,7 +90,7 @@ fn velocities_that_follow_are_shown_with_their_line() {
     }
 }
 
-/// A robot with a finger without mass: what needs no inverse of M is there, with a warning.
+/// A robot with a massless finger: functions that do not need M⁻¹ are emitted, with a warning.
 #[test]
 fn robots_without_an_inverse_of_m_are_emitted_and_counted() {
     let robot = r#"<robot name="hand">
@@ -115,7 +115,7 @@ fn robots_without_an_inverse_of_m_are_emitted_and_counted() {
         counts.contains("mass_matrix") && !counts.contains("accel"),
         "{counts}"
     );
-    // Motions have no value.
+    // The motion is undefined.
     let output = hamel(&["simulate", "-", "--until", "1"], robot);
     assert!(!output.status.success());
 }
@@ -157,7 +157,7 @@ fn frames_are_evaluated_by_their_names() {
         let tip = &value["kinematics"]["tip"];
         let number = |value: &Value| value.as_f64().expect("a number");
         let (elbow, angle) = (0.3_f64, 0.8_f64);
-        // The tip turns with 2 about the base, and with −1 about the elbow.
+        // The tip rotates at 2 about the base, and at −1 about the elbow.
         let x = elbow.cos() + 0.5 * angle.cos();
         let speed = 2.0 * x - 0.5 * angle.cos();
         let close =

@@ -1,14 +1,14 @@
-//! A state from outside is completed as the description would be with the same values in its text.
+//! A given state is completed as the description would be with the same values in its text.
 
 use crate::common::{hamel, text};
 use serde_json::Value;
 use std::process::Output;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Numbers that equations determine.
+/// Tolerance of numbers determined by equations.
 const CLOSE: f64 = 1e-11;
 
-/// A cart that is moved, with a pendulum that nothing moves at the start.
+/// A cart with prescribed motion, with a pendulum that is initially at rest.
 const CART: &str = "system CartP {
     param l = 0.5, A = 0.3;
     time t;
@@ -64,7 +64,7 @@ fn refused(description: &str, state: &str) -> String {
     text(&output.stderr)
 }
 
-/// The state of a description whose text is edited.
+/// The state of a description with an edited text.
 fn edited(description: &str, edits: &[(&str, &str)]) -> (Vec<f64>, Vec<f64>) {
     let mut text = description.to_string();
     for (from, to) in edits {
@@ -81,7 +81,7 @@ fn near(found: &[f64], wanted: &[f64]) {
     }
 }
 
-/// The cart follows; the pendulum is where the text says, at rest.
+/// The cart follows its motion; the pendulum keeps the angle of the text, at rest.
 #[test]
 fn parameters_and_time_leave_alone_what_is_free() {
     for q in [0.3, 0.0] {
@@ -104,14 +104,15 @@ fn parameters_and_time_leave_alone_what_is_free() {
     }
     let unsaid = CART.replace("start q = 0.3;", "");
     near(&eval(&unsaid, r#"{"param": {"A": 1}}"#).0, &[0.0, 1.0, 0.0]);
-    // A coordinate alone is exact, and the rest as it was.
+    // A coordinate alone is exact, and the rest is unchanged.
     near(
         &eval(CART, r#"{"coord": {"q": -0.2}}"#).0,
         &[0.0, 0.3, -0.2],
     );
 }
 
-/// A guess of a coordinate says nothing of velocities; a guess of a velocity is the velocity where nothing contradicts it.
+/// A guess of a coordinate does not affect velocities; a guess of a velocity is its value unless something contradicts
+/// it.
 #[test]
 fn guesses_do_not_change_what_is_not_guessed() {
     for start in ["start q ~ 0.3;", "start q = 0.3, q_dot ~ 0;"] {
@@ -166,7 +167,7 @@ fn exact_starts_of_a_linkage_stay() {
     );
     near(&x, &same.0);
     near(&xi, &same.1);
-    // What is given stands in the way of an exact start, which gives way; the pendulum has nothing to do with it.
+    // The given values contradict an exact start, which is moved; the pendulum is not affected.
     let (x, xi) = eval(
         FOUR_BAR,
         &format!(
@@ -188,7 +189,7 @@ fn exact_starts_of_a_linkage_stay() {
     );
 }
 
-/// Both ends of a loop are exact: one of them follows the other, which is given.
+/// Both ends of a loop are exact: one is given, and the other follows.
 #[test]
 fn exact_starts_give_way_to_what_contradicts_them() {
     let slider = "system Slider {
@@ -206,7 +207,7 @@ fn exact_starts_give_way_to_what_contradicts_them() {
     let (x, xi) = eval(slider, r#"{"coord": {"s": 1}, "velocity": {"k": 2}}"#);
     near(&x, &[1.0, 0.5, 0.8]);
     near(&xi[xi.len() - 1..], &[0.4]);
-    // Starts by parameters follow these; one end of the loop has to give way.
+    // Starts that depend on parameters follow these; one end of the loop has to move.
     let (x, _) = eval(slider, r#"{"param": {"h": 1}}"#);
     near(&x, &[0.6, 0.3, 2.0]);
     let (x, _) = eval(slider, r#"{"param": {"r": 0.5, "h": 1}}"#);
@@ -215,7 +216,7 @@ fn exact_starts_give_way_to_what_contradicts_them() {
     assert!(refused(slider, both).contains("leaves `s = 2 * k` open by 3.00e0"));
 }
 
-/// A blade that cannot slip: of its three velocities one follows, and may be given where it is right.
+/// A blade that cannot slip: one of its three velocities depends on the others, and may be given with the right value.
 #[test]
 fn velocities_that_follow_may_be_given() {
     let sleigh = "system Sleigh {

@@ -1,4 +1,4 @@
-//! From identified base parameters back to bodies: those that are found need the same forces, and what is refused.
+//! Bodies found from identified base parameters require the same forces; refused inputs.
 
 use crate::common::{hamel, text};
 use hamel_codegen::algebra::fp::Random;
@@ -6,7 +6,7 @@ use hamel_codegen::generate::from_text;
 use hamel_codegen::program::interpret::Interpreter;
 use serde_json::Value;
 
-/// Numbers within ±1.
+/// Random numbers in ±1.
 fn many(random: &mut Random, count: usize) -> Vec<f64> {
     let number = |_| random.bits() as f64 / u64::MAX as f64 * 2.0 - 1.0;
     (0..count).map(number).collect()
@@ -44,11 +44,11 @@ fn two_links(standard: &[f64]) -> String {
     )
 }
 
-/// Base parameters of other bodies lead to bodies that need the same forces: not those other ones, but the nearest to
-/// the description.
+/// Base parameters of other bodies lead to bodies that require the same forces: the ones nearest to the description,
+/// not the other ones.
 #[test]
 fn identified_base_parameters_lead_back_to_bodies() {
-    // Four masses each.
+    // Four point masses each.
     let described = [
         0.125, 0.01, -0.015, 0.12, 0.025, 0.105, 0.2, -0.05, 0.1, 2.0, //
         0.0325, 0.005, -0.0025, 0.0325, 0.005, 0.035, 0.075, 0.075, 0.0, 1.0, 0.02,
@@ -106,7 +106,7 @@ fn identified_base_parameters_lead_back_to_bodies() {
         (identified[9] - real[9]).abs() > 0.01,
         "the first mass has no effect"
     );
-    // The generator refuses inertias that no body has, and the forces are those of the real arm.
+    // The generator refuses impossible inertias, and the forces are those of the real arm.
     let forces = |standard: &[f64]| {
         let generated = from_text(&two_links(standard)).expect("bodies");
         let function = generated
@@ -135,7 +135,7 @@ fn identified_base_parameters_lead_back_to_bodies() {
     for link in check["links"].as_array().expect("a list") {
         assert_eq!(link["consistent"], true, "{link}");
     }
-    // What cannot be read.
+    // Unreadable input.
     let refused = |name: &str, value: &Value, status: i32, why: &[&str]| {
         let arguments = ask(&file(name, value));
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -180,7 +180,7 @@ fn identified_base_parameters_lead_back_to_bodies() {
         2,
         &["expected a list of numbers"],
     );
-    // An inertia below zero.
+    // A negative inertia.
     let mut impossible = beta.clone();
     impossible[0] = -1.0;
     let arguments = ask(&file("impossible.json", &serde_json::json!(impossible)));

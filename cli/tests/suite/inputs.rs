@@ -1,5 +1,5 @@
-//! Inputs of runs from files and by expressions, and samples at given times, against closed forms; functions in Rust by
-//! their stand-ins.
+//! Inputs of runs from files and by expressions, and samples at given times, against closed forms; functions in Rust
+//! evaluated by their stand-ins.
 
 use crate::common::{hamel, text};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ const RAIL: &str = "system Rail {
     rate z = F;
 }";
 
-/// What a run may be off by.
+/// Error bound of a run.
 const CLOSE: f64 = 1e-9;
 
 fn file(name: &str, content: &str) -> PathBuf {
@@ -46,7 +46,7 @@ fn near(found: &[f64], wanted: [f64; 4]) {
     }
 }
 
-/// Between rows F is a line: 2 t up to 1, then 2 − 2 (t − 1).
+/// Between rows F is linear: 2 t up to 1, then 2 − 2 (t − 1).
 #[test]
 fn inputs_from_a_file() {
     let forces = file("forces.csv", "# newtons\nt, F\n0, 0\n1, 2\n3, -2\n");
@@ -74,7 +74,7 @@ fn inputs_from_a_file() {
         assert_eq!(found, [0.0, 0.5, 1.0, 3.0]);
         rows.iter().for_each(|row| near(row, exact(row[0])));
     }
-    // Held, F is 0, then 2, and q = (t − 1)²/2.
+    // With `--hold`, F is 0, then 2, and q = (t − 1)²/2.
     let held = samples(
         "held.csv",
         &[equal, &["--inputs", forces, "--hold"]].concat(),
@@ -82,7 +82,7 @@ fn inputs_from_a_file() {
     near(held.last().expect("samples"), [3.0, 2.0, 2.0, 4.0]);
 }
 
-/// F = −8 q makes a swing with ω = 2 of q(0) = 0, q̇(0) = 1; entries of vectors have inputs of their own.
+/// F = −8 q makes an oscillator with ω = 2, q(0) = 0, q̇(0) = 1; entries of vectors are separate inputs.
 #[test]
 fn inputs_by_expressions() {
     let start = file("start.json", r#"{"velocity": {"q_dot": 1}}"#);
@@ -121,7 +121,7 @@ fn inputs_by_expressions() {
     }
 }
 
-/// v̇₂ = v₂ from 1, where v₁ is inactive: an entry of a vector has its name when others have left.
+/// v̇₂ = v₂ from 1, where v₁ is inactive: an entry of a vector keeps its name without the others.
 #[test]
 fn inputs_know_entries_of_vectors() {
     let ball = "system Ball { coord r: R3; velocity v: vec3; rate r = v; particle mass 1 at r; inactive v[1]; input F;
@@ -137,7 +137,7 @@ fn inputs_know_entries_of_vectors() {
     }
 }
 
-/// An entry of a coordinate is not one of a velocity that is called like it: q̈ = r₂ = 2, and not `r_2` = 0.
+/// An entry of a coordinate is not a velocity of the same name: q̈ = r₂ = 2, not `r_2` = 0.
 #[test]
 fn entries_of_coordinates_are_no_velocities() {
     let two = "system Two { coord r: R3, q; velocity r_1, r_2, r_3, u; rate r = [r_1, r_2, r_3], q = u; particle mass 1 at r;
@@ -232,7 +232,7 @@ fn what_cannot_be_used_is_said() {
     assert!(text(&output.stderr).contains("`F` has a column of --inputs and an --input"));
 }
 
-/// A pull of −3 x on a mass of 2, a function in Rust; `stand_in` is what stands behind its declaration.
+/// A pull of −3 x on a mass of 2, a function in Rust; `stand_in` follows its declaration.
 fn pulled(stand_in: &str) -> String {
     format!(
         "system Pulled {{
@@ -281,7 +281,7 @@ fn functions_in_rust_have_values_by_their_stand_ins_alone() {
     );
     let output = hamel(&["linearize", "-"], &standing);
     assert!(text(&output.stdout).contains("1.22474"), "ω = √(3/2)");
-    // What is emitted is the same but for its hash.
+    // The emitted code differs only in its hash.
     let emitted = |text: &str| {
         let output = hamel(&["emit", "-"], text);
         let text = String::from_utf8(output.stdout).expect("UTF-8");
@@ -305,7 +305,7 @@ const PENDULUM: &str = "system Pendulum {
     start q = 2.9;
 }";
 
-/// The last row of a run, and what was said of it.
+/// The last row of a run, and its messages.
 fn end(name: &str, arguments: &[&str]) -> (Vec<f64>, String) {
     let out = file(name, "").display().to_string();
     let fixed = ["simulate", "-", "--until", "0.5", "--out", &out];
@@ -317,7 +317,7 @@ fn end(name: &str, arguments: &[&str]) -> (Vec<f64>, String) {
     (last, text(&output.stdout))
 }
 
-/// Splitting has its order only where forces do not depend on velocities, and an input may let them do so.
+/// Splitting has its full order only if forces do not depend on velocities; an input may introduce this dependence.
 #[test]
 fn inputs_that_depend_on_velocities_are_not_split() {
     let feedback = "tau = -12 * (q - pi) - 3 * w";
@@ -359,7 +359,7 @@ fn inputs_that_depend_on_velocities_are_not_split() {
             "{method}: {said}"
         );
     }
-    // Of the configuration alone it splits, and keeps its order.
+    // A function of the configuration alone can be split and keeps the order.
     let spring = "tau = -12 * (q - pi) * cos(t)";
     let (found, said) = end("split.csv", &["--input", spring]);
     assert!(said.contains("splitting6 was chosen"), "{said}");

@@ -1,5 +1,5 @@
-//! What a command is given it leaves alone, and what it cannot do it says: results over their sources, runs that have lost
-//! their motion, comparisons of nothing, pictures of no motion with inputs.
+//! Commands protect their input and report impossible requests: results over their sources, runs that have lost their
+//! motion, comparisons of nothing, pictures without motion but with inputs.
 
 use crate::common::{hamel, text};
 use std::fs;
@@ -109,7 +109,7 @@ fn nothing_is_written_over_what_is_read() {
     assert_eq!(before, after);
 }
 
-/// A description that another one includes is read, too.
+/// A description that another one includes is also an input.
 #[test]
 fn included_files_are_read() {
     let folder = folder("included");
@@ -144,7 +144,7 @@ fn a_run_in_equal_steps_that_loses_its_motion_says_so() {
             assert!(said.contains(part), "{options:?}: {said}");
         }
     }
-    // A circle is followed, and methods of order 1 may gain and lose energy.
+    // A circular orbit is followed, and methods of order 1 may gain or lose energy.
     let circle = KEPLER.replace("0.0001", "1");
     for method in ["auto", "rkmk4", "euler", "backward-euler"] {
         let asked = [
@@ -171,7 +171,7 @@ fn a_comparison_of_nothing_is_none() {
         said.contains("nothing to compare") && said.contains("free: "),
         "{said}"
     );
-    // Ten steps are too few for an error of 1e-9: nothing is claimed of the times to get there.
+    // Ten steps are too few for an error of 1e-9: no times to reach it are claimed.
     let output = hamel(&[&compare[..], &["rkmk4", "--steps", "10"]].concat(), "");
     assert!(!text(&output.stdout).contains("never more than"));
     refused(
@@ -195,7 +195,7 @@ fn pictures_without_a_motion_take_no_inputs() {
     refused(&["import", &cart], "this is no URDF");
 }
 
-/// A run goes on from the file of another one, and files of joints have parameters.
+/// A run can start from the file of another run, and files by joints may contain parameters.
 #[test]
 fn states_of_other_forms() {
     let folder = folder("states");

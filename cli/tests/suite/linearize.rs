@@ -1,9 +1,9 @@
-//! `hamel linearize` and `hamel ops --advise` as they are used: eigenvalues with closed forms.
+//! `hamel linearize` and `hamel ops --advise` as users run them: eigenvalues with closed forms.
 
 use crate::common::{hamel, text};
 use serde_json::Value;
 
-/// The QR algorithm on matrices of some ten rows, entries up to 1e3.
+/// Rounding error of the QR algorithm on matrices of about ten rows, with entries up to 1e3.
 const ROUNDING: f64 = 1e-9;
 
 fn model(name: &str) -> String {
@@ -17,7 +17,7 @@ fn linearized(name: &str, state: &str) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Eigenvalues, each expected one found once.
+/// Asserts that each expected eigenvalue is found once.
 fn assert_eigenvalues(linear: &Value, expected: &[(f64, f64)]) {
     let list = linear["eigenvalues"].as_array().expect("a list");
     let mut found: Vec<(f64, f64)> = list
@@ -34,7 +34,7 @@ fn assert_eigenvalues(linear: &Value, expected: &[(f64, f64)]) {
     }
 }
 
-/// The sleeping top is stable where (C ω)² > 4 m g l A: in axes at rest its tilt z obeys
+/// The sleeping top is stable if (C ω)² > 4 m g l A: in axes at rest its tilt z satisfies
 /// A z̈ − i C ω ż − m g l z = 0; body axes turn with ω.
 #[test]
 fn the_sleeping_top_is_stable_where_it_spins_fast() {
@@ -94,7 +94,7 @@ fn the_text_names_rows_and_says_where_it_holds() {
     for part in ["h(w)", "d(v)", "eigenvalues of A", "hold for this instant"] {
         assert!(report.contains(part), "{part}: {report}");
     }
-    // Zeros stand in one line, amid the others.
+    // Zeros share one line, between the other eigenvalues.
     let values = report.split("eigenvalues of A").nth(1).expect("values");
     let values: Vec<&str> = values.lines().skip(1).take(3).map(str::trim).collect();
     assert_eq!(values[1], "0, 2 times", "{report}");
@@ -160,7 +160,7 @@ fn runs_end_with_the_drift_of_the_invariants() {
     assert!(change.parse::<f64>().expect("a number") < 1e-9, "{line}");
 }
 
-/// A five-bar with springs on its cranks, at rest where they are relaxed.
+/// A five-bar linkage with springs on its cranks, at rest where they are relaxed.
 const SPRUNG: &str = "system Sprung {
     const a = 0.3, b = 0.5, d = 0.25;
     joint q1: revolute [0, 0, 1] moves left { stiffness 3; rest 2; }
@@ -204,8 +204,8 @@ fn run(command: &[&str], description: &str) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Two springs and two freedoms: four eigenvalues, ω² those of M⁻¹ K. M is that of the cranks' angles, from places of
-/// the rods' ends as the intersection of two circles, and differences of these.
+/// Two springs and two freedoms: four eigenvalues, with ω² those of M⁻¹ K. M is that of the crank angles, from the
+/// rods' ends as intersections of two circles, and from their differences.
 #[test]
 fn a_five_bar_with_two_springs_has_four_eigenvalues() {
     let linear = run(&["linearize", "-", "--format", "json"], SPRUNG);
@@ -237,7 +237,7 @@ fn a_five_bar_with_two_springs_has_four_eigenvalues() {
     };
     let angles = arms(here);
     let turned = [slope(0), slope(1)];
-    // T = ½ Σ: cranks about their pivots, forearms by the velocity of their middle and their turning.
+    // T = ½ Σ: cranks about their pivots, forearms by the velocity of their midpoints and their rotation.
     let mut mass = [[0.0; 2]; 2];
     for side in 0..2 {
         let (crank, arm) = (here[side], angles[side]);
@@ -270,12 +270,12 @@ fn a_five_bar_with_two_springs_has_four_eigenvalues() {
     let expected = squares.map(|square: f64| [(0.0, square.sqrt()), (0.0, -square.sqrt())]);
     assert_eq!(linear["states"].as_array().map(Vec::len), Some(4));
     assert_eigenvalues(&linear, &expected.concat());
-    // All of them, without `--full`.
+    // With `--full`, all of them.
     let full = run(&["linearize", "-", "--full", "--format", "json"], SPRUNG);
     assert_eq!(full["states"].as_array().map(Vec::len), Some(8));
 }
 
-/// In motion what constraints give moves with the rest: rows of accelerations and of outputs against differences
+/// In motion the dependent velocities change with the rest: rows of accelerations and of outputs against differences
 /// between states that `eval` closes.
 #[test]
 fn the_minimal_form_of_a_loop_in_motion_agrees_with_differences() {
@@ -340,7 +340,7 @@ fn the_minimal_form_of_a_loop_in_motion_agrees_with_differences() {
     }
 }
 
-/// A Stewart platform: six legs, each a cardan joint and a slide with a spring, whose ends loops hold at the plate.
+/// A Stewart platform: six legs, each a cardan joint and a slider with a spring, whose ends loops attach to the plate.
 #[test]
 fn a_stewart_platform_has_six_freedoms() {
     let stewart = "system Stewart {
@@ -371,7 +371,8 @@ fn a_stewart_platform_has_six_freedoms() {
         (names, linear["eigenvalues"].as_array().map(Vec::len)),
         (2, Some(12))
     );
-    // Turned by a sixth it is the same: the horizontal directions are alike, and up and about that axis apart from them.
+    // A rotation by a sixth maps it to itself: the horizontal directions are equivalent, and decoupled from the
+    // vertical.
     let a = matrix(&linear["A"]);
     let near = |i: usize, j: usize, k: usize, l: usize| {
         let (x, y) = (a[i][j], a[k][l]);

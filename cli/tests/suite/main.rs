@@ -1,4 +1,4 @@
-//! The command as it is run; a module alone: `cargo test -p hamel-cli --test suite sweep::`.
+//! Integration tests of the command; run a single module with `cargo test -p hamel-cli --test suite sweep::`.
 
 mod available;
 #[cfg(target_os = "linux")]

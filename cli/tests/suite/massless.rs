@@ -1,4 +1,5 @@
-//! Robots and descriptions without masses: kinematics from every front end, and what needs masses refused by its name.
+//! Robots and descriptions without masses: kinematics from every front end, and errors for everything that needs
+//! masses.
 
 use crate::common::{hamel, text};
 use hamel_cli::{RobotOptions, Session};
@@ -11,9 +12,9 @@ const ARM: &str = r#"<robot name="arm"><link name="base"/><link name="l1"/><link
 <joint name="b" type="revolute"><parent link="l1"/><child link="l2"/><axis xyz="0 1 0"/><origin xyz="0 0 0.2"/></joint>
 <joint name="f" type="fixed"><parent link="l2"/><child link="tool"/><origin xyz="0.5 0 0"/></joint></robot>"#;
 
-/// Rounding of a few products of lengths near 1.
+/// Rounding error of a few products of lengths near 1.
 const ROUNDING: f64 = 1e-14;
-/// Central differences with steps of 1e-5: a third derivative times 1e-10, and rounding of 1e-16 / 1e-5.
+/// Error of central differences with steps of 1e-5: a third derivative times 1e-10, and rounding of 1e-16 / 1e-5.
 const DIFFERENCE: f64 = 1e-8;
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -33,7 +34,7 @@ fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
-/// The warnings in what was said.
+/// Number of warnings on standard error.
 fn warnings(said: &str) -> usize {
     said.lines()
         .filter(|line| line.starts_with("warning"))
@@ -55,7 +56,7 @@ fn the_jacobian_of_an_arm_without_masses_is_that_of_its_closed_form() {
     let ((s1, c1), (s2, c2)) = (a.sin_cos(), b.sin_cos());
     let (r, h) = (0.5 * c2, 0.5 - 0.5 * s2);
     let tool = &value["kinematics"]["tool"];
-    // The origin of the tool is (r cos a, r sin a, h), its axes are those of Rz(a) Ry(b).
+    // The origin of the tool is (r cos a, r sin a, h), and its axes are those of Rz(a) Ry(b).
     let pose = [
         [c1 * c2, -s1, c1 * s2, r * c1],
         [s1 * c2, c1, s1 * s2, r * s1],
@@ -109,7 +110,7 @@ fn every_command_gives_kinematics_with_one_warning() {
     }
 }
 
-/// Nothing is proved of what is not there.
+/// Without equations of motion nothing is proved about them.
 #[test]
 fn check_says_nothing_of_equations_of_motion() {
     let out = text(&hamel(&["check", "-"], ARM).stdout);
@@ -142,7 +143,7 @@ fn what_needs_masses_is_refused_by_its_name() {
     assert!(said.contains("give the links their `<inertial>`"), "{said}");
 }
 
-/// The description that an import writes is treated as the robot is; what it does not ask for is not missed.
+/// The description that an import writes is treated like the robot; functions that it does not request are not missing.
 #[test]
 fn descriptions_without_masses_have_kinematics() {
     let imported = text(&hamel(&["import", "-"], ARM).stdout);
@@ -156,8 +157,8 @@ fn descriptions_without_masses_have_kinematics() {
         said.contains("`accel`") && said.contains("generate rate"),
         "{said}"
     );
-    // A bar that slides on a wall and on the floor, with a claim that nothing was asked about; a sled, whose blade
-    // is a constraint without a constant factor.
+    // A bar that slides on a wall and on the floor, with a claim and no requested functions; a sled, whose blade is a
+    // constraint without a constant factor.
     let loops = "system Bar { joint s: prismatic [1, 0, 0] moves f; joint h: revolute [0, 0, 1] on f moves g;
          joint v: prismatic [0, 1, 0] moves w; let tip = g.p + 2 * g.R * [1, 0, 0];
          loop tip[1] = 0, tip[2] = w.p[2]; start h = 2; GENERATE }";
@@ -247,7 +248,7 @@ fn value(session: &Session, name: &str, [x, xi]: [&[f64]; 2]) -> Vec<f64> {
     out
 }
 
-/// Robots have the same kinematics with masses and without; Jacobians are slopes of poses.
+/// Robots have the same kinematics with masses and without; Jacobians are derivatives of poses.
 #[test]
 fn masses_take_no_part_in_kinematics() {
     let cases = match std::env::var("HAMEL_ATTACK").as_deref() {
@@ -309,7 +310,7 @@ fn masses_take_no_part_in_kinematics() {
         if floating || x.len() != xi.len() {
             continue;
         }
-        // Of joints with limits on a fixed base x is q, and ξ its rate.
+        // For joints with limits on a fixed base x is q, and ξ is its rate.
         let jacobian = value(&light, &format!("{last}_jacobian"), [&x, &xi]);
         let pose = |x: &[f64]| value(&light, &format!("{last}_pose"), [x, &xi]);
         for column in 0..x.len() {
@@ -330,7 +331,7 @@ fn masses_take_no_part_in_kinematics() {
     }
 }
 
-/// A session says what is missing as commands do.
+/// A session reports missing masses like the commands.
 #[test]
 fn sessions_refuse_what_needs_masses() {
     let read = Session::read(ARM.into(), "arm.urdf", &RobotOptions::default());

@@ -1,13 +1,13 @@
-//! The choice of a method on the command line: what fits runs, what does not is refused with the reason
-//! before anything runs.
+//! Selection of a method on the command line: suitable methods run, others are refused with the reason
+//! before the run begins.
 
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Energy of a top over 200 steps of order 4 or more: the truncation of rkmk4 is 4e-7.
+/// Energy drift of a top over 200 steps of order 4 or more: the truncation error of rkmk4 is 4e-7.
 const CONSERVED: f64 = 1e-5;
-/// Ends of two methods of order 6 and 8 at these steps.
+/// Difference between the ends of two methods of order 6 and 8 at these steps.
 const SAME: f64 = 1e-8;
 
 fn model(name: &str) -> String {
@@ -49,7 +49,7 @@ fn end(name: &str, tag: &str, arguments: &[&str]) -> Vec<f64> {
     numbers.collect()
 }
 
-/// The relative deviation of the energy that the summary gives.
+/// The relative deviation of the energy in the summary.
 fn deviation(output: &Output) -> f64 {
     let out = text(&output.stdout);
     let line = out
@@ -65,7 +65,7 @@ fn auto_takes_what_fits_and_says_why() {
     for (name, method, reason) in [
         ("principal_axes", "free", "no force acts"),
         ("benchmark_top", "splitting6", "symmetric rotor"),
-        // Its parameters make it symmetric, which is seen when they are known.
+        // The parameters make it symmetric, which is detected once they are known.
         ("heavy_top_axis", "splitting6", "symmetric rotor"),
         ("heavy_top", "rkmk8", "without symmetry"),
         ("free_body", "splitting6", "closed form"),
@@ -179,7 +179,7 @@ fn tolerances_are_for_methods_that_choose_their_steps() {
     }
 }
 
-/// Every method of order 4 or more comes to the end of the run that rkmk8 comes to.
+/// Every method of order 4 or more reaches the same end as rkmk8.
 #[test]
 fn every_method_runs_and_the_good_ones_agree() {
     let expected = end(
@@ -227,7 +227,7 @@ fn every_method_runs_and_the_good_ones_agree() {
     }
 }
 
-/// The closed form is evaluated from the start: a run in one step ends where one in a thousand does.
+/// The closed form is evaluated from the start: one step ends where a thousand steps do.
 #[test]
 fn closed_forms_do_not_depend_on_steps() {
     let one = end(
@@ -245,7 +245,7 @@ fn closed_forms_do_not_depend_on_steps() {
     }
 }
 
-/// Samples as JSON name the same numbers.
+/// Samples as JSON contain the same numbers.
 #[test]
 fn samples_are_written_whatever_the_method() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("splitting.json");
@@ -256,8 +256,8 @@ fn samples_are_written_whatever_the_method() {
     assert!(serde_json::from_str::<Value>(&written).is_ok());
 }
 
-/// Three stiff joints of an arm, one of them mounted at 45 degrees, that begin a third of a radian from rest: after a second in
-/// steps of 1/20 s they have come to rest, where gravity bends them by some 1e-7 rad.
+/// Three stiff joints of an arm, one of them mounted at 45 degrees, that begin a third of a radian from rest: after a
+/// second in steps of 1/20 s they have come to rest, deflected by gravity by about 1e-7 rad.
 #[test]
 fn stiff_arms_come_to_rest_by_implicit_steps() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));

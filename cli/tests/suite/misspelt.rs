@@ -1,11 +1,11 @@
-//! The robots of `example-robot-data`: what is said of them as they are, and that no word of theirs is lost where it is misspelt.
+//! Warnings about the robots of `example-robot-data` as they are, and about all misspelt words in them.
 
 use crate::installed::installed;
 use hamel_codegen::urdf::{Options, import};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Elements that are read, in the order in which they are tried.
+/// Elements that are read, in the order of the trials.
 const WORDS: [&str; 14] = [
     "joint",
     "link",
@@ -23,7 +23,7 @@ const WORDS: [&str; 14] = [
     "gazebo",
 ];
 
-/// Misspelt words of each element of each robot.
+/// Number of misspelt words for each element of each robot.
 fn trials() -> usize {
     match std::env::var("HAMEL_ATTACK").as_deref() {
         Ok("full") => 40,
@@ -32,7 +32,7 @@ fn trials() -> usize {
     }
 }
 
-/// Xorshift: fixed seed, the same words in every run.
+/// Xorshift with a fixed seed: the same words in every run.
 struct Random(u64);
 
 impl Random {
@@ -44,7 +44,7 @@ impl Random {
     }
 }
 
-/// All URDF files below a folder, in order, with their texts.
+/// All URDF files below a folder with their texts, sorted.
 fn robots(folder: &Path) -> Vec<(String, String)> {
     let mut open = vec![folder.to_path_buf()];
     let mut found: Vec<PathBuf> = Vec::new();
@@ -67,7 +67,7 @@ fn robots(folder: &Path) -> Vec<(String, String)> {
     read.collect()
 }
 
-/// Words that change the motion are named; what is no part of the equations is quiet.
+/// Elements that change the motion are named; elements outside the equations cause no warnings.
 #[test]
 fn what_is_said_of_robots() {
     let Some(folder) = installed() else {
@@ -85,7 +85,7 @@ fn what_is_said_of_robots() {
             continue;
         };
         for warning in &imported.warnings {
-            // Places and names are the robot's.
+            // Places and names depend on the robot.
             let words = warning.message.split(", here and at").next();
             let message = words.unwrap_or("").to_string();
             let general = message.contains("no part of URDF")
@@ -103,7 +103,7 @@ fn what_is_said_of_robots() {
     insta::assert_snapshot!(lines.join("\n"));
 }
 
-/// One element of a robot has a letter too many: the file is refused, or the new word is named in one warning.
+/// With one misspelt element a robot is refused, or the new word is named in one warning.
 #[test]
 fn misspelt_elements_are_never_lost() {
     let Some(folder) = installed() else {
@@ -151,7 +151,7 @@ fn misspelt_elements_are_never_lost() {
     assert!(tried > 300, "{tried} words");
 }
 
-/// Whether a place is in a comment, or in an element that is no part of the equations.
+/// Whether a place is in a comment, or in an element that is not part of the equations.
 fn inside(text: &str, place: usize) -> bool {
     let before = &text[..place];
     let open = |start: &str, end: &str| match before.rfind(start) {
@@ -163,13 +163,13 @@ fn inside(text: &str, place: usize) -> bool {
             open(&format!("<{name}>"), &format!("</{name}>"))
                 || open(&format!("<{name} "), &format!("</{name}>"))
         })
-        // Programs read these; sensors have poses of their own, and joints of old Gazebo are named as a whole.
+        // Elements read by other programs; sensors have poses too, and joints of old Gazebo are named as a whole.
         || ["sensor", "plugin", "ros2_control", "joint:hinge", "joint:slider"].iter().any(|name| {
             open(&format!("<{name} "), &format!("</{name}>"))
         })
 }
 
-/// The text with another word in one opening tag and in the one that closes it.
+/// The text with another word in one opening tag and in the matching closing tag.
 fn misspelt(text: &str, place: usize, word: &str, wrong: &str) -> String {
     let end = place + text[place..].find('>').expect("a tag ends");
     let closing = format!("</{word}>");

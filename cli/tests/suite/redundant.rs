@@ -1,28 +1,28 @@
-//! Slopes of mechanisms whose loops ask for more than is needed. Each is described twice: as a tree whose loops are closed, and
-//! with one coordinate that places all bodies by closed forms. Both have the same matrices, and where they are conservative and
-//! at rest their eigenvalues are imaginary, but for rounding.
+//! Linearisations of mechanisms with redundant loops. Each is described twice: as a tree with closed loops, and with
+//! one coordinate that places all bodies by closed forms. Both have the same matrices, and for conservative systems at
+//! rest the eigenvalues are imaginary, to rounding.
 
 use crate::common::{hamel, text};
 use serde_json::Value;
 
-/// Rounding beside the largest entry.
+/// Rounding error relative to the largest entry.
 const ROUNDING: f64 = 1e-12;
 
-/// A mechanism, and the same in one coordinate q, which is the angle of its first joint.
+/// A mechanism, and the same in one coordinate q, the angle of its first joint.
 struct Twice {
     name: &'static str,
-    /// Joints, loops, and guesses by formulas of the angle.
+    /// Joints, loops, and guesses as functions of the angle.
     tree: &'static str,
     guesses: fn(f64) -> Vec<(&'static str, f64)>,
-    /// The frames by q.
+    /// The frames as functions of q.
     frames: &'static str,
-    /// Bodies on them.
+    /// Bodies on the frames.
     bodies: &'static str,
-    /// An angle amid its range.
+    /// An angle in the middle of its range.
     amid: f64,
 }
 
-/// Three cranks of one length carry a platform, which stays parallel: four hinges for one freedom, one row too many.
+/// Three cranks of equal length carry a platform that stays parallel: one of the loop equations is redundant.
 const CRANKS: Twice = Twice {
     name: "three cranks",
     tree: "
@@ -46,7 +46,7 @@ const CRANKS: Twice = Twice {
     amid: 0.8,
 };
 
-/// Two cranks whose coupler is held level besides, which it is without.
+/// Two cranks with a coupler that is held level by a redundant constraint.
 const LEVEL: Twice = Twice {
     name: "a level coupler",
     tree: "
@@ -68,7 +68,8 @@ const LEVEL: Twice = Twice {
     amid: 1.1,
 };
 
-/// Bennett's linkage: four skew hinges, links of lengths 1/2 and 1 twisted by π/6 and π/2, so that tan (q/2) tan (r/2) = √3.
+/// Bennett's linkage: four skew hinges, links of lengths 1/2 and 1 twisted by π/6 and π/2, so that tan (q/2) tan
+/// (r/2) = √3.
 const BENNETT: Twice = Twice {
     name: "Bennett",
     tree: "
@@ -95,7 +96,7 @@ const BENNETT: Twice = Twice {
     amid: 1.3,
 };
 
-/// Sarrus's linkage: a plate on two legs of three hinges each, whose planes are at right angles, moves along a straight line.
+/// Sarrus's linkage: a plate on two legs of three hinges each, in planes at right angles, moves along a straight line.
 const SARRUS: Twice = Twice {
     name: "Sarrus",
     tree: "
@@ -169,7 +170,7 @@ const BRICARD: Twice = Twice {
 
 const ALL: [Twice; 5] = [CRANKS, LEVEL, BENNETT, SARRUS, BRICARD];
 
-/// The first ones of a list, and all of it with `HAMEL_ATTACK`: linearisations of six-bar loops take seconds.
+/// The first entries of a list, and all with `HAMEL_ATTACK`: linearisations of six-bar loops take seconds.
 fn first<T>(some: usize, all: &[T]) -> &[T] {
     match std::env::var_os("HAMEL_ATTACK") {
         Some(_) => all,
@@ -178,7 +179,7 @@ fn first<T>(some: usize, all: &[T]) -> &[T] {
 }
 
 impl Twice {
-    /// Both descriptions at an angle and at rates of it and of the base, with loads that both have.
+    /// Both descriptions at an angle, with rates of the angle and of the base, under loads that both have.
     fn described(&self, q: f64, [rate, spin]: [f64; 2], loads: &str) -> [String; 2] {
         let guesses = (self.guesses)(q).into_iter();
         let guesses = guesses.map(|(name, value)| format!("start {name} ~ {value:?};\n"));
@@ -252,8 +253,8 @@ fn slopes_of_redundant_loops_are_those_in_one_coordinate() {
     }
 }
 
-/// The base turns steadily, and a constant force keeps the first joint where it is: beside the turn, which is free, nothing grows
-/// or decays, and the loops swing as fast as they do in one coordinate.
+/// The base turns steadily, and a constant force holds the first joint: apart from the free turn no mode grows or
+/// decays, and the loops oscillate with the frequencies found in one coordinate.
 #[test]
 fn conservative_redundant_loops_have_imaginary_eigenvalues() {
     for mechanism in first(2, &ALL) {

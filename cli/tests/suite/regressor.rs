@@ -1,5 +1,5 @@
-//! Base parameters: their number for real robots, the columns against Pinocchio's, Y β against inverse dynamics,
-//! exact factors, and what is refused.
+//! Base parameters: their number for real robots, the columns against those of Pinocchio, Y β against inverse dynamics,
+//! exact factors, and refused systems.
 
 use crate::common::{hamel, text};
 use crate::installed::installed;
@@ -21,8 +21,8 @@ use hamel_codegen::urdf::{Options, import};
 use serde_json::Value;
 use std::path::Path;
 
-/// Lengths and a mount angle that are set at run time, a ball joint, a body on a frame of its own, and a link
-/// without mass before the last one.
+/// Lengths and a mount angle that are run-time parameters, a ball joint, a body on a separate frame, and a massless
+/// link before the last one.
 const ARM: &str = "system Arm {
     param l = 0.4, tilt = 0.3, g = 9.81;
     joint q1: revolute [0, 1, 0] moves upper { stiffness 3; rest 0.1; armature 0.02; }
@@ -38,7 +38,7 @@ const ARM: &str = "system Arm {
     gravity [0, 0, -g];
 ";
 
-/// An axis that is upright: the first link can only turn, and its drive turns with it.
+/// An upright axis: the first link can only turn, and its drive turns with it.
 const UPRIGHT: &str = "system Upright {
     param l = 0.3;
     joint a: revolute [0, 0, 1] moves f { armature 0.02; damping 0.1; }
@@ -48,7 +48,7 @@ const UPRIGHT: &str = "system Upright {
     gravity [0, 0, -9.81];
 ";
 
-/// A hand at an angle that is no part of a turn, with two fingers that one drive moves against each other.
+/// A hand at an angle that is not a simple fraction of a turn, with two fingers moved against each other by one drive.
 const HAND: &str = "system Hand {
     joint q1: revolute [0, 1, 0] moves upper { damping 0.1; };
     joint q2: revolute [1, 0, 0] on upper at translation([0, 0, 0.3]) moves fore;
@@ -74,7 +74,7 @@ fn numbers(model: &Model, x: &[f64], xi: &[f64], xi_dot: &[f64]) -> Vec<f64> {
     model.numbers(&model.defaults, x, xi, &u, xi_dot)
 }
 
-/// A number within ±1.
+/// A random number in ±1.
 fn number(random: &mut Random) -> f64 {
     random.bits() as f64 / u64::MAX as f64 * 2.0 - 1.0
 }
@@ -107,7 +107,7 @@ fn anywhere(model: &Model, random: &mut Random) -> Vec<f64> {
     x
 }
 
-/// β by the values of the description.
+/// β for the values of the description.
 fn beta(found: &Regressor, numbers: &[f64]) -> Vec<f64> {
     let graph = &found.model.graph;
     let values: Vec<Edge> = found.standard.iter().map(|one| one.value).collect();
@@ -125,7 +125,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| value.abs().max(most))
 }
 
-/// Y β is the force of inverse dynamics and of dampers; more digits than rounding takes are nowhere lost.
+/// Asserts that Y β is the force of inverse dynamics and dampers, to rounding.
 fn is_force(description: &str, count: usize) {
     let text = format!("{description} generate inverse_dynamics, dissipation, regressor; }}");
     let plain = found(&text);
@@ -146,7 +146,7 @@ fn is_force(description: &str, count: usize) {
         let numbers = numbers(model, &x, &xi, &xi_dot);
         let beta = beta(&plain, &numbers);
         let mut force = inverse.call(&x, &xi, &[], &xi_dot).expect("a force");
-        // D is quadratic: its slope is D(ξ + e) − D(ξ) − D(e), and 2 D(e) of ξ = 0.
+        // D is quadratic: its derivative is D(ξ + e) − D(ξ) − D(e), and 2 D(e) at ξ = 0.
         let d = |xi: &[f64]| dissipation.call(&x, xi, &[], &[]).expect("D")[0];
         for (i, force) in force.iter_mut().enumerate() {
             let mut unit = vec![0.0; xi.len()];
@@ -161,7 +161,7 @@ fn is_force(description: &str, count: usize) {
                 .zip(column)
                 .for_each(|(sum, entry)| *sum += entry * beta);
         }
-        // What is emitted.
+        // The emitted functions.
         let rows = emitted.call(&x, &xi, &[], &xi_dot).expect("Y");
         let beta = emitted_beta.call(&[], &[], &[], &[]).expect("β");
         let product = rows.chunks(count).map(|row| {
@@ -178,12 +178,12 @@ fn is_force(description: &str, count: usize) {
 
 #[test]
 fn y_beta_is_the_force_that_a_motion_needs() {
-    // 3 + 7 + 9, and 7 of the last link with its mass and the part of its first moment along its axis, which a mass on
-    // the slide would take over; a spring and a damper. The drive of the first joint acts as Θ_yy.
+    // 3 + 7 + 9, and 7 for the last link with its mass and the part of its first moment along its axis, for which a
+    // mass on the slider could stand; a spring and a damper. The drive of the first joint acts like Θ_yy.
     is_force(ARM, 30);
     // Both turn about upright axes: Θ_zz of each, h of the second, and the damper.
     is_force(UPRIGHT, 5);
-    // 3 + 7; of the fingers, which move against each other, differences of h, and both masses; the damper.
+    // 3 + 7; for the fingers, which move against each other, differences of h, and both masses; the damper.
     is_force(HAND, 16);
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
     for (name, count) in [("free_body", 10), ("two_bodies", 18), ("planar_body", 4)] {
@@ -193,7 +193,7 @@ fn y_beta_is_the_force_that_a_motion_needs() {
     }
 }
 
-/// Lengths that are parameters stand in the factors; numbers are exact.
+/// Lengths that are parameters appear in the factors; numbers are exact.
 #[test]
 fn factors_are_exact() {
     let output = hamel(&["regressor", "-"], &format!("{UPRIGHT} }}"));
@@ -228,8 +228,9 @@ fn factors_are_exact() {
     }
 }
 
-/// Axes in any numbers: three hinges in a chain have 3 + 7 + 7 base parameters, as the first one is not upright (Mayeda,
-/// Yoshida and Osuka 1990). Tilted by 1e-7 they have no factors of 1e14, in which f = Y β would lose all digits.
+/// Axes given by arbitrary numbers: three hinges in a chain have 3 + 7 + 7 base parameters if the first one is not
+/// upright (Mayeda, Yoshida and Osuka 1990). A tilt of 1e-7 leads to no factors of 1e14, with which f = Y β would lose
+/// all digits.
 #[test]
 fn axes_of_many_digits_are_as_good_as_others() {
     let body = "mass 1; com [0.1, -0.2, 0.3]; inertia [[1.1, 0.1, 0.2], [0.1, 1.2, 0.3], [0.2, 0.3, 1]] about com;";
@@ -259,7 +260,8 @@ fn axes_of_many_digits_are_as_good_as_others() {
     }
 }
 
-/// Sliders on a link that turns about an axis at rest: no force feels a first moment along that axis, however they are mounted.
+/// Sliders on a link that turns about a fixed axis: no force depends on a first moment along that axis, for any
+/// mounting.
 #[test]
 fn sliders_may_be_mounted_in_any_way() {
     let body = "mass 1; com [0.1, -0.2, 0.3]; inertia [[1.1, 0.1, 0.2], [0.1, 1.2, 0.3], [0.2, 0.3, 1]] about com;";
@@ -278,7 +280,7 @@ fn sliders_may_be_mounted_in_any_way() {
     );
 }
 
-/// A body whose centre of mass is where no body can be, and what is no tree of bodies.
+/// A body with an impossible centre of mass, and systems that are not trees of bodies.
 #[test]
 fn what_has_no_regressor_says_why() {
     let slim = UPRIGHT.replacen("diag(0.03, 0.03, 0.04)", "diag(0.01, 0.01, 0.04)", 1);
@@ -311,8 +313,8 @@ fn what_has_no_regressor_says_why() {
     }
 }
 
-/// As many base parameters of inertia as Pinocchio's regressor has singular values that are not zero; for `so100`,
-/// whose file has right angles with six digits, as it stands and with them set right. Y costs no more than it did.
+/// The number of inertial base parameters equals the number of nonzero singular values of Pinocchio's regressor; for
+/// `so100`, whose file has right angles with six digits, both as written and corrected. Y costs no more than its limit.
 #[test]
 fn real_robots_have_as_many_as_their_regressors_rank() {
     let Some(folder) = installed() else {
@@ -335,7 +337,7 @@ fn real_robots_have_as_many_as_their_regressors_rank() {
         ("ur5", &[], 36, 502),
         ("z1", &[], 43, 727),
     ] {
-        // Of the Panda there is no reference; seven joints in a chain have 1 + 6 · 7.
+        // The Panda has no reference; seven joints in a chain have 1 + 6 · 7.
         let json = std::fs::read_to_string(root.join(format!("{name}.json")));
         let reference: Value = json.map_or(Value::Null, |json| {
             serde_json::from_str(&json).expect("JSON")

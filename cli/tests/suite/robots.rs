@@ -1,7 +1,7 @@
-//! Eight real robots, read from their URDF files, against Pinocchio's numbers for them.
+//! Eight real robots, read from their URDF files, against values of Pinocchio.
 //!
 //! The files are those of the wheel `example-robot-data`, which `tests/robots/install.sh` installs
-//! below the target folder. Without them these tests say so and end.
+//! below the target folder. Without them these tests print this and end.
 
 use crate::common::{hamel, text};
 use crate::installed::installed;
@@ -9,9 +9,9 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Largest difference in the Euclidean norm, relative to the reference: twelve digits of π/2 in a
-/// URDF are read as π/2, which turns what hangs on the joint by some 1e-12 rad for each of them.
+/// URDF are read as π/2, each of which rotates the links after the joint by about 1e-12 rad.
 const AGREEMENT: f64 = 1e-9;
-/// Sums of a few masses, but for rounding.
+/// Rounding error of sums of a few masses.
 const ROUNDING: f64 = 1e-14;
 
 /// A robot with its reference values.
@@ -23,7 +23,7 @@ struct Robot {
 }
 
 impl Robot {
-    /// `None`, and a line that says so, where the URDF files are absent.
+    /// `None`, with a message, if the URDF files are absent.
     fn open(name: &str) -> Option<Robot> {
         let Some(folder) = installed() else {
             eprintln!(
@@ -59,7 +59,7 @@ impl Robot {
 }
 
 impl Robot {
-    /// A description of the robot in which the rates of some joints are inputs.
+    /// A description of the robot with the rates of some joints as inputs.
     fn driven(&self, name: &str, joints: &[&str]) -> String {
         let text = self.run("import", &[]);
         let end = text.rfind('}').expect("a description");
@@ -75,7 +75,7 @@ impl Robot {
     }
 }
 
-/// All numbers of a value, rows one after the other.
+/// All numbers of a value, row by row.
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(list) => list.iter().flat_map(numbers).collect(),
@@ -88,7 +88,7 @@ fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// All samples of a robot, and its mass.
+/// Compares all samples of a robot, and its mass.
 fn agrees(name: &str) {
     let Some(robot) = Robot::open(name) else {
         return;
@@ -128,7 +128,7 @@ fn agrees(name: &str) {
     );
 }
 
-/// The description that is imported generates, byte for byte, the code of the robot itself.
+/// The imported description generates byte for byte the same code as the robot.
 fn generates_the_same(name: &str) {
     let Some(robot) = Robot::open(name) else {
         return;
@@ -144,8 +144,8 @@ fn generates_the_same(name: &str) {
     assert_eq!(robot.run("emit", &[]), text(&output.stdout));
 }
 
-/// Two joints of UR5 with their rates as inputs: accelerations of Pinocchio there need its torques, and those of the
-/// other joints follow.
+/// Two joints of UR5 with their rates as inputs: prescribing Pinocchio's accelerations yields its torques and the
+/// accelerations of the other joints.
 #[test]
 fn prescribed_accelerations_need_the_torques_of_pinocchio() {
     let Some(robot) = Robot::open("ur5") else {
@@ -188,7 +188,7 @@ fn prescribed_accelerations_need_the_torques_of_pinocchio() {
     }
 }
 
-/// ξ̇ of UR5 with two joints driven takes no more operations than that of the arm with these joints locked and 60 % of
+/// ξ̇ of UR5 with two driven joints takes no more operations than that of the arm with these joints locked plus 60 % of
 /// inverse dynamics.
 #[test]
 fn drives_cost_no_more_than_what_they_replace() {

@@ -1,9 +1,9 @@
-//! Samples at multiples of a time in equal steps, lengths of runs that are too short, and energy that comes from nothing.
+//! Samples at multiples of a time in equal steps, runs that are too short, and energy that starts from zero.
 
 use crate::common::{hamel, text};
 use std::path::{Path, PathBuf};
 
-/// q = t²/2, w = t: steps of Runge and Kutta are exact.
+/// q = t²/2, w = t: Runge–Kutta steps are exact.
 const PUSHED: &str = "system Pushed {
     coord q; velocity w; rate q = w; kinetic w^2/2; input F; generalized force w = F;
 }";
@@ -20,7 +20,7 @@ fn file(name: &str, content: &str) -> PathBuf {
     path
 }
 
-/// The samples of a run, t, q, w; and what is said of it.
+/// The samples t, q, w of a run, and its messages.
 fn run(name: &str, model: &str, options: &[&str]) -> (Vec<Vec<f64>>, String) {
     let out = file(name, "").display().to_string();
     let fixed = ["simulate", "-", "--out", &out];
@@ -33,7 +33,7 @@ fn run(name: &str, model: &str, options: &[&str]) -> (Vec<Vec<f64>>, String) {
     (rows.collect(), text(&output.stdout))
 }
 
-/// The times of samples are the multiples of a time, exactly, and the end.
+/// Asserts that samples are exactly at the multiples of a time, and at the end.
 fn at_multiples(samples: &[Vec<f64>], every: f64, until: f64) {
     let count = (until / every + 1e-9).floor() as usize;
     for (index, sample) in samples.iter().enumerate().take(count + 1) {
@@ -54,10 +54,10 @@ fn samples_are_at_multiples_of_a_time() {
         ("3.14159", "1e-3", "0.1"),
         ("1", "0.07", "0.3"),
         ("2", "0.01", "0.1"),
-        // So many steps that they are taken by machine code, many at once.
+        // Enough steps to be taken by machine code, many at once.
         ("20.05", "1e-3", "2.5"),
         ("5", "1e-3", "5e-4"),
-        // But one sample, and none but start and end.
+        // Only one sample, and none except start and end.
         ("1", "0.01", "1"),
         ("1", "0.01", "7"),
     ] {
@@ -80,7 +80,7 @@ fn samples_are_at_multiples_of_a_time() {
     }
 }
 
-/// Also where steps end at jumps of inputs in between: w = t + (t − τ) behind the jump at τ.
+/// Likewise if steps end at jumps of inputs in between: w = t + (t − τ) after the jump at τ.
 #[test]
 fn samples_are_at_multiples_beside_jumps() {
     let forces = file("forces.csv", "t,F\n0,1\n0.1234567,2\n0.6,1\n");
@@ -99,8 +99,8 @@ fn samples_are_at_multiples_beside_jumps() {
     }
 }
 
-/// Between the first and the last multiple all steps are equal, as many as one sample takes: a splitting keeps (q, w) on
-/// one ellipse, which for steps of leapfrog is w² + (1 − h²/4) q², to rounding.
+/// All steps between the first and the last multiple are equal, with a fixed number per sample: a splitting keeps
+/// (q, w) on one ellipse, which for leapfrog is w² + (1 − h²/4) q², to rounding.
 #[test]
 fn steps_between_samples_are_equal() {
     let asked = [
@@ -115,7 +115,7 @@ fn steps_between_samples_are_equal() {
     ];
     let (samples, said) = run("ellipse.csv", SWING, &asked);
     at_multiples(&samples, 0.3, 100.0);
-    // 0.3 is five steps of 0.06; the last tenth of a second two of 0.05.
+    // 0.3 takes five steps of 0.06, and the last tenth of a second two of 0.05.
     assert!(said.contains("1 667 steps"), "{said}");
     let h: f64 = 0.06;
     for sample in &samples[..samples.len() - 1] {
@@ -148,7 +148,7 @@ fn runs_that_are_too_short_are_refused() {
     assert_eq!(samples.last().map(|sample| sample[0]), Some(1e-300));
 }
 
-/// A mass at rest has no energy that work could be compared with: there is no relative change, and none of 0.
+/// A mass at rest has no energy with which to compare work: no relative change is given, and none for 0.
 #[test]
 fn energy_from_nothing_has_no_relative_change() {
     let asked = ["--until", "2", "--input", "F = 3"];

@@ -1,8 +1,8 @@
-//! Robots from their URDF files, as they are and with angles shaken by 1e-3 … 1e-15 rad, against their
-//! dynamics from the definitions in numbers of twice the length.
+//! Robots from their URDF files, unchanged and with angles perturbed by 1e-3 … 1e-15 rad, against their
+//! dynamics computed from the definitions in double-double arithmetic.
 //!
 //! The files are those of the wheel `example-robot-data`, which `tests/robots/install.sh` installs below
-//! the target folder; without them the test says so and ends. By default a few robots are tried; all of
+//! the target folder; without them the test prints this and ends. By default a few robots are tried; all of
 //! them with `HAMEL_ATTACK=full` (`tests/robots/shake.sh`).
 
 use crate::described::{Dynamics, Robot};
@@ -40,7 +40,7 @@ fn full() -> bool {
     std::env::var("HAMEL_ATTACK").as_deref() == Ok("full")
 }
 
-/// A number in ±1.
+/// A random number in ±1.
 fn number(random: &mut Random) -> f64 {
     (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
@@ -55,7 +55,7 @@ fn shaken(text: &str, power: i32, random: &mut Random) -> String {
             .split_whitespace()
             .map(|text| match text.parse::<f64>() {
                 Ok(angle) => (angle + number(random) * 10.0_f64.powi(-power)).to_string(),
-                // Some files have texts there that the import refuses.
+                // Some files have text there that the import refuses.
                 Err(_) => text.to_string(),
             })
             .collect();
@@ -104,8 +104,8 @@ fn apart(found: &[f64], wanted: &[Double]) -> f64 {
     })
 }
 
-/// The errors of ξ̇, M, bias and slope of the potential at a random state, relative to their scales; why
-/// there is no program, where there is none.
+/// The errors of ξ̇, M, bias and gradient of the potential at a random state, relative to their scales, or the reason
+/// why there is no program.
 fn errors(text: &str, seed: u64) -> Result<Option<[f64; 4]>, String> {
     let shown = |errors: Vec<_>| render(&errors, "robot", text, false);
     let system = parse_text(text).map_err(shown)?;
@@ -114,7 +114,7 @@ fn errors(text: &str, seed: u64) -> Result<Option<[f64; 4]>, String> {
     };
     let mut model = lower::build(&system).map_err(shown)?;
     model.asked = Asked::only(&FUNCTIONS);
-    // Where bodies have no moments, or freedoms no inertia, there is no ξ̇.
+    // If bodies have no moments, or freedoms no inertia, there is no ξ̇.
     let (generated, singular) = Generated::available(model, 0).map_err(shown)?;
     let program = &generated.program;
     let mut random = Random::new(seed);
@@ -146,7 +146,7 @@ fn errors(text: &str, seed: u64) -> Result<Option<[f64; 4]>, String> {
     Ok(Some(errors))
 }
 
-/// Drives and dampers: products of a few numbers.
+/// Forces of drives and dampers: products of a few numbers.
 fn applied(generated: &Generated, [x, xi, u]: [&[f64]; 3]) -> Vec<f64> {
     let mut model = generated.model.clone();
     model.asked = Asked::only(&[FunctionId::GeneralizedForce]);
@@ -159,7 +159,7 @@ fn applied(generated: &Generated, [x, xi, u]: [&[f64]; 3]) -> Vec<f64> {
     compiled.call_with([x, xi, u, &[], &[]]).expect("no pivots")
 }
 
-/// All URDF files of the wheel, in order.
+/// All URDF files of the wheel, sorted.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_path_buf()];
@@ -214,7 +214,7 @@ fn robots_keep_their_digits() {
             (true, 0.0),
         ];
         for (turn, (how, text)) in texts.into_iter().enumerate() {
-            // In every way as it is, shaken in each way in turn.
+            // Unchanged with all options, perturbed with each option in turn.
             let chosen = ways
                 .iter()
                 .enumerate()

@@ -1,5 +1,4 @@
-//! What people read of counts and failures: columns that stand apart, numbers that are what they say, names
-//! in place of indices.
+//! Printed counts and failures: separated columns, correct numbers, names instead of indices.
 
 use crate::common::{hamel, text};
 use serde_json::Value;
@@ -9,7 +8,7 @@ fn model(name: &str) -> String {
     format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// An output that uses every value twice, so many times over: written out it has more than 2ⁿ operations.
+/// An output that uses every value twice, `times` times: written out it has more than 2ⁿ operations.
 fn doubled(times: usize) -> String {
     let mut description =
         "system Deep { coord q; velocity w; rate q = w; kinetic w^2 / 2; let a0 = sin(q) + 2;"
@@ -43,7 +42,7 @@ fn a_count_beyond_all_bounds_is_no_number() {
             all["functions"]["deep"]["unshared"].clone(),
         )
     };
-    // One addition for each of 2²⁰ uses of a0, one multiplication for each place above.
+    // One addition for each of 2²⁰ uses of a0, one multiplication for each level above.
     let (cell, json) = counts(20);
     assert_eq!(
         (cell.as_str(), &json["flops"]),
@@ -96,7 +95,7 @@ fn a_velocity_without_inertia_is_named() {
     assert!(errors.contains(named), "{errors}");
 }
 
-/// A velocity that a constraint gives by others, divided by a parameter.
+/// A velocity determined by a constraint with division by a parameter.
 const ROLLING: &str = "system Rolling {
     param L2 = 0.5;
     coord x, p; velocity u, w; rate x = u; rate p = w;
@@ -144,7 +143,7 @@ fn parameters_that_leave_no_inertia_name_the_velocity() {
     }
 }
 
-/// The names beside the lines of a plot, and its headings.
+/// The names of the lines of a plot, and its headings.
 fn labels(description: &str, name: &str) -> Vec<String> {
     let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let plot = file.display().to_string();
@@ -229,7 +228,7 @@ fn the_only_attitude_is_on_the_sphere_alone() {
     );
 }
 
-/// An output may end where the motion goes on: a root, or a table with `extrapolate error`.
+/// An output may be undefined where the motion continues: a root, or a table with `extrapolate error`.
 #[test]
 fn outputs_without_a_value_are_counted() {
     let described =
@@ -247,7 +246,7 @@ fn outputs_without_a_value_are_counted() {
     assert!(!said.contains("twice has"), "{said}");
 }
 
-/// A tip without mass, in a system that is too large to be written out, with a loop.
+/// A massless tip, in a system that is too large to be written out, with a loop.
 #[test]
 fn a_joint_without_inertia_is_named_beside_loops() {
     let described = "system Cranks {

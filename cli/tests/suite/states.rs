@@ -1,4 +1,4 @@
-//! States that come from outside: completed as a start is, or refused with what is wrong.
+//! Given states: completed like a start, or refused with the reason.
 
 use crate::common::{hamel, text};
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ fn numbers(value: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// What is open of the loops of `four_bar_loop`, and the rates of that.
+/// The residuals of the loops of `four_bar_loop`, and their rates.
 fn four_bar(x: &[f64], w: &[f64]) -> [f64; 4] {
     let (l1, l2, l3, d) = (0.4, 1.0, 0.8, 1.0);
     let parts = [(l1, x[0], w[0]), (l2, x[1], w[1]), (-l3, x[2], w[2])];
@@ -141,7 +141,7 @@ fn a_rotation_off_by_the_rounding_of_its_text_is_cleared_of_it() {
     assert!(refused("heavy_top", &further.to_string()).contains("the difference is"));
 }
 
-/// At full size with `HAMEL_ATTACK=full`.
+/// Full size with `HAMEL_ATTACK=full`.
 #[test]
 fn any_state_closes_its_loops_or_is_refused() {
     let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
@@ -195,7 +195,7 @@ fn any_state_closes_its_loops_or_is_refused() {
     assert!(kept * 3 > rounds, "{kept} of {rounds}");
 }
 
-/// A wheel on a slider that flies in all directions.
+/// A wheel on a slider, with a free base.
 const FLYING: &str = "system Flying {
     joint base: free moves hull;
     joint wheel: continuous [0, 0, 1] on hull at pose(rotz(0), [0.3, 0, 0]) moves disk;
@@ -311,7 +311,7 @@ fn a_force_and_a_list_of_states_are_for_eval_alone() {
     }
 }
 
-/// di/dt = (V − R i − n k w)/L of the motor, at a current that the file gives.
+/// di/dt = (V − R i − n k w)/L of the motor, at a given current.
 #[test]
 fn states_of_first_order_are_read_and_shown() {
     let state = r#"{"state": {"i": 2}, "velocity": {"w": 1}, "input": {"V": 3}}"#;
@@ -338,7 +338,7 @@ fn states_of_first_order_are_read_and_shown() {
         let errors = refused("dc_pendulum", wrong);
         assert!(errors.contains(said), "{wrong}: {errors}");
     }
-    // A coil alone: i = exp(−R t/L) i₀ where the motor stands still.
+    // Only a coil: i = exp(−R t/L) i₀ while the motor is at rest.
     let run = [
         "simulate", &motor, "--at", "-", "--until", "0.001", "--method", "rkmk8",
     ];

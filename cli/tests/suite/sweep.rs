@@ -1,4 +1,4 @@
-//! Rows of sweeps: what they depend on, how they are distributed, and what is said of wrong options.
+//! Rows of sweeps: dependence, distributions, and errors in options.
 
 use crate::common::{hamel, text};
 use crate::shards::bytes;
@@ -15,7 +15,7 @@ fn refused(options: &[&str]) -> String {
 }
 
 const VARY: &str = "m = normal(2, 0.1); start w = uniform(3, 5); start y = latin(0, 1)";
-/// What is swept, for how long, and what is kept.
+/// The varied entries, the length of runs, and the kept results.
 const SWEPT: [&str; 8] = [
     "--vary",
     VARY,
@@ -79,7 +79,7 @@ fn a_member_depends_on_the_seed_and_its_number_alone() {
     );
     let whole = swept("whole", BALL, &options(&["--members", "50", "--seed", "7"]));
     assert_eq!(table, whole);
-    // Strata are those of so many members, all else is the member's own.
+    // Strata depend on the number of members, all else only on the member.
     let more = swept("more", BALL, &options(&["--members", "80", "--seed", "7"]));
     for name in ["m", "start w"] {
         assert_eq!(table.column(name), more.column(name)[..50]);
@@ -129,7 +129,7 @@ fn columns_have_the_moments_and_strata_that_are_asked_for() {
                 .map(move |value| (value - mean) / deviation),
         );
     }
-    // No two columns go together.
+    // No two columns are correlated.
     let deviations: Vec<Vec<f64>> = deviations.into_iter().map(Iterator::collect).collect();
     for (place, a) in deviations.iter().enumerate() {
         for b in &deviations[..place] {
@@ -185,7 +185,7 @@ fn grids_make_all_combinations() {
     );
 }
 
-/// A distribution about the value of a parameter is about its own, or about one that is the same for all members.
+/// An argument of a distribution may refer to the parameter itself and to unvaried ones, but not to other varied ones.
 #[test]
 fn arguments_are_not_varied_by_others() {
     let said = refused(&[
@@ -250,7 +250,7 @@ fn all_that_is_wrong_is_said_at_once() {
             "{message} {place}: {said}"
         );
     }
-    // Names are looked at where another item cannot be read.
+    // Names are resolved even if another item cannot be parsed.
     let said = keep("max(w +); min(k); mean(nrm(z))");
     for (message, place) in [
         ("expected an expression", "--keep:1:"),
@@ -268,7 +268,7 @@ fn all_that_is_wrong_is_said_at_once() {
         said.contains("an event compares numbers") && said.contains("--keep:1:6"),
         "{said}"
     );
-    // Forms, names and the other option together.
+    // Errors of syntax, of names and of the other option together.
     let said = refused(&[
         "--vary",
         "n = normal(1, 1); m = normal(1, -1)",
@@ -373,11 +373,11 @@ fn every_member_is_a_point_of_the_picture() {
         std::fs::read_to_string(&picture).expect("a picture")
     };
     let first = drawn();
-    // Three causes; of the results the time of the end has no diagram, since it is the same for all.
+    // Three causes; the end time has no diagram among the results, since it is the same for all.
     let diagrams = first.matches("h0").count() / 40;
     assert_eq!(first.matches("h0").count(), 40 * diagrams);
     assert!(diagrams >= 9 && diagrams % 3 == 0, "{diagrams}");
     assert!(first.contains("start w") && first.contains("max(w)") && first.contains("40 members"));
-    // With nothing left to compute it is the same picture.
+    // If nothing is left to compute, the picture is the same.
     assert_eq!(drawn(), first);
 }

@@ -1,4 +1,4 @@
-//! Folders of sweeps: what a kill, a full disk, another process or a wrong file leaves, and what is refused.
+//! Folders of sweeps after a kill, a full disk, another process or a wrong file, and refused folders.
 
 use crate::common::{hamel, text};
 use crate::shards::bytes;
@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-/// Time for one command, generous: the machine may be busy.
+/// Time limit for one command, generous because the machine may be busy.
 const PATIENCE: Duration = Duration::from_secs(300);
 
 fn model(name: &str) -> String {
     format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Members that take their time.
+/// A sweep that takes long.
 const SLOW: [&str; 11] = [
     "--vary",
     "start w = uniform(-1, 1)",
@@ -60,7 +60,7 @@ fn status(folder: &Path) -> String {
     text(&output.stdout)
 }
 
-/// A process that ends with the test, whatever becomes of it.
+/// A process that is killed when the test ends.
 struct Running(Child);
 
 impl Running {
@@ -72,7 +72,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended.
+        // It may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -103,7 +103,7 @@ fn changed(path: &PathBuf) -> SystemTime {
     known.modified().expect("a time")
 }
 
-/// A sweep that was killed when it had some of its shards, and its options: the first steps at which it is not over before.
+/// A sweep that was killed after some of its shards, and its options: the first step size at which it is slow enough.
 fn killed(folder: &str) -> (PathBuf, Vec<&'static str>) {
     for step in ["1e-3", "1e-4", "1e-5"] {
         let (folder, options) = (fresh(folder), [&SLOW[..], &["--step", step]].concat());
@@ -129,7 +129,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
     let said = status(&folder);
     let of = format!("{} of 15", known.len());
     assert!(said.contains(&of) && said.contains("missing"), "{said}");
-    // What was being written.
+    // An unfinished file.
     fs::write(folder.join(".hamel-abc.tmp"), "half").expect("a file");
 
     let said = done(&folder, &options);
@@ -157,7 +157,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
 #[test]
 fn a_folder_has_one_process_at_a_time() {
     let folder = fresh("busy");
-    // Long enough that it does not end by itself.
+    // Long enough not to finish.
     let long = [&SLOW[..3], &["1000000"], &SLOW[4..]].concat();
     let mut child = spawned(&folder, &long);
     until("a shard", || !shards(&folder).is_empty());
@@ -171,7 +171,7 @@ fn a_folder_has_one_process_at_a_time() {
     let part = |part: &'static str| [&long[..], &["--shard", part]].concat();
     let mut child = spawned(&folder, &part("2/4"));
     until("a shard", || !shards(&folder).is_empty());
-    // 1/3 has shards of 2/4, and the whole has all of them.
+    // 1/3 shares shards with 2/4, and the whole sweep contains all of them.
     for other in [long.clone(), part("2/4"), part("1/3"), part("2/2")] {
         let said = refused(&folder, &other);
         assert!(
@@ -186,7 +186,7 @@ fn a_folder_has_one_process_at_a_time() {
     for child in [&mut child, &mut other] {
         child.kill();
     }
-    // Of 2/4 every fourth shard from the second on, of 1/2 every second one from the first on.
+    // 2/4 has every fourth shard from the second on, 1/2 every second one from the first on.
     let numbers = shards(&folder).into_iter().map(|path| {
         let name = path
             .file_stem()
@@ -200,7 +200,7 @@ fn a_folder_has_one_process_at_a_time() {
     }
 }
 
-/// Members that take no time.
+/// A sweep that takes little time.
 const FAST: [&str; 12] = [
     "--vary",
     "start w = uniform(-1, 1); m = normal(1, 0.1)",
@@ -313,7 +313,7 @@ fn what_is_no_shard_of_the_sweep_is_refused() {
     assert!(text(&output.stderr).contains("no folder of a sweep"));
 }
 
-/// What the shell does before it becomes the command.
+/// Runs the command after shell commands that set a limit.
 fn under(limit: &str, folder: &Path) -> Output {
     let script = format!("{limit}; exec \"$@\"");
     let mut shell = Command::new("sh");
@@ -332,8 +332,8 @@ fn hidden(folder: &Path) -> Vec<String> {
     names.filter(|name| name.ends_with(".tmp")).collect()
 }
 
-/// Files may have so many blocks: none, or enough for the manifest and not for a shard. Writes fail, or the system ends
-/// the process within one.
+/// Limits files to a number of blocks: none, or enough for the manifest but not for a shard. Writes fail, or the system
+/// kills the process during one.
 #[test]
 fn a_full_disk_leaves_no_half_file() {
     let whole = fresh("disk");
@@ -389,7 +389,7 @@ fn a_folder_that_cannot_be_written_is_refused() {
             "{said}"
         );
     }
-    // A folder without the right to write, as nobody, whom rights bind.
+    // A folder without write permission, as user nobody, since root may write anyway.
     let folder = fresh("read-only");
     let half = [&FAST[..], &["--shard", "1/2"]].concat();
     done(&folder, &half);

@@ -1,5 +1,4 @@
-//! Members of sweeps: their states, their ends beside those of `hamel simulate`, what is kept of them, and what of those
-//! that fail.
+//! Members of sweeps: their states, their ends compared with `hamel simulate`, their kept results, and failing members.
 
 use crate::common::{hamel, text};
 use crate::shards::bytes;
@@ -29,7 +28,7 @@ fn simulated(name: &str, model: &str, state: &str, options: &[&str]) -> Vec<f64>
         .collect()
 }
 
-/// The values of `end` are those of the same run, to the bit, whatever the method.
+/// The values of `end` are bitwise equal to those of the same run, for every method.
 #[test]
 fn ends_are_those_of_simulate() {
     let top = model("heavy_top");
@@ -73,7 +72,7 @@ fn ends_are_those_of_simulate() {
     }
 }
 
-/// Methods that depend on parameters and on the start are those of the member.
+/// Methods that depend on parameters and on the start use those of the member.
 #[test]
 fn methods_are_those_of_the_member() {
     let plate = format!("{}/../examples/dzhanibekov.eom", env!("CARGO_MANIFEST_DIR"));
@@ -94,14 +93,14 @@ fn methods_are_those_of_the_member() {
                 "{{\"param\": {{\"J1\": {:?}}}, \"velocity\": {{\"w\": [{:?}, 1, 0]}}}}",
                 value[1], value[2]
             );
-            // Outputs stand behind the state.
+            // Outputs follow the state.
             let wanted = simulated(&format!("plate-{method}"), &plate, &state, &options);
             assert_eq!(value[3..], wanted[..value.len() - 3], "{method}");
         }
     }
 }
 
-/// What is not given closes loops, and inputs by expressions have the parameters of their member.
+/// Values not given are completed to close loops, and inputs by expressions use the parameters of their member.
 #[test]
 fn members_are_completed_as_states_are() {
     let bar = model("four_bar_loop");
@@ -133,7 +132,7 @@ fn members_are_completed_as_states_are() {
     );
 }
 
-/// What is not varied is as the file says, also in the other entries of what is varied.
+/// Values not varied are those of the file, even in the other entries of a varied vector.
 #[test]
 fn members_are_changes_of_a_given_state() {
     let folder = fresh("given");
@@ -172,7 +171,7 @@ fn members_are_changes_of_a_given_state() {
     );
 }
 
-/// z = w t − g t²/2: lands at 2 w/g, is highest w²/2 g at w/g, and means w t/2 − g t²/6.
+/// z = w t − g t²/2: lands at 2 w/g, reaches its maximum w²/2 g at w/g, and has the mean w t/2 − g t²/6.
 #[test]
 fn what_is_kept_is_that_of_the_parabola() {
     let keep = "max(height); min(z); mean(z); at(0.3, [y, w]); event(z < 0); event(w <= 0); event(z > 100); event(v > 0); event(2 < z + y)";
@@ -210,7 +209,7 @@ fn what_is_kept_is_that_of_the_parabola() {
             near("at(0.3, [y, w])[2]", w - 3.0, 1e-12);
             near("event(w <= 0)", w / 10.0, 1e-12);
             assert_eq!(at("event(z > 100)"), None);
-            // It holds from the start on.
+            // True from the start on.
             assert_eq!(at("event(v > 0)"), None);
             // y + z = t + w t − 5 t².
             let first = ((w + 1.0) - ((w + 1.0_f64).powi(2) - 40.0).max(0.0).sqrt()) / 10.0;
@@ -220,14 +219,14 @@ fn what_is_kept_is_that_of_the_parabola() {
             }
             match w < 5.0 {
                 true => near("event(z < 0)", w / 5.0, 1e-12),
-                // Where the run ends it is there, but for rounding.
+                // At the end of the run the event occurs only up to rounding.
                 false => assert!(at("event(z < 0)").is_none_or(|t| (t - 1.0).abs() < 1e-12)),
             }
         }
     }
 }
 
-/// The time as a coordinate is in x, and no column is there twice.
+/// If time is a coordinate, it is part of x, and no column occurs twice.
 #[test]
 fn no_two_columns_have_one_name() {
     let vary = [
@@ -320,14 +319,14 @@ fn members_that_fail_are_rows_with_their_reasons() {
     );
 }
 
-/// Members run side by side or alone as threads take them: one thread takes three of these at a time, two take one. Files
-/// have the same bytes however that was, also where parts were computed apart, or again.
+/// Members run together or alone as threads take them: one thread takes three of these at a time, two take one. Files
+/// have the same bytes in any case, even if parts were computed separately or again.
 #[test]
 fn files_do_not_tell_which_members_ran_side_by_side() {
     let plate = format!("{}/../examples/dzhanibekov.eom", env!("CARGO_MANIFEST_DIR"));
     let sizes = ["--members", "40", "--shard-size", "13"];
     let steps = ["--until", "1", "--step", "1e-3", "--method", "rkmk4"];
-    // The last ones go beyond all numbers.
+    // The last ones overflow.
     let vary = ["--vary", "J1 = latin(1, 2); start w[1] = grid(0, 1e200, 2)"];
     let options = [&vary[..], &sizes, &steps].concat();
     let with = |more: &[&'static str]| [&options[..], more].concat();
@@ -349,7 +348,7 @@ fn files_do_not_tell_which_members_ran_side_by_side() {
     assert!(all == bytes(&parts));
 }
 
-/// R₀ exp(ŵ) by the formula of Rodrigues.
+/// R₀ exp(ŵ) by Rodrigues' formula.
 fn turned(start: [[f64; 3]; 3], [x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     let angle = (x * x + y * y + z * z).sqrt();
     let hat = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
@@ -362,8 +361,8 @@ fn turned(start: [[f64; 3]; 3], [x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     product(start, [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))))
 }
 
-/// A pose is varied by its position, and by a turn from the rotation that it has where nothing is varied, whole or by
-/// entries; it stays one.
+/// A pose is varied by its position, and by a rotation from its unvaried attitude, as a whole or by entries; it remains
+/// a pose.
 #[test]
 fn poses_are_varied_on_their_group() {
     let folder = fresh("posed");
@@ -453,7 +452,8 @@ fn poses_are_varied_on_their_group() {
     }
 }
 
-/// A cart that is moved, with a pendulum: what is varied moves the one, and the other begins where the text says.
+/// A cart with prescribed motion and a pendulum: varied parameters move the cart, and the pendulum starts as in the
+/// text.
 #[test]
 fn members_begin_where_free_coordinates_are_given() {
     let cart = "system CartP {

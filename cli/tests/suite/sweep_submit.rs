@@ -1,5 +1,5 @@
-//! `hamel sweep --submit` with stand-ins for the commands of the engines: they run the tasks as the engines do, in another
-//! order, and one of them not at all.
+//! `hamel sweep --submit` with substitutes for the commands of the engines, which run the tasks in another order, and
+//! lose some of them.
 
 use crate::common::{hamel, text};
 use crate::shards::bytes;
@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Runs the script of a task, the last argument, for the tasks of `--array=1-N` from the last to the first; the tasks in
-/// the variable `LOST` are lost. What it was called with goes to a file.
+/// Runs the script of a task, the last argument, for the tasks of `--array=1-N` from the last to the first, except the
+/// tasks in the variable `LOST`. Its arguments are written to a file.
 const ENGINE: &str = r#"#!/bin/sh
 printf '%s\n' "$@" > "$CALLED"
 for word; do
@@ -51,7 +51,7 @@ fn model() -> String {
     )
 }
 
-/// The command with an engine of this name, which loses some tasks.
+/// Runs the command with an engine of this name, which loses some tasks.
 fn submitted(
     engines: &Path,
     command: &str,

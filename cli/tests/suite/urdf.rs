@@ -1,4 +1,4 @@
-//! Robots in URDF through the commands that take descriptions, and states by the names of joints.
+//! Robots in URDF with the commands that take descriptions, and states by the names of joints.
 
 use crate::common::{hamel, text};
 use hamel_codegen::urdf::Options;
@@ -7,10 +7,10 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Small results of a few roundings.
+/// Rounding error of small results.
 const ROUNDING: f64 = 1e-14;
 
-/// A pendulum on a slider: 1 kg that slides along x, 2 kg at 0.5 m below a hinge about y.
+/// A pendulum on a slider: 1 kg sliding along x, 2 kg at 0.5 m below a hinge about y.
 const CART: &str = r#"<robot name="cart">
   <link name="rail"/>
   <joint name="slide-x" type="prismatic">
@@ -44,7 +44,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// M and forces of the cart with the pendulum at an angle, by hand.
+/// M and forces of the cart with the pendulum at an angle, computed by hand.
 #[test]
 fn states_by_joint() {
     let robot = scratch("cart.urdf", CART);
@@ -67,7 +67,7 @@ fn states_by_joint() {
     near(&found["M"][1][1], inertia);
     near(&found["bias"][0], bias[0]);
     near(&found["bias"][1], bias[1]);
-    // The force is the whole one: the damping of the slider is not added to it.
+    // The force is the total: the damping of the slider is not added to it.
     let rest = [0.0 - bias[0], 0.2 - bias[1]];
     let determinant = mass * inertia - coupling * coupling;
     near(
@@ -78,7 +78,7 @@ fn states_by_joint() {
         &found["accel"][1],
         (mass * rest[1] - coupling * rest[0]) / determinant,
     );
-    // Without a force it is what acts.
+    // Without a given force the loads of the robot act.
     let free = eval(
         &[&robot],
         r#"{"configuration": {}, "velocity": {"slide-x": 2}}"#,
@@ -86,7 +86,7 @@ fn states_by_joint() {
     near(&free["generalized_force"][0], -6.0);
 }
 
-/// Joints go by the names that they have in the robot's file, for every command.
+/// Every command accepts the joint names of the robot's file.
 #[test]
 fn a_run_starts_at_a_state_by_joint() {
     let robot = scratch("started.urdf", CART);
@@ -103,7 +103,7 @@ fn a_run_starts_at_a_state_by_joint() {
     assert_eq!(lines[1], "0.0,0.3,1.0,0.0,2.0,0.0");
 }
 
-/// Lists of forces in another order, and several states at once.
+/// Lists of forces in a given order, and several states at once.
 #[test]
 fn several_states_in_an_order_of_their_own() {
     let robot = scratch("ordered.urdf", CART);
@@ -139,7 +139,7 @@ fn wrong_states_by_joint() {
     }
 }
 
-/// Every command takes the robot as it takes its description.
+/// Every command treats the robot like its description.
 #[test]
 fn commands_take_robots() {
     let robot = scratch("door.urdf", CART);
@@ -162,10 +162,10 @@ fn commands_take_robots() {
     assert!(text(&misplaced.stderr).contains("is a description"));
 }
 
-/// Inertias that are parameters give the numbers of those that are constants.
+/// Inertias that are parameters give the same numbers as constant ones.
 #[test]
 fn parameters_change_no_number() {
-    // A base that moves by itself needs inertia.
+    // A free base needs inertia.
     let rail = r#"<link name="rail"><inertial><mass value="4"/><inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="1.5"/></inertial></link>"#;
     let robot = scratch("params.urdf", &CART.replace(r#"<link name="rail"/>"#, rail));
     let state = r#"{"configuration": {"root_joint": {"position": [1, 2, 3]}, "hinge": 0.4},
@@ -185,7 +185,7 @@ fn parameters_change_no_number() {
     }
 }
 
-/// The damping of a joint that follows at three times the rate is felt nine times by its leader.
+/// The damping of a joint that follows at three times the rate acts nine times on its leader.
 #[test]
 fn dampers_of_joints_that_follow() {
     let mimic = r#"<dynamics damping="0.2"/><mimic joint="slide-x" multiplier="-3" offset="1"/><parent link="cart"/><child link="rod"/>"#;
@@ -205,7 +205,7 @@ fn dampers_of_joints_that_follow() {
     );
 }
 
-/// Mistakes are underlined in the URDF, all at once.
+/// Errors are underlined in the URDF, all at once.
 #[test]
 fn mistakes_are_shown_in_the_urdf() {
     let wrong = CART
@@ -236,7 +236,7 @@ fn link(name: &str) -> String {
     format!(r#"<link name="{name}">{BODY}</link>"#)
 }
 
-/// A fingertip without mass at the end of a chain of twelve: the joint that turns it is underlined.
+/// A massless fingertip at the end of a chain of twelve links: the joint that turns it is underlined.
 #[test]
 fn a_joint_without_inertia_is_shown_in_the_urdf() {
     let mut robot = String::from("<robot name=\"chain\">\n<link name=\"l0\"/>\n");
@@ -259,7 +259,7 @@ fn a_joint_without_inertia_is_shown_in_the_urdf() {
     );
 }
 
-/// Joints and links may be called as words of the language are: the description calls them otherwise.
+/// Joints and links may have names that are words of the language: the description renames them.
 #[test]
 fn words_of_the_language_are_names_of_robots() {
     let words: BTreeSet<String> = vocabulary::statements()
@@ -293,7 +293,7 @@ fn words_of_the_language_are_names_of_robots() {
     assert!(refused.is_empty(), "{refused:#?}");
 }
 
-/// Frames are links by their names in the file, which descriptions change; the base that stands is one of them.
+/// Frames are links by their names in the file, which descriptions change; the fixed base is one of them.
 #[test]
 fn frames_are_links() {
     let described = format!(
@@ -313,7 +313,7 @@ fn frames_are_links() {
         assert_eq!(frames.len(), names.len());
         let position = |name: &str, place: usize| number(&frames[name]["pose"][place][3]);
         assert_eq!(position("tool-0", 1), 3.0);
-        // A link's name in the file goes before that of another one in the description.
+        // The name of a link in the file takes precedence over that of another link in the description.
         assert_eq!(position("tool_0", 2), 2.0);
         assert_eq!(frames["arm"], frames["arm_link"]);
         let base = &frames["base link"];
@@ -335,7 +335,7 @@ fn frames_are_links() {
     }
 }
 
-/// Velocities by joints alone, in either form, and beside inputs.
+/// Velocities by joints alone, in either form, and together with inputs.
 #[test]
 fn velocities_alone_are_known_by_joints() {
     let described = format!(
@@ -375,7 +375,7 @@ fn velocities_alone_are_known_by_joints() {
     }
 }
 
-/// A planar joint is one joint, whatever others are called.
+/// A planar joint is one joint, whatever other joints are called.
 #[test]
 fn planar_joints_are_one_joint() {
     let described = format!(
@@ -400,8 +400,8 @@ fn planar_joints_are_one_joint() {
     assert_eq!(alone["xi"], serde_json::json!([1.0, 2.0, 3.0, 0.0]));
 }
 
-/// Two links, a point mass at the end of the second one, which starts on the first axis, where M is singular: nobody has
-/// chosen this start, and other states have accelerations.
+/// Two links with a point mass at the end of the second one, which starts on the first axis, where M is singular: this
+/// start was not chosen by the user, and other states have accelerations.
 #[test]
 fn a_start_at_zero_may_be_singular() {
     let hinge = |name: &str, parent: &str, child: &str, place: &str| {
@@ -423,7 +423,7 @@ fn a_start_at_zero_may_be_singular() {
         );
         let state = r#"{"configuration": {"k": 1.2}}"#;
         let found = eval(&[&robot], state);
-        // In closed form: r = (sin a + sin(a + k), cos a + cos(a + k)) for a = 0, whose rates have to make r̈ = −g e_z.
+        // Closed form: r = (sin a + sin(a + k), cos a + cos(a + k)) for a = 0, whose rates have to satisfy r̈ = −g e_z.
         let (s, c) = 1.2_f64.sin_cos();
         let rates: [f64; 2] = [0, 1].map(|place| number(&found["accel"][place]));
         let reached = [
@@ -439,7 +439,7 @@ fn a_start_at_zero_may_be_singular() {
             let output = hamel(command, state);
             assert!(output.status.success(), "{}", text(&output.stderr));
         }
-        // At the start itself there is none, which is said.
+        // At the start itself there is none, which is reported.
         let output = hamel(&["eval", &robot], "");
         assert_eq!(output.status.code(), Some(1));
         let said = text(&output.stderr);
@@ -447,7 +447,7 @@ fn a_start_at_zero_may_be_singular() {
         let output = hamel(&["simulate", &robot, "--until", "0.01"], "");
         assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
     }
-    // What is singular everywhere still has no inverse: the point on an axis through it.
+    // A system that is singular everywhere still has no inverse: the point lies on an axis.
     let robot = scratch(
         "nowhere.urdf",
         &described

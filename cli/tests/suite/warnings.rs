@@ -1,4 +1,4 @@
-//! What a description declares and does not use is said on standard error, and changes nothing else.
+//! Unused declarations of a description cause warnings on standard error, and change nothing else.
 
 use crate::common::{hamel, text};
 
@@ -22,7 +22,7 @@ fn warnings_are_shown_once_and_end_nothing() {
     }
 }
 
-/// Each of them once, however many velocities a joint has.
+/// Each is reported once, however many velocities a joint has.
 #[test]
 fn negative_masses_and_damping_are_warned_of() {
     let negative = "system N {
@@ -56,8 +56,8 @@ fn errors_come_without_warnings() {
     assert!(!said.contains("warning"), "{said}");
 }
 
-/// Rows that hold by their form are known when a description is read, rows that follow from others when it is derived: both are
-/// said once by every command that derives it.
+/// Rows that hold identically are found when a description is read, dependent rows when it is derived: every command
+/// that derives it reports both once.
 #[test]
 fn rows_that_say_nothing_are_warned_of_once() {
     let weld = "system Weld {

@@ -1,4 +1,4 @@
-//! Whole steps as machine code against the method, one by one and at once.
+//! Compares steps as machine code with the method, one by one and at once.
 
 use super::*;
 use crate::mechanism::{Mechanism, Numbers};
@@ -19,7 +19,7 @@ const METHODS: [General; 6] = [
 ];
 const H: f64 = 1e-2;
 
-/// Every second method, for the model at a place in a list; all of them with `HAMEL_ATTACK`.
+/// Every second method, alternating over a list of models; all of them with `HAMEL_ATTACK`.
 fn some(place: usize) -> impl Iterator<Item = General> {
     let all = std::env::var_os("HAMEL_ATTACK").is_some();
     let methods = METHODS.into_iter().enumerate();
@@ -47,7 +47,7 @@ fn end(
     end.expect("a step")
 }
 
-/// Code that is made of a method has its numbers: to the bit, but where a sine is rounded otherwise.
+/// Compiled steps give the numbers of the method: bitwise, except where a sine is rounded differently.
 #[test]
 fn steps_as_code_are_those_of_the_method() {
     let models = [
@@ -88,14 +88,14 @@ fn steps_as_code_are_those_of_the_method() {
     }
 }
 
-/// What has no end is told by the method: the code ends where a pivot is not positive.
+/// The method reports steps without an end: the code stops at a pivot that is not positive.
 #[test]
 fn steps_without_an_end_say_why() {
     let system = instance("heavy_top.eom");
     let stepper = Stepper::General(General::Rkmk4);
     let whole = Whole::new(&system, &stepper, H, 1e3);
     let mut state = State::<Instance>::start(&system);
-    // Turned so far in one step that series do not hold, and faster than any number.
+    // A rotation too large for the series in one step, and a speed that overflows.
     for speed in [1e4, f64::MAX] {
         state.xi.as_mut().fill(speed);
         let held = |_, _: &Numbers, _: &Numbers| Numbers::filled(0.0, 0);
@@ -110,7 +110,7 @@ fn bits(state: &State<Instance>) -> Vec<u64> {
     all.map(|number| number.to_bits()).collect()
 }
 
-/// All steps in one call are the steps one by one, to the bit; where one has no end nothing has moved.
+/// All steps in one call equal single steps bitwise; if one has no end the state is unchanged.
 #[test]
 fn steps_at_once_are_the_steps() {
     let models = ["heavy_top.eom", "kapitza.eom", "lagging_drone.eom"];
@@ -136,7 +136,7 @@ fn steps_at_once_are_the_steps() {
     }
 }
 
-/// Two systems side by side end, to the bit, where each of them ends alone; where one has no end neither has moved.
+/// Two systems together end bitwise where each of them ends alone; if one has no end neither state changes.
 #[test]
 fn two_at_once_are_each_alone() {
     let models = [
@@ -198,7 +198,7 @@ fn two_at_once_are_each_alone() {
     }
 }
 
-/// What is projected after every step is not run at once.
+/// Steps followed by projections are not run at once.
 #[test]
 fn loops_are_stepped_one_by_one() {
     let system = instance("four_bar_loop.eom");
@@ -209,7 +209,7 @@ fn loops_are_stepped_one_by_one() {
     assert_eq!(state.t, 0.0);
 }
 
-/// Iterations are no tapes, and few steps are not worth one.
+/// Iterative methods are not recorded as tapes, and few steps are not worth compiling.
 #[test]
 fn what_is_no_code() {
     let system = instance("heavy_top.eom");

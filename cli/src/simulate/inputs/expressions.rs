@@ -1,6 +1,6 @@
 //! Inputs by expressions in the language of descriptions: `F = 2 * sin(3 * t) - 4 * q`.
 //!
-//! They are outputs of a description of their own, whose inputs are the time, the parameters and the state.
+//! They are compiled as outputs of a separate description, whose inputs are the time, the parameters and the state.
 
 use super::place;
 use crate::failure::Failure;
@@ -14,20 +14,20 @@ use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::path::plain;
 
-/// Expressions of inputs.
+/// Input expressions.
 #[derive(Clone, Debug)]
 pub struct Expressions {
-    /// Each with the entries of u that it is.
+    /// Each expression with the entries of u that it sets.
     all: Vec<(Vec<usize>, Interpreter)>,
     params: Vec<f64>,
-    /// Whether the time stands first among what they take: where the description has no other use for its name.
+    /// Whether time is their first argument: unless the description uses its name for something else.
     timed: bool,
-    /// The first that mentions a velocity or a state of first order.
+    /// The first input that mentions a velocity or a state of first order.
     moving: Option<String>,
 }
 
 impl Expressions {
-    /// Reads `NAME = EXPRESSION`; none where there is none.
+    /// Reads `NAME = EXPRESSION` texts; `None` if there are none.
     pub fn new(asked: &[String], model: &Model, params: &[f64]) -> Result<Option<Self>, Failure> {
         if asked.is_empty() {
             return Ok(None);
@@ -87,7 +87,7 @@ impl Expressions {
         }))
     }
 
-    /// The entries of u that expressions give.
+    /// The entries of u that expressions set.
     pub fn places(&self) -> impl Iterator<Item = usize> {
         self.all
             .iter()
@@ -99,12 +99,12 @@ impl Expressions {
         self.moving.as_deref()
     }
 
-    /// The parameters have other values from now on.
+    /// Changes the values of the parameters.
     pub fn set_params(&mut self, params: &[f64]) {
         self.params = params.to_vec();
     }
 
-    /// Sets the entries of u that expressions give, at a time of the description.
+    /// Sets the entries of u that have expressions, at a time of the description.
     pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
         let time = self.timed.then_some(t).into_iter();
         let rest = self.params.iter().chain(x).chain(xi).copied();
@@ -119,7 +119,7 @@ impl Expressions {
     }
 }
 
-/// The numbers of an expression that mentions parameters alone.
+/// The value of an expression in parameters alone.
 pub fn constant(expression: &str, model: &Model, params: &[f64]) -> Result<Vec<f64>, String> {
     let mut known: Vec<String> = model.params.iter().map(declared).collect();
     if known.is_empty() {
@@ -136,7 +136,7 @@ pub fn constant(expression: &str, model: &Model, params: &[f64]) -> Result<Vec<f
     Ok(values.unwrap_or_else(|_| vec![f64::NAN; count]))
 }
 
-/// A group with its shape, as inputs are declared.
+/// The declaration of a group with its shape.
 fn declared(group: &Group) -> String {
     match group.shape {
         ShapeKind::Scalar => group.name.clone(),
@@ -146,8 +146,8 @@ fn declared(group: &Group) -> String {
     }
 }
 
-/// Declarations of what expressions may mention, in the order of t, the parameters, x, ξ and z; whether t is among
-/// them.
+/// Declarations of the symbols that expressions may mention, in the order of t, the parameters, x, ξ and z; and whether
+/// t is among them.
 fn known(model: &Model) -> (Vec<String>, bool) {
     let mut all: Vec<String> = model.params.iter().map(declared).collect();
     for coordinate in &model.coordinates {
@@ -168,8 +168,8 @@ fn known(model: &Model) -> (Vec<String>, bool) {
     (all, timed)
 }
 
-/// Entries of vectors of which constraints have taken others away, as the description writes them, and their names: `v[2]`
-/// is `v_2`, where nothing else that is known is called `v`.
+/// Entries of vectors of which constraints have eliminated others, as the description writes them, and their names:
+/// `v[2]` is `v_2`, unless another known symbol is called `v`.
 fn entries_of(model: &Model, known: &[String]) -> Vec<(String, String)> {
     let is_known = |name: &str| known.iter().any(|one| one.split(':').next() == Some(name));
     let entry = |group: &Group| {
@@ -181,7 +181,7 @@ fn entries_of(model: &Model, known: &[String]) -> Vec<(String, String)> {
     groups.filter_map(entry).collect()
 }
 
-/// An expression with these entries by their names.
+/// Replaces these entries in an expression by their names.
 fn renamed(expression: &str, entries: &[(String, String)]) -> String {
     let mut text = expression.to_string();
     for (entry, name) in entries {
@@ -199,16 +199,16 @@ fn renamed(expression: &str, entries: &[(String, String)]) -> String {
     text
 }
 
-/// An expression that can be evaluated.
+/// A compiled expression.
 struct Compiled {
     interpreter: Interpreter,
-    /// How many numbers it is.
+    /// Number of entries.
     count: usize,
-    /// What its value depends on.
+    /// Symbols on which its value depends.
     mentions: Vec<String>,
 }
 
-/// An expression as the output of a description.
+/// Compiles an expression as the output of a description.
 fn compiled(known: &[String], shape: &str, expression: &str) -> Result<Compiled, String> {
     if expression.contains(';') {
         return Err("one expression is needed".into());
@@ -252,7 +252,7 @@ fn compiled(known: &[String], shape: &str, expression: &str) -> Result<Compiled,
     }
 }
 
-/// The first error, in a line.
+/// The first error, on one line.
 fn said(errors: &[Diagnostic]) -> String {
     let Some(error) = errors.first() else {
         return String::new();

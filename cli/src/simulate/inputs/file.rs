@@ -1,4 +1,4 @@
-//! Files of numbers over time, as CSV: a header with `t` and names, rows with increasing t.
+//! CSV files of numbers over time: a header with `t` and names, rows with increasing t.
 
 use super::place;
 use crate::failure::Failure;
@@ -9,14 +9,14 @@ use std::path::Path;
 /// Inputs over time.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// Times as they stand in the file.
+    /// Times as in the file.
     written: Vec<f64>,
-    /// The same from the start of a run on.
+    /// Times relative to the start of the run.
     times: Vec<f64>,
-    /// Entries of u with their values at the times.
+    /// Entries of u with their values at these times.
     columns: Vec<(usize, Vec<f64>)>,
     hold: bool,
-    /// How long runs are.
+    /// Length of runs.
     until: f64,
 }
 
@@ -52,7 +52,7 @@ impl Table {
         })
     }
 
-    /// The same for a run that begins at a time of the description, which the file has to cover; why it does not.
+    /// The table for a run that begins at a time of the description; fails if the file does not cover it.
     pub fn from(mut self, begin: f64) -> Result<Self, String> {
         self.times = self.written.iter().map(|time| time - begin).collect();
         match (self.times.first(), self.times.last()) {
@@ -74,7 +74,7 @@ impl Table {
         self.columns.iter().any(|(known, _)| *known == entry)
     }
 
-    /// Times at which values jump: those of the rows but the first, where they hold.
+    /// Times at which held values jump: all rows except the first.
     pub fn jumps(&self) -> &[f64] {
         match self.hold {
             true => self.times.get(1..).unwrap_or_default(),
@@ -101,7 +101,7 @@ impl Table {
     }
 }
 
-/// Times of samples from the start of a run on, which begins at a time of the description: those of the column `t`.
+/// Times of samples relative to the start of a run, which begins at a time of the description: those of the column `t`.
 pub fn times(path: &Path, begin: f64, until: f64) -> Result<Vec<f64>, Failure> {
     let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display()));
     let (names, rows) = rows(path).map_err(wrong)?;
@@ -122,7 +122,7 @@ pub fn times(path: &Path, begin: f64, until: f64) -> Result<Vec<f64>, Failure> {
     }
 }
 
-/// Numbers of a row, with its line.
+/// Numbers of a row, with its line number.
 type Row = (u64, Vec<f64>);
 
 /// The header and the rows.

@@ -1,6 +1,6 @@
-//! Robots as their descriptions have them, and their dynamics from the definitions in numbers of twice
-//! the length: M = Σ m Jᵀ J + J_ωᵀ Θ J_ω over the bodies, forces by Newton's and Euler's laws, all in
-//! world axes. Of the generator only the syntax tree and the numbers are used.
+//! Robots as described, and their dynamics computed from the definitions in double-double arithmetic: M = Σ m Jᵀ
+//! J + J_ωᵀ Θ J_ω over the bodies, forces by the Newton–Euler equations, all in world axes. Only the generator's syntax
+//! tree and numbers are used.
 
 use hamel_codegen::algebra::double::Double;
 use hamel_codegen::syntax::ast::{
@@ -20,7 +20,7 @@ pub struct Robot<'a> {
     gravity: V3,
 }
 
-/// A freedom of a link: its spin, and its velocity at a point that moves with the link.
+/// A freedom of a link: its angular velocity, and the velocity of a point that moves with the link.
 #[derive(Clone, Copy)]
 struct Column {
     index: usize,
@@ -29,7 +29,7 @@ struct Column {
     point: V3,
 }
 
-/// Where a link is, how it moves at ξ̇ = 0, and what moves it.
+/// Pose of a link, its acceleration at ξ̇ = 0, and its freedoms.
 #[derive(Clone)]
 struct Place {
     turn: M3,
@@ -40,7 +40,7 @@ struct Place {
     columns: Vec<Column>,
 }
 
-/// What the equations of motion are made of.
+/// Terms of the equations of motion.
 pub struct Dynamics {
     pub mass: Vec<Vec<Double>>,
     pub bias: Vec<Double>,
@@ -48,7 +48,7 @@ pub struct Dynamics {
 }
 
 impl<'a> Robot<'a> {
-    /// `None` where a joint follows another one, or nothing moves.
+    /// `None` if a joint follows another one, or if there are no freedoms.
     pub fn of(system: &'a System) -> Option<Self> {
         let mut robot = Robot {
             joints: Vec::new(),
@@ -67,7 +67,7 @@ impl<'a> Robot<'a> {
         Some(robot)
     }
 
-    /// M, the bias and the slope of the potential at (x, ξ).
+    /// M, the bias and the gradient of the potential at (x, ξ).
     pub fn dynamics(&self, x: &[f64], xi: &[f64]) -> Dynamics {
         let n = xi.len();
         let mut places: HashMap<&str, Place> = HashMap::new();
@@ -116,14 +116,14 @@ impl<'a> Robot<'a> {
 }
 
 impl Place {
-    /// The origin goes to a point of the link.
+    /// Moves the origin to a point of the link.
     fn shift(&mut self, by: &V3) {
         let arm = apply(&self.turn, by);
         self.a = add(&self.a, &self.lifted(&arm));
         self.origin = add(&self.origin, &arm);
     }
 
-    /// The acceleration of a point of the link beyond that of the origin.
+    /// The acceleration of a point of the link relative to the origin.
     fn lifted(&self, arm: &V3) -> V3 {
         add(
             &cross(&self.alpha, arm),
@@ -226,7 +226,7 @@ impl Dynamics {
         }
     }
 
-    /// M⁻¹ b by Gauss's elimination; M is positive definite.
+    /// M⁻¹ b by Gaussian elimination; M is positive definite.
     pub fn solve(&self, b: &[Double]) -> Vec<Double> {
         let n = b.len();
         let (mut m, mut b) = (self.mass.clone(), b.to_vec());
@@ -248,7 +248,7 @@ impl Dynamics {
         b
     }
 
-    /// ‖M‖ ‖M⁻¹‖, greatest sums of rows.
+    /// ‖M‖ ‖M⁻¹‖ in the maximum row sum norm.
     pub fn condition(&self) -> f64 {
         let n = self.mass.len();
         let column = |k: usize| -> Vec<Double> {
@@ -267,7 +267,7 @@ impl Dynamics {
     }
 }
 
-/// Entries in x and in ξ.
+/// Numbers of entries of x and of ξ.
 fn sizes(kind: JointKind) -> (usize, usize) {
     match kind {
         JointKind::Fixed => (0, 0),
@@ -277,7 +277,7 @@ fn sizes(kind: JointKind) -> (usize, usize) {
     }
 }
 
-/// Numbers as the descriptions of robots write them.
+/// Values of expressions as the descriptions of robots write them.
 fn number(expression: &Expr) -> Double {
     match &expression.kind {
         ExprKind::Number(value) => Double::of_rational(value),

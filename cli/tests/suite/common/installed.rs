@@ -1,5 +1,5 @@
-//! Where the URDF files of the wheel `example-robot-data` are, which `tests/robots/install.sh`
-//! installs below the target folder.
+//! Locates the URDF files of the wheel `example-robot-data`, which `tests/robots/install.sh` installs below the target
+//! folder.
 
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,9 @@
-//! The binary, run as a user runs it.
+//! Runs the binary as users do.
 
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
-/// Runs the command with a text on standard input.
+/// Runs the command with this text on standard input.
 pub fn hamel(arguments: &[&str], input: &str) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_hamel"))
         .args(arguments)
@@ -12,7 +12,7 @@ pub fn hamel(arguments: &[&str], input: &str) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .expect("the binary runs");
-    // A command that does not read its input may be gone already.
+    // A command that does not read its input may have ended already.
     let _ = child
         .stdin
         .take()
@@ -20,7 +20,7 @@ pub fn hamel(arguments: &[&str], input: &str) -> Output {
     child.wait_with_output().expect("the binary ends")
 }
 
-/// What was written.
+/// Converts output to a string.
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("UTF-8")
 }

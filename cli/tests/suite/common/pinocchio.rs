@@ -1,11 +1,11 @@
-//! States of robots as the files in `tests/reference` have them, for models that were imported.
+//! Reads states of robots from the files in `tests/reference`, for imported models.
 
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::CoordKind;
 use serde_json::Value;
 use std::path::Path;
 
-/// The robots of `tests/reference/control`, or of the folder that `HAMEL_CONTROL_REFERENCE` names.
+/// The robots of `tests/reference/control`, or of the folder in `HAMEL_CONTROL_REFERENCE`.
 pub fn control() -> Vec<Value> {
     let root = match std::env::var_os("HAMEL_CONTROL_REFERENCE") {
         Some(folder) => folder.into(),
@@ -23,7 +23,7 @@ pub fn control() -> Vec<Value> {
     robots
 }
 
-/// The joint of the URDF file that a coordinate or velocity belongs to; `joints` are names of the file with those of
+/// The joint of the URDF file to which a coordinate or velocity belongs; `joints` pairs names of the file with those of
 /// the description.
 pub fn joint(joints: &[(String, String)], of: &str) -> String {
     let pairs = joints.iter();
@@ -63,7 +63,7 @@ pub fn velocities(model: &Model, sample: &Value, joints: &[(String, String)]) ->
     groups.collect()
 }
 
-/// All numbers of a value, rows one after the other.
+/// All numbers of a value, row by row.
 pub fn list(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(entries) => entries.iter().flat_map(list).collect(),

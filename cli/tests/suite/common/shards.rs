@@ -1,4 +1,4 @@
-//! The shards of a sweep, byte for byte.
+//! Reads the bytes of the shards of a sweep.
 
 use crate::table::shards;
 use std::fs;

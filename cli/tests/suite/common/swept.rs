@@ -1,10 +1,10 @@
-//! Sweeps of a ball, and of other descriptions, as tests make them.
+//! Runs sweeps of a ball and of other descriptions.
 
 use crate::common::{hamel, text};
 use crate::table::{Table, fresh};
 use std::path::{Path, PathBuf};
 
-/// A ball that flies in a plane, z̈ = −g + F/m.
+/// A ball in a vertical plane, z̈ = −g + F/m.
 pub const BALL: &str = "system Ball {
     param m = 2, g = 10;
     param drift: vec2 = [0, 0];
@@ -21,14 +21,14 @@ pub const BALL: &str = "system Ball {
     start w = 4;
 }";
 
-/// A sweep of a text, or of a file, into a new folder.
+/// Sweeps a description, given as text or file, into a new folder.
 pub fn swept_into(name: &str, model: &str, options: &[&str]) -> PathBuf {
     let folder = fresh(name);
     run(&folder, model, options);
     folder
 }
 
-/// Sweeps into a folder.
+/// Runs a sweep with this output folder.
 pub fn run(folder: &Path, model: &str, options: &[&str]) {
     let out = folder.display().to_string();
     let (file, input) = match model.contains('{') {

@@ -1,18 +1,18 @@
-//! The shards of a sweep as a table, and folders for them.
+//! Reads the shards of a sweep as a table, and creates folders for them.
 
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// All rows of a folder, by their index.
+/// All rows of a folder, sorted by index.
 #[derive(Debug, PartialEq)]
 pub struct Table {
     /// Names of the numbers, `index` first.
     pub names: Vec<String>,
-    /// Numbers; none where a member has none.
+    /// Numbers; `None` where a member has no result.
     pub rows: Vec<Vec<Option<f64>>>,
-    /// Why members failed.
+    /// Reasons of failures.
     pub errors: Vec<Option<String>>,
 }
 
@@ -54,21 +54,21 @@ impl Table {
         }
     }
 
-    /// A column, with what is missing.
+    /// A column that may have missing values.
     pub fn optional(&self, name: &str) -> Vec<Option<f64>> {
         let place = self.names.iter().position(|known| known == name);
         let place = place.unwrap_or_else(|| panic!("no {name} in {:?}", self.names));
         self.rows.iter().map(|row| row[place]).collect()
     }
 
-    /// A column in which nothing is missing.
+    /// A column without missing values.
     pub fn column(&self, name: &str) -> Vec<f64> {
         let all = self.optional(name);
         all.into_iter().map(|value| value.expect(name)).collect()
     }
 }
 
-/// The shards in a folder, in order.
+/// The shards in a folder, sorted.
 pub fn shards(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -78,7 +78,7 @@ pub fn shards(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// A folder of a test's own that is not there yet.
+/// A folder for one test, which does not exist yet.
 pub fn fresh(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("sweep")

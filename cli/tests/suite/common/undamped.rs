@@ -1,10 +1,10 @@
-//! Robots of `tests/reference/control`, which are without damping, as descriptions.
+//! Descriptions of the robots of `tests/reference/control`, which are without damping.
 
 use hamel_codegen::urdf::{Options, import};
 use serde_json::Value;
 use std::path::Path;
 
-/// The description of a robot without damping, up to its end, and its joints.
+/// The description of a robot without damping, without its last bracket, and its joints.
 pub fn undamped(folder: &Path, reference: &Value) -> (String, Vec<(String, String)>) {
     let urdf = folder.join(reference["urdf"].as_str().expect("a path"));
     let urdf = std::fs::read_to_string(urdf).expect("a URDF");
