@@ -69,6 +69,9 @@ const CI: Task = &[
 
 /// The random attacks at full size, and the tests of `lab/`: some three hours. CI on GitHub runs it once a week.
 const ATTACK: Task = &[
+    "bash tests/emitted/install.sh",
+    "HAMEL_ATTACK=more cargo test --workspace --locked",
+    "HAMEL_ATTACK=more cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test built",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- claims:: expressions:: massless:: mounts:: tilted:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-native --test suite random::",
