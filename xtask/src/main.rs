@@ -1,10 +1,11 @@
 //! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask gallery`,
-//! `cargo xtask bless`; `cargo xtask shape`, the size and the layout of the repository; and `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that
+//! `cargo xtask bless`; `cargo xtask shape`, the size and the layout of the repository; `cargo xtask names FOLDER SEED`, for `docs/names.md`; and `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that
 //! should change no result.
 //!
 //! Each task is a list of commands, run in order from the root of the repository; the first that fails
 //! ends it.
 
+mod names;
 mod record;
 mod shape;
 
@@ -154,6 +155,13 @@ fn main() -> ExitCode {
     let asked: Vec<String> = std::env::args().skip(1).collect();
     let asked: Vec<&str> = asked.iter().map(String::as_str).collect();
     match asked[..] {
+        ["names", package, seed] => {
+            let Ok(seed) = seed.parse() else {
+                eprintln!("the seed `{seed}` is not a whole number");
+                return ExitCode::from(2);
+            };
+            return ended(names::print(package, seed));
+        }
         ["shape"] => return ended(shape::print()),
         ["record", folder] => return ended(record::record(Path::new(folder)).map(|()| true)),
         ["compare", before, after] => {
@@ -168,6 +176,9 @@ fn main() -> ExitCode {
             eprintln!("  {name:7} {what}");
         }
         eprintln!("  shape: size and layout of the repository beside their bounds");
+        eprintln!(
+            "  names FOLDER SEED: ten public items of the crate in a folder, as docs/names.md says"
+        );
         eprintln!("  record FOLDER: what `hamel` says of every description, into FOLDER");
         eprintln!("  compare BEFORE AFTER: where two records differ");
         return ExitCode::from(2);
