@@ -1,9 +1,7 @@
-//! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask gallery`,
-//! `cargo xtask bless`; and `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that
-//! should change no result.
+//! Tasks of contributors: `cargo xtask quick`, `ci`, `attack`, `book`, `gallery` and `bless`; and
+//! `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that should change no result.
 //!
-//! Each task is a list of commands, run in order from the root of the repository; the first that fails
-//! ends it.
+//! Each task is a list of commands, run in order from the root of the repository until one fails.
 
 mod record;
 
@@ -11,58 +9,59 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-/// Commands, each with variables of its environment in front: `NAME=value program arguments …`.
+/// Commands, each preceded by variables of its environment: `NAME=value program arguments …`.
 type Task = &'static [&'static str];
 
-/// Seconds once everything is built: format, and what the stages say of themselves.
+/// Takes seconds once everything is built: format, and the tests of the stages.
 const QUICK: Task = &[
     "cargo fmt --all --check",
     "cargo test --locked -p hamel-algebra-tests -p hamel-language-tests",
     "cargo test --locked -p hamel-tests --test layers --test wrong",
 ];
 
-/// Everything that has to hold before a change lands.
+/// All checks that must pass before a change is merged.
 const CI: Task = &[
     "cargo fmt --all --check",
     // Clippy, as `.ci/rustc` says.
     "HAMEL_LINT=1 cargo check --workspace --all-targets --locked",
-    // `--all-targets` passes over the tests that `cargo test --workspace` leaves out.
+    // `--all-targets` leaves out the tests that `cargo test --workspace` leaves out.
     "HAMEL_LINT=1 cargo check --workspace --locked --test commands --test complete --test counts --test gallery --test book --test built",
     "HAMEL_LINT=1 cargo check --workspace --locked --bins --profile test",
-    // As docs.rs has them. With examples asked for, features are those of the tests, and nothing is checked again.
+    // As on docs.rs. With examples requested, features are those of the tests, and nothing is checked again.
     "RUSTDOC=.ci/rustdoc cargo doc --workspace --no-deps --lib --bins --examples --locked",
     // The runtime without std, and generated code in a crate without std.
     "HAMEL_LINT=1 cargo check -p hamel --no-default-features --locked",
     "HAMEL_LINT=1 cargo check -p hamel --no-default-features --features wide --locked",
     "HAMEL_LINT=1 cargo check --manifest-path tests/nostd/Cargo.toml --locked",
-    // Licences of all that is depended on, and notices of what is shipped.
+    // Licences of all dependencies, and notices of the shipped parts.
     "bash tests/licences/run.sh",
     // The URDF files of the robots in tests/reference/robots.
     "bash tests/robots/install.sh",
-    // Compilers of C beside gcc.
+    // Compilers of C other than gcc.
     "bash tests/c99/install.sh",
-    // The README's test command, with attacks of four times the size.
+    // The README's test command, with attacks four times as large.
     "HAMEL_ATTACK=more cargo test --workspace --locked",
-    // What is no mathematics: pages and the gallery, the table of the report, Python's module; and examples of control.
+    // The tests outside of mathematics: pages, gallery, the table of the report, the Python module, and examples of
+    // control.
     "HAMEL_ATTACK=more cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test book --test built",
-    // The packages as they would be published; `attack` builds each from what it contains.
+    // The packages as they would be published; `attack` builds each from its contents.
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --no-verify --allow-dirty --locked",
     // Generated systems in the stiff solvers of another crate.
     "cargo test --manifest-path tests/diffsol/Cargo.toml --locked",
-    // Thousands of statements, and wrong signs in the generator itself.
+    // Thousands of statements, and wrong signs in the generator.
     "cargo test --manifest-path tests/big/Cargo.toml --locked",
     "cargo test --manifest-path tests/mutants/Cargo.toml --locked",
-    // Random mechanisms against their definitions, in numbers of many digits.
+    // Random mechanisms against their definitions, in high precision.
     "HAMEL_BUILT=1 bash tests/dalembert/run.sh",
-    // Steps of real robots with their slopes, against Pinocchio's.
+    // Steps of real robots with their slopes, against Pinocchio.
     "bash tests/robots/steps.sh",
-    // Tables of sweeps in the programs that read them, and tasks of schedulers of which one is killed.
+    // Tables of sweeps in the programs that read them, and schedulers of which one task is killed.
     "HAMEL_BUILT=1 bash tests/sweep/run.sh",
     "HAMEL_BUILT=1 bash tests/sweep/hyperqueue.sh",
     "HAMEL_BUILT=1 bash tests/sweep/slurm.sh",
-    // The Python package against Pinocchio and SciPy, its types, examples and notebooks.
+    // The Python package against Pinocchio and SciPy; its types, examples and notebooks.
     "HAMEL_BUILT=1 bash tests/python/run.sh",
-    // The book, by the program that its tests were built with; its links are looked at once it is built.
+    // The book, by the program built for its tests; then its links are checked.
     "bash docs/book/install.sh",
     "target/debug/hamel-book build",
     "target/tools/bin/mdbook build target/book-pages --dest-dir ../book",
@@ -73,7 +72,7 @@ const CI: Task = &[
     "HAMEL_BUILT=1 bash tests/cortex/run.sh",
 ];
 
-/// The random attacks at full size: some two hours.
+/// The random attacks at full size, which take about two hours.
 const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- claims:: expressions:: massless:: mounts:: tilted:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
@@ -83,7 +82,7 @@ const ATTACK: Task = &[
     "bash tests/robots/install.sh",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --lib --test suite -- states:: emitted:: shaken:: misspelt:: eigenvalues::",
     "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-c99",
-    // Not optimised, and a fifth at a time: compiling is all of the work.
+    // Not optimised, and a fifth at a time: almost all of the time is compilation.
     "HAMEL_ATTACK=full HAMEL_PART=0 cargo test --locked -p hamel-tests-emitted",
     "HAMEL_ATTACK=full HAMEL_PART=1 cargo test --locked -p hamel-tests-emitted compiled",
     "HAMEL_ATTACK=full HAMEL_PART=2 cargo test --locked -p hamel-tests-emitted compiled",
@@ -94,12 +93,12 @@ const ATTACK: Task = &[
     "bash tests/dalembert/run.sh --what loops written driven --seeds 1000 60 --largest 5",
     "bash tests/dalembert/run.sh --seeds 2000 40 --largest 5 --hard",
     "bash tests/dalembert/run.sh --what platforms --seeds 0 9",
-    // As a user installs it.
+    // The installation by users.
     "bash tests/python/wheel.sh",
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --allow-dirty --locked",
 ];
 
-/// The book, by mdBook, into `target/book`; every link in it leads somewhere, and nothing comes from the network.
+/// The book, by mdBook, into `target/book`; every link must be valid and local.
 const BOOK: Task = &[
     "bash docs/book/install.sh",
     "cargo run --locked -p hamel-book -- build",
@@ -110,10 +109,10 @@ const BOOK: Task = &[
 /// The page of the gallery with its pictures, into `target/gallery`.
 const GALLERY: Task = &["cargo run --locked -p hamel-book -- gallery"];
 
-/// Takes the snapshots as they are now; `git diff` shows what to review.
+/// Accepts the current snapshots; `git diff` shows the changes to review.
 const BLESS: Task = &[
     "INSTA_UPDATE=always INSTA_FORCE_PASS=1 cargo test --workspace --locked --no-fail-fast",
-    // Snapshots inside of sources are not renewed by that: what differs there is edited by hand.
+    // This does not renew snapshots in source files: edit these by hand.
     "cargo test --workspace --locked --no-fail-fast",
     "git --no-pager diff --stat -- *.snap",
 ];
@@ -177,7 +176,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The exit status of a task that is no list of commands.
+/// Converts the result of a task that is not a list of commands to an exit status.
 fn ended(result: std::io::Result<bool>) -> ExitCode {
     match result {
         Ok(true) => ExitCode::SUCCESS,
@@ -189,14 +188,14 @@ fn ended(result: std::io::Result<bool>) -> ExitCode {
     }
 }
 
-/// The root of the repository.
+/// Returns the root of the repository.
 fn root() -> PathBuf {
     let mut folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     folder.pop();
     folder
 }
 
-/// Runs a command; no argument of these has a space in it.
+/// Runs a command; none of its arguments contains a space.
 fn run(command: &str, wrapper: Option<(&str, PathBuf)>) -> bool {
     let words: Vec<&str> = command.split_whitespace().collect();
     let variables = words.iter().take_while(|word| is_variable(word)).count();
