@@ -1,1 +1,1 @@
-//! Generated C, compiled and compared with the interpreter: `tests/attack.rs`; the example: `tests/example.rs`.
+//! Compiles generated C and compares it with the interpreter: `tests/attack.rs`.

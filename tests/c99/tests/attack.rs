@@ -1,7 +1,8 @@
-//! Generated C against the interpreter: every third model, awkward names in every third place, and random descriptions, compiled
-//! by gcc as C99 without a warning; `double` within 1e-13 of scale, `float` within what its rounding makes. With
-//! `HAMEL_ATTACK=more`, as in `cargo xtask ci`, there are all models and places and 20 random descriptions instead of 5, gcc
-//! optimises, and g++ reads all as C++17 and clang as both, where they are installed; `HAMEL_ATTACK=full` has 300.
+//! Compares generated C with the interpreter, for every third model, awkward names in every third position, and random
+//! descriptions, compiled by gcc as C99 without warnings: `double` within 1e-13 of the scale, `float` within its
+//! rounding. With `HAMEL_ATTACK=more`, as in `cargo xtask ci`, there are all models and positions and 20 random
+//! descriptions instead of 5, gcc optimises, and all code also compiles by g++ as C++17 and by clang as both, if
+//! installed; `HAMEL_ATTACK=full` has 300.
 
 #[path = "c99/case.rs"]
 mod case;

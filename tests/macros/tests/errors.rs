@@ -1,14 +1,14 @@
-//! The macro in the compiler: errors stand inside of the description.
+//! Errors of the macro in the compiler: they point into the description.
 //!
-//! The programs are compiled in this workspace, with the crates that its tests were built with: Cargo takes these only where
-//! what is asked for beside the program needs them in the same way. That are `layers`, tests of the repository, for the
-//! generator, and the command `hamel` for what build scripts share with programs.
+//! The programs are compiled in this workspace with the crates built for its tests. Cargo reuses these only if the
+//! other targets of the command need them with the same features: the test `layers` for the generator, and the program
+//! `hamel` for the crates shared by build scripts and programs.
 
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// What rustc says of a program, message by message as people see them.
+/// Returns the messages of rustc for a program, as users see them.
 fn messages(program: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut command = Command::new(env!("CARGO"));

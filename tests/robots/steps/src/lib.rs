@@ -1,1 +1,1 @@
-//! Steps with slopes of real robots against Pinocchio's: `tests/robots/steps.sh`.
+//! Compares steps with slopes of real robots with Pinocchio's; run by `tests/robots/steps.sh`.
