@@ -1,5 +1,5 @@
-//! Frames, momenta, slopes of outputs and of the dynamics, and base parameters of a type that rustc compiled, against
-//! closed forms and differences of its own poses; single precision, and a mass that parameters leave out.
+//! Frames, momenta, slopes of outputs and of the dynamics, and base parameters of a compiled type, compared with closed
+//! forms and differences of its poses; also single precision, and a mass that the base parameters leave out.
 
 hamel::rigid_eom! {
     /// A turret on a mount at 45°, and a slide almost parallel to its axis.
@@ -29,7 +29,7 @@ hamel::rigid_eom! {
     }
 }
 
-/// d/dh of f at 0, fourth order.
+/// d/dh of f at 0, to fourth order
 fn slope<const N: usize>(f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     let h = 1e-3;
     let [p, m, pp, mm] = [h, -h, 2.0 * h, -2.0 * h].map(f);
@@ -55,7 +55,7 @@ fn compiled_functions_are_what_their_definitions_say() {
     let (x, xi, u) = ([0.7, 0.3], [1.3, -0.4], [0.2]);
     let later = |h: f64| [x[0] + h * xi[0], x[1] + h * xi[1]];
     let pose = turret.barrel_pose(&x);
-    // The mount turned by 45° about the first axis, then by the angle; the slide leans by 1e-7.
+    // The mount is rotated by 45° about the first axis, then by the angle; the slide is tilted by 1e-7.
     let (sin, cos) = 0.7_f64.sin_cos();
     let half = 0.5_f64.sqrt();
     let out = |v: [f64; 3]| {
