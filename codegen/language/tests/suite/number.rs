@@ -1,8 +1,8 @@
-//! Literals: decimals are exact, and all else is refused.
+//! Literals: decimals are exact, and everything else is refused.
 
 use included::value;
 
-// An empty literal never comes out of the text of a description.
+// Included, since the text of a description never gives an empty literal.
 #[path = "../../src/syntax/number.rs"]
 mod included;
 

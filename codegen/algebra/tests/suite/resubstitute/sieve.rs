@@ -1,10 +1,10 @@
-//! The sieve of values: what is there passes, and little else does.
+//! The sieve of values passes all present values, and few others.
 
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::prime::Residue;
 use included::Sieve;
 
-// What passes shows in the time that resubstitution takes, and in nothing else.
+// Included, since false positives only affect the duration of resubstitution.
 #[path = "../../../src/resubstitute/sieve.rs"]
 mod included;
 
