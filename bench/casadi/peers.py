@@ -68,7 +68,7 @@ def small(name):
 def write(folder, name, expression, widths):
     arguments = [ca.SX.sym(letter, width) for letter, width in zip("xvu", widths)]
     result = ca.densify(expression(*arguments))
-    # `cse` keeps what is cheapest to read; the count is that of CasADi's instructions without moves.
+    # `cse` keeps the cheapest form; the count is that of CasADi's instructions without moves.
     function = ca.Function(name, arguments, [ca.cse(result)])
     function.generate(f"{name}.c", {"with_header": False})
     Path(f"{name}.c").rename(folder / f"{name}.c")

@@ -7,7 +7,7 @@ import numpy as np
 
 from textbook import Body, clean
 
-# Name, file below `example-robot-data/robots`, joints that are locked at zero, floating base.
+# Name, file below `example-robot-data/robots`, joints locked at zero, floating base.
 ROBOTS = [
     ("ur5", "ur_description/urdf/ur5_robot.urdf", [], False),
     ("panda", "panda_description/urdf/panda.urdf", ["panda_finger_joint1", "panda_finger_joint2"], False),
@@ -28,7 +28,7 @@ def folder():
 
 def rpy(text):
     a, b, c = ([float(v) for v in text.split()] if text else [0.0, 0.0, 0.0])
-    # Roundings of quarter turns.
+    # Angles close to quarter turns are rounded to them.
     a, b, c = (round(v / (np.pi / 2)) * np.pi / 2 if abs(v / (np.pi / 2) - round(v / (np.pi / 2))) < 1e-6 else v for v in (a, b, c))
     x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
     y = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])

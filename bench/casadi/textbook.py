@@ -103,7 +103,7 @@ def joint(body, q):
     e = ca.mtimes(rotation, sparse(fixed.T))
     if body.kind == "ball":
         return motion(e, offset), sparse(np.vstack([np.eye(3), np.zeros((3, 3))]))
-    # Velocities (v, ω): the order of the descriptions. The place does not matter to a root.
+    # Velocities (v, ω), in the order of the descriptions. The position does not matter to a root.
     swap = np.vstack([np.hstack([np.zeros((3, 3)), np.eye(3)]), np.hstack([np.eye(3), np.zeros((3, 3))])])
     return motion(e, sparse(np.zeros(3))), sparse(swap)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Machine code made at once beside rustc's; needs cargo and the robots of tests/robots/install.sh.
+# Compares machine code made at run time with rustc's; needs cargo and the robots of tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -9,6 +9,6 @@ robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
 cargo build --release --manifest-path bench/native/Cargo.toml --target-dir target/bench-native --bin hamel-bench-native
-# One core, where the system can say so.
+# Pins the process to one core, if the system can.
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} target/bench-native/release/hamel-bench-native

@@ -12,7 +12,7 @@ import hamel
 
 STATES = 100_000
 REPEATS = 15
-# Calls one by one are slower; fewer do.
+# Fewer states for single calls, which are slower.
 SINGLE = 5_000
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Operations and times of steps with slopes, beside those of the linearisation; needs cargo and the robots of
+# Compares operations and times of steps with slopes with those of the linearisation; needs cargo and the robots of
 # tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -10,6 +10,6 @@ robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
 cargo build --release --manifest-path bench/steps/Cargo.toml --target-dir target/bench-steps
-# One core, where the system can say so.
+# Pins the process to one core, if the system can.
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} target/bench-steps/release/hamel-bench-steps

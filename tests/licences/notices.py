@@ -14,7 +14,7 @@ NAMES = ("licen", "copying", "notice", "unlicense")
 HEAD = """The Python package of hamel contains code of the following crates, under the licences below. A crate that may be used under
 the MIT licence or another one is used under the MIT licence.
 """
-# Platforms with wheels: what one of them needs is listed for all.
+# Platforms with wheels: dependencies of each are listed for all.
 PLATFORMS = (
     "x86_64-unknown-linux-gnu",
     "aarch64-unknown-linux-gnu",

@@ -54,7 +54,7 @@ def main() -> int:
             packages = json.load(file)["packages"]
         for place, package in packages.items():
             name = place.rpartition("node_modules/")[2]
-            # The page itself, and folders of this repository that it links to.
+            # The page, and folders of this repository that it links to.
             if "node_modules/" not in place or package.get("link"):
                 continue
             licence = package.get("license", "")

@@ -13,7 +13,7 @@ import time
 
 SWEEP = ["sweep", "tests/models/heavy_top.eom", "--vary", "start w = uniform(-1, 1); m = latin(1, 2)"]
 SWEEP += ["--members", "96", "--until", "1", "--seed", "5", "--shard-size", "2", "--keep", "end; max(norm(w))"]
-# Seconds; the machine may be busy.
+# Time limit in s; the machine may be busy.
 PATIENCE = 300
 
 
@@ -123,7 +123,7 @@ def test(hamel, folder):
         words = [hamel, *SWEEP, "--out", runs, "--submit", "hyperqueue", "--tasks", "16", "--wait"]
         return subprocess.Popen(words, env=environment, start_new_session=True, **options)
 
-    # HyperQueue gives the task of a worker that is lost to the other one, and the one submission ends well.
+    # HyperQueue gives the task of a lost worker to the other one, and the submission succeeds.
     runs, cluster = folder / "runs", Cluster(folder / "cluster")
     try:
         submission = submitted(cluster, runs, stderr=subprocess.DEVNULL)
@@ -138,7 +138,7 @@ def test(hamel, folder):
     assert shards(runs) == wanted
     print(f"{len(wanted)} shards by 16 tasks, the same as those of one process: a worker was lost with {there} of them there")
 
-    # Server, workers and client are killed, and the same command begins again.
+    # Server, workers and client are killed, and the same command is repeated.
     runs, cluster = folder / "again", Cluster(folder / "first")
     submission = submitted(cluster, runs, stderr=subprocess.DEVNULL)
     until("a shard", lambda: len(shards(runs)) > 4)
@@ -149,7 +149,7 @@ def test(hamel, folder):
     assert there < len(wanted), "it was over before it was killed"
     cluster = Cluster(folder / "second")
     try:
-        # Tasks that have outlived their worker hold their parts until they end.
+        # Tasks that outlive their worker keep their parts locked until they end.
         until("the rest", lambda: submitted(cluster, runs).wait() == 0)
     finally:
         cluster.kill()

@@ -23,13 +23,13 @@ from .spoken import External, Spoken
 from .trees import Forest
 from .written import Written
 
-# What hamel cannot do and says so, with what is left out of `generate` then.
+# Limitations that hamel reports, each with the functions that are then left out of `generate`.
 LEFT_OUT = {
     "has no regressor": ", regressor",
     "`centroidal_map` is not known": ", centroidal_map",
     "`parameter_slopes` is not known: the constraints": ", parameter_slopes",
 }
-# What a random mechanism should not have been.
+# Messages for random mechanisms that are degenerate.
 MEANINGLESS = ["can coincide", "its points keep their distance", "the velocity by others", "leave it none of its own"]
 
 
@@ -116,9 +116,9 @@ def external(seed, largest, hard):
     return tree(seed, largest, hard, External)
 
 
-# What is compared, by name.
+# The comparisons, by name.
 WHAT = {"trees": tree, "loops": loop, "written": written, "driven": driven, "awkward": awkward, "spoken": spoken}
-# And what is only on demand.
+# Further ones on request.
 ASKED = WHAT | {"platforms": platform}
 
 

@@ -27,7 +27,7 @@ class Awkward:
         _, place = super().mount(moving)
         angle = lambda: self.pick(ANGLES)  # noqa: E731
         turned = self.pick([lambda: rpy(angle(), angle(), angle()), lambda: rotation(self.pick("xyz"), angle()) * rotation(self.pick("xyz"), angle()), lambda: STILL])()
-        # A place in the numbers of the same angles.
+        # A position among the numbers of the same angles.
         if r.random() < 0.3:
             a = angle()
             place = Vec.of([call("cos", a), call("sin", a), 0])

@@ -32,7 +32,7 @@ class Errors:
             self.found.append((where, name, f"{len(theirs)} numbers in place of {len(mine)}"))
             return
         size = max([abs(a) for a in mine], default=mpf(0))
-        # Numbers that are nearly 0 are compared with `least`.
+        # Numbers close to 0 are compared with `least`.
         error = max([abs(mpf(b) - a) for a, b in zip(mine, theirs)], default=mpf(0)) / max(size, mpf(least))
         if any(b != b for b in theirs):
             error = mpf("inf")
@@ -72,7 +72,7 @@ class Comparison:
     def __init__(self, m, doors, errors, where, tolerance=1e-9, slopes=True):
         self.slopes = slopes
         self.m, self.d, self.doors, self.errors, self.where, self.tolerance = m, Definitions(m), doors, errors, where, tolerance
-        # Slopes that mean something along the ties alone, where ties follow from one another.
+        # Slopes that are meaningful only along the ties, if these are redundant.
         self.along = set()
 
     def note(self, name, mine, theirs, tolerance=None, least=1e-3):
@@ -154,7 +154,7 @@ class Comparison:
         if not self.unique:
             self.along = {"linearize"} | {f"{o.name}_slopes" for o in m.outputs if o.accelerations}
         if m.driven:
-            # A coordinate that is given is not read, wherever it is.
+            # A prescribed coordinate is not read, whatever its value.
             self.along = {"linearize", "inverse_dynamics_slopes"} | {f"{o.name}_slopes" for o in m.outputs}
         given = {
             "x": [float(e) for e in s.x],
@@ -203,23 +203,23 @@ class Comparison:
             self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(bonds), [mpf(f) for f in force]), tolerance)
         else:
             self.shared(c, s, given, kind)
-        # From beside the ties.
+        # At a state off the ties.
         beside = tied.beside(d, s)
         given = {**given, "x": [float(e) for e in beside.x], "xi": [float(e) for e in [*(beside.xi[i] for i in d.active), *s.z]]}
         closures = [e for k, e in enumerate(m.closures) if k not in d.solved]
         if "constraint" in c and closures and self.unique:
-            # Behind those that kinds of coordinates bring along.
+            # After those of the kinds of coordinates.
             own = len(self.doors.eval(self.state(s))["constraint"]) - len(closures)
             said = c.call("constraint", own + len(closures), **given)[own:]
             self.note(kind + "constraint", [e.at(beside) for e in closures], said, tolerance)
         if not self.unique:
             return
         if "accel" in c and not m.driven:
-            # Where loops are off, they come back as fast as they are said to.
+            # Off the loops, violations decay at the stated rate.
             self.note(kind + "accel beside", d.accel(beside), c.call("accel", len(d.active) + m.nz, **given), tolerance)
         if "project_position" in c:
             step = tied.project_position(d, beside)
-            # States of first order stand behind the velocities, and do not move.
+            # First-order states follow the velocities, and do not move.
             step = [step[i] for i in d.active] + [mpf(0)] * m.nz
             self.note(kind + "project_position", step, c.call("project_position", len(step), **given), tolerance)
         if "project_velocity" in c:
@@ -257,7 +257,7 @@ class Comparison:
         if "regressor" not in c:
             return
         d, n = self.d, self.m.n
-        # As many as there is room for; the rest of the room is untouched.
+        # Limited by the available room, the rest of which is unchanged.
         room = 4096
         try:
             beta = c.call("base_parameters", room, **given)
@@ -266,7 +266,7 @@ class Comparison:
         beta = beta[: next(k for k, b in enumerate(beta) if b == 777.0)]
         y = c.call("regressor", n * len(beta), **given)
         force = [sum(y[i * len(beta) + k] * b for k, b in enumerate(beta)) for i in range(n)]
-        # With the force of dampers that joints have: they are parameters, too.
+        # With the force of dampers in joints, which are parameters, too.
         self.note(kind + "regressor", self.m.with_dampers(d, s), force, 1e-3 if single_of(kind) else None)
 
     def state(self, s):
@@ -280,7 +280,7 @@ class Comparison:
         self.note("eval gamma", d.gamma(s), said["gamma"])
         self.note("eval Gamma", d.connection(s), said["Gamma"])
         matrix = d.mass_matrix(s)
-        # The row of the time is no equation of motion, and is not compared.
+        # The row of the time is not an equation of motion, and is not compared.
         first = d.first
         self.note("eval M", [row[first:] for row in matrix[first:]], [row[first:] for row in said["M"][first:]])
         if not mine.get("linearize"):

@@ -7,7 +7,7 @@ from . import vectors
 from .vectors import NIL, ONE, add, cross, dot, least_squares, mpf as number, on, scale, solve, sub, times, transposed, vee
 
 STEP = number(10) ** -20
-# Of what is itself made of differences.
+# Tolerance of values that are computed from differences.
 WIDE = number(10) ** -13
 
 
@@ -22,7 +22,7 @@ class Definitions:
         self.of = mechanism
         self.time = mechanism.time is not None
         self.first = 1 if self.time else 0
-        # Places of the velocities from which the others follow, and the ties by which they do; here none do.
+        # Indices of the independent velocities, and the ties for the others; none here.
         self.active, self.solved = list(range(mechanism.n)), []
 
     def held(self, s):
@@ -41,7 +41,7 @@ class Definitions:
         """The inertia of active velocities."""
         return m
 
-    # The columns of A, and what moves along them.
+    # The columns of A, and displacements along them.
 
     def columns(self, s):
         """The columns of A at a state: the first is that of the time, where there is one."""

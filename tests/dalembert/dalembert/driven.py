@@ -25,7 +25,7 @@ class Driven(Loops):
         else:
             self.nearby()
         m, r = self.m, self.r
-        # Freedoms that drives may take: all of those of a tree, all but one beside loops.
+        # Velocities that drives may prescribe: all of a tree, all but one with loops.
         left = m.n - len(m.closures) - len(m.kept) - (1 if self.looped else r.random() < 0.9)
         groups = list(m.velocities)
         r.shuffle(groups)

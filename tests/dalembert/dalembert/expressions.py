@@ -13,7 +13,7 @@ class State:
 
     def __init__(self, x, xi=(), u=(), z=(), p=(), a=()):
         self.x, self.xi, self.u, self.z, self.p, self.a = x, xi, u, z, p, a
-        # What has been computed: from x and parameters alone, and from all.
+        # Cached values: those of x and parameters only, and those of everything.
         self.shape, self.kept = {}, {}
 
     def but(self, **changed):

@@ -13,7 +13,7 @@ from .vectors import mpf
 
 KINDS = ["planar", "planar", "slider", "two loops", "rod", "rod", "ball", "flat", "bricard", "gears", "axis", "axis", "turned", "turned"]
 KINDS += ["tree", "tree", "tree"]
-# Where the loops stand: mounts of the whole mechanism.
+# Mounts of the whole mechanism.
 GROUNDS = [lambda: STILL, lambda: rotation("x", PI / 4), lambda: rotation("y", "0.3") * rotation("x", PI / 4), lambda: rotation("z", PI / 4)]
 
 
@@ -26,15 +26,15 @@ class Loops(Forest):
 
     def __init__(self, random, size, hard=False, time=0.2):
         self.kind = random.choice(KINDS)
-        # Between which points there are pins, in which of their directions; rods; axes that meet.
+        # The points connected by pins, with their directions; rods; axes that coincide.
         self.ends, self.guess = [], None
         super().__init__(random, size, free=0.1, time=time, hard=hard)
 
     def positive(self):
-        # Lengths as well: what is tiny makes a loop that cannot be closed.
+        # Lengths as well: tiny ones make loops that cannot be closed.
         return f"{self.r.uniform(0.2, 2):.3f}"
 
-    # What the loops are made of.
+    # Parts of loops.
 
     def link(self, name, kind, axis, parent, mount, body=True):
         """A joint with a body; the name of its frame."""
@@ -84,7 +84,7 @@ class Loops(Forest):
         base = Vec.of([f"{self.r.uniform(0.5, 1.2):.2f}", self.number(0.3), 0])
         if self.hard and self.r.random() < 0.5:
             z = Vec.of([0, "1e-7", 1])
-        # What only the loop gives inertia.
+        # Links whose inertia comes only from the loop.
         light = self.r.random() < 0.3
         if kind == "planar":
             a = self.chain("a", ground, zero, z, 2, light=light)
@@ -102,24 +102,24 @@ class Loops(Forest):
             d = self.chain("d", ground, far, z, 1 + self.r.randrange(2))
             self.ends += [("pin", a, b), ("pin", c, d)]
         elif kind == "rod":
-            # A crank and a rocker about axes in space, with a rod without mass between balls.
+            # A crank and a rocker about axes in space, with a massless rod between ball joints.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 1)
             b = self.chain("b", ground, base + Vec.of([0, 0, self.number()]), Vec.of(self.pick(AXES)), 1 + self.r.randrange(2), light=light)
             self.ends.append(("rod", a, b))
         elif kind == "ball":
-            # The rod has mass and hangs on a ball; its other end is pinned.
+            # The rod has mass and hangs on a ball joint; its other end is pinned.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 1)
             rod = self.link("rod", self.pick(["spherical", "spherical3"]), None, a[0], (STILL, a[1]))
             b = self.chain("b", ground, base, Vec.of(self.pick(AXES)), 1)
             self.ends.append(("ball", (rod, Vec.of([self.length(), 0, "0.1"])), b))
         elif kind == "flat":
-            # Parallel axes, and a ball for a pin: a row more than there need be.
+            # Parallel axes, and a ball joint as a pin: one redundant row.
             m.frame("tilted", ground, rotation("x", "0.4"), zero)
             a = self.chain("a", "tilted", zero, Vec.of([0, 0, 1]), 2, light=light)
             b = self.chain("b", "tilted", base, Vec.of([0, 0, 1]), 1 + self.r.randrange(2))
             self.ends.append(("ball", a, b))
         elif kind == "axis":
-            # Three rows for a direction, of which one follows from the others: with parallel axes two of them do.
+            # Three rows for a direction, one of them redundant; with parallel axes two of them.
             if self.r.random() < 0.5:
                 last = self.chain("a", ground, zero, z, 2 + self.r.randrange(2))[0]
                 along = Vec.of(self.pick([[1, 0, 0], ["0.6", "0.8", 0]]))
@@ -129,7 +129,7 @@ class Loops(Forest):
                 along = Vec.of(self.pick(AXES))
             self.ends.append(("axis", (last, along), (ground, along)))
         elif kind == "turned":
-            # Nine rows for a rotation, of which at most three count.
+            # Nine rows for a rotation, at most three of them independent.
             if self.r.random() < 0.5:
                 last = self.chain("a", ground, zero, z, 2 + self.r.randrange(2))[0]
             else:
@@ -137,7 +137,7 @@ class Loops(Forest):
                 last = self.link("ball", self.pick(["spherical", "spherical3"]), None, a[0], (STILL, a[1]))
             self.ends.append(("turned", (last, zero), (ground, zero)))
         elif kind == "gears":
-            # Straight loops: velocities follow from others. Beside them, if there is room, a rod.
+            # Linear loops: velocities are dependent. In addition, if there is room, a rod.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 2, ("revolute",))
             b = self.chain("b", ground, base, Vec.of(self.pick(AXES)), 2, ("revolute", "prismatic"))
             self.ends.append(("gear", None, None))
@@ -185,7 +185,7 @@ class Loops(Forest):
                 continue
             (f, p), (g, q) = a, b
             if q is None:
-                # Where the point is now, in few digits: Newton does the rest.
+                # The current position of the point, with few digits: Newton's method does the rest.
                 q = Vec.of([f"{float(e):.2f}" for e in m.point(s, f, p.at(s))])
             self.close(kind, f, p, g, q, s)
         if self.kind != "tree" and r.random() < 0.2:
@@ -230,7 +230,7 @@ class Loops(Forest):
             m.say(f"loop {a} = {b}{tail};")
             m.closures += [entry(k) for k in range(3)]
         elif kind == "pin":
-            # In the plane of the ground, whose axes may be turned.
+            # In the plane of the ground, whose axes may be rotated.
             frame = "ground" if "ground" in m.frames else WORLD
             for k in range(2):
                 n = Vec.of([[1, 0, 0], [0, 1, 0]][k])
@@ -267,7 +267,7 @@ class Loops(Forest):
         states = [random_state(self.m, self.r) for _ in range(2)]
         return [e for e in entries if abs(e.at(states[0]) - e.at(states[1])) > mpf(10) ** -30]
 
-    # Where they are closed.
+    # The closed configuration.
 
     def asked(self):
         """With guesses for the start, so that a run could begin."""
@@ -300,7 +300,7 @@ def closed(m, s):
         rows = closing(d, m, s)
         kept = independent(rows, mpf(10) ** -9)
         if not kept:
-            # Nothing that moves can close them.
+            # No motion can close them.
             raise Open
         b = [rows[i] for i in kept]
         h = vectors.on(vectors.transposed(b), vectors.solve([[vectors.dot(p, q) for q in b] for p in b], [off[i] for i in kept]))
@@ -313,7 +313,7 @@ def closed(m, s):
     else:
         raise Open
     if m.closures and any(mpf(10) ** -30 < max(map(abs, row)) < mpf(10) ** -5 for row in closing(d, m, s)):
-        # A rod that is stretched out: what doubles say of the rate of its length is nothing but rounding.
+        # The rod is stretched out: in doubles, the rate of its length is only rounding.
         raise Open
     return s.but(x=[mpf(float(e)) for e in s.x])
 

@@ -166,7 +166,7 @@ class Emitted:
         if said.startswith("refused"):
             raise Refused(f"{name}: {said}")
         found = [float(word) for word in said.split()]
-        # As many as there is room for, as from C.
+        # As many as there is room for, as in C.
         return found + [777.0] * (size - len(found))
 
 

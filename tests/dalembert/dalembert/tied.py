@@ -18,7 +18,7 @@ def nearest(d, s, off):
     m = [row[d.first :] for row in d.mass_matrix(s)[d.first :]]
     kept = independent(b)
     b, off = [b[i] for i in kept], [off[i] for i in kept]
-    # The shortest of ways that close the ties is the same where their own size is added, and that is always regular.
+    # The shortest displacement that closes the ties is unchanged when BᵀB is added, which makes the matrix regular.
     m = [[entry + sum((row[i] * row[j] for row in b), NIL) for j, entry in enumerate(m_row)] for i, m_row in enumerate(m)]
     ways = [solve(m, row) for row in b]
     inner = solve([[dot(row, way) for way in ways] for row in b], off)

@@ -27,14 +27,14 @@ class Written(Forest):
         self.groups, self.starts = [], []
         super().__init__(random, size, free=0, time=0.2, hard=hard)
 
-    # Groups: coordinates, how they move with ν, what they turn or shift.
+    # Groups: coordinates, their motion by ν, and the bodies that they rotate or shift.
 
     def tree(self, size, free):
         r, m = self.r, self.m
         kinds = [r.choice(KINDS)]
         while sum(SIZES.get(kind, 1) for kind in kinds) < 1 + size:
             kinds.append(r.choice(KINDS))
-        # Places of ν, once velocities are known.
+        # Indices of ν, once velocities are known.
         self.by_rows = self.t is None and r.random() < 0.35 and not {"world SO3", "S3"} & set(kinds)
         count, made = 0, []
         for k, kind in enumerate(kinds):
@@ -56,7 +56,7 @@ class Written(Forest):
             self.frames.append(frame)
             parent = frame
             self.body(frame)
-        # Whatever moves, moves a body.
+        # Every group moves a body.
         heavy = Mat.of([["0.5", "0.05", "0.02"], ["0.05", "0.6", "0.03"], ["0.02", "0.03", "0.7"]])
         for frame in self.frames[1:]:
             m.bodies.append((frame, lift("0.7"), Vec.of([0, "0.1", "0.2"]), heavy, "com"))
@@ -74,7 +74,7 @@ class Written(Forest):
                 names += [w[i] for i in range(3)]
             names += [m.velocity(f"v{k}") for k in range(n - len(names))]
             self.velocities += names
-        # L U with ones on the diagonal of L, where what changes stands.
+        # L U with ones on the diagonal of L, in the entries that vary.
         lower = [[lift(self.number()) if i > j and r.random() < 0.4 else None for j in range(n)] for i in range(n)]
         for i in range(n):
             for j in range(i):
@@ -232,7 +232,7 @@ class Written(Forest):
             self.m.onto.append((place, 4, lambda q: scale(mpf(length), unit(q))))
             self.starts.append((place, lambda r: scale(mpf(length), unit([mpf(r.gauss(0, 1)) for _ in range(4)]))))
         self.plain += entries
-        # ν = 2 ... of the vector part of q* q̇, by the factor.
+        # ν = 2 times the vector part of q* q̇, up to the factor.
         back = f"[{entries[0].text}, -{entries[1].text}, -{entries[2].text}, -{entries[3].text}]"
         moved = f"rate({name})" if kind else f"[{', '.join(f'rate({e.text})' for e in entries)}]"
         product = f"qmul({moved}, {back})" if world else f"qmul({back}, {moved})"

@@ -15,7 +15,7 @@ from .vectors import mp, mpf
 from .wrong_driven import DRIVEN, driven_one, driven_state
 from .wrong_written import WRITTEN, written_one, written_state
 
-# What is replaced in the texts, and by what.
+# Replacements in the texts.
 SMALL = [
     ("[0, 0, (-9.81)]", "[0, 0, 9.81]"),
     ("com [0.1, 0.2, 0.3]", "com [0.1, -0.2, 0.3]"),
@@ -101,7 +101,7 @@ def on_loops(m, random_):
     return allowed_velocities(m, s)
 
 
-# Texts with what is replaced in them, how a state is found, and whether slopes are needed.
+# Texts with their replacements, a function that finds a state, and whether slopes are needed.
 CASES = [
     (small, SMALL, random_state, False),
     (closed_one, CLOSED, on_loops, True),
