@@ -1,4 +1,4 @@
-"""Robots of URDF files as trees of bodies, and trees as descriptions of hamel."""
+"""Robots from URDF files as trees of bodies, and trees as descriptions for hamel."""
 
 import xml.etree.ElementTree as xml
 from pathlib import Path
@@ -16,7 +16,7 @@ ROBOTS = [
 
 
 def folder():
-    """Where the wheel of example-robot-data puts its files."""
+    """Returns the folder in which the wheel of example-robot-data installs its files."""
     import sys
 
     for base in map(Path, sys.path):
@@ -42,7 +42,7 @@ def numbers(element, key, default):
 
 
 def read(path, locked, floating):
-    """The tree in the order of the file, fixed joints merged."""
+    """Returns the tree in the order of the file, with fixed joints merged."""
     root = xml.parse(path).getroot()
     links = {link.get("name"): link for link in root.findall("link")}
     joints = root.findall("joint")
@@ -84,7 +84,7 @@ def read(path, locked, floating):
 
 
 def rotation_text(matrix):
-    """A quarter turn by its entries; others by roll, pitch and yaw."""
+    """A quarter turn as a matrix; other rotations as roll, pitch and yaw."""
     matrix = clean(matrix)
     if np.array_equal(matrix, np.round(matrix)):
         rows = ", ".join("[" + ", ".join(str(int(v)) for v in row) + "]" for row in matrix)
@@ -103,7 +103,7 @@ def vector(values):
 
 
 def description(name, bodies):
-    """The tree as a description: what `hamel import` writes, with an input for every freedom."""
+    """The description of a tree, in the form of `hamel import`, with an input for every degree of freedom."""
     lines = [f"/// {name}, from its tree of joints.", f"pub system {name.title().replace('_', '')} {{"]
     total = sum(body.freedoms for body in bodies)
     for i, body in enumerate(bodies):
@@ -146,7 +146,7 @@ def description(name, bodies):
 
 
 def chain(count):
-    """A generic chain: no zeros but those of axes."""
+    """A generic chain: only the axes contain zeros."""
     bodies = []
     for i in range(count):
         inertia = np.array([[0.02, 0.001, 0.002], [0.001, 0.03, 0.003], [0.002, 0.003, 0.04]])

@@ -1,10 +1,10 @@
-"""MuJoCo on a free body and on a top in a ball joint; prints JSON that the report reads.
+"""MuJoCo on a free body and on a top in a ball joint; prints JSON for the report.
 
     python bench/peers/mujoco_peer.py tests/reference
 
-Euler, implicit and RK4 of MuJoCo, double precision, against the reference solutions of the folder.
-Times are medians of repeats of whole runs, each one call of mj_step for all of its steps, so that
-Python's own time does not count.
+MuJoCo's Euler, implicit and RK4 in double precision, compared with the reference solutions in the folder. Times are
+medians over repeated whole runs, each a single call of mj_step for all of its steps, so that Python's overhead does
+not count.
 """
 
 import json

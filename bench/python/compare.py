@@ -1,4 +1,4 @@
-"""Forward dynamics of a robot at many states: medians of interleaved runs, each result compared before it is timed."""
+"""Forward dynamics of a robot at many states: medians of interleaved runs; each result is compared before it is timed."""
 
 import ctypes
 import statistics
@@ -21,7 +21,7 @@ def numbers(array):
 
 
 def in_cpp(path, model):
-    """The chain of the model in C++: a way for each convention."""
+    """Forward dynamics in C++: one variant for each convention."""
     library = ctypes.CDLL(path)
     library.chain.restype = ctypes.c_void_p
     n = model.nv

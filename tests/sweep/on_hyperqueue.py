@@ -1,7 +1,7 @@
-"""A sweep on a cluster of HyperQueue, of which a worker is killed in the middle, and then everything.
+"""A sweep on a cluster of HyperQueue: first a worker is killed in the middle, then everything.
 
-The wheel of HyperQueue has its server, its worker and its client, and not the command `hq`: that is stood for by `submit`
-here, which takes the arguments that `hamel sweep --submit hyperqueue` gives it.
+The wheel of HyperQueue contains its server, its worker and its client, but not the command `hq`: `submit` replaces
+it here, and takes the arguments that `hamel sweep --submit hyperqueue` passes.
 """
 
 import os
@@ -18,7 +18,7 @@ PATIENCE = 300
 
 
 def serve(folder):
-    """A server, until it is killed."""
+    """Runs a server until it is killed."""
     from hyperqueue import LocalCluster
 
     started = LocalCluster(folder)
@@ -26,9 +26,9 @@ def serve(folder):
 
 
 def work(folder, server):
-    """A worker of a server in another process, until it is killed.
+    """Runs a worker for a server in another process until it is killed.
 
-    The wheel starts workers for a server of the same process alone, which they find by a link in its folder.
+    The wheel starts workers only for a server of the same process, which they find by a link in its folder.
     """
     from hyperqueue import LocalCluster
     from hyperqueue.cluster import WorkerConfig
@@ -67,7 +67,7 @@ def submit(arguments):
 
 
 class Cluster:
-    """A server and two workers, each a process of its own."""
+    """A server and two workers, each a separate process."""
 
     def __init__(self, folder):
         folder.mkdir()
@@ -84,7 +84,7 @@ class Cluster:
         return process
 
     def lose(self, worker):
-        """A worker as if its machine were lost, with the tasks on it: it has no chance to say that they have failed."""
+        """Kills a worker with its tasks as if its machine were lost: it cannot report that they have failed."""
         tasks = []
 
         def caught():

@@ -1,4 +1,4 @@
-"""A sweep as an array of tasks of Slurm, of which one is killed in the middle, and others are cancelled."""
+"""A sweep as a Slurm array of tasks, one of which is killed in the middle while others are cancelled."""
 
 import os
 import pathlib
@@ -40,7 +40,7 @@ def test(hamel, folder):
 
 
 def killed(processes):
-    """Whether one of them was still there to be killed."""
+    """Whether at least one of them still existed."""
     for process in map(int, processes):
         try:
             os.kill(process, signal.SIGKILL)

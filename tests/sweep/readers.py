@@ -1,4 +1,4 @@
-"""Reads a sweep by Polars, DuckDB and pandas: one table, whoever reads it, with the columns that were asked for."""
+"""Reads a sweep by Polars, DuckDB and pandas: the same table for all readers, with the requested columns."""
 
 import json
 import math
@@ -43,7 +43,7 @@ assert list(by_pandas.columns) == columns, list(by_pandas.columns)
 
 
 def rows(values):
-    """Rows by their index, with None for what is missing."""
+    """Rows by their index, with None for missing values."""
     missing = lambda value: value is None or isinstance(value, float) and math.isnan(value)
     return sorted([None if missing(value) else value for value in row] for row in values)
 

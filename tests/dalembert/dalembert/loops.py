@@ -1,6 +1,6 @@
-"""Random mechanisms with closed loops: planar linkages, cranks that drive sliders, rods between points, overconstrained
-ones, gears, links of which an axis or all of the rotation is kept by equations of vectors and matrices, and trees whose
-frames are pinned to one another or to the ground."""
+"""Random mechanisms with closed loops: planar linkages, slider-cranks, rods between points, overconstrained ones,
+gears, links with an axis or the whole rotation fixed by equations of vectors and matrices, and trees whose frames
+are pinned to one another or to the ground."""
 
 from . import vectors
 from .definitions import Definitions, independent
@@ -18,11 +18,11 @@ GROUNDS = [lambda: STILL, lambda: rotation("x", PI / 4), lambda: rotation("y", "
 
 
 class Open(Exception):
-    """No configuration was found in which the loops are closed."""
+    """Raised if no configuration was found that closes the loops."""
 
 
 class Loops(Forest):
-    """Trees with one loop or with more; what moves them is as for trees."""
+    """Trees with one or more loops; loads are those of trees."""
 
     def __init__(self, random, size, hard=False, time=0.2):
         self.kind = random.choice(KINDS)
@@ -37,7 +37,7 @@ class Loops(Forest):
     # Parts of loops.
 
     def link(self, name, kind, axis, parent, mount, body=True):
-        """A joint with a body; the name of its frame."""
+        """Adds a joint with a body; returns the name of its frame."""
         moves = f"{name}_link"
         fields, later = "", []
         if kind in ("revolute", "continuous", "prismatic"):
@@ -63,7 +63,8 @@ class Loops(Forest):
         return f"{self.r.uniform(0.4, 1.2):.2f}"
 
     def chain(self, name, parent, place, axis, count, kinds=("revolute", "continuous"), light=False):
-        """Links in a row about parallel axes; the last frame, and the place of its end. The last link may be light: without mass."""
+        """A chain of links about parallel axes; returns the last frame, and the position of its end. The last link may
+        be massless."""
         mount = (STILL, place)
         for k in range(count):
             parent = self.link(f"{name}{k}", self.pick(kinds), axis, parent, mount, not (light and k == count - 1))
@@ -149,7 +150,7 @@ class Loops(Forest):
             self.link("more", self.pick(["revolute", "prismatic", "continuous"]), Vec.of(self.pick(AXES)), self.pick(self.frames[1:]), self.mount())
 
     def bricard(self, ground):
-        """Six hinges, neighbours at right angles, rods of one length: overconstrained, one freedom."""
+        """Six hinges, neighbours at right angles, rods of the same length: overconstrained, with one degree of freedom."""
         length, right = self.length(), PI / 2
         z, frame, mount = Vec.of([0, 0, 1]), ground, (STILL, Vec.of([0, 0, 0]))
         for k in range(5):
@@ -192,7 +193,7 @@ class Loops(Forest):
             super().constraints()
 
     def nearby(self):
-        """A state near which the loops shall be closed."""
+        """A state near which to close the loops."""
         s = random_state(self.m, self.r)
         if self.guess:
             x = list(s.x)
@@ -263,7 +264,7 @@ class Loops(Forest):
         m.stabilized += [decay] * (len(m.closures) - len(m.stabilized))
 
     def varying(self, entries):
-        """Those that are no identities: the others are no equations."""
+        """The closures that are not identities, which would not be equations."""
         states = [random_state(self.m, self.r) for _ in range(2)]
         return [e for e in entries if abs(e.at(states[0]) - e.at(states[1])) > mpf(10) ** -30]
 
@@ -281,7 +282,7 @@ class Loops(Forest):
         super().asked()
 
     def complete(self):
-        """The state nearby, with parameters that came later."""
+        """The state nearby, with parameters that were added later."""
         return self.near.but(p=list(self.m.default))
 
     def configuration(self):
@@ -290,7 +291,7 @@ class Loops(Forest):
 
 
 def closed(m, s):
-    """The nearest closed configuration, by Newton's steps along A, in doubles."""
+    """The nearest closed configuration, by Newton steps along A, in doubles."""
     d = Definitions(m)
     for _ in range(60):
         off = [e.at(s) for e in m.closures]

@@ -1,4 +1,4 @@
-"""Random trees of bodies, with everything that can hang on them."""
+"""Random trees of bodies, with all kinds of elements and loads."""
 
 from . import vectors
 from .elements import hang
@@ -12,14 +12,14 @@ KINDS = ["revolute"] * 5 + ["continuous"] * 4 + ["prismatic"] * 3 + ["spherical"
 
 
 class Output:
-    """A named vector of numbers, and whether accelerations are in it."""
+    """A named vector of numbers, and whether it depends on accelerations."""
 
     def __init__(self, name, at, accelerations=False):
         self.name, self.at, self.accelerations = name, at, accelerations
 
 
 class Forest:
-    """One random tree; `random` is Python's."""
+    """A random tree; `random` is Python's."""
 
     def __init__(self, random, size, free=0.4, time=0.3, hard=False):
         self.r, self.hard = random, hard
@@ -67,7 +67,7 @@ class Forest:
         return Vec.of([self.number(size) if self.r.random() < 0.75 else 0 for _ in range(3)])
 
     def smooth(self, moving=True):
-        """A bounded expression of coordinates, parameters and the time."""
+        """A bounded expression of coordinates, parameters and time."""
         r = self.r
         parts = [lift(self.number())]
         if moving and self.plain:
@@ -83,7 +83,7 @@ class Forest:
         return total
 
     def effort(self):
-        """Anything that a load may be made of."""
+        """Any expression for a load."""
         r = self.r
         total = self.smooth()
         if self.inputs and r.random() < 0.7:
@@ -347,7 +347,7 @@ class Forest:
             m.generalized.append((place, z * "0.4"))
 
     def constraints(self):
-        """Velocities that are tied to one another, by factors that change: multipliers keep them so."""
+        """Velocity constraints with varying factors, which need multipliers."""
         r, m = self.r, self.m
         if not self.plain or m.n < 3 or r.random() > 0.3:
             return
@@ -414,7 +414,7 @@ class Forest:
         m.say(f"generate {', '.join(wanted)};")
 
     def configuration(self):
-        """A random state, of numbers that doubles have; velocities are those nearest to it that are allowed."""
+        """A random state of doubles; its velocities are the nearest ones that satisfy the ties."""
         return allowed_velocities(self.m, random_state(self.m, self.r))
 
 
