@@ -9,7 +9,7 @@
 //! | module | owns |
 //! |---|---|
 //! | [`methods`] | the table of methods: one line each |
-//! | [`cases`] | the hard cases of `hamel-cases`, and what is constant in each |
+//! | [`cases`] | the hard cases of `hamel-cases`, and the constants of motion of each |
 //! | [`peers`] | other programs, each an optional feature or script |
 //! | [`runner`] | the measurements of a case |
 //! | [`output`] | the files, and the part of them that is kept in the repository |

@@ -1,33 +1,34 @@
-//! Machine code from the tapes of generated functions, made at once and without a compiler.
+//! Machine code from the tapes of generated functions, made at run time without a compiler.
 //!
 #![doc = include_str!("../README.md")]
 //!
 //! # How it works
 //!
-//! [`Compiled`] takes the [tapes](Tapes) of a program and lowers each function by itself with Cranelift. A plan that is
-//! made beforehand (`spill`) says which values stay in registers and when the others come back from memory: so the time
-//! for making code is linear in the number of steps, and the code nearly as fast as that of an optimising compiler.
+//! [`Compiled`] takes the [tapes](Tapes) of a program and lowers each function separately with Cranelift. A plan made
+//! beforehand (`spill`) determines which values stay in registers and when the others are reloaded from memory.
+//! Therefore the compile time is linear in the number of steps, and the code is nearly as fast as that of an optimising
+//! compiler.
 //!
 //! Where no code can be made (on other processors, or on systems that refuse executable memory), tapes are interpreted
 //! step by step: more slowly, with the same numbers up to rounding.
 //!
-//! | file | what it owns |
+//! | file | owns |
 //! |---|---|
-//! | `spill` | which values are in registers, and where the others are |
-//! | `target` | what code is written for, one set of numbers or two; the numbers that it reads |
-//! | `lower` | steps as Cranelift's intermediate code |
-//! | `parts` | a tape as one function, or as several that one calls where it is long |
+//! | `spill` | which values are in registers, and the locations of the others |
+//! | `target` | the target of code, with one lane or two; the numbers that it reads |
+//! | `lower` | the steps in Cranelift's intermediate code |
+//! | `parts` | a tape as one function or, if it is long, as several called by one more |
 //! | `code` | executable memory and calls into it: everything that is `unsafe` |
-//! | `absent` | the same without the feature `machine`: no code can be made |
+//! | `absent` | the replacement without the feature `machine`: no code can be made |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
-//! | `evaluate` | tapes, interpreted step by step |
+//! | `evaluate` | the interpreter of tapes |
 //! | `traced` | algorithms in Rust as tapes |
 //!
 //! # Features
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `machine` | machine code; without it all tapes are run step by step, on any target |
+//! | `machine` | machine code; without it all tapes are interpreted, on any target |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

@@ -155,11 +155,11 @@ impl<'a> Entry<'a> {
 /// The largest deviations of a run so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
-    /// Of the energy.
+    /// Largest deviation of the energy.
     pub energy: f64,
-    /// Of the momenta.
+    /// Largest deviation of the momenta.
     pub momentum: f64,
-    /// Of φ.
+    /// Largest deviation of φ.
     pub defect: f64,
 }
 

@@ -22,7 +22,7 @@ const QUICK: Task = &[
 /// All checks that must pass before a change is merged.
 const CI: Task = &[
     "cargo fmt --all --check",
-    // Clippy, as `.ci/rustc` says.
+    // Clippy, as configured by `.ci/rustc`.
     "HAMEL_LINT=1 cargo check --workspace --all-targets --locked",
     // `--all-targets` leaves out the tests that `cargo test --workspace` leaves out.
     "HAMEL_LINT=1 cargo check --workspace --locked --test commands --test complete --test counts --test gallery --test book --test built",

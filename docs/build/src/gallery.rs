@@ -4,11 +4,11 @@
 //!
 //! ```text
 //! /// Its name: what it is made of.
-//! /// What it does.
+//! /// Its motion.
 //! // remark: What is interesting about it, for readers of the two lines.
 //! // draw: the options of `hamel draw`
 //! // run: the options of `hamel simulate`
-//! // keeps: what is constant in this run, with the largest relative change, as in `energy 1e-8, place 1e-9`
+//! // keeps: the constants of this run, each with its largest relative change, as in `energy 1e-8, place 1e-9`
 //! ```
 
 use std::fmt::Write;
