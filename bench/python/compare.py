@@ -1,4 +1,4 @@
-"""Forward dynamics of a robot at many states: medians of interleaved runs; each result is compared before it is timed."""
+"""Forward dynamics of a robot at many states: medians of interleaved runs, after a comparison of the results."""
 
 import ctypes
 import statistics

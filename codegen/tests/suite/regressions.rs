@@ -282,8 +282,8 @@ fn roots_of_squares_may_turn_out_to_be_known() {
 }
 
 /// Roots of velocities whose constraints contain a root of a non-square modulo the primes, or that proofs move onto
-/// constraints: they are outside the prime fields, and so are their radicands. For M = I and one constraint b ξ = 0, ξ̇
-/// = f − b (b f) / (b b).
+/// constraints: they are outside the prime fields, and so are their radicands. For M = I and one constraint
+/// b ξ = 0, ξ̇ = f − b (b f) / (b b).
 #[test]
 fn roots_of_velocities_outside_the_prime_fields() {
     for square in [0.99999999_f64, 0.43, 0.47, 0.59, 0.1009] {

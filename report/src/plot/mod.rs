@@ -63,7 +63,7 @@ pub struct Picture {
     pub subtitle: String,
     /// Times of all values, ascending.
     pub time: Vec<f64>,
-    /// Panels from top to bottom; the last one is lower, since it has the time axis.
+    /// Panels from top to bottom; the last one is lower.
     pub panels: Vec<Panel>,
     /// The sphere next to them, if there is one.
     pub path: Option<Path>,

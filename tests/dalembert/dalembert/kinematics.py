@@ -26,7 +26,7 @@ def frame(d: Definitions, s, name, own):
 
 
 def moving(d, s):
-    """The masses that move along a velocity or with time: those fixed to the world do not contribute to the momentum."""
+    """The masses that move along a velocity or with time: fixed ones do not contribute to the momentum."""
     if "moving" not in s.shape:
         ways = [*d.motions(s), d.along(d.places, s, d.of.rate(s))]
         s.shape["moving"] = [any(e != 0 for r, p in poses for e in [*p, *sum(r, [])]) for poses in zip(*ways)]

@@ -150,7 +150,7 @@ class Loops(Forest):
             self.link("more", self.pick(["revolute", "prismatic", "continuous"]), Vec.of(self.pick(AXES)), self.pick(self.frames[1:]), self.mount())
 
     def bricard(self, ground):
-        """Six hinges, neighbours at right angles, rods of the same length: overconstrained, with one degree of freedom."""
+        """Six hinges at right angles, with rods of the same length: overconstrained, one degree of freedom."""
         length, right = self.length(), PI / 2
         z, frame, mount = Vec.of([0, 0, 1]), ground, (STILL, Vec.of([0, 0, 0]))
         for k in range(5):

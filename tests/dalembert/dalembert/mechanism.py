@@ -188,7 +188,7 @@ class Mechanism:
         return force
 
     def masses(self, s):
-        """The positions of masses: of each body its pose, mass, first and second moments; of a particle its position."""
+        """The positions of masses: pose, mass, first and second moments of bodies; positions of particles."""
         found = []
         for frame, mass, com, inertia, where in self.bodies:
             m, c, j = mass.at(s), com.at(s), inertia.at(s)

@@ -212,7 +212,7 @@ class Written(Forest):
         return self.matrix(name, k, True)
 
     def quaternion(self, name, k, length, kind):
-        """A quaternion of any length, with any factor; `kind` is that of the coordinate, or none for four plain ones."""
+        """A quaternion of any length, with any factor; `kind` is its coordinate, or none for four plain ones."""
         factor, world = self.pick(["0.5", "0.7", "-1.1"]), self.r.random() < 0.3
         place = self.m.nu
 

@@ -1,4 +1,4 @@
-"""A small driven mechanism with elements on scalars and rates, a choice and a table, and the replacements in its text."""
+"""A small driven mechanism with elements on scalars and rates, a choice and a table; and replacements in its text."""
 
 from .elements import choice
 from .expressions import STILL, Ex, Mat, Vec, call, lift
