@@ -6,7 +6,8 @@ use crate::common::{generated, value};
 /// A constraint, the rates of x, y, z, their start, and ξ̇ there.
 type Case = (&'static str, [&'static str; 3], [&'static str; 3], [f64; 2]);
 
-/// Lines, planes and a cylinder as one equation: ξ̇ is the slope of the potential along each velocity, with M = I.
+/// Lines, planes and a cylinder as one equation, with M = I and the potential y: ξ̇ is minus its slope along
+/// each velocity.
 #[test]
 fn the_component_of_the_start_is_meant() {
     let cases: [Case; 12] = [

@@ -67,7 +67,7 @@ pub struct Link {
     place: [f64; 3],
     /// Rotation and position of a further frame, which carries the body and sometimes the next link.
     user: Option<([f64; 3], [f64; 3])>,
-    /// Whether it is mounted on the further frame of the previous link.
+    /// Whether it is mounted on the further frame of its parent, if there is one.
     far: bool,
     mass: f64,
     com: [f64; 3],
@@ -220,7 +220,7 @@ impl Link {
         self
     }
 
-    /// Returns whether it is mounted on the further frame of the previous link.
+    /// Returns whether it is mounted on the further frame of its parent.
     fn beyond(&self, links: &[Link]) -> bool {
         self.far
             && self

@@ -29,7 +29,7 @@ struct Element {
     push: Six,
 }
 
-/// A load on a joint: its index in ξ, its coordinate, and the derivative of the coordinate by that of ξ.
+/// A load on a joint: its index in ξ, its coordinate, and the factor of that ξ in the coordinate's rate.
 struct Drive<'a> {
     link: &'a Link,
     index: usize,
