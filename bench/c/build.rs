@@ -1,5 +1,5 @@
-//! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`, each
-//! with its linearisation.
+//! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`,
+//! each with its linearisation.
 
 #[path = "../steps/described.rs"]
 mod described;

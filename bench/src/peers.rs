@@ -1,4 +1,4 @@
-//! Other programs on the same cases, each an optional feature or script. The report names those that are missing.
+//! Other programs on the same cases, each an optional feature or script. The report names the missing ones.
 
 pub mod mujoco;
 #[cfg(feature = "ode")]
@@ -68,7 +68,7 @@ impl Peers {
         peers
     }
 
-    /// Adds to a case the measurements of other programs; names those that are missing.
+    /// Adds to a case the measurements of other programs; names the missing ones.
     pub fn add(&self, case: &mut Case) {
         for foreign in &self.foreign {
             if foreign.case == case.name {

@@ -2,8 +2,7 @@
 //!
 //! Calls are sound for these reasons:
 //! - The code of a function is made by [`Lowering`] only, from a tape whose steps read nothing that comes after them.
-//!   It
-//!   reads whole entries of the constants and the five arguments, and writes to the result and to its own stack. The
+//!   It reads whole entries of the constants and the five arguments, and writes to the result and to its own stack. The
 //!   parts of a long function are called by it only, with the address of its stack, which has room for all of them. The
 //!   greatest index that it can access in each of the seven slices is known from the tape (`Reach`) before the code is
 //!   made, and every call compares lengths with it. Indices are less than `LARGEST`, so that no offset is too large for

@@ -134,7 +134,7 @@ fn paired(first: &[f64], second: &[f64]) -> Vec<f64> {
 }
 
 /// Replaces `state` by its successor `times` times, or until there is no finite one; returns how often. A result has
-/// `results` numbers, and `see` gets those that follow each accepted state.
+/// `results` numbers, and `see` gets the results after each accepted state.
 fn repeated(
     state: &mut [f64],
     results: usize,

@@ -48,8 +48,8 @@ pub fn ratio(case: &Case) -> Option<f64> {
 /// Largest accepted time of the chosen method, relative to the fastest.
 pub const BAR: f64 = 2.0;
 
-/// Summarises the choices over all cases in words: those beyond the [`BAR`], and those that cannot be judged. `None` if
-/// nothing was chosen.
+/// Summarises the choices over all cases in words: choices beyond the [`BAR`], and choices that cannot be judged.
+/// `None` if nothing was chosen.
 pub fn verdict(report: &Report) -> Option<String> {
     let chosen: Vec<&Case> = report
         .cases
@@ -120,7 +120,7 @@ mod tests {
         }
     }
 
-    /// A slow method and a fast one, of which the slow one is chosen.
+    /// A slow method, which is chosen, and a fast one.
     fn case(name: &str, slow: f64) -> Case {
         Case {
             name: name.into(),

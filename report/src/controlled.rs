@@ -3,7 +3,7 @@
 use crate::data::{Case, MethodRun, MethodRuns};
 use crate::number::{error, grouped};
 
-/// The tolerances of the table; those that were not measured are left out.
+/// The tolerances of the table; a tolerance that was not measured is left out.
 const SHOWN: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
 
 /// Returns the heading and the rows: for every method, error, steps and rejected attempts at each tolerance; `None` if

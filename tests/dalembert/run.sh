@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Compares the equations of random mechanisms, which Python computes from the definitions by d'Alembert's principle and
-# differences of 80 digits, with those that hamel derives from their texts. Needs cargo, gcc and Python with mpmath from
-# PyPI, which is installed in a virtual environment below the target, and gmpy2 for speed. Arguments after the folder
-# are passed to `dalembert/attack.py`.
+# differences of 80 digits, with the equations that hamel derives from their texts. Needs cargo, gcc and Python with
+# mpmath from PyPI, which is installed in a virtual environment below the target, and gmpy2 for speed. Arguments after
+# the folder are passed to `dalembert/attack.py`.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -192,7 +192,7 @@ fn joints_of_all_kinds_have_the_values_of_the_plain_derivation() {
 /// acceleration common to all links.
 #[test]
 fn branches_answer_as_the_mass_matrix_does() {
-    // A slider on the other hull has an armature, which only its own velocity moves.
+    // A slider on the other hull has an armature, which only the velocity of the slider moves.
     for (text, expected) in [(LEGGED, 3), (MIXED, 0)] {
         for placement in [Placement::Chosen, Placement::Parallel] {
             let mut model = built(text);

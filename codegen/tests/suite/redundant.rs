@@ -433,8 +433,8 @@ fn bonds(of: &Generated) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Returns the unknowns of Σ rows[k] λ[k] = right by elimination with the largest pivots; `None` for those that are not
-/// determined.
+/// Returns the unknowns of Σ rows[k] λ[k] = right by elimination with the largest pivots; `None` for an unknown
+/// that is not determined.
 fn eliminated(rows: &[Vec<f64>], right: &[f64]) -> Vec<Option<f64>> {
     let (count, n) = (rows.len(), right.len());
     let mut left: Vec<Vec<f64>> = (0..n)

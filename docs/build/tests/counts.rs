@@ -1,4 +1,4 @@
-//! The operation counts in the book and the README are those that tests lock.
+//! Checks that the operation counts in the book and the README are the locked ones of the tests.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -75,7 +75,7 @@ fn stack() -> [u64; 2] {
     let room = (start as usize).wrapping_sub(end as usize);
     let mut place = end;
     // SAFETY: all words between the two symbols are memory of the stack, which `cortex-m-rt` has painted before `main`.
-    // The words read are below the part in use, except perhaps for the last one, of which only the value is compared.
+    // The words read are below the part in use, except perhaps for the last one; only its value is compared.
     while place < start && unsafe { place.read_volatile() } == STACK_PAINT_VALUE {
         place = place.wrapping_add(1);
     }

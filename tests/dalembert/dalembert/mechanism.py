@@ -63,7 +63,7 @@ class Mechanism:
         self.externals = []  # functions in Rust, which C does not have
         self.time = None
 
-    # What a text says, and what it means.
+    # The lines of the text, and their meaning.
 
     def say(self, line):
         self.lines.append("    " + line)

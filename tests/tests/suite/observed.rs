@@ -145,8 +145,8 @@ fn compiled_functions_are_what_their_definitions_say() {
     }
 }
 
-/// Lagrange's equations by hand: T = ½ a q̇² + ½ k ṡ² + 0.4 k ε q̇ ṡ with a = 0.35 + 0.01 m + k (0.16 + ε² s²), ε the slant
-/// of the slide, and V = g/√2 (0.1 m sin q + k (0.4 sin q + ε s cos q + s)).
+/// Lagrange's equations by hand: T = ½ a q̇² + ½ k ṡ² + 0.4 k ε q̇ ṡ with a = 0.35 + 0.01 m + k (0.16 + ε² s²), ε the
+/// slant of the slide, and V = g/√2 (0.1 m sin q + k (0.4 sin q + ε s cos q + s)).
 #[test]
 fn slopes_of_the_dynamics_are_those_of_lagrange() {
     let turret = Turret::<f64>::default();

@@ -124,7 +124,7 @@ fn functions_obey_their_group_laws() {
     assert_eq!(g.mul(twice, inverse), g.one());
 }
 
-/// Identities that hold on both sides of 0 are found; those that hold on one side only, or fail at 0, are not.
+/// Identities that hold on both sides of 0 are found; identities that hold on one side only, or fail at 0, are not.
 #[test]
 fn absolute_values_are_what_they_are_on_both_sides() {
     let (mut g, [p, _, a, b, c, s]) = graph();

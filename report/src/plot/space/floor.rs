@@ -9,7 +9,7 @@ use crate::plot::theme;
 use plotters::style::RGBColor;
 use std::fmt::Write;
 
-/// Margins around the shapes and below those that hang, relative to their size.
+/// Margins around the shapes and below hanging shapes, relative to their size.
 const ROOM: f64 = 0.12;
 const BELOW: f64 = 0.06;
 /// The floor is at height 0 if no shape is lower and the lowest is no higher than this, relative to the size.
