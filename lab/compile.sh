@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Time and memory that rustc needs for the forward dynamics of a description, release and dev profile.
+# Measures time and memory of rustc for the forward dynamics of a description, in release and dev profiles.
 #
 #     lab/compile.sh FILE.eom
 #
-# The forward dynamics alone: FILE has to say `generate accel;`. `HAMEL` names the command `hamel`.
+# Only the forward dynamics: FILE must contain `generate accel;`. `HAMEL` is the path of the command `hamel`.
 set -euo pipefail
 file=$(realpath "$1")
 cd "$(dirname "$0")/.."
@@ -13,7 +13,7 @@ mkdir -p "$out/src"
 
 "$hamel" emit "$file" > "$out/src/model.rs"
 name=$(grep -o 'pub struct [A-Za-z0-9_]*<S>' "$out/src/model.rs" | sed 's/pub struct //; s/<S>//')
-# A generic function is compiled where its address is taken.
+# A generic function is compiled when its address is taken.
 signature=$(sed -n '/pub fn accel(/,/{$/p' "$out/src/model.rs" | tr -d '\n' |
     sed -E "s/.*\(/fn(/; s/&self/\&$name<f64>/; s/[a-z_]+: &/\&/g; s/\bS\b/f64/g; s/,( *)\)/)/; s/ *\{ *$//")
 printf 'include!("model.rs");\npub static ACCEL: %s = %s::accel;\n' "$signature" "$name" > "$out/src/lib.rs"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Time that a description takes from text to code, with all checks, against an earlier revision of this repository:
+# Compares the time from text to code, with all checks, with an earlier revision of this repository:
 #
 #     lab/generation.sh REVISION [ROUNDS]
 #
-# Both are built in release and run in turn. Printed are the least processor time of each, their ratio, and the
-# median of the ratios of neighbouring runs. The robots are those of tests/robots/install.sh.
+# Both are built in release and run alternately. Prints the least CPU time of each, their ratio, and the median of the
+# ratios of consecutive runs. The robots are those of tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -37,7 +37,7 @@ def seconds(program, arguments):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 for name, arguments in cases.items():
-    # What takes a few milliseconds is repeated, as the clock of the process counts in such steps.
+    # Runs of a few milliseconds are repeated, since the process clock has such a resolution.
     repeat = 1 + int(0.2 / max(seconds(new, arguments), 0.002))
     times = {old: [], new: []}
     for _ in range(rounds):

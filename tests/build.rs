@@ -1,9 +1,9 @@
-//! The build script's front end: every model of `models/`, `models/multibody/`, `models/reuse/`, `models/tabled/` and
-//! `models/external/` becomes a module of this crate.
+//! Generates the models through the front end for build scripts: every model of `models/`, `models/multibody/`,
+//! `models/reuse/`, `models/tabled/` and `models/external/` becomes a module of this crate.
 
 use std::path::PathBuf;
 
-/// Models of every kind of coordinates, constraints and states whose steps are differentiated.
+/// Models with every kind of coordinates, constraints and states, whose steps are differentiated.
 const LINEAR: &[&str] = &[
     "bicycle",
     "cart_pole",
@@ -24,7 +24,7 @@ const LINEAR: &[&str] = &[
     "two_wheeled_robot",
 ];
 
-/// What users may have switched on for the crate that includes generated code.
+/// Lints that users may have enabled for the crate that includes generated code.
 const LINTS: &str = "#[warn(clippy::pedantic, clippy::nursery)]\n";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -58,13 +58,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         builder = builder.file(path);
     }
     let out_dir = std::env::var("OUT_DIR")?;
-    // Some of them once more, with their linearisation and with it the slopes of steps.
+    // Generates some of them again with their linearisation, which also gives the slopes of steps.
     let mut linear = String::new();
     for stem in LINEAR {
         let text = std::fs::read_to_string(format!("models/{stem}.eom"))?;
         let (body, _) = text.rsplit_once('}').ok_or("a system ends with a brace")?;
         let path = PathBuf::from(&out_dir).join(format!("linear_{stem}.eom"));
-        // The tops are those whose energy and momenta are asked for beside it.
+        // For the tops, energy and momenta are requested as well.
         let all = if stem.starts_with("heavy_top") {
             "all, "
         } else {

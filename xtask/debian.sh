@@ -1,10 +1,10 @@
-# For scripts to source: programs of Debian's packages, unpacked below the target folder, so that nothing of the machine
-# changes.
+# To be sourced by scripts: programs from Debian's packages, unpacked below the target folder, without any change to the
+# machine.
 #
-#   unpack PACKAGE ...   unpacks the packages and what they need that is not installed; fails where that cannot be done
-#   unpack_rust          unpacks a compiler of Rust, the sources of its library, and LLVM's linkers
-#   $debian              where they are
-#   $debian_libraries    what LD_LIBRARY_PATH has to be for the programs
+#   unpack PACKAGE ...   unpacks the packages and their dependencies that are not installed; fails if this is impossible
+#   unpack_rust          unpacks a Rust compiler, the sources of its library, and LLVM's linkers
+#   $debian              the folder of the unpacked files
+#   $debian_libraries    the LD_LIBRARY_PATH for the programs
 debian="$(realpath -m "${CARGO_TARGET_DIR:-"$(dirname "${BASH_SOURCE[0]}")/../target"}")/debian"
 debian_libraries="$debian/usr/lib/x86_64-linux-gnu:$debian/lib/x86_64-linux-gnu"
 
@@ -12,7 +12,7 @@ unpack() {
     command -v apt-get > /dev/null && command -v dpkg-deb > /dev/null && [ "$(id -u)" = 0 ] || return 1
     local archives="$debian/archives"
     mkdir -p "$archives/partial"
-    # A package that is installed is fetched, too: a script looks for its program in one place.
+    # An installed package is downloaded, too: a script looks for its program in one place.
     local download=(apt-get install -y -qq --no-install-recommends --download-only --reinstall
         -o "Dir::Cache::archives=$archives" -o DPkg::Lock::Timeout=300 "$@")
     "${download[@]}" > /dev/null 2>&1 ||
@@ -26,8 +26,8 @@ unpack() {
 
 unpack_rust() {
     [ -x "$debian/usr/bin/rustc" ] && [ -x "$debian/usr/bin/lld-19" ] && return
-    # The compiler takes its place from that of the library it is linked with, whose name has its version: this one is
-    # unpacked even where the machine has it.
+    # The compiler locates itself by the library that it is linked with, whose name contains its version: this one is
+    # unpacked even if the machine has it.
     local linked
     linked=$(apt-cache depends libstd-rust-web-dev 2> /dev/null | sed -n 's/.*Depends: \(libstd-rust-web-[0-9.]*\)$/\1/p')
     unpack rustc-web cargo-web rust-web-src libstd-rust-web-dev $linked lld-19

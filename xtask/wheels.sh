@@ -1,8 +1,9 @@
-# For scripts in the root of the repository to source: packages of PyPI in virtual environments below the target folder.
+# To be sourced by scripts in the root of the repository: packages from PyPI in virtual environments below the target
+# folder.
 #
 #   $target                  the target folder
-#   wheels NAME PACKAGE ...  makes the environment of this name with these packages, unless it is there; $environment
-#                            is where it is
+#   wheels NAME PACKAGE ...  makes the environment of this name with these packages, unless it exists; its folder
+#                            is $environment
 target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
 
 wheels() {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The first chapter as a reader follows it: its blocks as they stand, in a clone that has nothing else, with the command line
-# installed into a folder of its own. It has ten minutes. Needs cargo and git; what is committed counts.
+# Runs the first chapter as a reader would: its blocks unchanged, in a fresh clone, with the command line installed into
+# a separate folder. Time limit: ten minutes. Needs cargo and git; only committed files count.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -9,7 +9,7 @@ trap 'rm -rf "$scratch"' EXIT
 git clone --quiet . "$scratch/hamel"
 export CARGO_INSTALL_ROOT="$scratch/installed" PATH="$scratch/installed/bin:$PATH"
 unset CARGO_TARGET_DIR
-# Blocks for a shell are for the clone, and those that make crates for the folder that has it.
+# Shell blocks run in the clone, and those that make crates in its parent folder.
 awk '/^```sh$/ { print "cd \"$clone\""; inside = 1; next }
      /^```sh,crates$/ { print "cd \"$clone/..\""; inside = 1; next }
      /^```/ { inside = 0 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs mdBook below target/tools, where it is not there already. It is a tool that builds pages, and no part of what is shipped.
+# Installs mdBook below target/tools, unless it is there already. It is a tool that builds pages, and not shipped.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,4 +1,4 @@
-//! What is too long for a macro.
+//! Generates the mechanisms whose descriptions are too long for a macro.
 
 fn main() -> Result<(), hamel_codegen::BuildError> {
     hamel_codegen::Builder::new().file("bicycle.eom").generate()

@@ -1,4 +1,4 @@
-//! The build script's front end.
+//! Generates the pendulum through the front end for build scripts.
 
 fn main() -> Result<(), hamel_codegen::BuildError> {
     hamel_codegen::Builder::new()

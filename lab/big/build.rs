@@ -1,5 +1,5 @@
-//! Writes descriptions of a chain of 16 links, of a tree of the size of a humanoid robot, and of a robot with four legs,
-//! and generates their code: that of the chain and of the legs with derivatives.
+//! Writes descriptions of a chain of 16 links, of a tree of the size of a humanoid robot, and of a robot with four
+//! legs, and generates their code, with derivatives for the chain and the legs.
 
 use common::Random;
 use std::path::PathBuf;

@@ -1,5 +1,5 @@
-//! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`, each
-//! with its linearisation.
+//! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`,
+//! each with its linearisation.
 
 use hamel_lab::described::{imported, linearised};
 use hamel_codegen::Builder;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Compares generated C with generated Rust, forward dynamics and their slopes, by clang and by gcc; needs both, cargo, and
-# the robots of tests/robots/install.sh. Ends with 1 where the C of one of them takes more than 1.05 times as long as the Rust.
+# Compares generated C by clang and by gcc with generated Rust: forward dynamics and their slopes. Needs both compilers,
+# cargo, and the robots of tests/robots/install.sh. The exit status is 1 if the C of one compiler takes more than 1.05
+# times as long as the Rust.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -12,11 +13,16 @@ mkdir -p "$out/c"
 
 export HAMEL_C="$out/c" HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
+<<<<<<< HEAD:lab/c/run.sh
 cargo build --release --manifest-path lab/c/Cargo.toml --target-dir "$out/rust"
 # One core, where the system can say so.
+=======
+cargo build --release --manifest-path bench/c/Cargo.toml --target-dir "$out/rust"
+# Pins the process to one core, if the system can.
+>>>>>>> w-textB:bench/c/run.sh
 pin=$(command -v taskset || true)
-# gcc is fastest where it is told to schedule before it allocates registers, and not after, and not to put what stands
-# side by side into vectors, which takes more moves than it saves.
+# gcc is fastest when it schedules before register allocation and not after it, and does not vectorise adjacent
+# operations, which takes more moves than it saves.
 gcc="gcc -fno-tree-slp-vectorize -fschedule-insns -fno-schedule-insns2 -fsched-pressure -frename-registers"
 ended=0
 for compiler in clang "$gcc"; do

@@ -1,8 +1,8 @@
-"""Writes what the comparison needs into a folder: C by CasADi, descriptions of the robots, a list of cases.
+"""Writes the inputs of the comparison to a folder: C by CasADi, descriptions of the robots, a list of cases.
 
     python peers.py FOLDER
 
-Every function takes (x, ξ, τ) or (x, ξ, ξ̇) as the generated Rust of the same model does.
+Every function takes (x, ξ, τ) or (x, ξ, ξ̇), like the generated Rust of the same model.
 """
 
 import json
@@ -38,7 +38,7 @@ def cart_pole():
 
 
 def double_pendulum():
-    """Angles grow towards x: about −y."""
+    """Angles increase towards x: the axis is −y."""
     y = np.array([0, -1.0, 0])
     first = point(Body("th1", -1, np.eye(3), np.zeros(3), "revolute", y), 1.0, [0, 0, -1])
     return [first, point(Body("th2", 0, np.eye(3), np.array([0, 0, -1.0]), "revolute", y), 1.0, [0, 0, -1])]
@@ -68,7 +68,7 @@ def small(name):
 def write(folder, name, expression, widths):
     arguments = [ca.SX.sym(letter, width) for letter, width in zip("xvu", widths)]
     result = ca.densify(expression(*arguments))
-    # `cse` keeps what is cheapest to read; the count is that of CasADi's instructions without moves.
+    # `cse` keeps the cheapest form; the count is that of CasADi's instructions without moves.
     function = ca.Function(name, arguments, [ca.cse(result)])
     function.generate(f"{name}.c", {"with_header": False})
     Path(f"{name}.c").rename(folder / f"{name}.c")

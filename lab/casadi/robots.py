@@ -1,4 +1,4 @@
-"""Robots of URDF files as trees of bodies, and trees as descriptions of hamel."""
+"""Robots from URDF files as trees of bodies, and trees as descriptions for hamel."""
 
 import xml.etree.ElementTree as xml
 from pathlib import Path
@@ -7,7 +7,7 @@ import numpy as np
 
 from textbook import Body, clean
 
-# Name, file below `example-robot-data/robots`, joints that are locked at zero, floating base.
+# Name, file below `example-robot-data/robots`, joints locked at zero, floating base.
 ROBOTS = [
     ("ur5", "ur_description/urdf/ur5_robot.urdf", [], False),
     ("panda", "panda_description/urdf/panda.urdf", ["panda_finger_joint1", "panda_finger_joint2"], False),
@@ -16,7 +16,7 @@ ROBOTS = [
 
 
 def folder():
-    """Where the wheel of example-robot-data puts its files."""
+    """Returns the folder in which the wheel of example-robot-data installs its files."""
     import sys
 
     for base in map(Path, sys.path):
@@ -28,7 +28,7 @@ def folder():
 
 def rpy(text):
     a, b, c = ([float(v) for v in text.split()] if text else [0.0, 0.0, 0.0])
-    # Roundings of quarter turns.
+    # Angles close to quarter turns are rounded to them.
     a, b, c = (round(v / (np.pi / 2)) * np.pi / 2 if abs(v / (np.pi / 2) - round(v / (np.pi / 2))) < 1e-6 else v for v in (a, b, c))
     x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
     y = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])
@@ -42,7 +42,7 @@ def numbers(element, key, default):
 
 
 def read(path, locked, floating):
-    """The tree in the order of the file, fixed joints merged."""
+    """Returns the tree in the order of the file, with fixed joints merged."""
     root = xml.parse(path).getroot()
     links = {link.get("name"): link for link in root.findall("link")}
     joints = root.findall("joint")
@@ -84,7 +84,7 @@ def read(path, locked, floating):
 
 
 def rotation_text(matrix):
-    """A quarter turn by its entries; others by roll, pitch and yaw."""
+    """A quarter turn as a matrix; other rotations as roll, pitch and yaw."""
     matrix = clean(matrix)
     if np.array_equal(matrix, np.round(matrix)):
         rows = ", ".join("[" + ", ".join(str(int(v)) for v in row) + "]" for row in matrix)
@@ -103,7 +103,7 @@ def vector(values):
 
 
 def description(name, bodies):
-    """The tree as a description: what `hamel import` writes, with an input for every freedom."""
+    """The description of a tree, in the form of `hamel import`, with an input for every degree of freedom."""
     lines = [f"/// {name}, from its tree of joints.", f"pub system {name.title().replace('_', '')} {{"]
     total = sum(body.freedoms for body in bodies)
     for i, body in enumerate(bodies):
@@ -146,7 +146,7 @@ def description(name, bodies):
 
 
 def chain(count):
-    """A generic chain: no zeros but those of axes."""
+    """A generic chain: only the axes contain zeros."""
     bodies = []
     for i in range(count):
         inertia = np.array([[0.02, 0.001, 0.002], [0.001, 0.03, 0.003], [0.002, 0.003, 0.04]])

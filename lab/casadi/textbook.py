@@ -1,8 +1,7 @@
-"""Textbook recursions over CasADi expressions: articulated bodies and Newton-Euler.
+"""Textbook recursions over CasADi expressions: the articulated-body and the recursive Newton-Euler algorithm.
 
-R. Featherstone, Rigid Body Dynamics Algorithms (2008), tables 5.1 and 7.1: spatial vectors (angular,
-linear), link frames at the joints, everything in link axes. Zeros are structural, so that CasADi does
-not compute with them.
+R. Featherstone, Rigid Body Dynamics Algorithms (2008), tables 5.1 and 7.1: spatial vectors (angular, linear), link
+frames at the joints, all in link axes. Zeros are structural, so that CasADi does not compute with them.
 """
 
 from dataclasses import dataclass, field
@@ -14,7 +13,7 @@ CLEAN = 1e-9
 
 
 def clean(values):
-    """Entries within CLEAN of an integer are that integer: roundings of URDF are not computed with."""
+    """Rounds entries within CLEAN of an integer, to remove rounding errors of URDF files."""
     values = np.array(values, dtype=float)
     whole = np.round(values)
     return np.where(np.abs(values - whole) < CLEAN, whole, values)
@@ -39,7 +38,7 @@ class Body:
         return {"revolute": 1, "prismatic": 1, "ball": 3, "free": 6}[self.kind]
 
     def add(self, mass, com, inertia):
-        """Fuses a rigid part to the link."""
+        """Adds a rigid part to the link."""
         whole = self.mass + mass
         if whole == 0.0:
             return
@@ -71,7 +70,7 @@ def spatial_inertia(body):
 
 
 def motion(e, r):
-    """Motion transform to a frame with rows of rotation e at r, both seen from the parent."""
+    """Motion transform to a frame with rotation rows e and origin r, both relative to the parent."""
     return sparse(ca.vertcat(ca.horzcat(e, ca.SX(3, 3)), ca.horzcat(-ca.mtimes(e, skew(r)), e)))
 
 
@@ -103,7 +102,7 @@ def joint(body, q):
     e = ca.mtimes(rotation, sparse(fixed.T))
     if body.kind == "ball":
         return motion(e, offset), sparse(np.vstack([np.eye(3), np.zeros((3, 3))]))
-    # Velocities (v, ω): the order of the descriptions. The place does not matter to a root.
+    # Velocities (v, ω), in the order of the descriptions. The position does not matter to a root.
     swap = np.vstack([np.hstack([np.zeros((3, 3)), np.eye(3)]), np.hstack([np.eye(3), np.zeros((3, 3))])])
     return motion(e, sparse(np.zeros(3))), sparse(swap)
 
@@ -184,7 +183,7 @@ def symmetric(matrix):
 
 
 def factors(matrix):
-    """The reciprocal for a joint of one freedom; LDLᵀ, unrolled, for others."""
+    """The reciprocal for a joint of one degree of freedom; otherwise LDLᵀ, unrolled."""
     return 1 / matrix if matrix.shape == (1, 1) else ca.ldl(matrix, False)
 
 

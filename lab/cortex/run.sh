@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Generated code on microcontrollers: builds the controller for a Cortex-M4F and a Cortex-M7, looks for what must not be in
-# the programs, runs them in QEMU, and holds instructions, stack and costs against bounds.
+# Tests generated code on microcontrollers: builds the controller for a Cortex-M4F and a Cortex-M7, checks that the
+# programs lack certain symbols, runs them in QEMU, and compares instructions, stack and costs with bounds.
 #
-# The compiler is the one at hand where it has the target (`rustup target add thumbv7em-none-eabihf`). Elsewhere, and for
-# QEMU, Debian's packages are unpacked below `target`, and nothing of the machine changes: Debian's compiler comes with
-# the sources of its `core`, which is then built for the board, too. Where neither can be had the script says so and
-# ends well; what is wrong ends it with an error.
+# Uses the installed compiler if it has the target (`rustup target add thumbv7em-none-eabihf`). Otherwise, and for QEMU,
+# Debian's packages are unpacked below `target`, without any change to the machine: Debian's compiler has the sources of
+# its `core`, which is then built for the board, too. If neither is available, the script prints a message and succeeds;
+# other problems are errors.
 set -euo pipefail
 cd "$(dirname "$0")"
-# They would take the place of those in `.cargo/config.toml`.
+# These would override those in `.cargo/config.toml`.
 unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS
 # The programs are one unit, without code that unwinds.
 export CARGO_PROFILE_RELEASE_LTO=fat CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1 CARGO_PROFILE_RELEASE_PANIC=abort
@@ -30,7 +30,7 @@ else
 fi
 command -v nm >/dev/null || cannot "no nm, which lists what a program consists of"
 
-# The library of the target is there, or Debian's compiler makes one.
+# The library of the target is installed, or Debian's compiler builds it.
 build=(cargo build)
 library=$(rustc --print target-libdir --target "$target" 2>/dev/null || true)
 if [ -z "$library" ] || ! compgen -G "$library/libcore-*.rlib" >/dev/null; then
@@ -40,8 +40,8 @@ if [ -z "$library" ] || ! compgen -G "$library/libcore-*.rlib" >/dev/null; then
         "$debian/usr/bin/cargo" build -Z build-std=core)
 fi
 
-# The model, by the generator of this repository. One that was built with the tests will do: alone, its dependencies have
-# other features, and are built anew.
+# The model, by the generator of this repository. A generator built with the tests is reused: built alone, its
+# dependencies have other features and are compiled again.
 mkdir -p target
 hamel="$(realpath -m "${CARGO_TARGET_DIR:-../../target}")/debug/hamel"
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then
@@ -50,7 +50,7 @@ fi
 "$hamel" emit drone.eom -o target/drone.rs
 cargo build --quiet --locked --release --bin report --target-dir target
 
-# Whatever could stop a program is a symbol of it; `main` has to be among them, else there would be nothing to look at.
+# Anything that could panic appears as a symbol; `main` must be among the symbols, or the check would be void.
 symbols() {
     local all
     all=$(nm "$1")
@@ -61,8 +61,8 @@ symbols() {
     fi
 }
 
-# A board runs a program to its end, a nanosecond of its time for each instruction, in numbers of one kind:
-# NAME BOARD PROGRAM INSTRUCTIONS BYTES, the latter two at most.
+# Runs a program on a board to its end, one nanosecond per instruction, for one number type: NAME BOARD PROGRAM
+# INSTRUCTIONS BYTES, where the last two are limits.
 run() {
     local said=target/$1.txt
     timeout 60 "${qemu[@]}" -machine "$2" -icount shift=0,sleep=off -nographic -monitor none -serial none \
@@ -71,7 +71,7 @@ run() {
     target/release/report "$1" "$3" "$4" "$5" <"$said"
 }
 
-# Both programs, with further arguments for the compiler's manager.
+# Builds both programs, with further arguments for cargo.
 programs=target/board/$target/release
 programs() {
     "${build[@]}" --quiet --locked --release --features board --target "$target" --bin single --bin double \

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Random mechanisms whose equations Python has from the definitions alone, by d'Alembert's principle and differences of 80
-# digits, against what hamel says of their texts; needs cargo, gcc and Python with mpmath of PyPI, which goes to a virtual
-# environment below the target, and gmpy2, which makes it quicker. Arguments are those of `dalembert/attack.py` behind the folder.
+# Compares the equations of random mechanisms, which Python computes from the definitions by d'Alembert's principle and
+# differences of 80 digits, with the equations that hamel derives from their texts. Needs cargo, gcc and Python with
+# mpmath from PyPI, which is installed in a virtual environment below the target, and gmpy2 for speed. Arguments after
+# the folder are passed to `dalembert/attack.py`.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 source xtask/wheels.sh
 wheels dalembert-environment mpmath==1.3.0 gmpy2==2.3.2
-# The program that was built with the tests will do.
+# Reuses the program built with the tests.
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -f "$target/debug/hamel" ]; then
     cargo build --quiet --locked -p hamel-cli
 fi

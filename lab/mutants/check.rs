@@ -1,7 +1,8 @@
-//! Derives a description and prints every identity with its verdict, as `hamel check` does; ends with 1 where one fails.
+//! Derives a description and prints every identity with its verdict, like `hamel check`; the exit status is 1 if one
+//! fails.
 //!
-//! The command line brings machine code, tables and pictures with it, which would be linked anew for every mutant. So
-//! the copy of the generator has this program, which calls the same functions.
+//! The command line would link machine code, tables and pictures again for every mutant. Therefore the copy of the
+//! generator contains this program, which calls the same functions.
 
 use hamel_codegen::functions::Asked;
 use hamel_codegen::generate::{Generated, at_some_point};

@@ -1,4 +1,4 @@
-//! Generates models of the tests, and robots below `HAMEL_ROBOTS`; their descriptions are kept beside.
+//! Generates models of the tests and robots below `HAMEL_ROBOTS`, and keeps their descriptions in the build folder.
 
 use hamel_codegen::Builder;
 use hamel_codegen::urdf::Options;
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A description in the folder of this build.
+/// Writes a description to the folder of this build.
 fn keep(folder: &Path, path: &Path, text: &str) -> Result<PathBuf, Box<dyn Error>> {
     let name = path.file_stem().ok_or("no name")?;
     let file = folder.join(name).with_extension("eom");

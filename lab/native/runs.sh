@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A million steps, and sweeps, by machine code made at once, beside programs in Rust with generated code; needs cargo and the
-# robots of tests/robots/install.sh.
+# Compares a million steps, and sweeps, by machine code made at run time with programs in Rust with generated code;
+# needs cargo and the robots of tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,10 +1,10 @@
-"""MuJoCo on a free body and on a top in a ball joint; prints JSON that the report reads.
+"""MuJoCo on a free body and on a top in a ball joint; prints JSON for the report.
 
     python lab/peers/mujoco_peer.py tests/reference
 
-Euler, implicit and RK4 of MuJoCo, double precision, against the reference solutions of the folder.
-Times are medians of repeats of whole runs, each one call of mj_step for all of its steps, so that
-Python's own time does not count.
+MuJoCo's Euler, implicit and RK4 in double precision, compared with the reference solutions in the folder. Times are
+medians over repeated whole runs, each a single call of mj_step for all of its steps, so that Python's overhead does
+not count.
 """
 
 import json
@@ -15,15 +15,15 @@ import time
 import mujoco
 import numpy as np
 
-# Case, length of the run, whether the body turns about a fixed point.
+# Case, length of the run, and whether the body has a fixed point.
 CASES = [
     ("heavy-top-benchmark-150", 1.0, True),
-    # Kovalevskaya's top is left out: about its centre of mass one of its moments of inertia is zero,
-    # which MuJoCo refuses.
+    # Without Kovalevskaya's top, one of whose moments of inertia about the centre of mass is zero, which MuJoCo
+    # refuses.
     ("lagrange-fast-top", 5.0, True),
     ("free-dzhanibekov-1e-3", 100.0, False),
 ]
-# Evaluations a step, and order; that of RK4 on rotations was 2 in older versions, and is 4 as measured here.
+# Evaluations per step, and order; that of RK4 on rotations was 2 in older versions, and is measured as 4 here.
 INTEGRATORS = [("Euler", 1, 1), ("implicit", 1, 1), ("RK4", 4, None)]
 STEPS = [200 * 2**k for k in range(8)]
 REPEATS = 5
@@ -70,7 +70,7 @@ def start(model, data, reference, joint):
 
 
 def main(folder):
-    # Warnings are found in the data; they must not mix with the output.
+    # Warnings are in the data, and must not be mixed with the output.
     mujoco.set_mju_user_warning(lambda message: None)
     cases = []
     for name, until, joint in CASES:

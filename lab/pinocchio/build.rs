@@ -1,5 +1,5 @@
-//! Generates three robots below `HAMEL_ROBOTS`, each with its linearisation and regressor, and the Jacobian of a link of
-//! each by a description that asks for nothing else.
+//! Generates three robots below `HAMEL_ROBOTS`, each with its linearisation and regressor; and the Jacobian of a link
+//! of each, from a description that requests nothing else.
 
 use hamel_codegen::Builder;
 use hamel_codegen::urdf::Options;
@@ -35,8 +35,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The description of a robot without its end; without damping, which Pinocchio's algorithms leave out, and without limits,
-/// one of which the start of Panda is beyond.
+/// The description of a robot without its closing brace. It has no damping, which Pinocchio's algorithms leave out, and
+/// no limits, one of which the start of Panda violates.
 fn imported(folder: &Path, robot: &robots::Robot) -> Result<String, Box<dyn Error>> {
     let locks = robot.locked.iter();
     let options = Options {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compares generated Rust with Pinocchio's C++; needs python3 with venv, g++ and cargo, and the robots of
-# tests/robots/install.sh; takes clang++ as well, where there is one. Prints a table, which is also
+# Compares generated Rust with Pinocchio's C++. Needs python3 with venv, g++ and cargo, and the robots of
+# tests/robots/install.sh; also uses clang++ if it is installed. Prints a table, and writes it to
 # `bench-pinocchio/report.md` below the target folder; takes about ten minutes, and 5 GB of memory for g++.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -11,8 +11,13 @@ robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head
 out="$target/bench-pinocchio"
 mkdir -p "$out"
 
+<<<<<<< HEAD:lab/pinocchio/run.sh
 # Headers and libraries of Pinocchio and of what it needs, from PyPI.
 here=lab/pinocchio
+=======
+# Headers and libraries of Pinocchio and its dependencies, from PyPI.
+here=bench/pinocchio
+>>>>>>> w-textB:bench/pinocchio/run.sh
 if ! cmp -s "$here/requirements.txt" "$out/venv/requirements.txt"; then
     python3 -m venv --clear "$out/venv"
     "$out/venv/bin/pip" install --quiet --disable-pip-version-check --requirement "$here/requirements.txt"
@@ -20,14 +25,14 @@ if ! cmp -s "$here/requirements.txt" "$out/venv/requirements.txt"; then
 fi
 prefix=$(find "$out/venv" -type d -name cmeel.prefix | head -n 1)
 
-# What the wheel's files for CMake define.
+# The definitions in the wheel's CMake files.
 defined=(
     -DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_LIMIT_VECTOR_SIZE=30 -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS
     -DBOOST_FUSION_INVOKE_MAX_ARITY=12 -DPINOCCHIO_URDFDOM_HEADERS_MAJOR_VERSION=3
     -DPINOCCHIO_URDFDOM_HEADERS_MINOR_VERSION=0 -DPINOCCHIO_URDFDOM_HEADERS_PATCH_VERSION=0
 )
-# A source by a compiler with further options, as the library of this name; nothing where it is as new as the source.
-# Warnings are those of templates of the headers.
+# Compiles a source by a compiler with further options to a library of this name, unless it is newer than the source.
+# Warnings come from templates in the headers.
 library() {
     local library="$out/$1" source="$here/$2" compiler="$3"
     shift 3
@@ -40,8 +45,8 @@ library() {
         -L"$prefix/lib" -Wl,-rpath,"$prefix/lib" -o "$library.new" "$@"
     mv "$library.new" "$library"
 }
-# The algorithms in several ways: those that the wheel has compiled, and their templates compiled for this machine. The
-# latter do not meet the wheel's libraries, in which Eigen aligns matrices by 16 bytes, whatever the machine has.
+# The algorithms in several ways: as compiled in the wheel, and their templates compiled for this machine. The latter do
+# not use the wheel's libraries, in which Eigen aligns matrices to 16 bytes on any machine.
 library reader.so reader.cpp g++ -DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION -lpinocchio_parsers -lpinocchio_default
 library wheel.so driver.cpp g++ -DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION -lpinocchio_default
 library g++.so driver.cpp g++ -march=native -fno-gnu-unique
@@ -54,7 +59,7 @@ fi
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
 cargo build --release --locked --manifest-path "$here/Cargo.toml" --target-dir "$out/rust"
-# One core, where the system can say so.
+# Pins the process to one core, if the system can.
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} "$out/rust/release/hamel-bench-pinocchio" "$robots" "$out/reader.so" "${ways[@]}" |
     tee "$out/report.md"

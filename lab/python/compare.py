@@ -1,4 +1,4 @@
-"""Forward dynamics of a robot at many states: medians of interleaved runs, each result compared before it is timed."""
+"""Forward dynamics of a robot at many states: medians of interleaved runs, after a comparison of the results."""
 
 import ctypes
 import statistics
@@ -12,7 +12,7 @@ import hamel
 
 STATES = 100_000
 REPEATS = 15
-# Calls one by one are slower; fewer do.
+# Fewer states for single calls, which are slower.
 SINGLE = 5_000
 
 
@@ -21,7 +21,7 @@ def numbers(array):
 
 
 def in_cpp(path, model):
-    """The chain of the model in C++: a way for each convention."""
+    """Forward dynamics in C++: one variant for each convention."""
     library = ctypes.CDLL(path)
     library.chain.restype = ctypes.c_void_p
     n = model.nv

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Python package beside Pinocchio's, and beside a loop in C++ over Pinocchio: forward dynamics of a UR5 at 100,000 states.
-# Needs cargo, g++ and Python with wheels of PyPI, and the robots of tests/robots/install.sh.
+# Compares the Python package with Pinocchio's, and with a loop in C++ over Pinocchio: forward dynamics of a UR5 at
+# 100,000 states. Needs cargo, g++ and Python with wheels from PyPI, and the robots of tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -28,10 +28,10 @@ library() {
         -isystem "$prefix/include/eigen3" -isystem "$prefix/include/urdfdom_headers" lab/python/loop.cpp \
         -L"$prefix/lib" -Wl,-rpath,"$prefix/lib" -o "$library" "$@"
 }
-# What the wheel has compiled, and its templates for this machine.
+# The code compiled in the wheel, and its templates for this machine.
 library wheel.so -DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION -lpinocchio_default
 library native.so -march=native -fno-gnu-unique
-# One core, where the system can say so.
+# Pins the process to one core, if the system can.
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} "$out/venv/bin/python" lab/python/compare.py "$robots/ur_description/urdf/ur5_robot.urdf" \
     "$out/wheel.so" "$out/native.so"

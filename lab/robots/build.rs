@@ -1,4 +1,4 @@
-//! Generates the robots below `HAMEL_ROBOTS` of the folder `HAMEL_CONTROL_REFERENCE`, with their
+//! Generates the robots below `HAMEL_ROBOTS` that are in the folder `HAMEL_CONTROL_REFERENCE`, with their
 //! linearisation, and writes the samples of their discrete steps as constants.
 
 #[path = "../../../cli/tests/suite/common/pinocchio.rs"]
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The description of a robot without damping, and its samples.
+/// Returns the description of a robot without damping, and its samples.
 fn robot(folder: &Path, reference: &Value) -> Result<(String, String), Box<dyn Error>> {
     let (text, joints) = undamped(folder, reference);
     let text = format!("{text}    generate all, linearize;\n}}\n");

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Steps with slopes of the robots in tests/reference/control, or in the folder that HAMEL_CONTROL_REFERENCE names, against
+# Compares steps with slopes of the robots in tests/reference/control, or in the folder HAMEL_CONTROL_REFERENCE, with
 # those of Pinocchio; needs cargo and the robots of tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Operations and times of steps with slopes, beside those of the linearisation; needs cargo and the robots of
+# Compares operations and times of steps with slopes with those of the linearisation; needs cargo and the robots of
 # tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -9,7 +9,12 @@ target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
 robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
+<<<<<<< HEAD:lab/steps/run.sh
 cargo build --release --manifest-path lab/steps/Cargo.toml --target-dir target/bench-steps
 # One core, where the system can say so.
+=======
+cargo build --release --manifest-path bench/steps/Cargo.toml --target-dir target/bench-steps
+# Pins the process to one core, if the system can.
+>>>>>>> w-textB:bench/steps/run.sh
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} target/bench-steps/release/hamel-bench-steps

@@ -93,7 +93,7 @@ use proc_macro::TokenStream;
 /// # }
 /// ```
 ///
-/// # What is generated
+/// # Generated items
 ///
 /// For `pub system CartPole { … }`, with ν coordinates, n velocities and any scalar type `S`:
 ///
@@ -122,8 +122,8 @@ use proc_macro::TokenStream;
 ///
 /// # Errors
 ///
-/// Mistakes are compile errors, each underlined at its place in the description; all independent ones are reported
-/// at once. This error says that nothing is called `mas`, and asks whether `mass` was meant:
+/// Mistakes are compile errors, each underlined at its place in the description; all independent ones are reported at
+/// once. This error reports that `mas` is not defined, and suggests `mass`:
 ///
 /// ```compile_fail
 /// hamel::rigid_eom! {

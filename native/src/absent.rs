@@ -1,31 +1,31 @@
-//! What stands in for machine code where the crate is built without it: there is never any, so that every call
-//! evaluates its tape step by step.
+//! Replacement for machine code where the crate is built without it. No code exists, so every call evaluates its tape
+//! step by step.
 
-// The interface is that of `code`, of which nothing can be called here.
+// The interface of `code`, none of which can be called here.
 #![allow(dead_code)]
 
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::Tapes;
 
-/// How a call ends that machine code would have answered.
+/// The outcome of a call of machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// The result is written.
     Well,
-    /// A pivot is not positive.
+    /// A pivot was not positive.
     At(Cause),
     /// The tape has to be evaluated step by step.
     Undone,
 }
 
-/// What code would be written for.
+/// The instructions to generate code for.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     /// Whether a b + c is one instruction.
     pub fused: bool,
-    /// Whether there are two lanes.
+    /// Whether code has two lanes.
     pub paired: bool,
-    /// Whether Cranelift looks at what it is given before it makes code of it.
+    /// Whether Cranelift verifies its input before it compiles it.
     pub verified: bool,
 }
 
@@ -34,7 +34,7 @@ pub struct Target {
 pub enum Code {}
 
 impl Code {
-    /// Makes no code.
+    /// Returns an error, since no code can be made.
     ///
     /// # Errors
     /// Always, with the reason.
@@ -51,7 +51,7 @@ impl Code {
     }
 }
 
-/// A function whose arguments have lengths that are known when Rust compiles the call: there is none.
+/// A function whose argument lengths are known at compile time: no value exists.
 #[derive(Clone, Copy)]
 pub struct Fixed<'a, const X: usize, const V: usize, const U: usize, const OUT: usize>(&'a Code);
 
@@ -65,7 +65,7 @@ impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed
     }
 }
 
-/// Whether a b + c is rounded once: a fused product in software would be slow.
+/// Whether a b + c is rounded once. Always false: a fused product in software would be slow.
 pub fn is_fused() -> bool {
     false
 }

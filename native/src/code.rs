@@ -1,20 +1,20 @@
-//! Memory that can be executed, and calls of it: all that is `unsafe` in this project.
+//! Executable memory and calls into it: all `unsafe` code of this project.
 //!
-//! What makes a call sound:
-//! - The code of a function is made by [`Lowering`] alone, of a tape whose steps read nothing that comes after them. It
-//!   reads, at whole places, from the constants and the five arguments, and writes to the result and to its own stack.
-//!   Parts of a long one are called by it alone, with the address of its own stack, which has places for all of them.
-//!   The greatest place that it can touch in each of the seven is known from the tape (`Reach`), before the code is made,
-//!   and every call compares lengths with it. Places are less than `LARGEST`, so that no offset is too large for an
-//!   instruction.
-//! - Frames that are longer than a page touch the pages of the stack in order: one that is too long ends the process, as
-//!   in Rust, and reaches nobody else's memory.
-//! - What is read is a number of 64 bits in a slice of such; any bits are one.
-//! - The result is borrowed exclusively, so that nothing else that is read changes while it is written.
-//! - Code is finished, and its memory made executable and not writable, before the address of a function is asked
-//!   for; the signature of the address is that of [`signature`].
-//! - Memory is given back when the last owner of [`Code`] goes, and addresses never leave it.
-//! - Code has no state but its arguments, so that it can be called from many threads at once.
+//! Calls are sound for these reasons:
+//! - The code of a function is made by [`Lowering`] only, from a tape whose steps read nothing that comes after them.
+//!   It reads whole entries of the constants and the five arguments, and writes to the result and to its own stack. The
+//!   parts of a long function are called by it only, with the address of its stack, which has room for all of them. The
+//!   greatest index that it can access in each of the seven slices is known from the tape (`Reach`) before the code is
+//!   made, and every call compares lengths with it. Indices are less than `LARGEST`, so that no offset is too large for
+//!   an instruction.
+//! - Frames longer than a page touch the pages of the stack in order: a stack overflow ends the process, as in Rust,
+//!   without access to other memory.
+//! - Code reads 64-bit numbers from slices of `f64`, for which any bits are valid.
+//! - The result is borrowed exclusively, so that no memory that is read changes while it is written.
+//! - Code is finished, and its memory made executable and read-only, before the address of a function is taken; the
+//!   address has the signature given by [`signature`].
+//! - Memory is freed when the last owner of [`Code`] is dropped, and addresses never leave it.
+//! - Code has no state except its arguments, so it can be called from many threads at once.
 
 #![allow(unsafe_code)]
 
@@ -45,28 +45,28 @@ type Entry = unsafe extern "C" fn(
     *const f64,
 ) -> i32;
 
-/// Functions with more steps, and lists with more entries, have no code.
+/// Functions with more steps, and slices with more entries, get no code.
 const LARGEST: usize = 1 << 26;
 
-/// How a call ended.
+/// The outcome of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// The result is written.
     Well,
-    /// A pivot is not positive.
+    /// A pivot was not positive.
     At(Cause),
-    /// Nothing is written that has a meaning: the tape has to be evaluated step by step.
+    /// Nothing meaningful is written: the tape has to be evaluated step by step.
     Undone,
 }
 
-/// One function.
+/// A compiled function.
 struct Callable {
     entry: Entry,
     reach: Reach,
     causes: Vec<Cause>,
 }
 
-/// One more than the greatest place that a function touches.
+/// Lengths of the slices that a function accesses.
 #[derive(Clone, Copy, Debug, Default)]
 struct Reach {
     constants: usize,
@@ -97,7 +97,7 @@ impl Reach {
         reach
     }
 
-    /// The same where every list has so many numbers in place of each.
+    /// The lengths for slices with `lanes` numbers in place of each.
     fn of_lanes(self, lanes: usize) -> Self {
         Reach {
             constants: lanes * self.constants,
@@ -114,10 +114,10 @@ pub struct Code {
     module: ManuallyDrop<JITModule>,
 }
 
-// SAFETY: After `new` the module is not touched before `drop`, which has it alone, and the memory that addresses
-// point to is not written any more.
+// SAFETY: between `new` and `drop`, which has exclusive access, the module is not used, and the memory behind the
+// addresses is not written.
 unsafe impl Send for Code {}
-// SAFETY: As above; calls share nothing but code.
+// SAFETY: as above; calls share nothing except code.
 unsafe impl Sync for Code {}
 
 impl fmt::Debug for Code {
@@ -129,13 +129,13 @@ impl fmt::Debug for Code {
 
 impl Drop for Code {
     fn drop(&mut self) {
-        // SAFETY: The module is taken once, here; with `self` all addresses of its functions go, and whoever calls
-        // one of them borrows `self`.
+        // SAFETY: the module is taken once, here. All addresses of its functions are dropped with `self`, and a caller
+        // of one of them borrows `self`.
         unsafe { ManuallyDrop::take(&mut self.module).free_memory() }
     }
 }
 
-/// Whether a b + c is one instruction of this machine.
+/// Returns whether a b + c is one instruction of this machine.
 pub fn is_fused() -> bool {
     #[cfg(target_arch = "x86_64")]
     return std::is_x86_feature_detected!("fma");
@@ -162,7 +162,7 @@ extern "C" fn atan2(y: f64, x: f64) -> f64 {
     hamel::Scalar::atan2(y, x)
 }
 
-/// What is called, with its name and its address.
+/// Returns the name and the address of a function that code calls.
 fn known(callee: Callee) -> Option<(&'static str, *const u8)> {
     let one = |of: extern "C" fn(f64) -> f64| of as *const u8;
     Some(match callee {
@@ -177,10 +177,10 @@ fn known(callee: Callee) -> Option<(&'static str, *const u8)> {
 }
 
 impl Code {
-    /// Compiles tapes; with them come the numbers that have to stand behind the constants in every call.
+    /// Compiles tapes. Returns also the numbers that have to follow the constants in every call.
     ///
     /// # Errors
-    /// Why this machine has no code.
+    /// If no code can be made on this machine, with the reason.
     pub fn new(tapes: &Tapes, target: Target) -> Result<(Self, Vec<f64>), String> {
         let mut flags = builder();
         for (name, value) in [
@@ -192,7 +192,7 @@ impl Code {
             ("use_colocated_libcalls", "false"),
             ("is_pic", "false"),
             ("unwind_info", "false"),
-            // A frame that is longer than a page of the stack touches all its pages in order.
+            // Frames longer than a page of the stack touch all its pages in order.
             ("enable_probestack", "true"),
             ("probestack_strategy", "inline"),
         ] {
@@ -236,7 +236,7 @@ impl Code {
         let made = match made {
             Ok(made) => made,
             Err(why) => {
-                // SAFETY: No address was taken.
+                // SAFETY: no address was taken.
                 unsafe { ManuallyDrop::into_inner(module).free_memory() }
                 return Err(why);
             }
@@ -246,7 +246,7 @@ impl Code {
             .zip(tapes.all())
             .map(|((id, causes), tape)| {
                 let address = module.get_finalized_function(id);
-                // SAFETY: The function was declared with `signature`, which has these arguments and this result.
+                // SAFETY: the function was declared with `signature`, which has these arguments and this result.
                 let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
                 let mut reach = Reach::of(tape);
                 reach.constants = reach.constants.max(pool.start + pool.numbers.len());
@@ -266,12 +266,12 @@ impl Code {
         Ok((code, pool.numbers))
     }
 
-    /// Bytes of code.
+    /// Returns the size of the code in bytes.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Calls a function. A call that does not have all that it touches is left undone.
+    /// Calls a function. Returns [`Ended::Undone`] if a slice is shorter than the function accesses.
     #[inline]
     pub fn call(
         &self,
@@ -289,7 +289,7 @@ impl Code {
             return Ended::Undone;
         };
         let [x, xi, u, xi_dot, p] = arguments;
-        // All at once, not one after the other: a branch each would take longer than a small function.
+        // All comparisons at once: a branch for each would take longer than a small function.
         let short = (constants.len() < reach.constants)
             | (out.len() < reach.out)
             | (x.len() < reach.arguments[0])
@@ -300,8 +300,8 @@ impl Code {
         if short {
             return Ended::Undone;
         }
-        // SAFETY: `entry` is code of `self.module`, which lives; all seven slices have the places that it touches, as
-        // was just compared, and `out` is borrowed exclusively.
+        // SAFETY: `entry` is code of `self.module`, which is alive; all seven slices have the entries that it accesses,
+        // as just compared, and `out` is borrowed exclusively.
         let code = unsafe {
             entry(
                 constants.as_ptr(),
@@ -317,7 +317,7 @@ impl Code {
     }
 }
 
-/// A function whose arguments have lengths that are known when Rust compiles the call: they were compared once.
+/// A function whose argument lengths are known at compile time, so that they are compared only once.
 #[derive(Clone, Copy)]
 pub struct Fixed<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> {
     callable: &'a Callable,
@@ -325,7 +325,7 @@ pub struct Fixed<'a, const X: usize, const V: usize, const U: usize, const OUT: 
 }
 
 impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed<'a, X, V, U, OUT> {
-    /// A function of x, ξ and u alone; `None` where it touches more than these lengths have.
+    /// Returns a function of x, ξ and u; `None` if it accesses more entries than these lengths, or other arguments.
     pub fn new(code: &'a Code, function: usize, constants: &'a [f64]) -> Option<Self> {
         let callable = code.functions.get(function)?;
         let Reach {
@@ -340,13 +340,13 @@ impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed
         })
     }
 
-    /// Calls it.
+    /// Calls the function.
     #[inline]
     pub fn call(&self, x: &[f64; X], xi: &[f64; V], u: &[f64; U], out: &mut [f64; OUT]) -> Ended {
         let Callable { entry, causes, .. } = self.callable;
         let none = std::ptr::null();
-        // SAFETY: The code lives as long as `'a`; what it touches of constants, `out`, x, ξ and u they have, as `new`
-        // compared; of the last two arguments it touches nothing, and `out` is borrowed exclusively.
+        // SAFETY: the code lives as long as `'a`. Constants, `out`, x, ξ and u have the entries that it accesses, as
+        // compared in `new`; it does not access the last two arguments, and `out` is borrowed exclusively.
         let code = unsafe {
             entry(
                 self.constants.as_ptr(),
@@ -362,7 +362,7 @@ impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed
     }
 }
 
-/// What a function has returned.
+/// Converts the status that a function returned.
 #[inline]
 fn ended(code: i32, causes: &[Cause]) -> Ended {
     match code {
@@ -376,7 +376,7 @@ fn ended(code: i32, causes: &[Cause]) -> Ended {
     }
 }
 
-/// What functions are made with.
+/// The compiler with its module and buffers.
 struct Making {
     module: ManuallyDrop<JITModule>,
     pool: Pool,
@@ -427,7 +427,7 @@ impl Making {
         Ok((id, lowering.causes))
     }
 
-    /// A part of a tape as a function.
+    /// Compiles a part of a tape to a function.
     fn part(
         &mut self,
         name: &str,
@@ -464,7 +464,7 @@ impl Making {
         self.defined(name, context)
     }
 
-    /// Compiles a function.
+    /// Compiles a function and defines it in the module.
     fn defined(&mut self, name: &str, mut context: Context) -> Result<FuncId, String> {
         let id = self
             .module

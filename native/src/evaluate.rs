@@ -1,4 +1,4 @@
-//! Tapes step by step: where there is no machine code, and for the rare arguments that it leaves to this.
+//! Interprets tapes step by step: where there is no machine code, and for the rare arguments that it does not handle.
 
 use hamel::Scalar;
 use hamel::trig::{self, Arithmetic};
@@ -6,11 +6,11 @@ use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape};
 
-/// The results of a tape. Constants are the parameters and what is kept behind them; a step that a machine
-/// rounds once is rounded once where `fused`.
+/// Evaluates a tape. Constants are the parameters, followed by the values kept with them. If `fused`, a step that the
+/// machine rounds once is rounded once.
 ///
 /// # Errors
-/// What a pivot that is not positive means.
+/// The cause of a pivot that is not positive.
 pub fn evaluate(
     tape: &Tape,
     fused: bool,
@@ -21,10 +21,10 @@ pub fn evaluate(
     run(tape, &Rounded { fused }, constants, arguments, out)
 }
 
-/// The results of a tape in other numbers, such as those that carry slopes.
+/// Evaluates a tape in another type of number, such as numbers with slopes.
 ///
 /// # Errors
-/// What a pivot that is not positive means.
+/// The cause of a pivot that is not positive.
 pub fn evaluate_in<S: Scalar>(
     tape: &Tape,
     constants: &[f64],
@@ -34,7 +34,7 @@ pub fn evaluate_in<S: Scalar>(
     run(tape, &Own, constants, arguments, out)
 }
 
-/// What depends on how products and sums are rounded.
+/// Operations that depend on the rounding of products and sums.
 trait Rounding<S> {
     /// a b + c
     fn fused(&self, a: S, b: S, c: S) -> S;
@@ -52,7 +52,7 @@ impl Rounding<f64> for Rounded {
     }
 }
 
-/// As the numbers have it themselves.
+/// The rounding of the number type itself.
 struct Own;
 
 impl<S: Scalar> Rounding<S> for Own {
@@ -101,7 +101,7 @@ fn run<S: Scalar>(
     Ok(())
 }
 
-/// Numbers whose products are rounded before they are added, or not.
+/// Numbers whose products are rounded before they are added if not `fused`.
 struct Rounded {
     fused: bool,
 }
@@ -141,9 +141,9 @@ impl Arithmetic for Rounded {
     }
 }
 
-/// (sin x, cos x), as generated code has it.
+/// Returns (sin x, cos x), as in generated code.
 fn sin_cos(x: f64, fused: bool) -> [f64; 2] {
-    // Not `>`: NaN is far.
+    // Not `>`, so that NaN is not near.
     let near = x.abs() <= trig::FARTHEST;
     if !near {
         return Scalar::sin_cos(x).into();
@@ -154,7 +154,7 @@ fn sin_cos(x: f64, fused: bool) -> [f64; 2] {
     trig::turned(w, row, reduced)
 }
 
-/// The value of an operand.
+/// Returns the value of an operand.
 pub(crate) fn read<S: Scalar>(
     operand: Operand,
     values: &[S],
@@ -174,7 +174,7 @@ pub(crate) fn read<S: Scalar>(
     if operand.negative { -value } else { value }
 }
 
-/// A function of one argument, as generated code has it.
+/// Evaluates a function of one argument, as in generated code.
 pub fn apply<S: Scalar>(function: Function, a: S) -> S {
     match function {
         Function::Sin => a.sin_cos().0,
@@ -189,7 +189,7 @@ pub fn apply<S: Scalar>(function: Function, a: S) -> S {
         Function::Abs => a.abs(),
         Function::Inverse => a.inverse_of_length(),
         Function::Raised => a.raised(),
-        // Steps of their own.
+        // These have separate steps.
         Function::Atan2 | Function::Select | Function::Listed | Function::External => {
             S::from_f64(f64::NAN)
         }

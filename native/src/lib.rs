@@ -1,33 +1,34 @@
-//! Machine code from the tapes of generated functions, made at once and without a compiler.
+//! Machine code from the tapes of generated functions, made at run time without a compiler.
 //!
 #![doc = include_str!("../README.md")]
 //!
 //! # How it works
 //!
-//! [`Compiled`] takes the [tapes](Tapes) of a program and lowers each function by itself with Cranelift. A plan that is
-//! made beforehand (`spill`) says which values stay in registers and when the others come back from memory: so the time
-//! for making code is linear in the number of steps, and the code nearly as fast as that of an optimising compiler.
+//! [`Compiled`] takes the [tapes](Tapes) of a program and lowers each function separately with Cranelift. A plan made
+//! beforehand (`spill`) determines which values stay in registers and when the others are reloaded from memory.
+//! Therefore the compile time is linear in the number of steps, and the code is nearly as fast as that of an optimising
+//! compiler.
 //!
 //! Where no code can be made (on other processors, or on systems that refuse executable memory), tapes are interpreted
 //! step by step: more slowly, with the same numbers up to rounding.
 //!
-//! | file | what it owns |
+//! | file | owns |
 //! |---|---|
-//! | `spill` | which values are in registers, and where the others are |
-//! | `target` | what code is written for, one set of numbers or two; the numbers that it reads |
-//! | `lower` | steps as Cranelift's intermediate code |
-//! | `parts` | a tape as one function, or as several that one calls where it is long |
+//! | `spill` | which values are in registers, and the locations of the others |
+//! | `target` | the target of code, with one lane or two; the numbers that it reads |
+//! | `lower` | the steps in Cranelift's intermediate code |
+//! | `parts` | a tape as one function or, if it is long, as several called by one more |
 //! | `code` | executable memory and calls into it: everything that is `unsafe` |
-//! | `absent` | the same without the feature `machine`: no code can be made |
+//! | `absent` | the replacement without the feature `machine`: no code can be made |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
-//! | `evaluate` | tapes, interpreted step by step |
+//! | `evaluate` | the interpreter of tapes |
 //! | `traced` | algorithms in Rust as tapes |
 //!
 //! # Features
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `machine` | machine code; without it all tapes are run step by step, on any target |
+//! | `machine` | machine code; without it all tapes are interpreted, on any target |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -64,47 +65,47 @@ use std::sync::Arc;
 #[cfg(feature = "machine")]
 use target::Target;
 
-/// Functions of a program that can be called: by machine code where there can be any.
+/// Functions of a program that can be called, by machine code where possible.
 #[derive(Clone, Debug)]
 pub struct Compiled(Arc<Parts>);
 
 #[derive(Debug)]
 struct Parts {
     tapes: Tapes,
-    /// Numbers that code reads, behind the constants.
+    /// Numbers that code reads, after the constants.
     numbers: Vec<f64>,
     code: Result<Code, String>,
     fused: bool,
     verified: bool,
 }
 
-/// Parameters, and what depends on them alone: what a function is called with besides its arguments.
+/// Parameters and the values that depend on them only, which calls take in addition to the arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constants(Vec<f64>, usize);
 
 impl Constants {
-    /// The parameters, and behind them what depends on them alone.
+    /// Returns the parameters, followed by the values that depend on them only.
     pub fn known(&self) -> &[f64] {
         self.0.get(..self.1).unwrap_or(&self.0)
     }
 }
 
 impl Compiled {
-    /// Functions of a program.
+    /// Compiles functions of a program.
     ///
     /// # Errors
-    /// Where one of them calls a function in Rust.
+    /// If one of them calls a function in Rust.
     pub fn new(program: &Program, functions: &[&Function]) -> Result<Self, Foreign> {
         Ok(Compiled::of(Tapes::new(program, functions)?))
     }
 
-    /// The functions of tapes.
+    /// Compiles the functions of tapes.
     pub fn of(tapes: Tapes) -> Self {
         Compiled::made(tapes, false)
     }
 
-    /// The same for tests of this crate: Cranelift first verifies what it is given, and says what is wrong where code would
-    /// only compute something else. That takes its time.
+    /// Compiles for tests of this crate: Cranelift first verifies its input, which takes time, and reports errors that
+    /// would otherwise give wrong results.
     pub fn verified(tapes: Tapes) -> Self {
         Compiled::made(tapes, true)
     }
@@ -129,7 +130,7 @@ impl Compiled {
         }))
     }
 
-    /// The functions of tapes, step by step.
+    /// Interprets the functions of tapes step by step.
     pub fn interpreted(tapes: Tapes) -> Self {
         Compiled(Arc::new(Parts {
             tapes,
@@ -140,33 +141,33 @@ impl Compiled {
         }))
     }
 
-    /// Why there is no machine code, where there is none.
+    /// Returns the reason if there is no machine code.
     pub fn interpreted_because(&self) -> Option<&str> {
         self.0.code.as_ref().err().map(String::as_str)
     }
 
-    /// Whether a step that a machine can round once is rounded once: last digits depend on it.
+    /// Returns whether a step that the machine can round once is rounded once; the last digits depend on it.
     pub fn is_fused(&self) -> bool {
         self.0.fused
     }
 
-    /// The tapes.
+    /// Returns the tapes.
     pub fn tapes(&self) -> &Tapes {
         &self.0.tapes
     }
 
-    /// The place of a function, by its name.
+    /// Returns the index of a function by its name.
     pub fn place(&self, name: &str) -> Option<usize> {
         let functions = self.0.tapes.functions.iter();
         functions.into_iter().position(|tape| tape.name == name)
     }
 
-    /// Bytes of machine code.
+    /// Returns the size of the machine code in bytes.
     pub fn size(&self) -> usize {
         self.0.code.as_ref().map_or(0, Code::size)
     }
 
-    /// What depends on parameters alone; parameters that are missing are NaN.
+    /// Computes the values that depend on parameters only; missing parameters are NaN.
     pub fn constants(&self, parameters: &[f64]) -> Constants {
         let parts = &*self.0;
         let mut all = parameters.to_vec();
@@ -175,13 +176,13 @@ impl Compiled {
         all.extend_from_slice(&parts.numbers);
         let mut constants = Constants(all, parts.tapes.kept());
         let mut kept = vec![0.0; parts.tapes.constants.outputs.len()];
-        // It checks no pivots.
+        // This tape checks no pivots.
         let _ = self.call(parts.tapes.functions.len(), &constants, [&[]; 5], &mut kept);
         constants.0[parts.tapes.parameters..parts.tapes.kept()].copy_from_slice(&kept);
         constants
     }
 
-    /// What it means that a pivot that depends on parameters alone is not positive, where one is not.
+    /// Returns the cause if a pivot that depends on parameters only is not positive.
     pub fn singular(&self, constants: &Constants) -> Option<Cause> {
         let mut pivots = self.0.tapes.pivots.iter();
         let none: [&[f64]; 5] = [&[]; 5];
@@ -191,11 +192,11 @@ impl Compiled {
             .map(|(_, cause)| *cause)
     }
 
-    /// Calls a function with x, ξ and behind it z, u, ξ̇ and p. Entries that are missing are NaN; `out` has to have the
-    /// length of the result.
+    /// Calls a function with x, ξ followed by z, u, ξ̇ and p. Missing entries are NaN; `out` must have the length of
+    /// the result.
     ///
     /// # Errors
-    /// What it means that a pivot is not positive; then `out` has no meaning.
+    /// The cause of a pivot that is not positive; then `out` has no meaning.
     #[inline]
     pub fn call(
         &self,
@@ -214,7 +215,7 @@ impl Compiled {
         self.step(function, constants, arguments, out)
     }
 
-    /// A function of x, ξ and u for arguments of these lengths; `None` where those of the program are others.
+    /// Returns a function of x, ξ and u for arguments of these lengths; `None` if the program has other lengths.
     pub fn sized<'a, const X: usize, const V: usize, const U: usize, const OUT: usize>(
         &'a self,
         function: usize,
@@ -231,7 +232,7 @@ impl Compiled {
         })
     }
 
-    /// Step by step.
+    /// Interprets a function.
     #[cold]
     fn step(
         &self,
@@ -250,8 +251,8 @@ impl Compiled {
     }
 }
 
-/// A function of x, ξ and u whose arguments have lengths that are known when Rust compiles the call: it costs little
-/// more than the function itself.
+/// A function of x, ξ and u whose argument lengths are known at compile time: a call costs little more than the
+/// function itself.
 pub struct Sized<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> {
     compiled: &'a Compiled,
     function: usize,
@@ -260,10 +261,10 @@ pub struct Sized<'a, const X: usize, const V: usize, const U: usize, const OUT: 
 }
 
 impl<const X: usize, const V: usize, const U: usize, const OUT: usize> Sized<'_, X, V, U, OUT> {
-    /// Calls it, see [`Compiled::call`].
+    /// Calls the function; see [`Compiled::call`].
     ///
     /// # Errors
-    /// What it means that a pivot is not positive.
+    /// The cause of a pivot that is not positive.
     #[inline]
     pub fn call(
         &self,

@@ -1,7 +1,7 @@
-//! Steps of a tape in Cranelift's intermediate code, with values where the plan of [`crate::spill`] has them.
+//! Lowers the steps of a tape to Cranelift's intermediate code, with values placed by the plan of [`crate::spill`].
 //!
-//! Code is written for one set of numbers, or for two at once: then every list holds pairs, one number of each lane, and
-//! a lane has the bits that it would have alone.
+//! Code has one lane or two. With two lanes, every list holds pairs, one number of each lane, and a lane has the same
+//! bits as alone.
 
 use crate::spill::{Home, is_call};
 use crate::target::{Pool, Target};
@@ -20,17 +20,17 @@ use std::collections::HashMap;
 const INFINITE: i64 = f64::INFINITY.to_bits().cast_signed();
 /// The bits of the smallest number that is not subnormal.
 const NORMAL: i64 = f64::MIN_POSITIVE.to_bits().cast_signed();
-/// What a function returns where all is well.
+/// Status of a function that succeeded.
 pub const WELL: i32 = 0;
-/// What it returns where the tape has to be evaluated step by step. Positive numbers are those of causes, from 1.
+/// Status if the tape has to be evaluated step by step. Positive numbers denote causes, from 1.
 pub const UNDONE: i32 = -1;
-/// Lengths below this are divided by as if they were this long.
+/// Smaller arguments of `Inverse` are replaced by this one.
 const SHORTEST: f64 = 1e-100;
 
-/// Functions that code calls.
+/// References to the functions that code calls.
 pub type Callees = HashMap<Callee, FuncRef>;
 
-/// What code calls for a step.
+/// The function that code calls for a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Callee {
     /// A function of one number.
@@ -39,7 +39,7 @@ pub enum Callee {
     Atan2,
 }
 
-/// The call of a step, where it is one.
+/// Returns the function called for a step, if any.
 pub fn callee(step: &Step) -> Option<Callee> {
     match *step {
         _ if !is_call(step) => None,
@@ -49,7 +49,7 @@ pub fn callee(step: &Step) -> Option<Callee> {
     }
 }
 
-/// Addresses of constants, of the result, and of the arguments; a number that says how it ended.
+/// Addresses of the constants, of the result, and of the arguments; returns a status.
 pub fn signature(mut empty: Signature, pointer: Type) -> Signature {
     let addresses = 2 + ARGUMENTS.len();
     empty
@@ -59,14 +59,14 @@ pub fn signature(mut empty: Signature, pointer: Type) -> Signature {
     empty
 }
 
-/// Where values are that are in no register.
+/// The frame for values that are in no register.
 #[derive(Clone, Copy)]
 pub enum Frame {
-    /// Nowhere: all have their places.
+    /// No frame: no value needs one.
     None,
     /// On the stack of this function.
     Own(StackSlot),
-    /// On that of its caller, from this address on.
+    /// On the stack of its caller, from this address on.
     Given(Value),
 }
 
@@ -76,26 +76,26 @@ pub struct Writer<'a, 'b> {
     pub builder: &'a mut FunctionBuilder<'b>,
     /// The numbers that code reads.
     pub pool: &'a mut Pool,
-    /// How code is written.
+    /// The target of the code.
     pub target: Target,
     /// The address of the constants.
     pub constants: Value,
-    /// That of the result.
+    /// The address of the result.
     pub out: Value,
-    /// Those of the arguments.
+    /// The addresses of the arguments.
     pub arguments: [Value; 5],
-    /// Ends with a number.
+    /// The block that returns a status.
     pub ends: Block,
     pub frame: Frame,
 }
 
 impl<'a, 'b> Writer<'a, 'b> {
-    /// The next instruction.
+    /// Returns the inserter of the next instruction.
     fn ins(&mut self) -> FuncInstBuilder<'_, 'b> {
         self.builder.ins()
     }
 
-    /// (sin x, cos x); leaves the function where x is far, or no number.
+    /// Computes (sin x, cos x); returns from the function if x is too large or NaN.
     fn sin_cos(&mut self, x: Value) -> [Value; 2] {
         let size = self.ins().fabs(x);
         let farthest = self.constant(trig::FARTHEST);
@@ -110,7 +110,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         trig::turned(self, row, reduced)
     }
 
-    /// The row of [`trig::TURNED`] whose number is the last two bits.
+    /// Loads the row of [`trig::TURNED`] whose index is in the last two bits.
     fn row(&mut self, shifted: Value) -> [Value; 4] {
         let start = self.pool.turned();
         let rows: Vec<[Value; 4]> = self
@@ -136,7 +136,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         })
     }
 
-    /// The numbers of a value, lane by lane.
+    /// Extracts the numbers of a value, lane by lane.
     fn alone(&mut self, value: Value) -> Vec<Value> {
         match self.target.paired {
             true => vec![
@@ -147,7 +147,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// The value that has these numbers in its lanes.
+    /// Builds the value with these numbers in its lanes.
     fn together(&mut self, lanes: &[Value]) -> Value {
         match *lanes {
             [first, second] => {
@@ -159,7 +159,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// In each lane one value where a comparison holds, and else another.
+    /// Selects per lane: one value where a comparison holds, otherwise another.
     fn choose(&mut self, (a, how, b): (Value, FloatCC, Value), then: Value, other: Value) -> Value {
         let holds = self.ins().fcmp(how, a, b);
         match self.target.paired {
@@ -171,7 +171,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// A number.
+    /// Returns a number, in all lanes.
     pub fn constant(&mut self, number: f64) -> Value {
         let place = self.pool.place(number);
         self.load(self.constants, place)
@@ -191,14 +191,14 @@ impl<'a, 'b> Writer<'a, 'b> {
             .load(target.number(), target.flags(), base, target.bytes(place))
     }
 
-    /// Writes a number to a list.
+    /// Stores a number in a list.
     pub fn store(&mut self, value: Value, base: Value, place: usize) {
         let target = self.target;
         self.ins()
             .store(target.flags(), value, base, target.bytes(place));
     }
 
-    /// Writes a value to its place in the frame.
+    /// Stores a value in its slot of the frame.
     pub fn keep(&mut self, value: Value, slot: usize) {
         let place = self.target.bytes(slot);
         match self.frame {
@@ -210,7 +210,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// A value that is in memory.
+    /// Loads a value from memory.
     pub fn fetch(&mut self, home: Home) -> Value {
         match home {
             Home::Given(Source::Number(number)) => self.constant(number),
@@ -230,12 +230,12 @@ impl<'a, 'b> Writer<'a, 'b> {
                 Frame::Given(address) => self.load(address, slot),
                 Frame::None => self.constant(f64::NAN),
             },
-            // A plan loads what is in memory.
+            // The plan loads only values that are in memory.
             Home::Given(Source::Value(_)) | Home::None => self.constant(f64::NAN),
         }
     }
 
-    /// The value, or its negative.
+    /// Returns the value or its negative.
     pub fn signed(&mut self, (value, negative): (Value, bool)) -> Value {
         match negative {
             true => self.ins().fneg(value),
@@ -243,7 +243,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// One step; `dies` says of its operands which are read no more.
+    /// Writes one step; `dies` flags the operands that are not read again.
     pub fn step(
         &mut self,
         step: &Step,
@@ -259,7 +259,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 (false, true) => self.ins().fsub(a.0, b.0),
                 (true, false) => self.ins().fsub(b.0, a.0),
                 (true, true) => {
-                    // Not −(a + b), whose 0 has another sign.
+                    // Not −(a + b), in which a zero has the other sign.
                     let first = self.ins().fneg(a.0);
                     self.ins().fsub(first, b.0)
                 }
@@ -273,7 +273,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 self.signed((quotient, a.1 != b.1))
             }
             Step::Fused(..) => {
-                // The instruction writes over its first factor.
+                // The instruction overwrites its first factor.
                 let (first, second) = match dies[1] && !dies[0] {
                     true => (b.0, a.0),
                     false => (a.0, b.0),
@@ -354,7 +354,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                     causes.len() - 1
                 });
                 for pivot in self.alone(pivot) {
-                    // Positive, finite and not subnormal by its bits, as generated code has it.
+                    // Positive, finite and not subnormal, tested by its bits as in generated code.
                     let bits = self.ins().bitcast(types::I64, MemFlags::new(), pivot);
                     let bits = self.ins().iadd_imm(bits, -NORMAL);
                     let limit = self.ins().iconst(types::I64, INFINITE - NORMAL);
@@ -409,7 +409,7 @@ impl Arithmetic for Writer<'_, '_> {
     }
 }
 
-/// Where a step is read for its kind alone.
+/// Operand of steps of which only the kind matters.
 const NONE: Operand = Operand {
     source: Source::Number(0.0),
     negative: false,

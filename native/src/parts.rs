@@ -1,8 +1,8 @@
-//! A tape as one function, or as several.
+//! Compiles a tape as one function, or as several.
 //!
-//! Long tapes become several functions, which one more calls in turn: what Cranelift needs of memory grows with the length
-//! of a function, a kilobyte and more for each instruction. Values that one of them leaves to the next are in the frame
-//! of the caller.
+//! Long tapes become several functions, which one more function calls in turn: the memory that Cranelift needs grows
+//! with the length of a function, by a kilobyte and more for each instruction. Values that pass from one part to the
+//! next are in the frame of the caller.
 
 use crate::lower::{Callee, Callees, Frame, WELL, Writer, callee};
 use crate::spill::{Action, Home, Id, Plan, plan};
@@ -16,25 +16,25 @@ use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Source, Tape};
 use std::collections::HashMap;
 
-/// How many steps a function has at most.
+/// Largest number of steps of a function.
 const LONGEST: usize = 10_000;
 
-/// Those of a part of a tape: with them the address of the frame.
+/// The signature of a part: in addition, it takes the address of the frame.
 pub fn signature_of_part(mut whole: Signature, pointer: Type) -> Signature {
     whole.params.push(AbiParam::new(pointer));
     whole
 }
 
-/// A tape that becomes code.
+/// A tape to be compiled.
 pub struct Lowering<'a> {
     tape: &'a Tape,
     plan: Plan,
     /// The first result of every step.
     firsts: Vec<Id>,
-    /// The entries of the result that each value is.
+    /// The entries of the result that are equal to each value.
     results: HashMap<Id, Vec<(usize, bool)>>,
     target: Target,
-    /// The causes that pivots have, in the order of their numbers.
+    /// The causes of pivots, in the order of their numbers.
     pub causes: Vec<Cause>,
 }
 
@@ -63,12 +63,12 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// How many functions do what the tape says: of one, the function is all of it.
+    /// Returns the number of functions for the tape; a single one is the whole function.
     pub fn parts(&self) -> usize {
         self.plan.parts.len()
     }
 
-    /// What a part calls.
+    /// Returns the functions that a part calls.
     pub fn calls(&self, part: usize) -> impl Iterator<Item = Callee> {
         let steps = self.plan.parts[part]
             .iter()
@@ -79,7 +79,7 @@ impl<'a> Lowering<'a> {
         steps.filter_map(callee)
     }
 
-    /// Writes a part as a function, [`signature_of_part`] where it is not the only one.
+    /// Writes a part as a function, with [`signature_of_part`] if there are several.
     pub fn part(
         &mut self,
         part: usize,
@@ -90,7 +90,7 @@ impl<'a> Lowering<'a> {
         let (given, ends) = begin(builder);
         let frame = match given.get(2 + ARGUMENTS.len()) {
             Some(&address) => Frame::Given(address),
-            // A function without a frame is called sooner.
+            // A function without a frame is faster to call.
             None if self.plan.slots == 0 => Frame::None,
             None => Frame::Own(self.stack(builder)),
         };
@@ -108,7 +108,7 @@ impl<'a> Lowering<'a> {
         end(builder, ends);
     }
 
-    /// Writes the function that calls all parts in turn, until one does not end well.
+    /// Writes the function that calls all parts in turn, until one fails.
     pub fn whole(&self, builder: &mut FunctionBuilder, parts: &[FuncRef], pointer: Type) {
         let (mut given, ends) = begin(builder);
         let stack = self.stack(builder);
@@ -182,7 +182,7 @@ impl<'a> Lowering<'a> {
     }
 }
 
-/// The arguments of a function, and the block that ends it with a number.
+/// Returns the arguments of a function, and the block that ends it with a status.
 fn begin(builder: &mut FunctionBuilder) -> (Vec<Value>, Block) {
     let entry = builder.create_block();
     builder.append_block_params_for_function_params(entry);
@@ -194,7 +194,7 @@ fn begin(builder: &mut FunctionBuilder) -> (Vec<Value>, Block) {
     (given, ends)
 }
 
-/// The function ends well here, and in its last block with a number.
+/// Writes the successful end of a function here, and the end with a status in its last block.
 fn end(builder: &mut FunctionBuilder, ends: Block) {
     let well = builder.ins().iconst(types::I32, i64::from(WELL));
     builder.ins().return_(&[well]);

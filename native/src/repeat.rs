@@ -1,12 +1,12 @@
-//! Functions whose result is the next (x, ξ), as a step of a method is, called again and again: for one state, or for two
-//! of them in the lanes of one code.
+//! Repeated calls of functions whose result is the next (x, ξ), such as a step of a method: for one state, or for two
+//! in the lanes of one code.
 
 use crate::{Code, Compiled, Constants, Ended, Target};
 
 impl Compiled {
-    /// Calls a function as often as is asked for, or until it has no result or one that is not finite. `state` holds x and
-    /// behind it ξ; u stays as it is, and where there else are accelerations each call takes what `given` says of it: 1 is
-    /// the first. Returns how many results there were; `state` is then the last of them.
+    /// Calls a function `times` times, or until it fails or its result is not finite. `state` holds x followed by ξ; u
+    /// is constant, and in place of the accelerations call number k, counted from 1, takes `given(k)`. Returns the
+    /// number of results, the last of which is then in `state`.
     pub fn repeat(
         &self,
         function: usize,
@@ -19,7 +19,8 @@ impl Compiled {
         self.repeat_watched(function, constants, (state, u), given, times, |_| ())
     }
 
-    /// The same for a function that has more results than the next state: `see` is shown what is behind each of these states.
+    /// Like [`Self::repeat`], for a function with further results: `see` gets the numbers that follow each of these
+    /// states.
     pub fn repeat_watched(
         &self,
         function: usize,
@@ -44,7 +45,7 @@ impl Compiled {
     }
 }
 
-/// The same functions for two sets of arguments at once: every number of one lane is that of [`Compiled`], to the bit.
+/// The same functions for two sets of arguments at once: every number of a lane is that of [`Compiled`], bit by bit.
 #[derive(Debug)]
 pub struct Paired {
     code: Code,
@@ -53,7 +54,7 @@ pub struct Paired {
 }
 
 impl Paired {
-    /// The functions of these tapes; `None` where this machine has no code for two lanes.
+    /// Compiles for two lanes; `None` if this machine has no such code.
     pub fn new(compiled: &Compiled) -> Option<Self> {
         let tapes = compiled.tapes();
         let target = Target {
@@ -71,7 +72,7 @@ impl Paired {
         })
     }
 
-    /// What both lanes are called with besides their arguments.
+    /// Pairs the constants of both lanes.
     pub fn constants(&self, of: [&Constants; 2]) -> Vec<f64> {
         let [first, second] = of.map(Constants::known);
         let mut pairs = paired(first, second);
@@ -79,8 +80,8 @@ impl Paired {
         pairs
     }
 
-    /// Calls a function; every list holds pairs. Whether both lanes have a result: else one of them has none, or has to be
-    /// evaluated step by step, and `out` has no meaning.
+    /// Calls a function; every list holds pairs. Returns whether both lanes have a result; otherwise one of them failed
+    /// or has to be evaluated step by step, and `out` has no meaning.
     pub fn call(
         &self,
         function: usize,
@@ -91,8 +92,8 @@ impl Paired {
         self.code.call(function, constants, arguments, out) == Ended::Well
     }
 
-    /// As [`Compiled::repeat`] for two states, for constants of [`Paired::constants`]. Both lanes end where one has no next
-    /// result.
+    /// Like [`Compiled::repeat`] for two states, with constants of [`Paired::constants`]. Both lanes end when one has
+    /// no next result.
     pub fn repeat(
         &self,
         function: usize,
@@ -124,7 +125,7 @@ impl Paired {
     }
 }
 
-/// Two lists of one length as one of pairs.
+/// Interleaves two lists of the same length.
 fn paired(first: &[f64], second: &[f64]) -> Vec<f64> {
     let pairs = first.iter().zip(second);
     pairs
@@ -132,8 +133,8 @@ fn paired(first: &[f64], second: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Takes `next` from `state` so many times, or until there is no next one that is finite; how many there were. A result has so
-/// many numbers, and `see` is shown those that are behind each state that is taken.
+/// Replaces `state` by its successor `times` times, or until there is no finite one; returns how often. A result has
+/// `results` numbers, and `see` gets the results after each accepted state.
 fn repeated(
     state: &mut [f64],
     results: usize,
@@ -148,8 +149,7 @@ fn repeated(
     let mut done = 0;
     while done < times {
         let ended = call(&here[..length], &mut next);
-        // A result is looked at when the next call is over: reading numbers that have just been written has to wait for
-        // them.
+        // A result is read only after the next call: reading numbers that were just written has to wait for the stores.
         if !are_finite(&here[..length]) || !ended {
             break;
         }
@@ -162,7 +162,7 @@ fn repeated(
     }
     if done > 0 {
         match are_finite(&here[..length]) {
-            // Where the loop was left for want of a next one, this state has not been shown yet either.
+            // If the loop ended without a next state, this state has not been shown yet.
             true => see(&here[length..]),
             false => {
                 here = last;
@@ -174,8 +174,8 @@ fn repeated(
     done
 }
 
-/// Whether all numbers are finite. Zero times one that is not is NaN, and four sums at a time take less than a branch for
-/// each number.
+/// Returns whether all numbers are finite: zero times any other number is NaN. Four sums at a time take less than a
+/// branch for each number.
 fn are_finite(numbers: &[f64]) -> bool {
     let mut fours = numbers.chunks_exact(4);
     let mut sums = [0.0; 4];
@@ -192,7 +192,7 @@ fn are_finite(numbers: &[f64]) -> bool {
 mod tests {
     use super::{are_finite, repeated};
 
-    /// A state that doubles with every step ends where the next one would be no number, or where there is none.
+    /// A state that doubles with every step ends before the next one would overflow, or where there is none.
     #[test]
     fn the_last_state_that_is_a_number_stays() {
         for (start, last) in [(1.0, 1023), (f64::MAX / 4.0, 2), (-f64::MAX, 0)] {
@@ -224,9 +224,9 @@ mod tests {
         };
         let done = repeated(&mut state, 2, 9, next, |more| seen.push(more.to_vec()));
         assert_eq!((done, state), (4, [5.0]));
-        // What stands behind every state but the first, once.
+        // The numbers that follow every state except the first, once.
         assert_eq!(seen, [[20.0], [30.0], [40.0], [50.0]]);
-        // A state that is no number is not shown.
+        // A state that is not finite is not shown.
         let mut seen = 0;
         let next = |here: &[f64], next: &mut [f64]| {
             next.fill(here[0] * 1e200);

@@ -1,63 +1,63 @@
-//! Which values are in registers: a plan for a tape, made before it is lowered.
+//! Plans which values of a tape are in registers, before it is lowered.
 //!
-//! All arguments and constants are in memory, and results are written where the caller wants them as soon as they are
-//! there. A value that is in no register is therefore often in memory already; else it gets a place on the stack.
-//! What has to leave is what is read again last (Belady 1966), which is known, since tapes have no branches.
+//! All arguments and constants are in memory, and results are written to `out` as soon as they are computed. Therefore
+//! a value that is in no register is often in memory already; otherwise it gets a slot on the stack. The value evicted
+//! is the one read again last (Belady 1966), which is known, since tapes have no branches.
 //!
-//! A register allocator that sees the whole of a tape is slower than linear in live values, and no better: with
-//! this plan it never sees more of them than there are registers.
+//! A register allocator that sees a whole tape is slower than linear in the live values, and no better: with this plan
+//! it never sees more of them than there are registers.
 
 use hamel_codegen::program::tape::{Operand, Source, Step, Tape};
 use std::collections::HashMap;
 
-/// Registers that values may take. Two of sixteen are left for numbers on the way.
+/// Registers for values. Two of sixteen remain for temporaries.
 pub const REGISTERS: usize = 14;
-/// Registers that sine and cosine take while they are computed.
+/// Registers that sine and cosine need during their computation.
 const TURNING: usize = 8;
 
-/// A value by its number: first the values of the tape, then what is read from memory.
+/// Index of a value: first the values of the tape, then those read from memory.
 pub type Id = usize;
 
-/// What is done, in this order.
+/// An action of the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// A value is read from memory.
     Load(Id),
     /// A value is written to its place on the stack.
     Store(Id),
-    /// A step of the tape is computed; what it reads is in registers.
+    /// A step of the tape is computed; its operands are in registers.
     Step(usize),
 }
 
-/// Where a value can be read from memory.
+/// The memory location of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Home {
-    /// It cannot.
+    /// None.
     None,
     /// An argument, a constant or a number.
     Given(Source),
     /// An entry of the result.
     Out(usize),
-    /// A place on the stack.
+    /// A slot on the stack.
     Slot(usize),
 }
 
 /// The plan of a tape.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What is done, part by part: no value stays in a register from one part to the next.
+    /// The actions of each part: no value stays in a register from one part to the next.
     pub parts: Vec<Vec<Action>>,
-    /// Where values are, once they are in memory.
+    /// The locations of values once they are in memory.
     pub homes: Vec<Home>,
-    /// How many places of the stack are used.
+    /// The number of slots of the stack.
     pub slots: usize,
-    /// The values that steps read, by step.
+    /// The operands of each step.
     pub operands: Vec<[Id; 3]>,
-    /// The step that reads a value last.
+    /// The last step that reads each value.
     pub last: Vec<Option<usize>>,
 }
 
-/// Whether a step is computed by a call, which keeps no register.
+/// Returns whether a step is computed by a call, which preserves no register.
 pub fn is_call(step: &Step) -> bool {
     use hamel_codegen::algebra::graph::Function;
     match step {
@@ -75,7 +75,7 @@ pub fn is_call(step: &Step) -> bool {
     }
 }
 
-/// Plans a tape, in equal parts of at most so many steps.
+/// Plans a tape, in equal parts of at most `longest` steps.
 pub fn plan(tape: &Tape, longest: usize) -> Plan {
     let mut plan = Plan {
         parts: vec![Vec::new()],
@@ -102,7 +102,7 @@ pub fn plan(tape: &Tape, longest: usize) -> Plan {
     Planner::new(plan).run(tape, tape.steps.len().div_ceil(parts))
 }
 
-/// Results are in memory once they are there.
+/// Returns the locations of values that are results, which are stored once they are computed.
 fn homes(tape: &Tape) -> Vec<Home> {
     let mut homes = vec![Home::None; tape.values()];
     for (place, output) in tape.outputs.iter().enumerate() {
@@ -118,7 +118,7 @@ fn homes(tape: &Tape) -> Vec<Home> {
     homes
 }
 
-/// What is equal where two sources are.
+/// Returns a key that is equal for equal sources.
 fn key(source: Source) -> (u8, u64) {
     match source {
         Source::Argument(argument, index) => (argument as u8, index as u64),
@@ -130,7 +130,7 @@ fn key(source: Source) -> (u8, u64) {
 
 struct Planner {
     plan: Plan,
-    /// For every value the steps that read it, the last first: those that are over are taken away.
+    /// The remaining steps that read each value, the last first.
     uses: Vec<Vec<usize>>,
     held: Vec<Id>,
     free: Vec<usize>,
@@ -204,7 +204,7 @@ impl Planner {
         }
     }
 
-    /// Lets values go until so many are left; these stay.
+    /// Evicts values until `most` are left, but none of `stay`.
     fn leave(&mut self, most: usize, stay: &[Id]) {
         while self.held.len() > most {
             let places = 0..self.held.len();
@@ -224,7 +224,7 @@ impl Planner {
         }
     }
 
-    /// A value that is read no more.
+    /// Releases a value that is not read again.
     fn die(&mut self, id: Id) {
         self.held.retain(|&held| held != id);
         if let Home::Slot(slot) = self.plan.homes[id] {

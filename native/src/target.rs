@@ -1,27 +1,27 @@
-//! What code is written for: how many numbers stand side by side, and the numbers that it reads.
+//! The target of code: its lanes, and the numbers that it reads.
 
 use cranelift_codegen::ir::{MemFlags, Type, types};
 use hamel::trig;
 use std::collections::HashMap;
 
-/// How code is written.
+/// The options of code generation.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     /// Whether a b + c is one instruction.
     pub fused: bool,
-    /// Whether there are two lanes.
+    /// Whether code has two lanes.
     pub paired: bool,
-    /// Whether Cranelift looks at what it is given before it makes code of it.
+    /// Whether Cranelift verifies its input before it compiles it.
     pub verified: bool,
 }
 
 impl Target {
-    /// How many numbers stand side by side.
+    /// Returns the number of lanes.
     pub fn lanes(self) -> usize {
         if self.paired { 2 } else { 1 }
     }
 
-    /// The type of a value.
+    /// Returns the type of a value.
     pub fn number(self) -> Type {
         if self.paired {
             types::F64X2
@@ -30,7 +30,8 @@ impl Target {
         }
     }
 
-    /// Pairs stand at even places of lists, which need not be those of whole registers.
+    /// Returns the flags of memory accesses. Pairs are at even indices of lists, which need not be aligned to whole
+    /// registers.
     pub fn flags(self) -> MemFlags {
         if self.paired {
             MemFlags::new().with_notrap()
@@ -39,16 +40,16 @@ impl Target {
         }
     }
 
-    /// How far an entry is from the first.
+    /// Returns the offset of an entry in bytes.
     pub fn bytes(self, place: usize) -> i32 {
         i32::try_from(8 * self.lanes() * place).unwrap_or(i32::MAX)
     }
 }
 
-/// Numbers that code reads from memory, behind the constants.
+/// Numbers that code reads from memory, after the constants.
 #[derive(Debug, Default)]
 pub struct Pool {
-    /// Where they begin.
+    /// The index of the first one.
     pub start: usize,
     /// The numbers.
     pub numbers: Vec<f64>,
@@ -57,7 +58,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Numbers that begin behind so many constants.
+    /// Creates an empty pool after `start` constants.
     pub fn behind(start: usize) -> Self {
         Pool {
             start,
@@ -65,7 +66,7 @@ impl Pool {
         }
     }
 
-    /// The place of a number among constants and numbers.
+    /// Returns the index of a number, counted from the first constant; adds it if it is new.
     pub fn place(&mut self, number: f64) -> usize {
         let (start, numbers) = (self.start, &mut self.numbers);
         *self.places.entry(number.to_bits()).or_insert_with(|| {
@@ -74,7 +75,7 @@ impl Pool {
         })
     }
 
-    /// Where the rows of quarter turns begin.
+    /// Returns the index of the rows of quarter turns.
     pub fn turned(&mut self) -> usize {
         let (start, numbers) = (self.start, &mut self.numbers);
         *self.turned.get_or_insert_with(|| {

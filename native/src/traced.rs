@@ -1,4 +1,5 @@
-//! Numbers that write down what is done with them: so that an algorithm in Rust, such as a step of a method, becomes a tape.
+//! Numbers that record the operations on them, so that an algorithm in Rust, such as a step of a method, becomes a
+//! tape.
 
 use hamel::Scalar;
 use hamel_codegen::algebra::graph::Function;
@@ -7,12 +8,12 @@ use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape};
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// What has been written down.
+/// The record of operations.
 #[derive(Debug, Default)]
 struct Written {
     steps: Vec<Step>,
     values: usize,
-    /// Whether a number was asked for what only a run knows.
+    /// Whether the algorithm needed a value that only a run has.
     refused: bool,
 }
 
@@ -20,14 +21,14 @@ thread_local! {
     static WRITTEN: RefCell<Written> = RefCell::default();
 }
 
-/// A number of a tape that is being written.
+/// A number of a tape that is being recorded.
 #[derive(Clone, Copy, Debug)]
 pub struct Traced(Operand);
 
-/// The tape of what an algorithm does with numbers, whose result it returns; none where it asks for what only a run
-/// knows, as how far an iteration has converged.
+/// Records the tape of an algorithm that returns its results; `None` if it depends on a value that only a run has, such
+/// as the convergence of an iteration.
 ///
-/// Wherever it asks whether a number is positive, the answer is yes, and the tape ends there when it is not.
+/// Every test for a positive number succeeds while recording, and becomes a check at which the tape fails.
 pub fn traced(name: &str, algorithm: impl FnOnce() -> Vec<Traced>) -> Option<Tape> {
     let outer = WRITTEN.take();
     let outputs = algorithm();
@@ -39,7 +40,7 @@ pub fn traced(name: &str, algorithm: impl FnOnce() -> Vec<Traced>) -> Option<Tap
     })
 }
 
-/// The results of another tape for these arguments, written down here; constants are those of the same program.
+/// Records another tape with these arguments, and returns its results. Both tapes need constants of the same program.
 pub fn inlined(tape: &Tape, arguments: [&[Traced]; 5]) -> Vec<Traced> {
     let mut values: Vec<Traced> = Vec::with_capacity(tape.values());
     for &step in &tape.steps {
@@ -80,7 +81,7 @@ fn mapped(operand: Operand, values: &[Traced], arguments: [&[Traced]; 5]) -> Ope
     }
 }
 
-/// Writes a step; the number of its first result.
+/// Records a step, and returns the index of its first result.
 fn write(step: Step) -> usize {
     WRITTEN.with_borrow_mut(|written| {
         let first = written.values;
@@ -91,7 +92,7 @@ fn write(step: Step) -> usize {
 }
 
 impl Traced {
-    /// An entry of an argument.
+    /// Returns an entry of an argument.
     pub fn argument(source: Source) -> Self {
         Traced(Operand {
             source,
@@ -107,7 +108,7 @@ impl Traced {
         Traced::value(write(step))
     }
 
-    /// Its value, where that is known before any run.
+    /// Returns the value if it is known before any run.
     fn known(self) -> Option<f64> {
         match self.0.source {
             Source::Number(number) if self.0.negative => Some(-number),
@@ -256,7 +257,7 @@ impl Scalar for Traced {
     }
 
     fn mul_add(self, a: Self, b: Self) -> Self {
-        // As `f64` has it in this program, so that a tape has the numbers of the algorithm.
+        // Fused where `f64` is fused in this program, so that a tape has the numbers of the algorithm.
         match cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
             true => Traced::of(Step::Fused(self.0, a.0, b.0)),
             false => self * a + b,
@@ -299,7 +300,7 @@ impl Scalar for Traced {
         }
     }
 
-    /// Of what is not known yet this is told by who runs the tape.
+    /// True if unknown: the caller of the tape checks its results.
     fn is_finite(self) -> bool {
         self.known().is_none_or(f64::is_finite)
     }

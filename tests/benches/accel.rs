@@ -1,8 +1,8 @@
-//! The generated forward dynamics of a free body against a function written by hand.
+//! Compares the generated forward dynamics of a free body with a hand-written function.
 //!
-//! Both evaluate ξ̇ from R, v, ω and a body wrench with a full inertia and an off-centre mass; the
-//! hand-written one has 54 multiplications and 45 additions and gets its constants ready made. Run
-//! with `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-tests --bench accel`.
+//! Both evaluate ξ̇ from R, v, ω and a body wrench with a full inertia and an off-centre mass. The hand-written
+//! function has 54 multiplications and 45 additions, and gets precomputed constants. Run with
+//! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-tests --bench accel`.
 
 use divan::{Bencher, black_box};
 
@@ -33,7 +33,7 @@ fn main() {
     divan::main();
 }
 
-/// Different states for every call, so that nothing is computed once for all.
+/// Different states for every call, so that nothing is hoisted out of the loop.
 fn cases() -> Vec<Case> {
     (0..INPUTS)
         .map(|k| {
@@ -70,7 +70,7 @@ fn hand_written(bencher: Bencher) {
     });
 }
 
-/// Constants of the body, about its centre of mass.
+/// Constants of the body about its centre of mass.
 struct Hand {
     per_mass: f64,
     g: f64,
@@ -89,7 +89,7 @@ impl Hand {
                 theta[a][b] - m * (if a == b { square } else { 0.0 } - s[a] * s[b])
             })
         });
-        // Columns of the inverse: cross products of rows over the determinant.
+        // Columns of the inverse: cross products of rows divided by the determinant.
         let adjugate: [[f64; 3]; 3] =
             std::array::from_fn(|i| cross(j[(i + 1) % 3], j[(i + 2) % 3]));
         let determinant: f64 = (0..3).map(|i| j[0][i] * adjugate[0][i]).sum();
@@ -133,7 +133,7 @@ fn apply(m: &[[f64; 3]; 3], a: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| m[i][2].mul_add(a[2], m[i][1].mul_add(a[1], m[i][0] * a[0])))
 }
 
-/// The two must be the same function before they are timed.
+/// Checks that both functions agree before they are timed.
 fn agree() {
     let (generated, hand) = (MacroBody::<f64>::default(), Hand::new());
     for (x, xi, u) in cases() {

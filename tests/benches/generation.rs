@@ -1,4 +1,4 @@
-//! Time from a description's text to formatted code, all checks included.
+//! Measures the time from a description's text to formatted code, including all checks.
 
 use hamel_codegen::builder::source;
 use hamel_codegen::urdf::{Options, import};
@@ -19,14 +19,14 @@ fn parse_to_formatted_code(bencher: divan::Bencher, name: &str) {
     bencher.bench(|| source(divan::black_box(&text), name).expect("the model is correct"));
 }
 
-/// Spatial chains, every parameter a run-time one: forward dynamics and rates.
+/// Spatial chains with run-time parameters: forward dynamics and rates.
 #[divan::bench(args = [6, 12, 18, 32, 38], sample_count = 3, sample_size = 1)]
 fn chains(bencher: divan::Bencher, links: usize) {
     let text = chain::chain(links);
     bencher.bench(|| source(divan::black_box(&text), "chain").expect("the chain is correct"));
 }
 
-/// Parameters by the thousand, each of them used: time grows by their number.
+/// Thousands of parameters, all of them used: the time should be linear in their number.
 #[divan::bench(args = [1250, 2500, 5000], sample_count = 3, sample_size = 1)]
 fn parameters(bencher: divan::Bencher, count: usize) {
     let declared: String = (0..count).map(|k| format!("param p{k} = {k};\n")).collect();
@@ -45,7 +45,7 @@ fn parameters(bencher: divan::Bencher, count: usize) {
     bencher.bench(|| source(divan::black_box(&text), "many").expect("the description is correct"));
 }
 
-/// Robots, and whether their base floats.
+/// Robots, and whether they have a floating base.
 const ROBOTS: [(&str, &str, bool); 3] = [
     ("ur5", "ur_description/urdf/ur5_robot.urdf", false),
     ("solo12", "solo_description/robots/solo12.urdf", true),
@@ -56,7 +56,7 @@ const ROBOTS: [(&str, &str, bool); 3] = [
     ),
 ];
 
-/// Robots from their URDF to formatted code of all functions; nothing where they are not installed.
+/// Robots, from their URDF to formatted code of all functions; skipped if they are not installed.
 #[divan::bench(args = ROBOTS.map(|(name, ..)| name), sample_count = 3, sample_size = 1)]
 fn robots(bencher: divan::Bencher, robot: &str) {
     let found = ROBOTS.iter().find(|(name, ..)| *name == robot);

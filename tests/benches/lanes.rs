@@ -1,6 +1,6 @@
-//! Throughput of lanes against numbers one by one, and of ensembles.
+//! Compares the throughput of lanes with that of single numbers, and measures ensembles.
 //!
-//! Every row handles the same 64 states; the column of items per second is what to compare. Run with
+//! Every row handles the same 64 states; compare the column of items per second. Run with
 //! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-tests --bench lanes`.
 
 use divan::{Bencher, black_box};
@@ -14,7 +14,7 @@ use hamel_tests::drone::Drone;
 use hamel_tests::free_body::FreeBody;
 use hamel_tests::two_bodies::TwoBodies;
 
-/// States of one measurement.
+/// Number of states of one measurement.
 const STATES: usize = 64;
 const SAMPLES: u32 = 1000;
 
@@ -28,7 +28,7 @@ type Case<Sys> = (
     <Sys as System>::Inputs,
 );
 
-/// Different states in every lane and call: the start, moved a little.
+/// Different states in every lane and call, near the start.
 fn cases<Sys: System<Scalar: Lanes>>(system: &Sys) -> Vec<Case<Sys>> {
     let wave = |k: usize, i: usize| {
         Sys::Scalar::from_lanes(|lane| {
@@ -100,7 +100,7 @@ accel! {
     accel_two_bodies: TwoBodies,
 }
 
-/// 512 double pendulums, 200 steps each.
+/// 512 double pendulums with 200 steps each.
 mod ensemble_of_double_pendulums {
     use super::*;
 

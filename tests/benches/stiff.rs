@@ -1,4 +1,4 @@
-//! Implicit steps of stiff systems, with derivatives and without: ten steps of 1/100 s from the same start.
+//! Implicit steps of stiff systems, with and without derivatives: ten steps of 1/100 s from the same start.
 //!
 //! Run with `cargo bench -p hamel-tests --bench stiff`.
 

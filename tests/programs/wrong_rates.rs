@@ -1,4 +1,4 @@
-//! Rates that leave the variety, or are not linear.
+//! Rates that leave the manifold, or are not linear.
 
 hamel::rigid_eom! {
     system Leaves {

@@ -1,4 +1,4 @@
-//! Wrong shapes, all of them reported.
+//! Wrong shapes, all of which are reported.
 
 hamel::rigid_eom! {
     system Shapes {

@@ -1,4 +1,4 @@
-"""Runs notebooks from their first cell to the last; one that fails ends it."""
+"""Runs notebooks from the first cell to the last, and stops at the first that fails."""
 
 import sys
 from pathlib import Path

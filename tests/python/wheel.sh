@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Python package as a user installs it: one command from a clone into a fresh virtual environment; its size, and how long an
-# import takes. Needs cargo, Python and wheels of PyPI.
+# Installs the Python package as a user would, with one command from a clone into a fresh virtual environment; measures
+# its size and the time of an import. Needs cargo, Python and wheels from PyPI.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -15,7 +15,7 @@ cd "$scratch"
 "$scratch/environment/bin/python" - "$scratch" <<'PYTHON'
 import glob, os, subprocess, sys, time
 
-# The smallest of several: others wait for the disk.
+# The smallest of several times: others include waits for the disk.
 def seconds(words):
     begin = time.perf_counter()
     subprocess.run([sys.executable, "-c", words], check=True)

@@ -1,4 +1,4 @@
-"""Every robot below TARGET/robots by `hamel eval` and by Pinocchio, at one random state each."""
+"""Compares every robot below TARGET/robots by `hamel eval` with Pinocchio, at one random state each."""
 
 import json
 import pathlib
@@ -22,12 +22,12 @@ def rotation(draw):
 
 
 def joints(model):
-    """The joints that move, in Pinocchio's order."""
+    """The moving joints, in Pinocchio's order."""
     return list(zip(model.names, model.joints))[1:]
 
 
 def state(model, draw):
-    """(q, v) of Pinocchio with the same as a state by joints; None for joints that are compared nowhere."""
+    """Returns (q, v) of Pinocchio and the same state by joints; None for joints that are not compared."""
     q, v = pin.neutral(model), np.zeros(model.nv)
     configuration, velocity = {}, {}
     for name, joint in joints(model):
@@ -52,7 +52,7 @@ def state(model, draw):
 
 
 def order(model, rows):
-    """The place in Pinocchio's v of each row."""
+    """The index in Pinocchio's v of each row."""
     places, taken = [], {}
     ids = dict(joints(model))
     for row in rows:

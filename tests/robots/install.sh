@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the URDF files of the robots in tests/reference/robots: the wheel `example-robot-data` of
-# PyPI, in a virtual environment below the target folder. Does nothing where it is there already.
+# Installs the URDF files of the robots in tests/reference/robots: the wheel `example-robot-data` from PyPI, in a
+# virtual environment below the target folder. Does nothing if it is there already.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

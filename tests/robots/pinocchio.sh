@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# All robots of the wheel `example-robot-data`, fixed and floating, against Pinocchio at random states:
-# M and bias within 1e-11 of their scale, accelerations within 1e-11 times the condition of M.
+# Compares all robots of the wheel `example-robot-data`, fixed and floating, with Pinocchio at random states: M and bias
+# within 1e-11 of their scale, accelerations within 1e-11 times the condition of M.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# All robots of the wheel `example-robot-data`, fixed and floating, with and without roundings of angles,
-# as they are and shaken by 1e-3 … 1e-15 rad, against a derivation in numbers of twice the length; and
-# 1,000 arms with awkward axes. Some minutes.
+# Compares all robots of the wheel `example-robot-data`, fixed and floating, with and without rounded angles, unchanged
+# and perturbed by 1e-3 … 1e-15 rad, with a derivation in doubled precision; and 1,000 arms with ill-conditioned axes.
+# Takes several minutes.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

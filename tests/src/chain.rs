@@ -1,9 +1,9 @@
-//! Synthetic spatial chains: n links on revolute joints about alternating axes, by `rate` and
-//! `frame` statements, every parameter a run-time one.
+//! Synthetic spatial chains: n links on revolute joints about alternating axes, by `rate` and `frame` statements with
+//! run-time parameters only.
 
 use std::fmt::Write;
 
-/// The description of a chain of n links.
+/// Returns the description of a chain of n links.
 pub fn chain(n: usize) -> String {
     let mut text = String::from("/// A spatial chain.\npub system Chain {\n    param g = 9.81;\n");
     for i in 1..=n {

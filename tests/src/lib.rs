@@ -1,4 +1,4 @@
-//! Generated systems of `models/`, by the build script, and what the tests share.
+//! Generated systems of `models/`, made by the build script, and code shared by the tests.
 
 #![deny(warnings)]
 

@@ -1,4 +1,4 @@
-"""A million members, killed in the middle and taken up again."""
+"""A million members, killed in the middle and resumed."""
 
 import pathlib
 import resource

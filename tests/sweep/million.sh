@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A million free bodies of a thousand steps each: killed in the middle, the same command again, every member there once; time and
-# memory. Needs cargo and the environment of tests/sweep/run.sh; takes some minutes.
+# Runs a million free bodies of a thousand steps each: killed in the middle, the same command repeated, every member
+# present once; measures time and memory. Needs cargo and the environment of tests/sweep/run.sh; takes several minutes.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,7 +1,7 @@
-"""A sweep on a cluster of HyperQueue, of which a worker is killed in the middle, and then everything.
+"""A sweep on a cluster of HyperQueue: first a worker is killed in the middle, then everything.
 
-The wheel of HyperQueue has its server, its worker and its client, and not the command `hq`: that is stood for by `submit`
-here, which takes the arguments that `hamel sweep --submit hyperqueue` gives it.
+The wheel of HyperQueue contains its server, its worker and its client, but not the command `hq`: `submit` replaces
+it here, and takes the arguments that `hamel sweep --submit hyperqueue` passes.
 """
 
 import os
@@ -13,12 +13,12 @@ import time
 
 SWEEP = ["sweep", "tests/models/heavy_top.eom", "--vary", "start w = uniform(-1, 1); m = latin(1, 2)"]
 SWEEP += ["--members", "96", "--until", "1", "--seed", "5", "--shard-size", "2", "--keep", "end; max(norm(w))"]
-# Seconds; the machine may be busy.
+# Time limit in s; the machine may be busy.
 PATIENCE = 300
 
 
 def serve(folder):
-    """A server, until it is killed."""
+    """Runs a server until it is killed."""
     from hyperqueue import LocalCluster
 
     started = LocalCluster(folder)
@@ -26,9 +26,9 @@ def serve(folder):
 
 
 def work(folder, server):
-    """A worker of a server in another process, until it is killed.
+    """Runs a worker for a server in another process until it is killed.
 
-    The wheel starts workers for a server of the same process alone, which they find by a link in its folder.
+    The wheel starts workers only for a server of the same process, which they find by a link in its folder.
     """
     from hyperqueue import LocalCluster
     from hyperqueue.cluster import WorkerConfig
@@ -67,7 +67,7 @@ def submit(arguments):
 
 
 class Cluster:
-    """A server and two workers, each a process of its own."""
+    """A server and two workers, each a separate process."""
 
     def __init__(self, folder):
         folder.mkdir()
@@ -84,7 +84,7 @@ class Cluster:
         return process
 
     def lose(self, worker):
-        """A worker as if its machine were lost, with the tasks on it: it has no chance to say that they have failed."""
+        """Kills a worker with its tasks as if its machine were lost: it cannot report that they have failed."""
         tasks = []
 
         def caught():
@@ -123,7 +123,7 @@ def test(hamel, folder):
         words = [hamel, *SWEEP, "--out", runs, "--submit", "hyperqueue", "--tasks", "16", "--wait"]
         return subprocess.Popen(words, env=environment, start_new_session=True, **options)
 
-    # HyperQueue gives the task of a worker that is lost to the other one, and the one submission ends well.
+    # HyperQueue gives the task of a lost worker to the other one, and the submission succeeds.
     runs, cluster = folder / "runs", Cluster(folder / "cluster")
     try:
         submission = submitted(cluster, runs, stderr=subprocess.DEVNULL)
@@ -138,7 +138,7 @@ def test(hamel, folder):
     assert shards(runs) == wanted
     print(f"{len(wanted)} shards by 16 tasks, the same as those of one process: a worker was lost with {there} of them there")
 
-    # Server, workers and client are killed, and the same command begins again.
+    # Server, workers and client are killed, and the same command is repeated.
     runs, cluster = folder / "again", Cluster(folder / "first")
     submission = submitted(cluster, runs, stderr=subprocess.DEVNULL)
     until("a shard", lambda: len(shards(runs)) > 4)
@@ -149,7 +149,7 @@ def test(hamel, folder):
     assert there < len(wanted), "it was over before it was killed"
     cluster = Cluster(folder / "second")
     try:
-        # Tasks that have outlived their worker hold their parts until they end.
+        # Tasks that outlive their worker keep their parts locked until they end.
         until("the rest", lambda: submitted(cluster, runs).wait() == 0)
     finally:
         cluster.kill()

@@ -1,4 +1,4 @@
-"""A sweep as an array of tasks of Slurm, of which one is killed in the middle, and others are cancelled."""
+"""A sweep as a Slurm array of tasks, one of which is killed in the middle while others are cancelled."""
 
 import os
 import pathlib
@@ -10,7 +10,7 @@ import time
 SWEEP = ["sweep", "tests/models/heavy_top.eom", "--vary", "start w = uniform(-1, 1); m = latin(1, 2)"]
 SWEEP += ["--members", "96", "--until", "8", "--seed", "5", "--shard-size", "2", "--keep", "end; max(norm(w))"]
 SWEEP += ["--method", "backward-euler", "--step", "1e-3"]
-# Seconds; the machine may be busy.
+# Time limit in s; the machine may be busy.
 PATIENCE = 300
 
 
@@ -25,7 +25,7 @@ def test(hamel, folder):
     submission = [hamel, *SWEEP, "--out", runs, "--submit", "slurm", "--tasks", "16"]
     subprocess.run(submission, check=True)
     until("a shard", lambda: len(shards(runs)) > 2)
-    # A task's process without a chance to say anything, then all that are left.
+    # Kills a task's process immediately, then all that are left.
     until("a task to kill", lambda: killed(said("pgrep", "--full", f"{runs}.*--shard").split()))
     subprocess.run(["scancel", "--name=hamel-sweep"], check=True)
     until("the end of all tasks", lambda: not said("squeue", "--noheader"))
@@ -40,7 +40,7 @@ def test(hamel, folder):
 
 
 def killed(processes):
-    """Whether one of them was still there to be killed."""
+    """Whether at least one of them still existed."""
     for process in map(int, processes):
         try:
             os.kill(process, signal.SIGKILL)

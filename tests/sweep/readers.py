@@ -1,4 +1,4 @@
-"""Reads a sweep by Polars, DuckDB and pandas: one table, whoever reads it, with the columns that were asked for."""
+"""Reads a sweep by Polars, DuckDB and pandas: the same table for all readers, with the requested columns."""
 
 import json
 import math
@@ -25,7 +25,7 @@ def run(*arguments):
 
 run("sweep", MODEL, "--vary", VARY, "--members", str(MEMBERS), "--keep", KEEP, "--out", RUNS, "--seed", "7", *STEPS)
 
-# The lines of the chapter on ensembles.
+# Runs the examples of the chapter on ensembles.
 with open("docs/book/src/ensembles.md") as page:
     [shown] = [rest.split("```")[0].replace("runs", RUNS) for rest in page.read().split("```python\n")[1:]]
 names = {"polars": polars, "duckdb": duckdb, "pandas": pandas}
@@ -43,7 +43,7 @@ assert list(by_pandas.columns) == columns, list(by_pandas.columns)
 
 
 def rows(values):
-    """Rows by their index, with None for what is missing."""
+    """Rows by their index, with None for missing values."""
     missing = lambda value: value is None or isinstance(value, float) and math.isnan(value)
     return sorted([None if missing(value) else value for value in row] for row in values)
 
@@ -53,7 +53,7 @@ assert table == rows(by_duckdb.fetchall())
 assert table == rows(by_pandas.itertuples(index=False, name=None))
 assert [row[0] for row in table] == list(range(MEMBERS))
 
-# Failures are rows: no body has a mass that is not positive.
+# Failures are rows: a mass that is not positive is refused.
 place = {name: number for number, name in enumerate(columns)}
 for row in table:
     fails = row[place["m"]] <= 0
@@ -64,7 +64,7 @@ for row in table:
 failed = sum(row[place["error"]] is not None for row in table)
 assert 0 < failed < MEMBERS
 
-# One member is what `hamel simulate` gives.
+# A member agrees with `hamel simulate`.
 row = table[-1]
 value = lambda names: [row[place[name]] for name in names]
 start = value(vector("start w"))
@@ -76,7 +76,7 @@ with open(f"{FOLDER}/run.csv") as file:
     last = [float(number) for number in file.read().splitlines()[-1].split(",")]
 assert last == value(["end t", *vector("end r"), *matrix, *vector("end v"), *vector("end w")])
 
-# Files say what they are of.
+# Files contain metadata about their origin.
 metadata = pyarrow.parquet.read_metadata(f"{RUNS}/shard-000000.parquet")
 about = {key.decode(): text.decode() for key, text in metadata.metadata.items()}
 sweep = json.loads(about["hamel.sweep"])

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# A sweep on Slurm, on one node: an array of 16 tasks, one of them killed in the middle and the others cancelled, the same command
-# again, and the union compared with a run on this machine, byte for byte. Needs cargo and Python. Slurm and munge come from
-# Debian's packages, which are unpacked below the target; where they cannot be had the script says so and ends well.
+# Runs a sweep on Slurm, on one node: an array of 16 tasks, one of which is killed in the middle and the others
+# cancelled; then the same command is repeated, and the union compared with a run on this machine, byte by byte. Needs
+# cargo and Python. Slurm and munge come from Debian's packages, which are unpacked below the target; if they are not
+# available, the script prints a message and succeeds.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -13,7 +14,7 @@ if [ ! -x "$debian/usr/sbin/slurmctld-wlm" ] && ! unpack slurm-wlm munge; then
 fi
 export PATH="$debian/usr/bin:$PATH" LD_LIBRARY_PATH="$debian_libraries:$plugins"
 target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
-# One that was built with the tests will do: alone, its dependencies have other features, and are built anew.
+# Reuses the program built with the tests: built alone, its dependencies have other features and are compiled again.
 hamel="$target/debug/hamel"
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then
     cargo build --quiet --locked -p hamel-cli

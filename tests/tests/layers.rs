@@ -1,4 +1,4 @@
-//! Dependencies point one way; what a stage must not know is checked in its sources.
+//! Dependencies between crates and modules point in one direction; forbidden ones are searched for in the sources.
 
 use std::collections::HashSet;
 use std::fs;
@@ -9,7 +9,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// All Rust sources below a folder, but unit tests in files or folders of their own.
+/// Returns all Rust sources below a folder, except for unit tests in separate files or folders.
 fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     let mut open = vec![root().join(folder)];
@@ -57,7 +57,7 @@ const LAYERS: [(&str, &[&str]); 11] = [
         "codegen/verify",
         &["algebra", "language", "program", "dynamics"],
     ),
-    // Emission and derivation do not know each other.
+    // Emission and derivation are independent.
     ("codegen/emit", &["algebra", "language", "program"]),
     (
         "codegen/tables",
@@ -66,7 +66,7 @@ const LAYERS: [(&str, &[&str]); 11] = [
     ("macros", &["codegen"]),
 ];
 
-/// Dependencies of the library itself: what its tests need is no layer.
+/// Returns the dependencies of the library on other layers, without those of its tests.
 fn layers_below(manifest: &str) -> Vec<&str> {
     let (_, dependencies) = manifest
         .split_once("\n[dependencies]\n")
@@ -138,7 +138,7 @@ fn emission_does_no_algebra() {
     );
 }
 
-/// The macro must not bring a parser of XML into its users' builds.
+/// The macro does not bring an XML parser into its users' builds.
 #[test]
 fn the_macro_reads_no_robots() {
     let manifest = fs::read_to_string(root().join("macros/Cargo.toml")).expect("a manifest");
@@ -181,7 +181,7 @@ fn shapes_are_inferred_without_a_graph() {
         "codegen/language/src/shapes",
         &["crate::lower", "crate::model", "algebra::graph"],
     );
-    // What comes before knows nothing of shapes; what comes after reads a model, whose values have theirs.
+    // Earlier stages do not use shapes; later ones read a model, whose values have shapes.
     for (path, text) in sources("codegen/language/src") {
         let user = ["shapes", "lower"].iter().any(|folder| {
             let folder = root().join("codegen/language/src").join(folder);
@@ -201,7 +201,7 @@ fn the_model_knows_no_text() {
     );
 }
 
-/// What is compiled into other people's builds needs no other compiler.
+/// Crates that are compiled into other people's builds contain no machine code generator.
 #[test]
 fn machine_code_is_for_the_command_line() {
     for folder in [
@@ -226,13 +226,13 @@ fn machine_code_is_for_the_command_line() {
     }
 }
 
-/// The lines of a source that are no comments.
+/// Returns the lines of a source that are not comments.
 fn code_of(text: &str) -> impl Iterator<Item = &str> {
     let lines = text.lines();
     lines.filter(|line| !line.trim_start().starts_with("//"))
 }
 
-/// One module calls addresses.
+/// Only one module contains `unsafe` code.
 #[test]
 fn nothing_else_is_unsafe() {
     for folder in [
@@ -249,7 +249,7 @@ fn nothing_else_is_unsafe() {
             assert!(
                 found == 0
                     || path.ends_with("native/src/code.rs")
-                    // Names of exports are, nothing else.
+                    // Except for attributes that export names.
                     || path.ends_with("page/wasm/src/exports.rs")
                         && code_of(&text).all(|line| {
                             !line.contains("unsafe")
@@ -276,12 +276,12 @@ fn every_file_says_what_it_is() {
     }
 }
 
-/// Whether a word in backticks is a path of the repository.
+/// Returns whether a word in backticks is a path of the repository.
 fn is_path(word: &str) -> bool {
     word.contains('/') && !word.contains(' ') && !word.contains("::") && !word.contains('*')
 }
 
-/// The map in ARCHITECTURE.md, the pages behind it and the walk through the code name folders and files that exist.
+/// All folders and files named in ARCHITECTURE.md, the pages it refers to and the walk through the code exist.
 #[test]
 fn the_architecture_page_is_true() {
     for (name, least) in [
@@ -304,7 +304,7 @@ fn the_architecture_page_is_true() {
     }
 }
 
-/// A stranger reads the map in ten minutes.
+/// A newcomer can read ARCHITECTURE.md in ten minutes.
 #[test]
 fn the_architecture_page_is_short() {
     let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
@@ -315,8 +315,8 @@ fn the_architecture_page_is_short() {
     );
 }
 
-/// The names in the tables of dependencies of a manifest, but for those of build scripts: they are there for their
-/// features, too.
+/// Returns the names in the tables of dependencies of a manifest, without those of build scripts, which may be there
+/// for their features.
 fn dependencies(manifest: &str) -> Vec<String> {
     let (mut names, mut inside) = (Vec::new(), false);
     for line in manifest.lines() {
@@ -344,20 +344,20 @@ fn every_dependency_is_used() {
         let mut text = String::new();
         let mut open = vec![root().join(member)];
         while let Some(path) = open.pop() {
-            // Packages within the folder of this one have dependencies of their own.
+            // Nested packages have separate dependencies.
             let other = path.join("Cargo.toml").exists() && path != root().join(member);
             if path.is_dir() && !other && !path.ends_with("target") {
                 let entries = fs::read_dir(&path).expect("a folder");
                 open.extend(entries.map(|entry| entry.expect("an entry").path()));
             } else if path.extension().is_some_and(|extension| extension == "rs") {
                 let source = fs::read_to_string(&path).expect("readable");
-                // Pages that are documentation have programs.
+                // Pages included as documentation contain programs.
                 for rest in source.split("#[doc = include_str!(\"").skip(1) {
                     let page = rest.split('"').next().unwrap_or_default();
                     let page = path.parent().expect("a folder").join(page);
                     text += &fs::read_to_string(page).expect("a page");
                 }
-                // What a suite takes from the sources of its crate needs what they need.
+                // Sources included from the crate's library need its dependencies.
                 for rest in source.split("#[path = \"").skip(1) {
                     let file = rest.split('"').next().unwrap_or_default();
                     if file.contains("../src/") {
@@ -371,7 +371,7 @@ fn every_dependency_is_used() {
         let words: HashSet<&str> = text
             .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
             .collect();
-        // What a package takes from the sources of another one is not looked through.
+        // Packages that include sources of another package are not checked.
         let foreign = |line: &str| line.contains("#[path = \"../") && !line.contains("../src/");
         let names = match text.lines().any(foreign) {
             true => Vec::new(),
@@ -386,7 +386,7 @@ fn every_dependency_is_used() {
     );
 }
 
-/// The lines of `cargo tree`.
+/// Returns the lines of `cargo tree`.
 fn tree(arguments: &[&str]) -> Vec<String> {
     let mut command = Command::new(env!("CARGO"));
     command.current_dir(root());
@@ -400,8 +400,8 @@ fn tree(arguments: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// The generator runs in tests, in build scripts and in macros. It is built once for all of them, as long as what it depends
-/// on has the same features everywhere: `tests/Cargo.toml` adds those that other crates ask for.
+/// The generator runs in tests, build scripts and macros. It is built once for all of them if its dependencies have the
+/// same features everywhere: `tests/Cargo.toml` adds the features that other crates request.
 #[test]
 fn the_generator_is_built_once() {
     let needed = tree(&["-p", "hamel-codegen", "-e", "normal"]);
@@ -414,7 +414,7 @@ fn the_generator_is_built_once() {
         twice.is_empty(),
         "built with several sets of features: {twice:?}"
     );
-    // What tests of a crate of ours switch on, build scripts ask for, too.
+    // Build scripts request the features that the tests of a crate of ours enable.
     let features = |package: &str, edges: &str| {
         let all = tree(&["-p", package, "-e", edges, "-f", "{p}|{f}"]);
         all.into_iter()
@@ -443,8 +443,8 @@ fn the_generator_is_built_once() {
     assert!(checked >= 5, "{checked}");
 }
 
-/// Libraries are not compiled once more for tests that they do not have, and what `cargo test --workspace` leaves to
-/// `cargo xtask ci` is named there.
+/// Libraries without unit tests are not compiled for them, and `cargo xtask ci` names the tests that
+/// `cargo test --workspace` leaves out.
 #[test]
 fn no_test_is_left_out() {
     let workspace = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
@@ -458,10 +458,10 @@ fn no_test_is_left_out() {
             let says = |what: &str| section.lines().any(|line| line == what);
             let untested = section.starts_with("lib]") && says("test = false");
             without += usize::from(untested);
-            // A suite that is a package has no library.
+            // A package for a test suite has no library.
             let has_sources = root().join(folder).join("src").exists();
             let all = has_sources.then(|| sources(&format!("{folder}/src")));
-            // Programs have tests of their own.
+            // Programs have separate tests.
             let mut all = all.unwrap_or_default();
             all.retain(|(path, _)| {
                 !path
@@ -477,7 +477,7 @@ fn no_test_is_left_out() {
                     "{}: {found:?}",
                     path.display()
                 );
-                // Programs in documentation, which a fence without a language opens.
+                // Doc tests, which begin with a fence without a language.
                 let fences = text
                     .lines()
                     .filter(|line| line.contains("//") && line.contains(" ```"));
@@ -497,7 +497,7 @@ fn no_test_is_left_out() {
                             words.any(|word| word == "--bins")
                         }
                 });
-                // Linted and run.
+                // Once for the lints, once for the run.
                 assert_eq!(stages.count(), 2, "{folder}: {name}");
                 later += 1;
             }
@@ -506,7 +506,7 @@ fn no_test_is_left_out() {
     assert_eq!((without, later), (12, 16));
 }
 
-/// What nobody can read again is no review: snapshots stay below 25,000 lines.
+/// Snapshots stay below 25,000 lines, so that people can review them.
 #[test]
 fn snapshots_can_be_read() {
     let (mut lines, mut files) = (0, 0);
@@ -527,7 +527,7 @@ fn snapshots_can_be_read() {
     assert!(lines < 25_000, "{lines} lines of snapshots");
 }
 
-/// Each published crate says in its documentation what its features add, and docs.rs marks what needs one of them.
+/// Each published crate documents what its features add, and docs.rs marks the items that need one.
 #[test]
 fn features_are_documented() {
     let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");

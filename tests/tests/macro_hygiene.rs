@@ -1,9 +1,9 @@
-//! The macro where others have names of their own: the expansion says the same whatever is in scope, and what a
-//! `macro_rules!` hands over is read as it was matched.
+//! Hygiene of the macro: the expansion is independent of the names in scope, and fragments passed by a `macro_rules!`
+//! are read as they were matched.
 #![deny(warnings)]
 #![forbid(unsafe_code)]
 
-/// The names that Rust and the runtime give to things stand for others here, as `Ok` does where `anyhow` is used.
+/// Items with the names of those of Rust and of the runtime, such as `Ok` with `anyhow`.
 mod shadowed {
     #![allow(dead_code, non_snake_case, reason = "they are there to be in the way")]
 
@@ -28,7 +28,7 @@ mod shadowed {
     fn Err() {}
     fn Some() {}
 
-    // With parameters, pivots that may fail, rotors, slopes, a split and an invariant.
+    // With parameters, fallible pivots, rotors, slopes, a split and an invariant.
     ::hamel::rigid_eom! {
         pub system Shade {
             param m = 2, J: sym3 = diag(1, 2, 3);
@@ -58,7 +58,7 @@ mod shadowed {
     }
 }
 
-/// Systems and parameters that are called what the expansion mentions.
+/// Systems and parameters with names that the expansion uses.
 mod named {
     ::hamel::rigid_eom! {
         pub system Option {
@@ -80,7 +80,7 @@ mod named {
     }
 }
 
-/// Docs, a visibility and parts of values, as a macro by example hands them over.
+/// Docs, a visibility and parts of values as fragments of a macro by example.
 mod fragments {
     macro_rules! pendulum {
         ($(#[$docs:meta])* $public:vis $name:ident, $q:ident, $e:expr, $l:literal, $t:tt) => {
@@ -153,7 +153,7 @@ fn names_in_scope_change_nothing() {
     assert_eq!(energy, 0.0);
 }
 
-/// Descriptions stand in functions, and one name can be given again in a block of its own.
+/// Descriptions can be inside functions, and a name can be used again in another block.
 #[test]
 fn descriptions_stand_in_functions() {
     let m = 3.0;
@@ -167,7 +167,7 @@ fn descriptions_stand_in_functions() {
     assert_eq!(m, 3.0);
 }
 
-/// Numbers as Rust writes them.
+/// Numbers in Rust's syntax.
 #[test]
 fn numbers_are_those_of_rust() {
     hamel::rigid_eom! {

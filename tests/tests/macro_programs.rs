@@ -1,4 +1,4 @@
-//! A right description expands to a system that runs.
+//! A correct description expands to a system that runs.
 
 hamel::rigid_eom! {
     /// A particle on a line.

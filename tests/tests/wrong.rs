@@ -1,5 +1,5 @@
-//! Wrong descriptions, `wrong/*.eom`, and the exact messages that they get: every message has a
-//! place in the text and says what to do. And descriptions that look alike but are right.
+//! Wrong descriptions, `wrong/*.eom`, with their exact messages: every message has a place in the text and a help. Also
+//! similar descriptions that are correct.
 
 #[path = "../../codegen/tests/suite/common/models.rs"]
 #[allow(dead_code, reason = "the files of a folder alone are asked for")]
@@ -13,7 +13,7 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::Path;
 
-/// The errors of a description that has to have some.
+/// Returns the errors of a description that must have some.
 fn errors(text: &str) -> Vec<Diagnostic> {
     match from_text(text) {
         Ok(generated) => panic!("`{}` was accepted", generated.model.name),
@@ -53,8 +53,8 @@ fn messages() {
     }
 }
 
-/// Descriptions whose messages are locked as users see them, underlined in the text: one and many, of one line and of
-/// several, with notes. Of all others the snapshots have the places and the words.
+/// Descriptions whose messages are locked in rendered form, underlined in the text: single and multiple errors, on one
+/// line and on several, with notes. The snapshots of all others contain places and texts.
 const RENDERED: [&str; 8] = [
     "01-unknown-name.eom",
     "08-shapes-of-statements.eom",
@@ -66,7 +66,7 @@ const RENDERED: [&str; 8] = [
     "245-unfinished-repetition.eom",
 ];
 
-/// Errors in the order of the text, each with its place there.
+/// Sorts errors in the order of the text, each with its range.
 fn in_order(errors: &[Diagnostic]) -> Vec<(&Diagnostic, Range<usize>)> {
     let mut all: Vec<_> = errors
         .iter()
@@ -76,7 +76,7 @@ fn in_order(errors: &[Diagnostic]) -> Vec<(&Diagnostic, Range<usize>)> {
     all
 }
 
-/// Line and column of the start of a place.
+/// Returns line and column of the start of a range.
 fn place(range: &Range<usize>, text: &str) -> String {
     let before = &text[..range.start];
     let line = before.rsplit('\n').next().unwrap_or_default();
@@ -84,7 +84,7 @@ fn place(range: &Range<usize>, text: &str) -> String {
     format!("{lines}:{}", line.chars().count() + 1)
 }
 
-/// One message: its place, what stands there, what is wrong; and below it what to do, and other places.
+/// Lists a message: its place, the text there, and the error; then notes and the help.
 fn list(to: &mut String, error: &Diagnostic, range: &Range<usize>, text: &str) {
     let at = |range: &Range<usize>| {
         let there = text[range.clone()].split_whitespace();
@@ -103,7 +103,7 @@ fn list(to: &mut String, error: &Diagnostic, range: &Range<usize>, text: &str) {
     let _ = writeln!(to, "    help: {help}");
 }
 
-/// A system of one coordinate, with more statements.
+/// Returns a system of one coordinate, with further statements.
 fn system(statements: &str) -> String {
     format!("system S {{ coord x; velocity v; rate x = v; kinetic v^2; {statements} }}")
 }
@@ -114,7 +114,7 @@ fn message(statements: &str) -> String {
     errors[0].message.clone()
 }
 
-/// A name that is in error where it is defined is no further error where it is used.
+/// A name with an error in its definition causes no further errors where it is used.
 #[test]
 fn one_mistake_is_one_error() {
     for statements in [
@@ -150,14 +150,14 @@ fn products_of_large_matrices_are_refused_in_time() {
     );
 }
 
-/// Powers of powers reach degrees that polynomials cannot have.
+/// Nested powers reach degrees that polynomials cannot have.
 #[test]
 fn towers_of_powers_are_refused_in_constraints() {
     let found = message("constraint (((x^1000)^1000)^1000)^1000 = 1;");
     assert_eq!(found, "a constraint of a degree beyond 32");
 }
 
-/// What only looks wrong.
+/// Correct descriptions that resemble wrong ones.
 #[test]
 fn right_descriptions_are_accepted() {
     for text in [
@@ -182,7 +182,7 @@ fn right_descriptions_are_accepted() {
             particle mass 1 at [x, y, 0];
             start x = l^(1/4);
         }",
-        // Square roots, each of which has a value at every second point only; roots of 3 and 5.
+        // Square roots, each of which has a value at only half of the points; roots of 3 and 5.
         "system C {
             param a = 1, b = 2, c = 3, d = 5;
             coord x;
@@ -219,7 +219,7 @@ fn right_descriptions_are_accepted() {
             kinetic v^2 + w^2;
             start x = 1;
         }",
-        // A velocity that is defined although all rates are given; another that is not.
+        // A velocity that is defined although all rates are given; another one that is not.
         "system T {
             coord R: SO3, x;
             velocity w: vec3 = vee(R.T * rate(R)), v;
@@ -239,7 +239,7 @@ fn right_descriptions_are_accepted() {
             kinetic dot(u, u);
             frame f = X;
         }",
-        // Zeros with a sign; an axis that is a unit vector on the variety alone.
+        // Signed zeros; an axis that is a unit vector only on the manifold.
         "system E {
             param angle = 1, nought = -0;
             coord R: SO3;
@@ -249,9 +249,9 @@ fn right_descriptions_are_accepted() {
             frame g on f = pose(axis_angle(R[1], angle), [0, 0, 0]);
             body on f { mass 1; com [0, -0, 0]; inertia diag(1, 2, 3); }
         }",
-        // An output of the name of the expression that it returns.
+        // An output with the name of the expression that it returns.
         &system("let speed = v; output speed = speed;"),
-        // A tree of links whose velocities constraints leave, with a platform that stretches as it goes.
+        // A tree of links with independent velocities under constraints, and a platform that stretches.
         "system F {
             param r = 0.1, b = 0.2;
             coord x, y, q: S1, ql, qr;

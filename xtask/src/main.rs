@@ -1,9 +1,8 @@
-//! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask gallery`,
-//! `cargo xtask bless`; `cargo xtask shape`, the size and the layout of the repository; `cargo xtask names FOLDER SEED`, for `docs/names.md`; and `cargo xtask record FOLDER`, `cargo xtask compare BEFORE AFTER` around changes that
-//! should change no result.
+//! Tasks of contributors: `cargo xtask quick`, `ci`, `attack`, `book`, `gallery` and `bless`; `shape`, the size and the
+//! layout of the repository; `names FOLDER SEED`, for `docs/names.md`; and `record FOLDER`, `compare BEFORE AFTER`
+//! around changes that should change no result.
 //!
-//! Each task is a list of commands, run in order from the root of the repository; the first that fails
-//! ends it.
+//! Each task is a list of commands, run in order from the root of the repository until one fails.
 
 mod names;
 mod record;
@@ -13,25 +12,25 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-/// Commands, each with variables of its environment in front: `NAME=value program arguments …`.
+/// Commands, each preceded by variables of its environment: `NAME=value program arguments …`.
 type Task = &'static [&'static str];
 
-/// Seconds once everything is built: format, and what the stages say of themselves.
+/// Takes seconds once everything is built: format, and the tests of the stages.
 const QUICK: Task = &[
     "cargo fmt --all --check",
     "cargo test --locked -p hamel-codegen-tests --test algebra --test language",
     "cargo test --locked -p hamel-tests --test layers --test wrong",
 ];
 
-/// Everything that has to hold before a change lands.
+/// All checks that must pass before a change is merged.
 const CI: Task = &[
     "cargo fmt --all --check",
-    // Clippy, as `.ci/rustc` says.
+    // Clippy, as configured by `.ci/rustc`.
     "HAMEL_LINT=1 cargo check --workspace --all-targets --locked",
-    // `--all-targets` passes over the tests that `cargo test --workspace` leaves out.
+    // `--all-targets` leaves out the tests that `cargo test --workspace` leaves out.
     "HAMEL_LINT=1 cargo check --workspace --locked --test commands --test complete --test counts --test gallery --test built",
     "HAMEL_LINT=1 cargo check --workspace --locked --bins --profile test",
-    // As docs.rs has them. With examples asked for, features are those of the tests, and nothing is checked again.
+    // As on docs.rs. With examples requested, features are those of the tests, and nothing is checked again.
     "RUSTDOC=.ci/rustdoc cargo doc --workspace --no-deps --lib --bins --examples --locked",
     // The runtime without std, and generated code in a crate without std.
     "HAMEL_LINT=1 cargo check -p hamel --no-default-features --locked",
@@ -41,15 +40,15 @@ const CI: Task = &[
     "bash tests/licences/run.sh",
     // The URDF files of the robots in tests/reference/robots.
     "bash tests/robots/install.sh",
-    // Compilers of C beside gcc.
+    // C compilers other than gcc.
     "bash tests/emitted/install.sh",
     // The README's test command.
     "cargo test --workspace --locked",
-    // What is no mathematics: pages and the gallery, Python's module; and examples of control.
+    // Tests without mathematics: the book, the gallery, Python's module; and the control examples.
     "cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test built",
     // The size and the layout of the repository.
     "cargo xtask shape",
-    // The packages as they would be published; `attack` builds each from what it contains.
+    // The packages as published; `attack` also builds them.
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --no-verify --allow-dirty --locked",
     // Random mechanisms against their definitions, in numbers of many digits.
     "HAMEL_BUILT=1 bash lab/dalembert/run.sh",

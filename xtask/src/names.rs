@@ -101,7 +101,8 @@ fn declaration(text: &str) -> Option<(&str, &str)> {
         .filter(|word| !word.is_empty())
         .take(4)
         .collect();
-    // `const fn f`: the later kind counts.
+    // Fields have no kind in front; in `const fn f` the later kind counts.
+    words.first().filter(|word| KINDS.contains(word))?;
     let place = words
         .iter()
         .take(3)

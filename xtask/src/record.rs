@@ -1,6 +1,6 @@
-//! Records what the command line says of every description of the repository, and compares two records.
+//! Records the output of the command line for every description of the repository, and compares two records.
 //!
-//! A change that only moves or renames code leaves a record as it is, up to names and comments of emitted
+//! A change that only moves or renames code leaves a record unchanged, except for names and comments of emitted
 //! functions:
 //!
 //! ```text
@@ -9,7 +9,7 @@
 //! cargo xtask compare target/before target/after
 //! ```
 //!
-//! The program is `target/release/hamel`, or what `HAMEL_BIN` names.
+//! The program is `target/release/hamel`, or the value of `HAMEL_BIN`.
 
 use crate::root;
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// Folders with descriptions, from the root of the repository.
+/// Folders with descriptions, relative to the root of the repository.
 const FOLDERS: [&str; 5] = [
     "examples",
     "tests/models",
@@ -30,7 +30,7 @@ const FOLDERS: [&str; 5] = [
     "target/robots",
 ];
 
-/// Reports that are recorded for each description: a file's name, and the arguments before and after the description.
+/// The reports for each description: the name of a file, and the arguments before and after the description.
 const REPORTS: [(&str, &[&str], &[&str]); 9] = [
     ("ops.json", &["ops", "--format", "json"], &[]),
     ("check.txt", &["check"], &[]),
@@ -43,11 +43,11 @@ const REPORTS: [(&str, &[&str], &[&str]); 9] = [
     ("code.c", &["emit", "--language", "c"], &[]),
 ];
 
-/// Writes a record into a folder that does not exist yet.
+/// Writes a record to a folder that does not exist yet.
 ///
 /// # Errors
 ///
-/// Files that cannot be read or written, and a program that cannot be run.
+/// If a file cannot be read or written, or the program cannot be run.
 pub fn record(out: &Path) -> io::Result<()> {
     let program = std::env::var_os("HAMEL_BIN").map_or_else(
         || root().join("target/release/hamel"),
@@ -76,7 +76,7 @@ pub fn record(out: &Path) -> io::Result<()> {
     })
 }
 
-/// All descriptions and robots below a folder; a folder that does not exist has none.
+/// Finds all descriptions and robots below a folder, which need not exist.
 fn find(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     if !folder.is_dir() {
         return Ok(());
@@ -94,7 +94,7 @@ fn find(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Runs every command on a description, and writes what it printed with its exit status.
+/// Runs every command on a description, and writes its output and exit status.
 fn report(program: &Path, description: &Path, out: &Path) -> io::Result<()> {
     let name = description.strip_prefix(root()).unwrap_or(description);
     let folder = out.join(name.to_string_lossy().replace(['/', '\\'], "+"));
@@ -116,14 +116,14 @@ fn report(program: &Path, description: &Path, out: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Prints every report that differs between two records; whether there is none.
+/// Prints every report that differs between two records; returns whether there is none.
 ///
 /// Emitted functions are compared without comments and with local names numbered by first occurrence; all other reports
 /// are compared byte by byte.
 ///
 /// # Errors
 ///
-/// Files that cannot be read.
+/// If a file cannot be read.
 pub fn compare(before: &Path, after: &Path) -> io::Result<bool> {
     let (before, after) = (reports(before)?, reports(after)?);
     let mut differing = 0;
@@ -145,7 +145,7 @@ pub fn compare(before: &Path, after: &Path) -> io::Result<bool> {
     Ok(differing == 0)
 }
 
-/// The reports of a record by their names.
+/// Returns the reports of a record by their names.
 fn reports(record: &Path) -> io::Result<BTreeMap<String, PathBuf>> {
     let mut found = BTreeMap::new();
     for folder in fs::read_dir(record)? {
@@ -163,7 +163,7 @@ fn reports(record: &Path) -> io::Result<BTreeMap<String, PathBuf>> {
     Ok(found)
 }
 
-/// The first difference of two reports.
+/// Describes the first difference of two reports, if any.
 fn difference(name: &str, old: &Path, new: &Path) -> io::Result<Option<String>> {
     let (old, new) = (fs::read(old)?, fs::read(new)?);
     if old == new {
@@ -184,7 +184,7 @@ fn difference(name: &str, old: &Path, new: &Path) -> io::Result<Option<String>> 
     )))
 }
 
-/// The first function whose normal form differs, if any.
+/// Returns the first function whose normal form differs, if any.
 fn different_function(old: &str, new: &str) -> Option<String> {
     let (old, new) = (functions(old), functions(new));
     let place = old.iter().zip(&new).take_while(|(a, b)| a == b).count();
@@ -213,10 +213,10 @@ fn start(tokens: &[String]) -> String {
     tokens[..tokens.len().min(12)].join(" ")
 }
 
-/// The bodies of a source, `{ … }` from the first brace that follows a closing parenthesis or a return
+/// Returns the function bodies of a source, `{ … }` from the first brace that follows a closing parenthesis or a return
 /// type, as tokens in which each word is replaced by the number of its first occurrence.
 ///
-/// Words that name operations keep their text: a changed call is a changed body.
+/// Names of operations are kept: a changed call is a changed body.
 fn functions(source: &str) -> Vec<Vec<String>> {
     let tokens = tokens(source);
     let mut bodies = Vec::new();
@@ -240,7 +240,7 @@ fn functions(source: &str) -> Vec<Vec<String>> {
     bodies
 }
 
-/// Tokens with local words numbered. A word before `(` or after `.` or `::` is an operation.
+/// Numbers the local words of tokens. A word before `(` or after `.` or `::` is an operation.
 fn normalised(tokens: &[&str]) -> Vec<String> {
     let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
     let mut result = Vec::with_capacity(tokens.len());
@@ -260,7 +260,7 @@ fn normalised(tokens: &[&str]) -> Vec<String> {
     result
 }
 
-/// Words, numbers and single signs of Rust or C, without comments, attributes and white space.
+/// Splits Rust or C into words, numbers and single signs, without comments, attributes and white space.
 fn tokens(source: &str) -> Vec<String> {
     let mut tokens = Vec::new();
     let mut rest = source;

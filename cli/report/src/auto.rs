@@ -1,4 +1,4 @@
-//! How good the method is that the structure of a system chooses.
+//! Compares the method that is chosen by the structure of a system with the fastest one.
 
 use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
 use crate::work::{Work, work};
@@ -7,7 +7,8 @@ use std::fmt::Write;
 /// The error at which methods are compared.
 pub const TARGET: f64 = 1e-9;
 
-/// The entry of a comparison that runs as `auto` does: methods that can choose their steps do.
+/// Returns the name of the comparison's entry for the method that `auto` takes: with error control where the method has
+/// it.
 pub fn entry(method: &str) -> String {
     match method {
         "rkmk54" | "rkmk8" => format!("{method} adaptive"),
@@ -15,14 +16,14 @@ pub fn entry(method: &str) -> String {
     }
 }
 
-/// The wall time in µs in which a method reaches the [`TARGET`].
+/// Returns the wall time in µs in which a method reaches the [`TARGET`].
 pub fn micros(method: &MethodRuns) -> Work {
     work(&method.runs, TARGET, |run: &MethodRun| {
         run.seconds.map(|seconds| 1e6 * seconds)
     })
 }
 
-/// The method, no baseline and of no other program, that takes the least time.
+/// Returns the fastest method that is neither a baseline nor of another program.
 pub fn fastest(case: &Case) -> Option<(&MethodRuns, Work)> {
     let ours = case
         .methods
@@ -33,7 +34,7 @@ pub fn fastest(case: &Case) -> Option<(&MethodRuns, Work)> {
         .map(|(method, work, _)| (method, work))
 }
 
-/// The time of the chosen method over that of the fastest; `None` where one of them did not get there.
+/// Returns the time of the chosen method relative to the fastest; `None` if one of them does not reach the target.
 pub fn ratio(case: &Case) -> Option<f64> {
     let choice = case.auto.as_ref()?;
     let chosen = case
@@ -44,11 +45,11 @@ pub fn ratio(case: &Case) -> Option<f64> {
     Some(micros(chosen).value()? / best.value()?)
 }
 
-/// The chosen method may take so many times the time of the fastest.
+/// Largest accepted time of the chosen method, relative to the fastest.
 pub const BAR: f64 = 2.0;
 
-/// How the choices did over all cases, in words: which, if any, are beyond the [`BAR`], and which cannot be
-/// judged. `None` where nothing was chosen.
+/// Summarises the choices over all cases in words: choices beyond the [`BAR`], and choices that cannot be judged.
+/// `None` if nothing was chosen.
 pub fn verdict(report: &Report) -> Option<String> {
     let chosen: Vec<&Case> = report
         .cases
@@ -119,7 +120,7 @@ mod tests {
         }
     }
 
-    /// A slow method beside a fast one, the slow one chosen.
+    /// A slow method, which is chosen, and a fast one.
     fn case(name: &str, slow: f64) -> Case {
         Case {
             name: name.into(),

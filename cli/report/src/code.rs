@@ -1,8 +1,8 @@
-//! Texts in which `code` stands between backticks, as in Markdown, for places that are no Markdown.
+//! Texts with `code` between backticks, as in Markdown, for output in other formats.
 
 use maud::{Markup, html};
 
-/// The parts of a text in turn, and whether they are code. A backtick without a partner stands for itself.
+/// Splits a text into parts, each with a flag for code. An unpaired backtick is an ordinary character.
 fn parts(text: &str) -> Vec<(&str, bool)> {
     let mut parts = Vec::new();
     let mut rest = text;
@@ -18,7 +18,7 @@ fn parts(text: &str) -> Vec<(&str, bool)> {
     parts
 }
 
-/// The text in HTML.
+/// Renders a text as HTML.
 pub fn marked(text: &str) -> Markup {
     html! {
         @for (part, code) in parts(text) {
@@ -27,7 +27,7 @@ pub fn marked(text: &str) -> Markup {
     }
 }
 
-/// The text without marks, where nothing can be set apart: in pictures and titles of pages.
+/// Removes the marks, for pictures and titles of pages, in which code has no style.
 pub fn plain(text: &str) -> String {
     parts(text).into_iter().map(|(part, _)| part).collect()
 }

@@ -1,13 +1,13 @@
-//! Runs whose steps are chosen by their error, as a table: what a tolerance leads to.
+//! A table of runs with error control: error and steps for each tolerance.
 
 use crate::data::{Case, MethodRun, MethodRuns};
 use crate::number::{error, grouped};
 
-/// The tolerances of the table, as far as they were measured.
+/// The tolerances of the table; a tolerance that was not measured is left out.
 const SHOWN: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
 
-/// Heading and rows: for every method error, steps and refused attempts at each tolerance; `None` where no
-/// method of the case chooses its steps.
+/// Returns the heading and the rows: for every method, error, steps and rejected attempts at each tolerance; `None` if
+/// no method of the case has error control.
 pub fn table(case: &Case) -> Option<(Vec<String>, Vec<Vec<String>>)> {
     let of = |method: &&MethodRuns| method.runs.iter().any(|run| run.tolerance.is_some());
     let methods: Vec<&MethodRuns> = case.methods.iter().filter(of).collect();
@@ -30,7 +30,7 @@ pub fn table(case: &Case) -> Option<(Vec<String>, Vec<Vec<String>>)> {
     Some((head, SHOWN.map(row).to_vec()))
 }
 
-/// Error, steps, refused attempts.
+/// Returns error, steps and rejected attempts.
 fn counts(run: Option<&MethodRun>) -> [String; 3] {
     let none = || "-".to_string();
     let Some(run) = run else {

@@ -1,12 +1,12 @@
-//! A system that counts how often its forces are evaluated.
+//! A system that counts the evaluations of its forces.
 
 use hamel::{Block, Canonical, Singular, Split, System};
 use std::cell::Cell;
 
-/// A system, with a count of its evaluations of ξ̇ ([`System::accel`]), of forces alone
-/// ([`Split::kick`]) and of ṗ ([`Canonical::momentum_rate`]): what grows with the loads of a scene.
+/// A system that counts the evaluations of ξ̇ ([`System::accel`]), of forces ([`Split::kick`]) and of ṗ
+/// ([`Canonical::momentum_rate`]), whose cost grows with the loads of a scene.
 ///
-/// Everything is forwarded; the count costs well below a nanosecond a call.
+/// All calls are forwarded; counting costs well below a nanosecond a call.
 #[derive(Debug)]
 pub struct Counted<'a, Sys: ?Sized> {
     system: &'a Sys,
@@ -14,7 +14,7 @@ pub struct Counted<'a, Sys: ?Sized> {
 }
 
 impl<'a, Sys: ?Sized> Counted<'a, Sys> {
-    /// A count of zero.
+    /// Wraps a system, with a count of zero.
     pub fn new(system: &'a Sys) -> Self {
         Self {
             system,
@@ -22,17 +22,17 @@ impl<'a, Sys: ?Sized> Counted<'a, Sys> {
         }
     }
 
-    /// The evaluations since the start, or since they were last [reset](Self::reset).
+    /// Returns the evaluations since the start, or since the last [reset](Self::reset).
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
     }
 
-    /// Counts from zero again.
+    /// Sets the count to zero.
     pub fn reset(&self) {
         self.evaluations.set(0);
     }
 
-    /// The system itself.
+    /// Returns the wrapped system.
     pub fn inner(&self) -> &'a Sys {
         self.system
     }

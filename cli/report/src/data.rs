@@ -1,4 +1,4 @@
-//! The results of a comparison, as they stand in JSON.
+//! The results of a comparison, in the form of the JSON file.
 
 use crate::entry::Division;
 use serde::{Deserialize, Serialize};
@@ -8,53 +8,53 @@ use serde::{Deserialize, Serialize};
 pub struct Report {
     /// Heading.
     pub title: String,
-    /// The command that makes it again.
+    /// The command that makes the report.
     pub command: String,
-    /// Where it was measured.
+    /// The machine of the measurements.
     pub machine: Machine,
-    /// What was measured.
+    /// The measured cases.
     pub cases: Vec<Case>,
     /// Long runs.
     pub drifts: Vec<Drift>,
-    /// Other programs, whether they could be measured or not.
+    /// Other programs, measured or not.
     pub peers: Vec<Peer>,
 }
 
 /// Where and how times were measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
-    /// Kind of processor, as the system names it.
+    /// Kind of processor, as reported by the operating system.
     pub processor: String,
     /// Operating system and architecture.
     pub system: String,
     /// `compiled` or `interpreted`.
     pub code: String,
-    /// Every time is the median of this many.
+    /// Number of timings of which every time is the median.
     pub repeats: u32,
 }
 
-/// One motion, by all methods.
+/// One motion, computed by all methods.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Case {
-    /// Name, as in file names.
+    /// Name, as used in file names.
     pub name: String,
-    /// What moves.
+    /// The moving system.
     pub title: String,
     /// Length of the run, in the unit of time of the case.
     pub until: f64,
-    /// What `error` of a run is.
+    /// Definition of `error` of a run.
     pub error: String,
-    /// What the error is measured against.
+    /// The reference of the error.
     pub reference: String,
-    /// How far the reference itself is believed to be off.
+    /// Estimated error of the reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference_error: Option<f64>,
-    /// What `--method auto` takes.
+    /// The choice of `--method auto`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub auto: Option<Choice>,
     /// The methods.
     pub methods: Vec<MethodRuns>,
-    /// Methods that were asked for and cannot run this case.
+    /// Methods that were requested and cannot run this case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<Missing>,
 }
@@ -64,7 +64,7 @@ pub struct Case {
 pub struct Choice {
     /// Its name.
     pub method: String,
-    /// Why, in a sentence.
+    /// The reason, in a sentence.
     pub reason: String,
 }
 
@@ -73,45 +73,45 @@ pub struct Choice {
 pub struct Missing {
     /// Its name.
     pub method: String,
-    /// Why, in a sentence.
+    /// The reason, in a sentence.
     pub why: String,
 }
 
-/// What a method is in a comparison.
+/// The role of a method in a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// Meant to be used.
     Method,
-    /// Kept to compare with.
+    /// Kept for comparison.
     Baseline,
-    /// Of another program.
+    /// A method of another program.
     Peer,
 }
 
-/// The runs of one method on one case, from long steps to short ones.
+/// The runs of one method on one case, in the order of decreasing step length.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodRuns {
     /// Its name.
     pub method: String,
-    /// What it is here.
+    /// Its role.
     pub kind: Kind,
-    /// Its order, where it has one.
+    /// Its order, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<u32>,
-    /// One run for each number of steps.
+    /// One run for each number of steps or tolerance.
     pub runs: Vec<MethodRun>,
 }
 
-/// One run. What is `None` does not exist or is not finite.
+/// One run. A value that does not exist or is not finite is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MethodRun {
     /// Number of steps.
     pub steps: u64,
-    /// The error that a step may make, where steps are chosen by it.
+    /// The error tolerance of a step, with error control.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// Attempts at steps whose error was too large.
+    /// Rejected attempts at steps, whose error was too large.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rejected: Option<u64>,
     /// Evaluations of forces.
@@ -126,25 +126,25 @@ pub struct MethodRun {
     /// Largest drift of conserved momenta, relative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub momentum: Option<f64>,
-    /// Largest |φ(x)|: for a rotation how far RᵀR is from I.
+    /// Largest |φ(x)|; for a rotation, the deviation of RᵀR from I.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub defect: Option<f64>,
-    /// Wall time of the run in s, a median.
+    /// Wall time of the run in s, as a median.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// Why the run ended early.
+    /// The reason for an early end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 
 impl MethodRun {
-    /// How the run was divided into steps.
+    /// Returns how the run was divided into steps.
     pub fn division(&self) -> Division {
         let steps = Division::Steps(self.steps);
         self.tolerance.map_or(steps, Division::Tolerance)
     }
 
-    /// Wall time of a step in s.
+    /// Returns the wall time of a step in s.
     pub fn seconds_per_step(&self) -> Option<f64> {
         self.seconds.map(|seconds| seconds / self.steps as f64)
     }
@@ -163,20 +163,20 @@ pub struct Drift {
     pub steps: u64,
     /// Largest relative deviation of the energy in each window.
     pub energy: Vec<f64>,
-    /// Largest relative deviation of the momenta over all.
+    /// Largest relative deviation of the momenta over the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub momentum: Option<f64>,
-    /// Largest |φ(x)| over all.
+    /// Largest |φ(x)| over the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub defect: Option<f64>,
-    /// Why the run ended early.
+    /// The reason for an early end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 
 impl Drift {
-    /// The largest deviation of the energy in the last quarter over that in the first: 1 where the
-    /// energy does not drift.
+    /// Returns the largest deviation of the energy in the last quarter relative to the first: 1 if the energy does not
+    /// drift.
     pub fn growth(&self) -> Option<f64> {
         let quarter = self.energy.len() / 4;
         if quarter == 0 || self.failure.is_some() {
@@ -196,13 +196,13 @@ pub struct Peer {
     pub name: String,
     /// Whether it was measured.
     pub available: bool,
-    /// What was measured, or why it was not.
+    /// A note on the measurement, or the reason for its absence.
     pub note: String,
-    /// How to have it in the report.
+    /// The command that includes it in the report.
     pub start: String,
 }
 
-/// A number to three significant digits, as results are kept; `None` where it is not finite.
+/// Rounds a number to three significant digits, as results are stored; `None` if it is not finite.
 pub fn kept(value: f64) -> Option<f64> {
     value
         .is_finite()

@@ -1,19 +1,19 @@
-//! Long runs: whether what is conserved drifts away, or only swings.
+//! Long runs, which show whether conserved quantities drift or only oscillate.
 
 use crate::data::{Drift, kept};
 use crate::entry::{Division, Entry, Worst};
 
-/// Windows of a run.
+/// Number of windows of a run.
 pub const WINDOWS: u64 = 100;
 
-/// Runs so many steps of one length, and keeps the largest deviations of each window; `None` for a method
-/// that chooses its steps.
+/// Runs `steps` steps of one length, and keeps the largest deviations of each window; `None` for a method with error
+/// control.
 pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> {
     let length = (steps / WINDOWS).max(1);
     let mut worst = Worst::default();
     let mut window = Worst::default();
     let mut energy = Vec::new();
-    // The first state is the start itself.
+    // The first state is the start.
     let mut count = 0_u64;
     let outcome = entry.run(
         Division::Steps(steps),

@@ -1,58 +1,57 @@
-//! A method on a problem, as it is run and timed.
+//! A method on a problem, which can be run and timed.
 
 use crate::data::{Kind, MethodRun};
 use crate::solution::largest;
 use hamel::adaptive::Statistics;
 
-/// How far a state is from what is constant, relative.
+/// The relative deviation of a state from the constants of motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Deviation {
-    /// |T + V − E₀| over max(|E₀|, T₀), or over 1 where that is zero; NaN where nothing is conserved.
+    /// |T + V − E₀| over max(|E₀|, T₀), or over 1 where that is zero; NaN if nothing is conserved.
     pub energy: f64,
-    /// Norm of the change of the momenta over their norm, or over 1 where that is zero; NaN where
-    /// there are none.
+    /// Norm of the change of the momenta over their norm, or over 1 where that is zero; NaN if there are none.
     pub momentum: f64,
     /// max |φ(x)|
     pub defect: f64,
 }
 
-/// What a run came to.
+/// The outcome of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Evaluations of forces, where they can be counted.
+    /// Evaluations of forces, if they can be counted.
     pub evaluations: Option<u64>,
-    /// The error at the end; NaN where it was not reached.
+    /// The error at the end; NaN if the run failed.
     pub error: f64,
-    /// Why the run ended early.
+    /// The reason for an early end of the run.
     pub failure: Option<String>,
-    /// Steps taken and refused, where a tolerance chooses them.
+    /// Steps taken and rejected, with error control.
     pub statistics: Option<Statistics>,
 }
 
 /// Called with every state after the first.
 pub type Watch<'w> = &'w mut dyn FnMut(Deviation);
 
-/// How finely a run is divided.
+/// The division of a run into steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Division {
-    /// So many equal steps.
+    /// This number of equal steps.
     Steps(u64),
-    /// Steps that make this error each, chosen by the method.
+    /// Steps chosen by the method, with this error tolerance each.
     Tolerance(f64),
 }
 
-/// A run of so many steps up to a time, watched.
+/// A watched run, by the number of steps and the final time.
 type Run<'a> = Box<dyn Fn(u64, f64, Watch) -> Outcome + 'a>;
 
-/// The wall time of the first ones (second argument) of so many steps (first argument), unwatched, in
-/// s; `None` where it fails.
+/// The wall time, in s, of the first steps (second argument) of an unwatched run with a number of steps (first
+/// argument); `None` if it fails.
 type Clock<'a> = Box<dyn Fn(u64, u64) -> Option<f64> + 'a>;
 
-/// A run with a tolerance up to a time, watched.
+/// A watched run, by the tolerance and the final time.
 type Controlled<'a> = Box<dyn Fn(f64, f64, Watch) -> Outcome + 'a>;
 
-/// The wall time of the first part (second argument, of 1) of a run with a tolerance (first argument),
-/// unwatched, in s, and the evaluations in it.
+/// The wall time, in s, and the evaluations of the first part (second argument, up to 1) of an unwatched run with a
+/// tolerance (first argument).
 type ControlledClock<'a> = Box<dyn Fn(f64, f64) -> Option<(f64, u64)> + 'a>;
 
 enum Way<'a> {
@@ -70,15 +69,15 @@ enum Way<'a> {
 pub struct Entry<'a> {
     /// The method's name.
     pub method: String,
-    /// What it is here.
+    /// Its role.
     pub kind: Kind,
-    /// Its order, where it has one.
+    /// Its order, if it has one.
     pub order: Option<u32>,
     way: Way<'a>,
 }
 
 impl<'a> Entry<'a> {
-    /// A method of any origin, in equal steps.
+    /// Makes an entry of a method of any origin, in equal steps.
     pub fn new(
         method: &str,
         kind: Kind,
@@ -95,7 +94,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// A method that chooses its steps by a tolerance.
+    /// Makes an entry of a method with error control.
     pub fn controlled(
         method: &str,
         order: u32,
@@ -111,7 +110,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Which of these divisions it can be run with.
+    /// Returns the divisions that the method supports.
     pub fn divisions(&self, steps: &[u64], tolerances: &[f64]) -> Vec<Division> {
         match self.way {
             Way::Equal { .. } => steps.iter().copied().map(Division::Steps).collect(),
@@ -122,7 +121,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Runs up to a time, and shows every state; `None` for a division that is none of its own.
+    /// Runs up to a time, and shows every state; `None` for a division that the method does not support.
     pub fn run(&self, division: Division, until: f64, watch: Watch) -> Option<Outcome> {
         match (&self.way, division) {
             (Way::Equal { run, .. }, Division::Steps(steps)) => Some(run(steps, until, watch)),
@@ -133,8 +132,8 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// The wall time of the first steps of a run that was measured, at most about `part` of them, and that
-    /// of the whole run in proportion, in s.
+    /// Times the first steps of a run that was measured, at most about `part` of them. Returns this wall time and the
+    /// proportional one of the whole run, in s.
     pub fn clock(&self, measured: &MethodRun, part: u64) -> Option<(f64, f64)> {
         let steps = measured.steps;
         let part = steps.min(part);
@@ -153,19 +152,19 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// Largest deviations of a run so far.
+/// The largest deviations of a run so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
-    /// Of the energy.
+    /// Largest deviation of the energy.
     pub energy: f64,
-    /// Of the momenta.
+    /// Largest deviation of the momenta.
     pub momentum: f64,
-    /// Of φ.
+    /// Largest deviation of φ.
     pub defect: f64,
 }
 
 impl Worst {
-    /// Takes a state into account; what is NaN stays so.
+    /// Updates the deviations by those of a state; NaN persists.
     pub fn take(&mut self, deviation: Deviation) {
         self.energy = largest([self.energy, deviation.energy]);
         self.momentum = largest([self.momentum, deviation.momentum]);

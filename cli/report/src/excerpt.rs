@@ -6,13 +6,13 @@ use crate::markdown::worked;
 use crate::work::{Work, work};
 use std::fmt::Write;
 
-/// What stands before the block.
+/// Marks the beginning of the block.
 pub const BEGIN: &str = "<!-- report: begin -->";
-/// What stands after it.
+/// Marks its end.
 pub const END: &str = "<!-- report: end -->";
 
-/// A table of the fastest method of every case and what it costs to reach 1e-9, with rkmk4 and what `auto` takes
-/// beside it.
+/// Renders a table of the fastest method of every case and its cost for an error of 1e-9, compared with rkmk4 and the
+/// method that `auto` takes.
 pub fn block(report: &Report) -> String {
     let mut text = String::from(
         "| motion | fastest method to 1e-9 | evaluations of forces | time | `rkmk4` to 1e-9 | `auto` takes | over the fastest |\n|---|---|---:|---:|---:|---|---:|\n",
@@ -49,14 +49,14 @@ fn micros(time: Option<Work>) -> String {
     }
 }
 
-/// The text with its block replaced; `None` where the comments are missing.
+/// Replaces the block of a text; `None` if the comments are missing.
 pub fn replaced(text: &str, block: &str) -> Option<String> {
     let (before, rest) = text.split_once(BEGIN)?;
     let (_, after) = rest.split_once(END)?;
     Some(format!("{before}{BEGIN}\n{block}{END}{after}"))
 }
 
-/// The block of a text; `None` where the comments are missing.
+/// Returns the block of a text; `None` if the comments are missing.
 pub fn present(text: &str) -> Option<&str> {
     let (_, rest) = text.split_once(BEGIN)?;
     let (block, _) = rest.split_once(END)?;

@@ -1,19 +1,17 @@
-//! Reports as JSON: indented, but one line for each run, and for lists of numbers, so that changes
-//! can be read.
+//! Reports as JSON: indented, but with one line for each run and for each list of numbers, so that changes can be read.
 
 use crate::data::Report;
 use serde::Serialize;
 use serde_json::ser::{Formatter, Serializer};
 use std::io::{self, Write};
 
-/// Members of objects nested deeper than this stand on one line: the runs of the methods of the cases
-/// of a report.
+/// Members of objects nested deeper than this are on one line: the runs of the methods of a case.
 const DEPTH: usize = 6;
 
-/// The text of a report, with a final line break.
+/// Formats a report, with a final line break.
 ///
 /// # Errors
-/// None in practice: a report is written to memory, and has text keys alone.
+/// None in practice: a report is written to memory, and all its keys are text.
 pub fn write(report: &Report) -> Result<String, serde_json::Error> {
     let mut bytes = Vec::new();
     report.serialize(&mut Serializer::with_formatter(
@@ -24,10 +22,10 @@ pub fn write(report: &Report) -> Result<String, serde_json::Error> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The report that a text holds.
+/// Parses a report.
 ///
 /// # Errors
-/// Where the text is no report.
+/// If the text is not a report.
 pub fn read(text: &str) -> Result<Report, serde_json::Error> {
     serde_json::from_str(text)
 }
@@ -35,9 +33,9 @@ pub fn read(text: &str) -> Result<Report, serde_json::Error> {
 /// Breaks lines before members, and before objects in lists.
 #[derive(Default)]
 struct Lines {
-    /// For every open list or object whether a line was broken in it.
+    /// For every open list or object, whether it contains a line break.
     open: Vec<bool>,
-    /// The next value stands in a list; whether it is the first one.
+    /// If the next value is in a list: whether it is the first one.
     item: Option<bool>,
 }
 
@@ -47,7 +45,7 @@ impl Lines {
         (0..self.open.len()).try_for_each(|_| writer.write_all(b" "))
     }
 
-    /// What parts a value from what stands before it in a list.
+    /// Separates a value from the previous one in a list.
     fn part<W: ?Sized + Write>(&mut self, writer: &mut W, object: bool) -> io::Result<()> {
         match self.item.take() {
             Some(_) if object && self.open.len() <= DEPTH => self.break_line(writer),

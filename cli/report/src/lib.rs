@@ -1,4 +1,4 @@
-//! Speed against error: what a method costs on a system, and how far it ends from the truth.
+//! Speed against error: the cost of a method on a system, and its final error.
 //!
 #![doc = include_str!("../README.md")]
 //!
@@ -6,28 +6,28 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | [`auto`] | how good the chosen method is |
-//! | [`baselines`] | methods that are measured to show what they lose |
+//! | [`auto`] | the quality of the automatic choice of a method |
+//! | [`baselines`] | methods that are measured to show their defects |
 //! | `controlled` | runs by error control as a table |
 //! | [`counted`] | a system that counts the evaluations of its forces |
-//! | [`problem`] | one system with its start, its errors and what it conserves |
+//! | [`problem`] | a system with its start, its error and its constants of motion |
 //! | [`entry`] | a method on a problem, in equal steps or by error control |
 //! | [`measure`] | the loop: errors and drifts once, times interleaved and as medians |
 //! | [`drift`] | one long run of one method |
 //! | [`solution`] | reference solutions as files |
-//! | [`data`] | the results, as they stand in JSON |
+//! | [`data`] | the results, in the form of the JSON file |
 //! | [`work`] | work to reach an error, between the runs measured |
-//! | [`markdown`], [`json`], [`page`], [`excerpt`] | what people and programs read |
+//! | [`markdown`], [`json`], [`page`], [`excerpt`] | the output for people and programs |
 //! | `code` | code between backticks, in pages and pictures |
-//! | [`summary`] | the runs behind that part |
+//! | [`summary`] | the runs behind the excerpt |
 //! | [`plot`] | pictures as SVG |
-//! | [`number`] | numbers as people read them |
+//! | [`number`] | numbers formatted for people |
 //!
-//! Pictures are drawn by `plotters` (MIT) with its SVG backend alone: axes, ticks and logarithmic
-//! scales are its work. It is in wide use, needs no fonts on the machine (text is measured by its
-//! length), and its text is deterministic. It knows whole pixels and fixed colours only; [`plot`]
-//! draws ten times as large and gives the colours of a dark page by a style sheet. HTML is written by
-//! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
+//! Pictures are drawn by `plotters` (MIT), with only its SVG backend, which provides axes, ticks and logarithmic
+//! scales. It is in wide use, needs no fonts on the machine (text is measured by its length), and its output is
+//! deterministic. It supports only whole pixels and fixed colours, so [`plot`] draws ten times as large and gives the
+//! colours of a dark page by a style sheet. HTML is written by `maud` (MIT or Apache-2.0), which escapes all inserted
+//! text.
 //!
 //! # Features
 //!

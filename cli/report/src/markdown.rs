@@ -6,7 +6,7 @@ use crate::work::{TARGETS, Work, work};
 use crate::{auto, controlled};
 use std::fmt::Write;
 
-/// The whole report; `picture` gives the file of a case's picture, where there is one.
+/// Renders a whole report; `picture` returns the file of a case's picture, if there is one.
 pub fn write(report: &Report, picture: impl Fn(&Case) -> Option<String>) -> String {
     let mut text = format!("# {}\n\n{}\n", cell(&report.title), how(report));
     if !report.peers.is_empty() {
@@ -42,7 +42,7 @@ pub fn write(report: &Report, picture: impl Fn(&Case) -> Option<String>) -> Stri
     text
 }
 
-/// How it was measured, in plain words.
+/// Describes the measurements in plain words.
 pub fn how(report: &Report) -> String {
     let machine = &report.machine;
     let mut text = String::new();
@@ -64,7 +64,7 @@ pub fn how(report: &Report) -> String {
     text
 }
 
-/// The tables of one case.
+/// Renders the tables of one case.
 pub fn case(case: &Case) -> String {
     let mut text = format!(
         "t = {}. Error: {}, against {}{}.\n\n",
@@ -155,7 +155,7 @@ pub fn case(case: &Case) -> String {
     text
 }
 
-/// The run with the least error, or why there is none.
+/// Returns the run with the least error, or the reason for its absence.
 fn best(method: &MethodRuns, until: f64, timed: bool) -> Vec<String> {
     let with = |run: &&MethodRun| run.error.is_some();
     let order = |a: &&MethodRun, b: &&MethodRun| {
@@ -188,7 +188,7 @@ fn best(method: &MethodRuns, until: f64, timed: bool) -> Vec<String> {
     cells
 }
 
-/// Long runs, with the growth of their energy error.
+/// Renders long runs, with the growth of their energy error.
 fn drifts(report: &Report) -> String {
     let mut text = "Largest deviation of the energy in the last quarter over that in the first: 1 means no drift.\n\n".to_string();
     let head = [
@@ -224,7 +224,7 @@ fn drifts(report: &Report) -> String {
     text
 }
 
-/// The name of a method, with what it is here.
+/// Returns the name of a method with its role.
 pub fn name(method: &MethodRuns) -> String {
     match method.kind {
         Kind::Method => method.method.clone(),
@@ -233,7 +233,7 @@ pub fn name(method: &MethodRuns) -> String {
     }
 }
 
-/// Work with three digits.
+/// Formats work with three digits.
 pub fn worked(work: Work) -> String {
     let three = |value: f64| digits(value, 3);
     match work {
@@ -263,7 +263,7 @@ fn line(text: &mut String, cells: &[&str]) {
     let _ = writeln!(text, "| {} |", cells.join(" | "));
 }
 
-/// Text within a cell.
+/// Escapes a text for a cell.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|")
         .replace('\n', " ")

@@ -1,46 +1,45 @@
 //! The measuring loop.
 //!
-//! Errors, drifts and evaluations are exact: one watched run gives them. Times are not: machines are
-//! noisy, in phases longer than a run. Every method is therefore timed once at every step before any
-//! is timed again, and the median of the repeats is kept; ratios of such medians are steadier than
-//! the times themselves. What is timed is the first steps of a run, at most [`PART`] of them, and the
-//! time of the run is that in proportion (of steps, or of evaluations where steps differ): a long run would
-//! be interrupted too often to be timed.
+//! Errors, drifts and evaluations are reproducible: one watched run gives them. Times are not: machines are noisy, in
+//! phases longer than a run. Therefore every method is timed once at every step length before any is timed again, and
+//! the median of the repeats is kept; ratios of such medians are steadier than the times themselves. Only the first
+//! steps of a run are timed, at most [`PART`] of them, and the time is scaled to the whole run (by steps, or by
+//! evaluations where steps differ): a long run would be interrupted too often to be timed.
 
 use crate::data::{Case, MethodRun, MethodRuns, kept};
 use crate::entry::{Division, Entry, Worst};
 
-/// How to measure.
+/// A plan of measurements.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Numbers of steps, ascending.
     pub steps: Vec<u64>,
     /// Tolerances of methods that choose their steps, descending.
     pub tolerances: Vec<f64>,
-    /// How often each run is timed; 0 for no times at all.
+    /// Number of timings of each run; 0 to measure no times.
     pub repeats: u32,
-    /// A run is repeated within one timing until it has taken so long, in s.
+    /// Shortest duration of a timing, in s, for which a run is repeated.
     pub least: f64,
-    /// A method is not run more finely once its error is below this, or is no longer
-    /// reduced: what follows is rounding.
+    /// A method is not run with smaller steps once its error is below this, or no longer decreases: the rest is
+    /// rounding.
     pub floor: f64,
 }
 
 impl Plan {
-    /// Doublings of a number of steps.
+    /// Returns `count` numbers of steps, each twice the previous.
     pub fn doublings(from: u64, count: u32) -> Vec<u64> {
         (0..count).map(|index| from << index).collect()
     }
 }
 
-/// No more steps are timed at once.
+/// Largest number of steps timed at once.
 pub const PART: u64 = 1000;
 
-/// Fewer than this times the last error is a reduction.
+/// An error counts as reduced if it is less than this times the last one.
 const REDUCED: f64 = 0.7;
 
-/// Measures every entry and adds the results to the case. `tick` is called before each piece of work with
-/// what is done and what there is in all.
+/// Measures every entry, and adds the results to the case. `tick` is called before each piece of work with the number
+/// of finished pieces and their total.
 pub fn measure(case: &mut Case, entries: &[Entry], plan: &Plan, tick: &mut dyn FnMut(u64, u64)) {
     let all = entries.len() as u64 * (1 + u64::from(plan.repeats));
     let mut done = 0;
@@ -80,7 +79,7 @@ pub fn measure(case: &mut Case, entries: &[Entry], plan: &Plan, tick: &mut dyn F
     case.methods.extend(methods);
 }
 
-/// One watched run for each number of steps, or each tolerance.
+/// Makes one watched run for each number of steps, or each tolerance.
 fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
     let mut runs: Vec<MethodRun> = Vec::new();
     let mut stalled = 0;
@@ -110,7 +109,7 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
             seconds: None,
             failure: outcome.failure,
         });
-        // Before a method converges its error may stay the same for long.
+        // Before a method converges, its error may be constant for many runs.
         let small = outcome.error < 1e-3;
         stalled = if small && outcome.error > REDUCED * last {
             stalled + 1
@@ -125,13 +124,13 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
     runs
 }
 
-/// The mean time of as many runs as fill the least time, from that of their first steps.
+/// Returns the mean time of the runs that fill the least time, estimated from that of their first steps.
 fn time(entry: &Entry, run: &MethodRun, least: f64) -> Option<f64> {
     let (mut sum, mut whole, mut count) = (0.0, 0.0, 0.0);
     while sum < least {
         let (seconds, all) = entry.clock(run, PART)?;
         (sum, whole, count) = (sum + seconds, whole + all, count + 1.0);
-        // A clock that does not advance must not hold up the rest.
+        // A clock that does not advance must not block the other measurements.
         if count > 1e5 {
             break;
         }
@@ -139,7 +138,7 @@ fn time(entry: &Entry, run: &MethodRun, least: f64) -> Option<f64> {
     (count > 0.0).then_some(whole / count)
 }
 
-/// The middle value, or the mean of the two in the middle.
+/// Returns the middle value, or the mean of the two in the middle.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -158,7 +157,7 @@ mod tests {
     use crate::entry::{Deviation, Entry, Outcome};
     use hamel::adaptive::Statistics;
 
-    /// A method with error = floor + hᵖ, whose clock says 1 µs a step.
+    /// A method with error = floor + hᵖ, whose clock returns 1 µs a step.
     fn entry<'a>(name: &str, p: i32, floor: f64) -> Entry<'a> {
         Entry::new(
             name,
@@ -204,7 +203,7 @@ mod tests {
         };
         // 256⁻⁴ = 2e-10 is the first error below the floor.
         assert_eq!(a.runs.last().map(|run| run.steps), Some(256));
-        // 1e-7 is all but reached with 128 steps; two more runs do not reduce it by much.
+        // 1e-7 is almost reached with 128 steps; two more runs do not reduce it by much.
         assert_eq!(b.runs.last().map(|run| run.steps), Some(512));
         let run = &a.runs[4];
         assert_eq!((run.steps, run.evaluations), (16, Some(48)));
@@ -222,8 +221,8 @@ mod tests {
 
     #[test]
     fn the_time_of_a_controlled_run_is_in_proportion_of_evaluations() {
-        // 1/tolerance steps of which every tenth is tried twice, 5 evaluations an attempt, 1 µs an evaluation;
-        // 3 evaluations before the first step.
+        // A run has 1/tolerance steps, every tenth of which is tried twice, with 5 evaluations an attempt, 1 µs an
+        // evaluation, and 3 evaluations before the first step.
         let evaluations = |steps: u64| 3 + 5 * (steps + steps / 10);
         let run = move |tolerance: f64, _: f64, watch: crate::entry::Watch| {
             watch(Deviation {

@@ -1,11 +1,11 @@
-//! Numbers as people read them.
+//! Numbers formatted for people.
 
-/// About six significant digits, without trailing zeros.
+/// Formats about six significant digits, without trailing zeros.
 pub fn short(value: f64) -> String {
     digits(value, 6)
 }
 
-/// That many significant digits, without trailing zeros; powers of ten beyond 1e-4 … 1e6.
+/// Formats the given number of significant digits, without trailing zeros; with powers of ten outside 1e-4 … 1e6.
 pub fn digits(value: f64, significant: usize) -> String {
     if value == 0.0 {
         return "0".into();
@@ -25,7 +25,7 @@ pub fn digits(value: f64, significant: usize) -> String {
     trimmed(&format!("{value:.decimals$}")).to_string()
 }
 
-/// Two significant digits of an error: `3.1e-15`.
+/// Formats two significant digits of an error: `3.1e-15`.
 pub fn error(value: f64) -> String {
     if value == 0.0 {
         "0".into()
@@ -34,7 +34,7 @@ pub fn error(value: f64) -> String {
     }
 }
 
-/// A whole number with its thousands apart: `100 000`.
+/// Formats a whole number with grouped thousands: `100 000`.
 pub fn grouped(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::new();
@@ -47,7 +47,7 @@ pub fn grouped(value: u64) -> String {
     text
 }
 
-/// The shortest text that reads back as the same number; never a long row of zeros.
+/// Formats the shortest text that parses to the same number, without long rows of zeros.
 pub fn exact(value: f64) -> String {
     if value == 0.0 {
         "0.0".into()

@@ -1,4 +1,4 @@
-//! Reports as one HTML page that needs nothing else: pictures inline, light and dark.
+//! Reports as one self-contained HTML page: pictures inline, light and dark.
 
 use crate::code::{marked, plain};
 use crate::data::{Case, MethodRun, Report};
@@ -9,7 +9,7 @@ use crate::work::{TARGETS, work};
 use crate::{auto, controlled};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// A picture with a name of its own.
+/// A picture with a heading.
 pub struct Picture {
     /// Heading.
     pub title: String,
@@ -28,7 +28,7 @@ th:first-child,td:first-child{text-align:left}caption{text-align:left;color:var(
 .words td{text-align:left;white-space:normal}svg{max-width:100%;height:auto}p.soft{color:var(--soft)}\
 code{font-size:.9em}summary{cursor:pointer}";
 
-/// The page. `figures` holds the picture of every case in turn, `further` pictures that stand at the end.
+/// Renders the page. `figures` contains the picture of every case in turn, `further` those at the end.
 pub fn write(report: &Report, figures: &[Option<Figure>], further: &[Picture]) -> String {
     let figure = |index: usize| figures.get(index).and_then(Option::as_ref);
     let page = html! {
@@ -113,7 +113,7 @@ fn section(case: &Case, figure: Option<&Figure>) -> Markup {
     }
 }
 
-/// Work to reach errors.
+/// Renders the work to reach errors.
 fn summary(case: &Case) -> Markup {
     let evaluations = |run: &MethodRun| run.evaluations.map(|count| count as f64);
     let micros = |run: &MethodRun| run.seconds.map(|seconds| 1e6 * seconds);
@@ -140,7 +140,7 @@ fn summary(case: &Case) -> Markup {
     }
 }
 
-/// What tolerances lead to, where methods choose their steps.
+/// Renders the results at each tolerance, for methods with error control.
 fn tolerances(case: &Case) -> Markup {
     html! {
         @if let Some((head, rows)) = controlled::table(case) {

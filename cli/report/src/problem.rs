@@ -1,4 +1,4 @@
-//! One motion to be computed, by methods in equal steps or by error control.
+//! A motion to compute, by methods in equal steps or with error control.
 
 use crate::counted::Counted;
 use crate::data::Kind;
@@ -8,9 +8,9 @@ use hamel::{Method, State, StepError, System, integrate};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// A start, where it leads, and what is constant on the way.
+/// A system with its start, the error of a final state, and constants of motion.
 ///
-/// Results are taken as the numbers (x, ξ), whatever system they are of.
+/// States are passed to its functions as numbers (x, ξ), whatever the type of the system.
 pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
     /// The system.
     pub system: Counted<'a, Sys>,
@@ -20,25 +20,25 @@ pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
     pub xi: Sys::Velocities,
     /// Length of the run.
     pub until: f64,
-    /// u of (t, x, ξ).
+    /// u as a function of (t, x, ξ).
     pub inputs: U,
     /// The error of (x, ξ) at the end.
     pub error: Judge<'a>,
-    /// Constants of the motion but the energy, of (x, ξ); none where there are none.
+    /// Constants of motion other than the energy, as functions of (x, ξ); may be empty.
     pub momenta: Quantities<'a>,
-    /// What is said of a step that was not taken.
+    /// Formats the error of a failed step.
     pub said: Told<'a>,
     /// Whether T + V is constant.
     pub conservative: bool,
 }
 
-/// A number of (x, ξ).
+/// A number as a function of (x, ξ).
 pub type Judge<'a> = Box<dyn Fn(&[f64], &[f64]) -> f64 + 'a>;
 
-/// The words for an error.
+/// Formats an error.
 pub type Told<'a> = Box<dyn Fn(&StepError) -> String + 'a>;
 
-/// Numbers of (x, ξ).
+/// Numbers as a function of (x, ξ).
 pub type Quantities<'a> = Box<dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a>;
 
 impl<'a, Sys, U> Problem<'a, Sys, U>
@@ -46,7 +46,7 @@ where
     Sys: System<Scalar = f64>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    /// The start.
+    /// Returns the initial state.
     pub fn start(&self) -> State<Counted<'a, Sys>> {
         State {
             t: 0.0,
@@ -55,12 +55,12 @@ where
         }
     }
 
-    /// The error of a state at the end.
+    /// Returns the error of a final state.
     pub fn judge(&self, end: &State<Counted<'a, Sys>>) -> f64 {
         (self.error)(end.x.as_ref(), end.xi.as_ref())
     }
 
-    /// This problem by a method.
+    /// Makes an entry for a method with equal steps.
     pub fn by<'p, M>(&'p self, name: &str, kind: Kind, method: M) -> Entry<'p>
     where
         M: Method<Counted<'a, Sys>> + Clone + 'p,
@@ -83,7 +83,7 @@ where
         )
     }
 
-    /// This problem by a pair whose steps a tolerance chooses.
+    /// Makes an entry for a pair with error control.
     pub fn controlled<'p, const M: usize, const D: usize>(
         &'p self,
         name: &str,
@@ -107,7 +107,7 @@ where
         )
     }
 
-    /// How far a state (x, ξ) is from what is constant, compared with the start.
+    /// Returns a function for the deviation of a state (x, ξ) from the constants of motion at the start.
     pub fn deviation(&self) -> impl Fn(&Sys::Coordinates, &Sys::Velocities) -> Deviation + '_ {
         let kinetic = self.system.kinetic_energy(&self.x, &self.xi);
         let energy = kinetic + self.system.potential_energy(&self.x);
@@ -156,7 +156,8 @@ where
         }
     }
 
-    /// Two runs of the same steps: one shows them, for which dense output may evaluate more, and one counts.
+    /// Makes two runs with the same steps: one shows them, for which dense output may need more evaluations, and one
+    /// counts.
     fn watched_by<const M: usize, const D: usize>(
         &self,
         method: &Adaptive<M, D>,
@@ -170,7 +171,7 @@ where
             }
         };
         let mut state = self.start();
-        // What fails here fails below as well.
+        // A failure here occurs in the second run as well.
         let _ = method.integrate(&self.system, &mut state, until, &self.inputs, &[], shown);
         let mut state = self.start();
         self.system.reset();
@@ -210,7 +211,7 @@ where
         )
     }
 
-    /// The states at the end of so many steps of a method, as numbers (x, ξ).
+    /// Returns the final state after `steps` steps of a method, as numbers (x, ξ).
     ///
     /// # Errors
     /// Those of [`integrate()`].

@@ -4,12 +4,12 @@ use serde_json::Value;
 use std::error::Error;
 use std::fmt;
 
-/// A reference solution: a JSON object with `name`, `parameters`, `initial`, `samples`, and further
-/// members for people. Numbers are strings or numbers, matrices lists of rows.
+/// A reference solution: a JSON object with `name`, `parameters`, `initial`, `samples`, and further members for
+/// readers. Numbers are strings or numbers, matrices lists of rows.
 #[derive(Clone, Debug)]
 pub struct Solution(Value);
 
-/// What is wrong with a reference solution.
+/// The defect of a reference solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SolutionError(String);
 
@@ -22,10 +22,10 @@ impl fmt::Display for SolutionError {
 impl Error for SolutionError {}
 
 impl Solution {
-    /// Reads a text.
+    /// Parses a text.
     ///
     /// # Errors
-    /// Where it is no JSON, or has no `initial` state or no `samples` with a time.
+    /// If it is not JSON, or has no `initial` state or no `samples` with a time.
     pub fn parse(text: &str) -> Result<Self, SolutionError> {
         let value: Value = serde_json::from_str(text)
             .map_err(|error| SolutionError(format!("not valid JSON: {error}")))?;
@@ -39,38 +39,38 @@ impl Solution {
         Ok(solution)
     }
 
-    /// A member that is a text, or nothing.
+    /// Returns a text member, or an empty string.
     pub fn text(&self, name: &str) -> &str {
         self.0[name].as_str().unwrap_or_default()
     }
 
-    /// How far the solution is believed to be off.
+    /// Returns the estimated error of the solution.
     pub fn estimated_error(&self) -> Option<f64> {
         numbers(&self.0["estimated_error"])?.first().copied()
     }
 
-    /// The numbers of a parameter, matrices by rows.
+    /// Returns the numbers of a parameter, matrices by rows.
     pub fn parameter(&self, name: &str) -> Option<Vec<f64>> {
         numbers(&self.0["parameters"][name])
     }
 
-    /// The names of the fields of the state.
+    /// Returns the names of the fields of the state.
     pub fn fields(&self) -> Vec<String> {
         let members = self.0["initial"].as_object();
         members.map_or_else(Vec::new, |members| members.keys().cloned().collect())
     }
 
-    /// A field of the state at t = 0, matrices by rows.
+    /// Returns a field of the state at t = 0, matrices by rows.
     pub fn initial(&self, name: &str) -> Option<Vec<f64>> {
         numbers(&self.0["initial"][name])
     }
 
-    /// The times of the samples, in their order.
+    /// Returns the times of the samples, in order.
     pub fn times(&self) -> Vec<f64> {
         self.samples().filter_map(time).collect()
     }
 
-    /// A field of the state at a time that is listed.
+    /// Returns a field of the state at a listed time.
     pub fn sample(&self, t: f64, name: &str) -> Option<Vec<f64>> {
         let sample = self.samples().find(|sample| time(sample) == Some(t))?;
         numbers(&sample[name])
@@ -85,7 +85,7 @@ fn time(sample: &Value) -> Option<f64> {
     numbers(&sample["t"])?.first().copied()
 }
 
-/// The numbers of a value, however nested; `None` where there is something else among them.
+/// Flattens the numbers of a nested value; `None` if it contains anything else.
 fn numbers(value: &Value) -> Option<Vec<f64>> {
     match value {
         Value::Number(number) => Some(vec![number.as_f64()?]),
@@ -98,7 +98,7 @@ fn numbers(value: &Value) -> Option<Vec<f64>> {
     }
 }
 
-/// Largest difference, over max(1, the largest entry of `b`); infinite where the lengths differ.
+/// Returns the largest difference over max(1, the largest entry of `b`); infinity if the lengths differ.
 pub fn relative(a: &[f64], b: &[f64]) -> f64 {
     if a.len() != b.len() {
         return f64::INFINITY;
@@ -107,7 +107,7 @@ pub fn relative(a: &[f64], b: &[f64]) -> f64 {
     largest(a.iter().zip(b).map(|(a, b)| (a - b).abs())) / scale
 }
 
-/// Frobenius norm of the difference; infinite where the lengths differ.
+/// Returns the Frobenius norm of the difference; infinity if the lengths differ.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     if a.len() != b.len() {
         return f64::INFINITY;
@@ -116,7 +116,7 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// The largest value, at least 0; a NaN stays.
+/// Returns the largest value, at least 0; NaN if one is NaN.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     let more = |most: f64, value: f64| {
         if most.is_nan() || value.is_nan() {

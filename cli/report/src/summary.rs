@@ -1,9 +1,9 @@
-//! The few runs of a report that its part of the book is made of: small enough to be kept.
+//! The few runs of a report from which its part of the book is made, small enough to be stored.
 
 use crate::auto::{TARGET, fastest};
 use crate::data::{Case, MethodRun, MethodRuns, Report};
 
-/// The report without what [`crate::excerpt::block`] does not read: of every case the fastest method, that of
+/// Reduces a report to the runs that [`crate::excerpt::block`] reads: of every case the fastest method, the one of
 /// `auto` and rkmk4, and of these the two runs between which the error falls to 1e-9.
 pub fn summary(report: &Report) -> Report {
     Report {
@@ -26,7 +26,7 @@ fn case(case: &Case) -> Case {
     }
 }
 
-/// The first run that reaches the error and the one before it, or the last one where none does.
+/// Keeps the first run that reaches the error and the one before it, or the last run if none does.
 fn around(method: &MethodRuns) -> MethodRuns {
     let reaches = |run: &MethodRun| run.error.is_some_and(|error| error <= TARGET);
     let last = method.runs.len().saturating_sub(1);

@@ -1,23 +1,23 @@
-//! The work that an error takes, between the runs that were measured.
+//! The work to reach an error, interpolated between the measured runs.
 
 use crate::data::MethodRun;
 
-/// The errors for which tables give the work.
+/// The errors for which tables show the work.
 pub const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
-/// The work with which a method reaches an error.
+/// The work that a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Work {
-    /// Interpolated between two runs, linear in the logarithms: exact where error = C hᵖ.
+    /// Interpolated between two runs, linearly in the logarithms: exact if error = C hᵖ.
     Reached(f64),
-    /// Of the run with the longest steps, which is already better than asked.
+    /// The work of the run with the longest steps, which already reaches the error.
     AtMost(f64),
     /// Not reached by any run.
     NotReached,
 }
 
-/// The least `work` (evaluations, time) of `runs`, ordered from long steps to short ones, whose error
-/// is at most `target`.
+/// Returns the least `work` (evaluations, time) of `runs`, ordered by decreasing step length, for an error of at most
+/// `target`.
 pub fn work(runs: &[MethodRun], target: f64, work: impl Fn(&MethodRun) -> Option<f64>) -> Work {
     let reaches = |run: &MethodRun| run.error.is_some_and(|error| error <= target);
     let Some(index) = runs.iter().position(reaches) else {
@@ -35,13 +35,13 @@ pub fn work(runs: &[MethodRun], target: f64, work: impl Fn(&MethodRun) -> Option
             let part = (e0 - target.ln()) / (e0 - e1);
             Work::Reached((w0 + part * (w1 - w0)).exp())
         }
-        // The run before failed, or this one has no error at all.
+        // The run before failed, or this one has no error.
         _ => Work::AtMost(here),
     }
 }
 
 impl Work {
-    /// The value, where there is one.
+    /// Returns the value, if there is one.
     pub fn value(self) -> Option<f64> {
         match self {
             Work::Reached(value) | Work::AtMost(value) => Some(value),
@@ -55,7 +55,7 @@ mod tests {
     use super::{Work, work};
     use crate::data::MethodRun;
 
-    /// Runs of a method with error = C hᵖ, h = 1/n, that takes s evaluations a step.
+    /// The runs of a method with error = C hᵖ, h = 1/n, and s evaluations a step.
     fn runs(c: f64, p: i32, s: u64) -> Vec<MethodRun> {
         let run = |steps: u64| MethodRun {
             steps,
@@ -78,7 +78,7 @@ mod tests {
             match work(&runs(c, p, s), target, evaluations) {
                 Work::Reached(found) => {
                     let exact = s as f64 * steps;
-                    // The interpolation is exact but for the rounding of logarithms.
+                    // The interpolation is exact up to the rounding of logarithms.
                     assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
                 }
                 other => panic!("{other:?}"),

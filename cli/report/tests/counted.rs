@@ -109,7 +109,7 @@ fn each_kind_of_force_counts_once() {
     let rate = counted.momentum_rate(&x, &xi, &[]);
     assert_eq!(rate, PENDULUM.momentum_rate(&x, &xi, &[]));
     assert_eq!(counted.evaluations(), 3);
-    // Nothing else is an evaluation of forces.
+    // No other function is an evaluation of forces.
     let p = counted.momentum(&x, &xi);
     assert_eq!(counted.velocity_from_momentum(&x, &p), Ok(xi));
     assert_eq!(counted.uncentre(&counted.centre(&x)), x);
@@ -153,7 +153,7 @@ fn none(_: f64, _: &[f64; 2], _: &[f64; 1]) -> [f64; 0] {
 
 type Inputs = fn(f64, &[f64; 2], &[f64; 1]) -> [f64; 0];
 
-/// The pendulum up to t = 1, whose error is how far ξ is from 7.
+/// The pendulum up to t = 1, with the error |ξ − 7|.
 fn problem() -> Problem<'static, Pendulum, Inputs> {
     let (x, xi) = PENDULUM.start();
     Problem {
@@ -185,7 +185,7 @@ fn a_problem_gives_error_drift_and_count() {
         .expect("equal steps");
     assert_eq!((outcome.evaluations, states), (Some(200), 51));
     assert_eq!(outcome.error, (end[0] - 7.0).abs());
-    // The energy of RKMK4 at h = 0.02 changes by some 1e-6; there are no momenta.
+    // The energy of RKMK4 at h = 0.02 changes by about 1e-6; there are no momenta.
     assert!(worst.energy > 0.0 && worst.energy < 1e-5, "{worst:?}");
     assert!(worst.momentum.is_nan() && worst.defect < 1e-15, "{worst:?}");
     assert_eq!(entry.order, Some(4));
@@ -211,7 +211,7 @@ fn runs_by_error_control_count_what_they_evaluate_and_refuse() {
         (alone.accepted, (state.xi[0] - 7.0).abs())
     );
     assert_eq!(controlled.order, Some(order));
-    // A tolerance is no number of steps, for either kind of method.
+    // A tolerance is not a number of steps, for either kind of method.
     let equal = problem.by("rkmk4", Kind::Method, Rkmk4);
     let (steps, tolerance) = (Division::Steps(9), Division::Tolerance(TOLERANCE));
     assert!(controlled.run(steps, 1.0, &mut |_| {}).is_none());

@@ -1,11 +1,11 @@
-//! Texts of pictures end within them, however long the names are.
+//! Texts do not extend beyond their pictures, for names of any length.
 
 use hamel_report::data::{Case, Drift, Kind, MethodRun, MethodRuns};
 use hamel_report::plot::{Figure, Panel, Path, Picture, drifts, precision, run, width};
 
 const LONG: &str = "moment_about_the_moving_point_of_contact[2,3]";
 
-/// The value of an attribute within a tag.
+/// Returns the value of an attribute in a tag.
 fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
     let (_, rest) = tag.split_once(&format!(" {name}=\""))?;
     Some(rest.split_once('"')?.0)
@@ -16,7 +16,7 @@ fn number(tag: &str, name: &str) -> f64 {
     value.parse().unwrap_or_else(|_| panic!("{name} in {tag}"))
 }
 
-/// All texts with their left and right ends, and the width of the view box.
+/// Returns all texts with their left and right ends, and the width of the view box.
 fn texts(figure: &Figure) -> (Vec<(String, f64, f64)>, f64) {
     let svg = figure.standalone();
     let view = attribute(&svg, "viewBox").expect("a view box");
@@ -88,7 +88,7 @@ fn names_of_many_lines_stand_apart() {
         .split("<text")
         .skip(1)
         .filter(|rest| rest.contains(LONG));
-    // The name of the panel is cut before it comes to an end.
+    // The name of the panel is cut before its end.
     let names = tags.filter(|rest| !rest.contains("output"));
     let mut heights: Vec<f64> = names.map(|tag| number(tag, "y")).collect();
     heights.sort_by(f64::total_cmp);

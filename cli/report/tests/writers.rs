@@ -1,4 +1,4 @@
-//! What the writers make of a small case: structure, escaping, numbers.
+//! The output of the writers for a small case: structure, escaping, numbers.
 
 use hamel_report::data::{
     Case, Choice, Drift, Kind, Machine, MethodRun, MethodRuns, Missing, Peer, Report,
@@ -7,8 +7,7 @@ use hamel_report::plot::precision;
 use hamel_report::summary::summary;
 use hamel_report::{excerpt, json, markdown, page};
 
-/// error = 1/n⁴ with 4 n evaluations and 1 µs a step, so that 1e-6 takes 10^1.5 steps and 1e-9
-/// 10^2.25.
+/// A report with error = 1/n⁴, 4 n evaluations and 1 µs a step, so that 1e-6 takes 10^1.5 steps and 1e-9 takes 10^2.25.
 fn report() -> Report {
     let run = |steps: u64| MethodRun {
         steps,
@@ -140,7 +139,7 @@ fn the_page_needs_nothing_else() {
     ] {
         assert!(text.contains(part), "{part}\n{text}");
     }
-    // Nothing is loaded: the only addresses are the name of a language and places of the page.
+    // The page loads nothing: the only addresses are the name of a namespace and anchors of the page.
     let addresses = text.matches("http").count();
     assert_eq!(
         addresses,
@@ -152,7 +151,7 @@ fn the_page_needs_nothing_else() {
     assert_eq!(text.matches("<svg").count(), text.matches("</svg>").count());
 }
 
-/// Every text of a report that a writer may put between backticks.
+/// A report with marks in every text that a writer may put between backticks.
 fn marked() -> Report {
     let mut report = report();
     report.title = "Speed of `a < b`".into();

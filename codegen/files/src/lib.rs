@@ -2,7 +2,7 @@
 //!
 #![doc = include_str!("../README.md")]
 //!
-//! # What is guaranteed
+//! # Guarantees
 //!
 //! [`write()`] writes a temporary file next to the target, flushes it to the disk, and renames it to the target. So the
 //! target never contains half a text, and a full disk or a killed process leaves the old file as it was. The file keeps

@@ -1,5 +1,5 @@
-//! Files at random places with random texts: written whole, or refused with nothing changed, and never
-//! waited for. `HAMEL_ATTACK=full` tries a hundred times as many.
+//! Writes random texts to random places: they are written completely, or refused without any change, and a write never
+//! blocks. `HAMEL_ATTACK=full` tries a hundred times as many.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -10,12 +10,12 @@ use std::process::Command;
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// Places in the default run.
+/// Number of places in the default run.
 const CASES: u64 = 60;
-/// Time for one text, generous: the machine may be busy.
+/// Generous time limit for one text: the machine may be busy.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// SplitMix64.
+/// The generator SplitMix64.
 struct Random(u64);
 
 impl Random {
@@ -36,7 +36,7 @@ impl Random {
     }
 }
 
-/// All that is below a folder: kinds, permissions, texts.
+/// Returns all entries below a folder: kinds, permissions, texts.
 fn state(folder: &Path) -> BTreeMap<PathBuf, String> {
     let mut state = BTreeMap::new();
     let mut open = vec![folder.to_path_buf()];
@@ -63,7 +63,7 @@ fn state(folder: &Path) -> BTreeMap<PathBuf, String> {
     state
 }
 
-/// Puts something at a random place; the path to write to, and whether that has to succeed.
+/// Creates a random place; returns the path to write to, and whether writing has to succeed.
 fn place(random: &mut Random, folder: &Path) -> (PathBuf, bool) {
     let names = ["a.rs", "-", " ", "é\u{301}", ".hidden", "a\nb", "a;b$(c)"];
     let name = match random.below(8) {

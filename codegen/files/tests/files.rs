@@ -1,4 +1,4 @@
-//! What stands at a path after a file was written there, or was not.
+//! The state of a path after a file was written there, or was refused.
 #![cfg(unix)]
 
 use hamel_files::{holds, update, write};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// An empty folder of a test's own.
+/// Creates an empty folder for one test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
@@ -168,7 +168,7 @@ fn pipes_with_a_reader_are_written_to() {
             file.read_to_string(&mut text).expect("text");
             text
         });
-        // Until the reader is there nobody reads.
+        // Writing fails until the pipe has a reader.
         while write(&path, &text).is_err() {
             std::thread::yield_now();
         }
@@ -192,12 +192,12 @@ fn what_holds_the_text_already_is_not_touched() {
     update(&path, "next").expect("written");
     assert_eq!(read(&path), "next");
     pipe(&folder.join("pipe"));
-    // Reading it would wait for ever.
+    // Reading the pipe would block forever.
     assert!(holds(&folder.join("pipe"), "text").is_err());
     assert!(holds(&folder, "text").is_err());
 }
 
-/// Whoever reads while others write sees one text or the other.
+/// A reader during concurrent writes sees one text or the other.
 #[test]
 fn readers_never_see_half_a_text() {
     let path = folder("race").join("a");

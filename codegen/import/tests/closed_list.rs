@@ -1,5 +1,5 @@
-//! Nothing that changes the motion is lost without a word: words at random places, at every level, are named in one warning
-//! each; a misspelt word that is read is an error or is named.
+//! Nothing that changes the motion is lost silently: unknown words at random places, at every level, get one warning
+//! each; a misspelt known word is an error or gets a warning.
 
 use hamel_import::{Imported, Options, import};
 use roxmltree::{Document, Node};
@@ -8,7 +8,7 @@ use std::ops::Range;
 
 const EVERY_LEVEL: &str = include_str!("files/every_level.urdf");
 
-/// Elements whose contents are no part of the equations, or one word: what stands in them is not compared with the list.
+/// Elements whose contents are not compared with the list: they are not part of the equations, or consist of one word.
 const APART: [&str; 18] = [
     "visual",
     "collision",
@@ -30,7 +30,7 @@ const APART: [&str; 18] = [
     "inertia_scaling",
 ];
 
-/// Trials of each kind.
+/// Number of trials of each kind.
 fn trials() -> usize {
     match std::env::var("HAMEL_ATTACK").as_deref() {
         Ok("full") => 10_000,
@@ -39,7 +39,7 @@ fn trials() -> usize {
     }
 }
 
-/// Xorshift: fixed seed, the same words in every run.
+/// An xorshift generator with a fixed seed, so that every run has the same words.
 struct Random(u64);
 
 impl Random {
@@ -54,11 +54,11 @@ impl Random {
         const LETTERS: &[u8] = b"abcdefghijklmnopqrstuvwxyz_ABCXYZ";
         let length = 3 + self.below(9);
         let tail = (0..length).map(|_| char::from(LETTERS[self.below(LETTERS.len())]));
-        // No word of any program begins so.
+        // No program uses words that begin like this.
         "qz".chars().chain(tail).collect()
     }
 
-    /// A word with one letter more, less, exchanged or of the other case.
+    /// Returns a word with one letter inserted, removed, swapped or changed in case.
     fn misspelt(&mut self, word: &str) -> String {
         let mut letters: Vec<char> = word.chars().collect();
         let start = word.rfind(':').map_or(0, |colon| colon + 1);
@@ -87,7 +87,7 @@ fn read(text: &str) -> Imported {
     }
 }
 
-/// The description without its comments.
+/// Returns the description without its comments.
 fn statements(imported: &Imported) -> Vec<&str> {
     let lines = imported.text.lines();
     lines
@@ -95,7 +95,7 @@ fn statements(imported: &Imported) -> Vec<&str> {
         .collect()
 }
 
-/// Elements whose contents are compared with the list.
+/// Returns the elements whose contents are compared with the list.
 fn elements<'a>(document: &'a Document<'a>) -> Vec<Node<'a, 'a>> {
     let apart = |node: Node<'_, '_>| {
         let above = |name| {
@@ -111,7 +111,7 @@ fn elements<'a>(document: &'a Document<'a>) -> Vec<Node<'a, 'a>> {
     all.filter(|node| !node.ancestors().any(apart)).collect()
 }
 
-/// The range of the name in an opening tag.
+/// Returns the range of the name in an opening tag.
 fn name(text: &str, node: &Node<'_, '_>) -> Range<usize> {
     let start = node.range().start + 1;
     let length = text[start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/');
@@ -122,7 +122,7 @@ fn line(text: &str, byte: usize) -> usize {
     text[..byte].matches('\n').count() + 1
 }
 
-/// The base is read as it is meant: what is not in it cannot be lost in the trials.
+/// The base is read correctly: the trials cannot lose anything that it lacks.
 #[test]
 fn the_base_of_the_trials_holds_every_level() {
     let imported = read(EVERY_LEVEL);
@@ -173,7 +173,7 @@ fn words_that_are_not_on_the_list_are_named_once() {
             (place, format!("`<{word}>`"))
         };
         levels.insert(EVERY_LEVEL[name(EVERY_LEVEL, node)].to_string());
-        // Text that is a number of an element may not stand behind another element.
+        // Text that is a number of an element must not follow another element.
         let found = match import(&text, &Options::default()) {
             Ok(found) => found,
             Err(problems) => {
@@ -211,7 +211,7 @@ fn words_that_are_not_on_the_list_are_named_once() {
 fn misspelt_words_are_errors_or_named() {
     let document = Document::parse(EVERY_LEVEL).expect("XML");
     let inside = elements(&document);
-    // The word of an element stands in the one around it.
+    // The name of an element is a word of the parent element.
     let all = document.descendants().filter(Node::is_element);
     let around = |node: &Node<'_, '_>| node.parent_element().is_none_or(|up| inside.contains(&up));
     let elements: Vec<Node<'_, '_>> = all.filter(around).collect();
@@ -246,7 +246,7 @@ fn misspelt_words_are_errors_or_named() {
             }
             text.replace_range(range, &word);
         }
-        // Sensors of old files have a namespace of their own.
+        // Sensors of old files have a separate namespace.
         if known.contains(word.as_str()) || word.starts_with("sensor:") {
             continue;
         }
@@ -265,7 +265,7 @@ fn misspelt_words_are_errors_or_named() {
     }
 }
 
-/// Words of the dialects that leave the motion as it is say nothing; the others of the same name are named.
+/// Words of the dialects that do not change the motion give no warning; with values that do, they give one.
 #[test]
 fn words_that_change_nothing_are_quiet() {
     let quiet = read(EVERY_LEVEL).warnings.len();
@@ -291,7 +291,7 @@ fn words_that_change_nothing_are_quiet() {
     }
 }
 
-/// Drake's planar joints move across z.
+/// Drake's planar joints move in the plane across z.
 #[test]
 fn planar_joints_of_drake() {
     let joint = |axis: &str| {

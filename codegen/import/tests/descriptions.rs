@@ -1,4 +1,4 @@
-//! What is written for a robot, as it is read by people.
+//! The description written for a robot, as people read it.
 
 use hamel_import::{Idle, Imported, Mimic, Options, import, import_without};
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ fn joints_that_mimic_may_be_free() {
     );
 }
 
-/// Every digit is kept where nothing is a rounding.
+/// With a tolerance of zero, every digit is kept.
 #[test]
 fn a_tolerance_of_zero_changes_nothing() {
     let exact = imported(&Options {
@@ -67,7 +67,7 @@ fn a_tolerance_of_zero_changes_nothing() {
     assert!(exact.text.contains("1e-20"));
 }
 
-/// Directions and inertias are compared with their largest entry alone: only lengths are so small that they are nothing.
+/// Directions and inertias are compared with their largest entry only; lengths have an absolute tolerance.
 #[test]
 fn small_is_what_is_small_beside_the_largest() {
     let robot = |origin: &str, axis: &str, inertia: &str| {
@@ -100,7 +100,7 @@ fn small_is_what_is_small_beside_the_largest() {
     );
 }
 
-/// Quaternions are the angles that they stand for.
+/// Quaternions are equivalent to the corresponding angles.
 #[test]
 fn quaternions() {
     let angles = EVERY_JOINT.replace(
@@ -117,7 +117,7 @@ fn quaternions() {
     assert_eq!(text(&angles), text(&quaternion));
 }
 
-/// Names are quoted in comments, which end with their line.
+/// Names are quoted in comments, and cannot end the line.
 #[test]
 fn names_with_line_breaks_stay_in_comments() {
     let broken = EVERY_JOINT
@@ -142,7 +142,7 @@ fn names_with_line_breaks_stay_in_comments() {
     );
 }
 
-/// Every link that is a frame, or stands in the world, has its name in the description.
+/// Every link that is a frame, or is fixed to the world, is listed with its name in the description.
 #[test]
 fn links_are_known_by_both_names() {
     let fixed = imported(&options());
@@ -160,7 +160,7 @@ fn links_are_known_by_both_names() {
     assert!(!fixed.text.contains(&format!("moves {}", base.1)));
 }
 
-/// Every line that is made from an element knows where it stands.
+/// Every line made from an element has the range of its origin.
 #[test]
 fn lines_know_their_origin() {
     let imported = imported(&options());
@@ -168,7 +168,7 @@ fn lines_know_their_origin() {
     for (line, origin) in imported.text.lines().zip(&imported.origins) {
         let Some(origin) = origin else { continue };
         let source = &EVERY_JOINT[origin.clone()];
-        // A joint's name, as written, or the element of an inertia.
+        // The name of a joint as written, or the element of an inertia.
         if line.trim_start().starts_with("body ") {
             assert_eq!(source, "<inertial", "{line}");
         }
@@ -183,15 +183,15 @@ fn the_same_file_gives_the_same_text() {
     assert_eq!(imported(&options()).text, imported(&options()).text);
 }
 
-/// Equations of closing joints stand on lines of their own; those that are said to be idle are comments with the reason, and a
-/// closing joint without any has no frames.
+/// Equations of closing joints are on separate lines; idle ones are comments with the reason, and a closing joint
+/// without equations has no frames.
 #[test]
 fn idle_equations_are_comments() {
     let urdf = include_str!("files/every_level.urdf");
     let all = import(urdf, &options()).expect("a sound robot");
     let lines: Vec<&str> = all.text.lines().collect();
     let equations: Vec<&str> = all.equations.iter().map(|&line| lines[line]).collect();
-    // A hinge has five, a ball three.
+    // A hinge has five, a ball joint three.
     assert_eq!(equations.len(), 8, "{equations:?}");
     assert!(equations.iter().all(|line| line.contains(" = ")));
     assert!(!all.text.contains("Left out of"), "{}", all.text);

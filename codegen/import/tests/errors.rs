@@ -1,10 +1,10 @@
-//! Every mistake has its place, its sentence and its help.
+//! Every error has a place, a message and a help.
 
 use hamel_import::{Options, import};
 
 const BODY: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
 
-/// A robot of two links with what is between them.
+/// Returns a robot of two links with a joint and an inertial element.
 fn pendulum(joint: &str, inertial: &str) -> String {
     format!(
         "<robot name='r'>\n<link name='a'/>\n<link name='b'>{inertial}</link>\n{joint}\n</robot>"
@@ -15,7 +15,7 @@ fn hinge(inside: &str) -> String {
     format!("<joint name='j' type='revolute'><parent link='a'/><child link='b'/>{inside}</joint>")
 }
 
-/// The messages, one a line.
+/// Returns the messages, one per line.
 fn messages(text: &str, options: &Options) -> String {
     match import(text, options) {
         Ok(imported) => panic!("nothing is wrong: {}", imported.text),
@@ -111,7 +111,7 @@ fn wrong_options() {
     insta::assert_snapshot!(report.join("\n"));
 }
 
-/// Inertias that no body has are warned of, and kept.
+/// Inertias that no body can have are kept, with a warning.
 #[test]
 fn inertias_of_no_body() {
     let warnings = |inertial: &str| {
@@ -131,12 +131,11 @@ fn inertias_of_no_body() {
         ),
     ];
     insta::assert_snapshot!(report.join("\n"));
-    // A thin rod is the limit of what a body can be.
+    // A thin rod is the limit of possible inertias.
     assert_eq!(warnings(&BODY.replace("izz='1'", "izz='0'")), "");
 }
 
-/// What is legal and not what was meant is warned of: misspelt names, other units, links that were
-/// forgotten.
+/// Warnings for legal robots that are probably wrong: misspelt names, other units, forgotten links.
 #[test]
 fn robots_that_look_wrong() {
     let origin = |inside: &str| pendulum(&hinge(&format!("<origin {inside}/>")), BODY);
@@ -199,13 +198,13 @@ fn robots_that_look_wrong() {
         format!("{name}\n{}", lines.join("\n"))
     });
     insta::assert_snapshot!(report.collect::<Vec<String>>().join("\n\n"));
-    // Frames between two joints, and the world, need no mass of their own beside what is fixed to them.
+    // Frames between two joints, and the world, need no mass.
     let fixed = two.replace("prismatic", "fixed");
     let imported = import(&pendulum(&fixed, ""), &Options::default()).expect("legal");
     assert_eq!(imported.warnings, []);
 }
 
-/// Only joints whose positions URDF limits have limits that can be wrong.
+/// Limits are checked only for joints whose positions URDF limits.
 #[test]
 fn limits_of_joints_that_have_none() {
     let exchanged = pendulum(&hinge("<limit lower='0' upper='-1'/>"), BODY);
@@ -231,7 +230,7 @@ fn limits_of_joints_that_have_none() {
     }
 }
 
-/// Numbers outside of the equations that cannot be read are left out with a warning.
+/// Unreadable numbers outside of the equations are left out with a warning.
 #[test]
 fn bounds_and_names_may_be_wrong() {
     let bounds = "<limit lower='-inf' upper='Infinity' velocity='1e999' effort='?'/>";
@@ -260,7 +259,7 @@ fn bounds_and_names_may_be_wrong() {
     }
 }
 
-/// Texts that are cut anywhere, or damaged, are refused or read; nothing panics.
+/// Truncated or damaged texts are refused or read, without a panic.
 #[test]
 fn damaged_files() {
     let text = include_str!("files/every_joint.urdf");
@@ -271,7 +270,7 @@ fn damaged_files() {
     for _ in 0..500 {
         let mut bytes = text.as_bytes().to_vec();
         for _ in 0..3 {
-            // Xorshift: fixed seed, the same damage in every run.
+            // An xorshift generator with a fixed seed, so that every run has the same damage.
             seed ^= seed << 13;
             seed ^= seed >> 7;
             seed ^= seed << 17;

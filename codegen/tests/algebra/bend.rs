@@ -1,4 +1,4 @@
-//! Rows of second derivatives, run backwards: those of hyper-dual numbers.
+//! Rows of second derivatives by reverse accumulation agree with hyper-dual numbers.
 
 use crate::common::functions;
 use hamel_algebra::fp::{Fp, Random};
@@ -29,7 +29,7 @@ fn rows_are_the_mixed_derivatives_of_jets() {
             .collect()
     };
     let mut found = 0;
-    // Both roots have values in both fields at one point in sixteen.
+    // In both fields, both roots have values at one point in sixteen.
     for _ in 0..240 {
         let mut lane = Lane::new();
         (0..first + 3).for_each(|_| lane.push_symbol(random.element()));

@@ -1,4 +1,4 @@
-//! Small systems, each with the divisors that it may have.
+//! Small linear systems with restricted divisors.
 
 use hamel_algebra::blocks::{Failure, solve};
 use hamel_algebra::fp::Random;
@@ -6,7 +6,7 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::lane::circle_point;
 use hamel_algebra::linear::multiply;
 
-/// A graph with (c, s) on the circle, a parameter l and a free coordinate x.
+/// Returns a graph with (c, s) on the circle, a parameter l and a free coordinate x.
 fn graph() -> (Graph, [Edge; 4]) {
     let mut graph = Graph::new(1);
     let mut random = Random::new(11);
@@ -18,7 +18,7 @@ fn graph() -> (Graph, [Edge; 4]) {
     (graph, [c, s, l, x])
 }
 
-/// M X = B at the graph's point.
+/// Returns whether M X = B holds at the graph's point.
 fn holds(graph: &mut Graph, m: &[Vec<Edge>], x: &[Vec<Edge>], b: &[Vec<Edge>]) -> bool {
     multiply(graph, m, x) == b
 }
@@ -41,7 +41,7 @@ fn a_block_with_a_constant_determinant_needs_no_division() {
 #[test]
 fn equations_in_excess_are_solved_by_their_gram_matrix() {
     let (mut graph, [c, s, l, _]) = graph();
-    // l (c, s) u = (c, s): u = 1/l, without a division by c or s; l² is known as the constant it is.
+    // l (c, s) u = (c, s): u = 1/l, without a division by c or s; l² is recognised as a constant.
     let square = graph.mul(l, l);
     let m = [vec![graph.mul(l, c)], vec![graph.mul(l, s)]];
     let b = [vec![c], vec![s]];

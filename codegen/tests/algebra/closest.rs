@@ -1,8 +1,8 @@
-//! Points nearest to a guess: found where there is one, and nowhere else.
+//! The solution nearest to a guess is found if there is one.
 
 use hamel_algebra::closest::{Equations, closest};
 
-/// A point on the circle of radius r about the origin, with its distance in a diagonal metric.
+/// A point on a circle about the origin, with its distance from a guess in a diagonal metric.
 struct Circle {
     radius: f64,
     guess: [f64; 2],
@@ -29,7 +29,7 @@ impl Equations for Circle {
     }
 }
 
-/// Against the least of many points of the circle.
+/// Compares with the least distance of many points of the circle.
 #[test]
 fn the_nearest_point_of_a_circle_is_found() {
     let mut random = hamel_algebra::fp::Random::new(11);
@@ -49,9 +49,9 @@ fn the_nearest_point_of_a_circle_is_found() {
             })
             .fold(f64::INFINITY, f64::min);
         assert!(circle.residuals(&x)[0].abs() < 1e-11);
-        // The points are 1e-3 apart, and the distance is flat at the least.
+        // The points are 1e-3 apart, and the distance is stationary at the minimum.
         assert!(distance(&x) < least + 1e-7, "{} {least}", distance(&x));
-        // The distance does not change along the circle.
+        // The distance is stationary along the circle.
         let (apart, slopes) = circle.apart(&x);
         let slope = apart[1] * slopes[1][1] * x[0] - apart[0] * slopes[0][0] * x[1];
         assert!(slope.abs() < 1e-12, "{slope}");

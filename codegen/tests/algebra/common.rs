@@ -1,15 +1,15 @@
-//! Functions of one argument, for the laws that all of them obey.
+//! Functions of one argument, for laws that hold for all of them.
 
 use hamel_algebra::function::Slope;
 use hamel_algebra::graph::{Edge, Function, Graph};
 
-/// Every function of one argument.
+/// Returns every function of one argument.
 pub(crate) fn functions() -> impl Iterator<Item = Function> {
     let all = Function::ALL.iter().copied();
     all.filter(|function| function.row().slope != Slope::Two)
 }
 
-/// All of them of an argument, over what is not 0.
+/// Returns all functions of an argument, divided by a nonzero edge.
 pub(crate) fn quotients(graph: &mut Graph, argument: Edge, over: Edge) -> Vec<Edge> {
     let quotient = |function| {
         let value = graph.apply(function, argument);

@@ -1,4 +1,4 @@
-//! Bounds of degrees: those of the functions that expressions are.
+//! Bounds of the degrees of expressions as rational functions.
 
 use hamel_algebra::degree::Degrees;
 use hamel_algebra::fp::Random;
@@ -13,8 +13,8 @@ fn degrees_are_those_of_the_functions() {
     let cubic = graph.mul(product, c);
     let sum = graph.add(cubic, a);
     assert_eq!(Degrees::new(&graph, Vec::new()).bound(&[sum]), 3.0);
-    // 1/(a b c + a) + 1/b: numerator of degree 3, denominator of degree 4; the sum of both, and the
-    // denominator once more for sums with others.
+    // 1/(a b c + a) + 1/b: numerator of degree 3, denominator of degree 4; the sum of both, plus the denominator for
+    // sums with other terms.
     let one = graph.one();
     let (x, y) = (
         graph.div(one, sum).expect("not 0"),
@@ -25,13 +25,13 @@ fn degrees_are_those_of_the_functions() {
         Degrees::new(&graph, Vec::new()).bound(&[both]),
         3.0 + 4.0 + 4.0
     );
-    // (a b c + a)/(a b c + a + 1) · (a b c + a + 1) never grows.
+    // (a b c + a)/(a b c + a + 1) · (a b c + a + 1) does not grow.
     let more = graph.add(sum, one);
     let quotient = graph.div(sum, more).expect("not 0");
     let inverse = graph.div(one, quotient).expect("not 0");
     let back = graph.div(b, inverse).expect("not 0");
     assert!(Degrees::new(&graph, Vec::new()).bound(&[back]) <= 4.0 + 3.0 + 3.0 + 6.0);
-    // b/((a b c + a)/(a b c + a + 1)) + a: what the first is multiplied by raises its numerator.
+    // b/((a b c + a)/(a b c + a + 1)) + a: the factor of the first term raises its numerator.
     let over = graph.div(b, quotient).expect("not 0");
     let raised = graph.add(over, a);
     let mut degrees = Degrees::new(&graph, Vec::new());

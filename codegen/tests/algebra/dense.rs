@@ -1,4 +1,4 @@
-//! Small dense matrices against what defines their factors and solutions.
+//! Factors and solutions of small dense matrices satisfy their definitions.
 
 use hamel_algebra::dense::{
     apply, backward, cholesky, cholesky_with, dot, forward, gram, largest, least_norm, product,
@@ -6,7 +6,7 @@ use hamel_algebra::dense::{
 };
 use hamel_algebra::fp::Random;
 
-/// Matrices of numbers in ±1.
+/// Generator of matrices with entries in ±1.
 struct Numbers(Random);
 
 impl Numbers {
@@ -45,7 +45,7 @@ fn factors_and_solutions_satisfy_their_equations() {
         let y = forward(&l, &b);
         assert!(apart(&apply(&l, &y), &b) < 1e-12);
         assert!(apart(&apply(&transposed(&l), &backward(&l, &y)), &y) < 1e-11);
-        // The first pivot is 0, so that rows have to be exchanged.
+        // The first pivot is 0, so rows have to be exchanged.
         let mut square = numbers.matrix(n + 1, n + 1);
         square[0][0] = 0.0;
         let b = numbers.vector(n + 1);
@@ -67,7 +67,7 @@ fn what_has_no_factor_or_solution_is_refused() {
     assert_eq!(largest(&[1.0, -3.0]), 3.0);
 }
 
-/// Of all h with J h = r the shortest is a combination of the rows of J, also where rows are redundant.
+/// The shortest h with J h = r is a combination of the rows of J, even if rows are redundant.
 #[test]
 fn least_solutions_are_combinations_of_rows() {
     let mut numbers = Numbers(Random::new(6));

@@ -1,10 +1,10 @@
-//! Numbers of twice the length: their arithmetic, their functions and the laws of these.
+//! Numbers in doubled precision: their arithmetic, their functions, and the laws of these.
 
 use hamel_algebra::double::Double;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-/// A number by its decimal digits.
+/// Parses a number from its decimal digits.
 fn decimal(text: &str) -> Double {
     let (whole, digits) = text.split_once('.').expect("a point");
     let numerator: BigInt = format!("{whole}{digits}").parse().expect("digits");
@@ -35,7 +35,7 @@ fn arithmetic_inverts_itself() {
     );
 }
 
-/// Values of tables with 34 digits.
+/// Compares with table values of 34 digits.
 #[test]
 fn functions_have_their_values() {
     let one = Double::ONE;

@@ -1,4 +1,4 @@
-//! Functions given elsewhere: what is equal, and slopes by the chain rule.
+//! External functions: equality, and slopes by the chain rule.
 
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::dual::{Along, Duals};
@@ -21,7 +21,7 @@ fn graph() -> (Graph, [Edge; 2], [Fp; 2]) {
     (graph, symbols, values)
 }
 
-/// Equal where component and arguments are, and nowhere else; of numbers alone it is still no number.
+/// Values are equal for equal component and arguments only, and never become constants, even for constant arguments.
 #[test]
 fn values_belong_to_component_and_arguments() {
     let (mut graph, [x, y], _) = graph();
@@ -49,7 +49,7 @@ fn values_belong_to_component_and_arguments() {
     assert_eq!(graph.called(first.by(1), "x, y"), "f_by_b(x, y)[1]");
 }
 
-/// Derivatives as expressions are those of numbers with slopes, the second ones, too.
+/// Derivatives as expressions agree with numbers with slopes, including second derivatives.
 #[test]
 fn slopes_go_by_the_chain_rule() {
     let (mut graph, [x, y], values) = graph();

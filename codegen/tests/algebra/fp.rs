@@ -1,4 +1,4 @@
-//! Numbers modulo two primes at once: what they are in both fields.
+//! Numbers modulo two primes at once, compared with their values in both fields.
 
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::prime::Residue;
@@ -10,7 +10,7 @@ fn small_rationals_are_recognised_where_both_fields_agree() {
         assert_eq!(value.to_small_rational(29), Some((n, d)));
     }
     assert_eq!(Random::new(5).element().to_small_rational(29), None);
-    // In one field alone many an element looks like a rational.
+    // In a single field, many elements look like a rational.
     let mut random = Random::new(6);
     let (mut one, mut both) = (0, 0);
     for _ in 0..2000 {

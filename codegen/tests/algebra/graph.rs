@@ -1,4 +1,4 @@
-//! Laws of the graph: what is equal on X is one node, what differs is not, and derivatives are those of numbers.
+//! Laws of the graph: expressions equal on X are one node, different ones are not, and derivatives agree with numbers.
 
 use crate::common::functions;
 use hamel_algebra::derivation::Derivation;
@@ -37,7 +37,7 @@ fn graph() -> (Graph, [Edge; 6]) {
     (graph, [p, q, a, b, c, s])
 }
 
-/// √(e²) is |e|, whatever sign the roots of e² have at the points.
+/// √(e²) is not identified with e or −e, whatever the sign of the root at the points.
 #[test]
 fn the_root_of_a_square_is_no_more_than_a_root() {
     let (mut g, [.., a, _, _, _]) = graph();
@@ -66,9 +66,9 @@ fn what_is_equal_on_the_variety_is_one_node() {
     let product = g.mul(sum, difference);
     let (aa, bb) = (g.mul(a, a), g.mul(b, b));
     assert_eq!(g.sub(aa, bb), product);
-    // Signs live on edges: b − a is the negative of a − b.
+    // Signs are on edges: b − a is the negative of a − b.
     assert_eq!(g.sub(b, a), -difference);
-    // Constants are kept together: p (q a) is (p q) a.
+    // Constants are collected: p (q a) is (p q) a.
     let qa = g.mul(q, a);
     let pq = g.mul(p, q);
     let left = g.mul(p, qa);
@@ -88,7 +88,7 @@ fn what_differs_is_not_merged() {
             seen.extend([Some(sum), Some(product), quotient]);
         }
     }
-    // 21 sums, 21 products, 30 quotients and 1.
+    // 21 sums, 21 products, 30 quotients and 1
     assert_eq!(seen.len(), 21 + 21 + 31);
 }
 
@@ -112,7 +112,7 @@ fn functions_obey_their_group_laws() {
     let (ea, eb) = (g.apply(Function::Exp, a), g.apply(Function::Exp, b));
     let product = g.mul(ea, eb);
     assert_eq!(g.apply(Function::Exp, sum), product);
-    // What follows from exp: eᵃ = cosh a + sinh a, cosh² − sinh² = 1, tanh = sinh/cosh.
+    // Identities from exp: eᵃ = cosh a + sinh a, cosh² − sinh² = 1, tanh = sinh/cosh.
     let (sinh, cosh) = (g.apply(Function::Sinh, a), g.apply(Function::Cosh, a));
     assert_eq!(g.add(sinh, cosh), ea);
     let squares = g.dot(&[cosh, sinh], &[cosh, -sinh]);
@@ -124,7 +124,7 @@ fn functions_obey_their_group_laws() {
     assert_eq!(g.mul(twice, inverse), g.one());
 }
 
-/// What holds on both sides of 0 is found; what holds on one of them is not, nor what fails at 0 alone.
+/// Identities that hold on both sides of 0 are found; identities that hold on one side only, or fail at 0, are not.
 #[test]
 fn absolute_values_are_what_they_are_on_both_sides() {
     let (mut g, [p, _, a, b, c, s]) = graph();
@@ -136,7 +136,7 @@ fn absolute_values_are_what_they_are_on_both_sides() {
     assert_eq!(g.mul(sx, a), x);
     let (ab, xy, ss) = (g.mul(a, b), g.mul(x, y), g.mul(sx, sy));
     let (of_product, sign_of_product) = (abs(&mut g, ab), sign(&mut g, ab));
-    // Of what is not equal, and of what is, but is not found, no two are one.
+    // No two of these are identified: they differ, or their equality is not recognised.
     let squares = [g.mul(x, x), g.mul(a, a), g.mul(sx, sx), g.one()];
     let mut all = vec![x, a, y, b, xy, ab, of_product, ss, sign_of_product];
     all.extend(squares);
@@ -146,7 +146,7 @@ fn absolute_values_are_what_they_are_on_both_sides() {
     }
     let some: std::collections::BTreeSet<_> = all.iter().map(|edge| edge.abs()).collect();
     assert_eq!(some.len(), all.len());
-    // A number is on one side: 3 − π, and 1/4 of c² + s² − 3/4.
+    // A constant is on one side: 1/4 as c² + s² − 3/4, and √2 − √3.
     let (cc, ss, number) = (g.mul(c, c), g.mul(s, s), g.ratio(-3, 4));
     let quarter = g.sum(&[cc, ss, number]);
     assert_eq!(
@@ -160,7 +160,7 @@ fn absolute_values_are_what_they_are_on_both_sides() {
     assert_eq!(sign(&mut g, three), g.one());
 }
 
-/// Choices obey what holds for both branches, and nothing else.
+/// Choices satisfy the identities that hold for both branches, and no others.
 #[test]
 fn choices_are_equal_where_both_branches_are() {
     let (mut g, [p, _, a, b, c, s]) = graph();
@@ -174,13 +174,13 @@ fn choices_are_equal_where_both_branches_are() {
     let [step, other] = [(one, zero), (zero, one)].map(|(x, y)| g.select(a, x, y));
     assert_eq!(g.add(step, other), one);
     assert_eq!(g.dot(&[step, other], &[b, p]), e);
-    // The sign is the difference of both sides.
+    // The sign is the difference of both steps.
     let back = g.select(-a, one, zero);
     assert_eq!(g.sub(step, back), g.apply(Function::Sign, a));
     let less = g.sub(a, one);
     let later = g.select(less, one, zero);
-    // [a > 1][a > 0] = [a > 1] and [a > 0]² = [a > 0] are true and not found; [a > 0] + [−a > 0] = 1 is wrong at 0,
-    // and that the greater of two is one of them, or the same of both orders, is wrong, or not found.
+    // [a > 1][a > 0] = [a > 1] and [a > 0]² = [a > 0] are true but not recognised; [a > 0] + [−a > 0] = 1 is false at
+    // 0. That the maximum is one of its arguments is false, and that it is symmetric is not recognised.
     let both = g.mul(later, step);
     let (difference, reverse) = (g.sub(a, b), g.sub(b, a));
     let greater = [g.select(difference, a, b), g.select(reverse, b, a)];
@@ -192,7 +192,7 @@ fn choices_are_equal_where_both_branches_are() {
     let all: Vec<Edge> = all.into_iter().chain([sum, square]).collect();
     let some: std::collections::BTreeSet<_> = all.iter().map(|edge| edge.abs()).collect();
     assert_eq!(some.len(), all.len());
-    // A number is on one side.
+    // A constant is on one side.
     let (cc, ss) = (g.mul(c, c), g.mul(s, s));
     let unit = g.add(cc, ss);
     assert_eq!((g.select(unit, a, b), g.select(-unit, a, b)), (a, b));
@@ -209,7 +209,7 @@ fn division_by_zero_on_the_variety_is_refused() {
     assert_eq!(g.powi(zero, -1), None);
 }
 
-/// A random expression in a, b and p, with all functions.
+/// Returns a random expression in a, b and p, with all functions.
 fn expression(g: &mut Graph, leaves: &[Edge], random: &mut Random, depth: usize) -> Edge {
     if depth == 0 {
         return leaves[random.bits() as usize % leaves.len()];
@@ -251,8 +251,8 @@ fn derivatives_are_those_of_numbers() {
     }
 }
 
-/// What the table says of each function, against the differences of its values: its slope, its parity, its value in
-/// numbers of every kind.
+/// The table entries of each function agree with differences of its values: its slope, its parity, and its value for
+/// every type of number.
 #[test]
 fn the_table_of_functions_is_true() {
     for function in functions() {
@@ -355,7 +355,7 @@ fn polynomials_have_the_values_of_their_nodes() {
     }
 }
 
-/// Sums of sums, each of which stands twice below the next: coefficients are those of Fibonacci, found at once.
+/// Nested sums, each of which occurs twice in the next: the coefficients are Fibonacci numbers, found in linear time.
 #[test]
 fn linear_forms_take_each_sum_once() {
     let (mut g, [_, _, a, b, ..]) = graph();
@@ -369,7 +369,7 @@ fn linear_forms_take_each_sum_once() {
     let mut form = g.linear_form(next);
     form.sort();
     assert_eq!(form, [(a.node(), number(y.0)), (b.node(), number(y.1))]);
-    // What cancels is left out, numbers stand before 1.
+    // Terms that cancel are left out; constants multiply 1.
     let seven = g.ratio(7, 3);
     let sum = g.sum(&[a, seven, b]);
     let rest = g.sub(sum, a);
@@ -379,7 +379,7 @@ fn linear_forms_take_each_sum_once() {
     assert_eq!(form, [(1, -seven), (b.node(), -number(1))]);
 }
 
-/// e^(c a) e^(−c a) = 1 where 12 c is −2⁶³, the smallest number of its kind.
+/// e^(c a) e^(−c a) = 1 where 12 c is −2⁶³, the least value of its integer type.
 #[test]
 fn coefficients_at_the_end_of_the_whole_numbers() {
     let (mut g, [_, _, a, ..]) = graph();
@@ -392,7 +392,7 @@ fn coefficients_at_the_end_of_the_whole_numbers() {
     assert_eq!(g.apply(Function::Sin, -argument), -sine);
 }
 
-/// The same of aᵏ exp(f log a), for other fractions.
+/// (w aᵏ exp(f log a))′ for several fractions f, finite at a = 0.
 #[test]
 fn slopes_of_fractional_powers_are_finite_at_zero() {
     let (mut g, [k, b, a, ..]) = graph();
@@ -426,13 +426,13 @@ fn slopes_of_fractional_powers_are_finite_at_zero() {
     }
 }
 
-/// (w a^p)′ = w′ a^p + p w a^(p−1) a′ for half-integer p, which has a value at a = 0 where p > 1.
+/// (w a^p)′ = w′ a^p + p w a^(p−1) a′ for half-integer p, which is finite at a = 0 if p > 1.
 #[test]
 fn slopes_of_half_integer_powers_are_finite_at_zero() {
     let (mut g, [k, ..]) = graph();
     let mut random = Random::new(17);
     let (of_a, of_b) = (random.element(), random.element());
-    // A square, so that it has roots.
+    // A square, so that its root exists.
     let a = g.symbol("square", COORD, of_a * of_a);
     let b = g.symbol("other", COORD, of_b);
     let root = g.apply(Function::Sqrt, a);
@@ -456,7 +456,7 @@ fn slopes_of_half_integer_powers_are_finite_at_zero() {
             }
         }
     }
-    // √(−c) of a negative symbol, with its sign inside and outside.
+    // √(−c) of a negative symbol, with the sign inside and outside.
     let c = g.symbol("negative", COORD, -(of_b * of_b));
     let root = g.apply(Function::Sqrt, -c);
     for (base, sign) in [(c, 1.0), (-c, -1.0)] {

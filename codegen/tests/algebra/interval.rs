@@ -1,4 +1,4 @@
-//! Numbers between bounds: the bounds hold, are narrow, and contradict no identity.
+//! Interval arithmetic: bounds are valid and narrow, and contradict no identity.
 
 mod inverse;
 
@@ -16,7 +16,7 @@ fn power_of_two(exponent: u64) -> BigInt {
     BigInt::one() << exponent
 }
 
-/// That the bounds are narrow: within 2^−bits of the size.
+/// Returns whether the bounds are within 2^−bits of the size.
 fn is_narrow(a: &Interval, bits: u64) -> bool {
     let [lo, hi] = a.bounds();
     let width = &hi - &lo;
@@ -117,11 +117,11 @@ fn what_has_no_value_is_none() {
     );
 }
 
-/// Wide and narrow bounds hold eˣ at both of their ends, which is added up here in numbers of 3000 bits.
+/// Wide and narrow bounds contain eˣ at both of their ends, which is summed here in numbers of 3000 bits.
 #[test]
 fn exponentials_of_the_ends_are_between_the_bounds() {
     const BITS: u64 = 3000;
-    // n / 2¹²; each of at most 6000 terms is cut twice.
+    // x = n / 2¹²; each of at most 6000 terms is truncated twice.
     let power = |n: i64| -> BigInt {
         let (mut term, mut sum) = (power_of_two(BITS), BigInt::zero());
         for k in 1..6000u32 {

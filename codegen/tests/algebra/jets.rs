@@ -1,4 +1,4 @@
-//! Mixed second derivatives by hyper-dual numbers: those of symbolic derivatives.
+//! Mixed second derivatives by hyper-dual numbers agree with symbolic derivatives.
 
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
@@ -9,7 +9,7 @@ use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 
-/// Symbols s, t, a(s, t) = s t + s, b(s, t) = s² − t of the chain rule, and functions of a and b.
+/// The chain rule for symbols s, t, a(s, t) = s t + s, b(s, t) = s² − t, and functions of a and b.
 #[test]
 fn mixed_derivatives_are_those_of_the_symbolic_derivative() {
     let mut random = Random::new(5);
@@ -23,7 +23,7 @@ fn mixed_derivatives_are_those_of_the_symbolic_derivative() {
         let _ = &graph;
         Derivation::new(seeds.map(|(symbol, seed)| (symbol.node(), seed)))
     };
-    // a₁ = t + 1, b₁ = 2 s; a₂ = s, b₂ = −1; a₁₂ = 1, b₁₂ = 0.
+    // a₁ = t + 1, b₁ = 2 s; a₂ = s, b₂ = −1; a₁₂ = 1, b₁₂ = 0
     let one = graph.one();
     let (more, twice) = (graph.add(t, one), graph.add(s, s));
     let mut by_s = seeded(&mut graph, [(s, one), (a, more), (b, twice)]);

@@ -1,4 +1,4 @@
-//! Jumps between branches: what jumps is found, and what is continuous is not.
+//! Jumps between branches: discontinuous expressions are found, and continuous ones are not.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::graph::{Edge, Function, Graph, NodeId};
@@ -36,21 +36,21 @@ fn what_jumps_is_found() {
         still,
         g.select(back, size, nested),
     ];
-    // The last: b − a = 0 is where |a − 1| and what is nested differ.
+    // The last one jumps: |a − 1| and the nested expression differ where b − a = 0.
     let sign = g.apply(Function::Sign, less);
     let product = g.mul(sign, less);
     let step = g.select(less, one, p);
-    // Not linear in a symbol: nothing is known.
+    // Not linear in a symbol, so that nothing is known.
     let curved = g.select(square, a, b);
     let found: Vec<bool> = smooth.iter().map(|&edge| jumps(&g, edge)).collect();
     assert_eq!(found, [false, false, false, false, false, true]);
     assert!(jumps(&g, sign) && jumps(&g, step) && jumps(&g, curved) && !jumps(&g, product));
-    // A symbol that cannot be moved alone is what c = 0 says all the same.
+    // If no symbol can be moved alone, c = 0 is still used.
     assert!(g.jump(&[inner], 1, &|_| false).is_none());
     assert!(g.jump(&[step], 1, &|_| false).is_some());
 }
 
-/// The greater of two is continuous whatever the two are; so is what is made of it.
+/// The maximum of two expressions is continuous, and so are functions of it.
 #[test]
 fn the_greater_of_two_never_jumps() {
     let (mut g, [p, a, b, d]) = made();
@@ -68,7 +68,7 @@ fn the_greater_of_two_never_jumps() {
             let greater = g.select(more, of, with);
             let excess = g.select(more, more, zero);
             let (square, further) = (g.mul(excess, excess), g.select(-more, p, greater));
-            // Twice the same, the one within the other.
+            // The same maximum twice, nested.
             let least = g.sub(greater, b);
             let twice = g.select(least, b, greater);
             assert!(
@@ -76,7 +76,7 @@ fn the_greater_of_two_never_jumps() {
                     .iter()
                     .any(|&e| jumps(&g, e))
             );
-            // p or of where of > with.
+            // Selects p, or something where of > with.
             assert!(with == p || jumps(&g, further), "{of:?} {with:?}");
             let cut = g.select(more, of, zero);
             assert!(with == zero || jumps(&g, cut), "{of:?} {with:?}");
@@ -88,7 +88,7 @@ fn the_greater_of_two_never_jumps() {
 fn every_place_at_which_a_side_changes_is_seen() {
     let (mut g, [p, a, b, d]) = made();
     let (zero, one) = (g.zero(), g.one());
-    // a b > 0 changes at a = 0 and at b = 0, a/b, too; c = a b + a d is a (b + d).
+    // a b and a/b change sign at a = 0 and at b = 0; c = a b + a d is a (b + d).
     let (product, ratio) = (g.mul(a, b), g.div(a, b).expect("is not 0"));
     let other = g.mul(a, d);
     let sum = g.add(product, other);
@@ -98,16 +98,16 @@ fn every_place_at_which_a_side_changes_is_seen() {
         let choice = g.select(by, product, zero);
         assert!(by == sum || !jumps(&g, choice));
     }
-    // What has no value at a = 0 is not continuous there.
+    // An expression without a value at a = 0 is not continuous there.
     let inverse = g.div(one, a).expect("is not 0");
     let infinite = g.select(a, inverse, zero);
     assert!(jumps(&g, infinite));
-    // 2a > 0 is where a > 0: neither shows the jump of the other away.
+    // 2a > 0 is equivalent to a > 0: neither hides the jump of the other.
     let double = g.add(a, a);
     let hidden = g.select(double, one, zero);
     let step = g.select(a, hidden, zero);
     assert!(jumps(&g, step));
-    // p a = 0 wherever p = 0, but p does not move.
+    // p a = 0 also where p = 0, but p does not change.
     let scaled = g.mul(p, a);
     let kink = g.select(scaled, a, zero);
     assert!(!jumps(&g, kink));

@@ -1,11 +1,11 @@
-//! Values of functions at a point: like terms are one, and twelfths of a turn are exact.
+//! Values of functions at a point: like terms are combined, and twelfths of a turn are exact.
 
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Function;
 use hamel_algebra::lane::Lane;
 use num_rational::BigRational;
 
-/// What is 0 at a point is 0 for functions, and like terms of what is written out are one.
+/// Values that are 0 at a point are 0 in arguments of functions, and like terms of written-out arguments are combined.
 #[test]
 fn forms_are_collected() {
     let mut lane = Lane::new();
@@ -24,7 +24,7 @@ fn forms_are_collected() {
     }
 }
 
-/// Sines and cosines of twelfths of π are the roots that they are, in both fields.
+/// Sines and cosines of twelfths of π are the expected roots, in both fields.
 #[test]
 fn twelfths_of_a_turn_are_exact() {
     let mut lane = Lane::new();

@@ -1,4 +1,5 @@
-//! Laws of the graph, of its numbers and of polynomials, one module for each file of `src`; a module alone: `cargo test -p hamel-algebra --test suite poly::`.
+//! Laws of the graph, of its numbers and of polynomials, one module for each file of `src`. To run a single module:
+//! `cargo test -p hamel-algebra --test suite poly::`.
 
 mod bend;
 mod blocks;

@@ -1,4 +1,4 @@
-//! Laws of polynomials, of ideals of them and of their points, one module for each file.
+//! Laws of polynomials, of their ideals and of points of ideals, one module for each file.
 
 mod elimination;
 mod factor;
@@ -19,7 +19,7 @@ use hamel_algebra::poly::polynomial::Poly;
 use proptest::prelude::*;
 use std::ops::Range;
 
-/// Polynomials of so many terms, each with powers of variables and a coefficient.
+/// Returns polynomials with a number of terms, each given by powers of variables and a coefficient.
 fn polynomials(
     powers: impl Strategy<Value = Vec<(u32, u32)>>,
     coefficients: Range<i64>,

@@ -1,4 +1,4 @@
-//! The prime fields: their laws, their roots, and primes without structure.
+//! The prime fields: their laws, their roots, and primes without special structure.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::prime::{PRIMES, Residue, is_unfaithful};
@@ -42,7 +42,7 @@ fn roots<const K: usize>() {
         roots += usize::from(b.sqrt().is_some_and(|root| root * root == b));
     }
     assert!(roots > 40 && roots < 100);
-    // −1 is no square, because p ≡ 3 mod 4.
+    // −1 is not a square, because p ≡ 3 mod 4.
     let i = Residue::<K>::I;
     assert!(matches!((-Residue::<K>::ONE).sqrt(), Some(root) if root == i || root == -i));
     assert!(i.is_negative() != (-i).is_negative());
@@ -54,8 +54,8 @@ fn roots_of_all_elements_of_the_prime_field_exist() {
     roots::<1>();
 }
 
-/// Small powers of 2, roots of small integers, and what generates the roots of unity of low order
-/// are nowhere near a small rational, which p = 2⁶¹ − 1 fails: there √2 = ±2³¹.
+/// Small powers of 2, roots of small integers, and generators of the roots of unity of low order are not close to a
+/// small rational, unlike for p = 2⁶¹ − 1, where √2 = ±2³¹.
 fn unstructured<const K: usize>() {
     const BITS: u32 = 22;
     let small = |a: Residue<K>| a.to_small_rational(BITS);
@@ -73,14 +73,14 @@ fn unstructured<const K: usize>() {
     let is_square = |n: u64| n.isqrt() * n.isqrt() == n;
     for n in (2..2000).filter(|&n| !is_square(n)) {
         let root = Residue::<K>::new(n).sqrt().expect("in F_p(i)");
-        // Either in F_p, or i times what is.
+        // Either in F_p, or i times an element of it.
         let real = if root.is_prime() {
             root
         } else {
             -(Residue::I * root)
         };
         assert_eq!(small(real), None, "root of {n}");
-        // Times small factors, and roots of roots.
+        // Multiplied by small factors, and roots of roots.
         for factor in 1..50 {
             assert_eq!(
                 small(real * Residue::new(factor)),
@@ -130,7 +130,7 @@ fn the_primes_have_no_structure() {
                 .into_iter()
                 .all(is_square)
         );
-        // Miller and Rabin with the first primes as bases decide below 2^64.
+        // The Miller-Rabin test with the first primes as bases is exact below 2^64.
         let n = BigInt::from(p);
         let odd = BigInt::from((p - 1) / 2);
         for base in [2u32, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37] {

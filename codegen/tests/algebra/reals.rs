@@ -1,4 +1,4 @@
-//! Real values with bounds of their errors: what agrees, what differs, what has no value.
+//! Real values with error bounds: equal, different and undefined ones.
 
 use crate::common::functions;
 use hamel_algebra::function::Slope;
@@ -9,7 +9,7 @@ fn exact(value: f64) -> Real {
     Real::new(value, 0.0)
 }
 
-/// Whether b cannot stand for a.
+/// Returns whether b cannot replace a.
 fn differs(a: Real, b: Real) -> bool {
     contradict(&[a], &[b])
 }
@@ -18,14 +18,14 @@ fn differs(a: Real, b: Real) -> bool {
 fn equal_numbers_agree_and_others_differ() {
     let root = |n: f64| exact(n).apply(Function::Sqrt);
     let (two, three) = (root(2.0), root(3.0));
-    // √3 − √2 = √(5 − 2√6), and its negative is another number.
+    // √3 − √2 = √(5 − 2√6), and its negative is different.
     let difference = three.plus(two.signed(true));
     let nested = exact(5.0)
         .plus(exact(-2.0).times(root(6.0)))
         .apply(Function::Sqrt);
     assert!(!differs(difference, nested) && differs(difference.signed(true), nested));
     assert!(!differs(two.times(three), root(6.0)));
-    // What cancels is 0 within its error, and not another small number.
+    // A cancelled sum is 0 within its error, and differs from other small numbers.
     let zero = root(6.0).plus(two.times(three).signed(true));
     assert!(!differs(zero, exact(0.0)) && differs(zero, exact(1e-12)));
 }
@@ -43,7 +43,7 @@ fn what_has_no_value_contradicts_nothing() {
     }
 }
 
-/// √x √x may become x, but not the other way round where x < 0.
+/// √x √x may become x, but not the reverse, which is undefined for x < 0.
 #[test]
 fn what_has_no_value_stands_for_nothing_that_has_one() {
     let none = exact(-1.0).apply(Function::Sqrt);

@@ -1,4 +1,4 @@
-//! Resubstitution: operations that can be saved are saved, and values stay.
+//! Resubstitution saves operations and preserves values.
 
 mod sieve;
 
@@ -6,7 +6,7 @@ use hamel_algebra::fp::Random;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::resubstitute::resubstitute;
 
-/// Operations at run time.
+/// Returns the number of operations at run time.
 fn cost(graph: &Graph, roots: &[Edge]) -> usize {
     let operates = |node| matches!(node, Node::Add(..) | Node::Mul(..) | Node::Div(..));
     let ids = graph.reachable(roots).into_iter();
@@ -14,7 +14,7 @@ fn cost(graph: &Graph, roots: &[Edge]) -> usize {
         .count()
 }
 
-/// x (a + b) + c beside x a + c is x b more than that: a + b, which serves nothing else, goes.
+/// x (a + b) + c is x a + c plus x b: the sum a + b, which has no other use, disappears.
 #[test]
 fn a_sum_that_is_only_multiplied_is_spread() {
     let mut graph = Graph::new(1);
@@ -39,8 +39,8 @@ fn a_sum_that_is_only_multiplied_is_spread() {
     }
 }
 
-/// (a b + c) and (a b + c + d), the second built from scratch as ((a b + d) + c): resubstitution
-/// finds that it is the first plus d.
+/// (a b + c) and (a b + c + d), the second built separately as ((a b + d) + c): resubstitution finds that it is the
+/// first plus d.
 #[test]
 fn a_sum_that_is_there_is_used() {
     let mut graph = Graph::new(1);
@@ -54,7 +54,7 @@ fn a_sum_that_is_there_is_used() {
     let first = graph.add(product, c);
     let other = graph.add(product, d);
     let second = graph.add(other, c);
-    // d has to be there for something else too.
+    // d needs another use.
     let third = graph.mul(c, d);
     let roots = [first, second, third];
     let (better, edges) = resubstitute(&graph, &roots, &base).expect("one operation less");

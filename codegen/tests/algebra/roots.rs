@@ -1,4 +1,4 @@
-//! Square roots modulo p: roots of products are products of roots.
+//! Square roots modulo p: the root of a product is the product of the roots.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::prime::Residue;
@@ -25,7 +25,7 @@ fn roots_of_products_are_products_of_roots() {
             );
         }
     }
-    // Squares have the root that is a number; nothing has the root of a negative number.
+    // Squares of numbers have that number as root; a negative number has no root.
     assert_eq!(
         of_rational::<0>(&number(9, 16)),
         Residue::from_rational(&number(3, 4))

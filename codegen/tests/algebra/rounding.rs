@@ -1,11 +1,11 @@
-//! What rounding does: cancellation is seen, and errors stay within their bounds.
+//! Rounding analysis: cancellation is detected, and errors are within their bounds.
 
 use hamel_algebra::graph::{Function, Graph};
 use hamel_algebra::rounding::{bounded, rounded};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-/// (1 + d) − 1 with d = 1e-9 / 7, which keeps half of its digits.
+/// (1 + d) − 1 with d = 1e-9 / 7, which loses half of its digits.
 #[test]
 fn cancellation_is_seen() {
     let mut graph = Graph::new(1);
@@ -20,7 +20,7 @@ fn cancellation_is_seen() {
     let sine = graph.apply(Function::Sin, angle);
     let only = rounded(&graph, &[sine], &[0.0, 1.0])[0];
     let wanted = (1e-9_f64 / 7.0).sin();
-    // sin(π + d) = −sin d is recognised; whichever way it is written, the exact value is right.
+    // sin(π + d) = −sin d is recognised; in either form, the exact value is right.
     assert!((only.exact.to_f64().abs() - wanted).abs() < 1e-24);
     let bound = bounded(&graph, &[angle], &[0.0, 1.0])[0];
     assert!(bound.error > 1e-16 && bound.error < 2e-15);

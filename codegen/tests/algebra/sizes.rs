@@ -1,10 +1,10 @@
-//! Sizes of equations: a circle is as large as its radius.
+//! Scales of equations: that of a circle is its radius.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
 use hamel_algebra::sizes::{relative, sizes};
 
-/// x² + z² = r² has terms of r², and changes by 2 x and 2 z.
+/// x² + z² = r² has terms of size r², and slopes 2 x and 2 z.
 #[test]
 fn a_circle_is_as_large_as_its_radius() {
     let mut random = Random::new(5);

@@ -1,4 +1,4 @@
-//! Slopes in floating point: the numbers of symbolic derivatives.
+//! Slopes in floating point agree with symbolic derivatives.
 
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
@@ -17,7 +17,7 @@ fn slopes_are_the_numbers_of_symbolic_derivatives() {
     let mut roots = vec![-product];
     roots.extend(quotients(&mut graph, sum, a));
     roots.push(graph.atan2(sum, b));
-    // Along (1, 2) and (0, 1).
+    // Along (1, 2) and (0, 1)
     let (one, two) = (graph.one(), graph.ratio(2, 1));
     let mut first = Derivation::new([(a.node(), one), (b.node(), two)]);
     let mut second = Derivation::new([(b.node(), one)]);

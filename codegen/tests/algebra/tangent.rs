@@ -1,4 +1,4 @@
-//! Slopes modulo p by dual numbers: those of symbolic derivatives.
+//! Slopes modulo p by dual numbers agree with symbolic derivatives.
 
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
@@ -17,7 +17,7 @@ fn slopes_are_those_of_the_symbolic_derivative() {
     let sum = graph.add(product, b);
     let mut roots = quotients(&mut graph, sum, a);
     roots.push(graph.atan2(sum, b));
-    // Along (1, 2).
+    // Along (1, 2)
     let two = graph.ratio(2, 1);
     let mut along = Derivation::new([(a.node(), graph.one()), (b.node(), two)]);
     let slopes = along.all(&mut graph, &roots);

@@ -1,4 +1,4 @@
-//! Short expressions as text: parentheses stand where they are needed.
+//! Short expressions as text: parentheses only where necessary.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;

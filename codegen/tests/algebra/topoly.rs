@@ -1,10 +1,10 @@
-//! Polynomials of nodes: powers that are kept, and work that ends.
+//! Polynomials of nodes: powers that are kept, and bounded expansion.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
 use hamel_algebra::topoly::Expander;
 
-/// 2 (x − a)³ y is 2 t³ y; and an expansion that came before is made anew.
+/// 2 (x − a)³ y is 2 t³ y; and an earlier expansion is replaced.
 #[test]
 fn powers_of_linear_forms_are_kept_where_that_is_asked_for() {
     let mut random = Random::new(7);
@@ -30,7 +30,7 @@ fn powers_of_linear_forms_are_kept_where_that_is_asked_for() {
     let keeping = &mut Expander::default().keeping_powers();
     assert_eq!(terms(keeping, square), Some(3));
     assert_eq!([terms(keeping, all), terms(keeping, square)], [Some(1); 2]);
-    // No linear form: (x y + a)³.
+    // Not a linear form: (x y + a)³.
     let product = graph.mul(x, y);
     let other = graph.add(product, a);
     let square = graph.mul(other, other);
@@ -56,7 +56,7 @@ fn an_expansion_ends_with_its_work() {
         let polynomial = Expander::within(work).expand(&graph, edge);
         polynomial.map(|polynomial| polynomial.terms().len())
     };
-    // 20 terms added up, 36 products, and 21² more.
+    // 20 terms added, 36 products, and 21² more.
     assert_eq!(terms(19, sum), None);
     assert_eq!(terms(20, sum), Some(6));
     assert_eq!(terms(56, square), Some(21));

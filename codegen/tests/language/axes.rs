@@ -1,4 +1,4 @@
-//! Axes of joints and planes across them: exact unit vectors.
+//! Axes of joints and their perpendicular planes: exact unit vectors.
 
 use hamel_language::algebra::derivation::Derivation;
 use hamel_language::algebra::linear::{Vec3, cross};
@@ -7,7 +7,7 @@ use hamel_language::lower::build;
 use hamel_language::model::Model;
 use hamel_language::syntax::parse_text;
 
-/// How a frame moves with a coordinate: the axis of a slide, or one of the two directions in a plane.
+/// Returns the motion of a frame with a coordinate: the axis of a slide, or a direction in a plane.
 fn direction(model: &mut Model, frame: &str, coordinate: usize) -> Vec3 {
     let frames = &model.frames;
     let frame = frames.iter().find(|f| f.name == frame).expect("a frame");
@@ -18,7 +18,7 @@ fn direction(model: &mut Model, frame: &str, coordinate: usize) -> Vec3 {
         .map(|entry| along.of(&mut model.graph, entry))
 }
 
-/// Every direction becomes a vector whose square is exactly one, and which points the same way.
+/// Every direction becomes a vector of the same direction whose square is exactly one.
 #[test]
 fn axes_are_units_exactly() {
     for axis in [
@@ -48,7 +48,7 @@ fn axes_are_units_exactly() {
             parse(n) / parse(d)
         });
         let length = a.iter().map(|a| a * a).sum::<f64>().sqrt();
-        // Roundings of f64.
+        // Rounding of f64.
         assert!(
             (0..3).all(|k| (n[k] - a[k] / length).abs() < 2e-16),
             "{axis:?}: {n:?}"

@@ -5,7 +5,7 @@ use hamel_language::algebra::graph::{Edge, Graph};
 use hamel_language::model::charts::tangents;
 use hamel_language::model::layout::{Block, chart_rate, sample};
 
-/// C K = I on X for every kind.
+/// C K = I on X for every kind of coordinate.
 #[test]
 fn canonical_velocities_of_the_tangents_are_units() {
     for block in [

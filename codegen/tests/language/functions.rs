@@ -1,4 +1,4 @@
-//! The functions that can be asked for: their names, and which of them serve others.
+//! The functions that can be requested: their names, and dependencies between them.
 
 use hamel_language::functions::{Asked, FunctionId, Needs, Serves};
 

@@ -1,4 +1,5 @@
-//! Laws of the language, one module for each file of `src`; a module alone: `cargo test -p hamel-language --test suite syntax::`.
+//! Laws of the language, one module for each file of `src`. To run a single module:
+//! `cargo test -p hamel-language --test suite syntax::`.
 
 mod axes;
 mod charts;

@@ -1,4 +1,4 @@
-//! The configuration nearest to a start, and how near none was.
+//! The configuration nearest to a start, and the residual if there is none.
 
 use hamel_language::algebra::fp::Fp;
 use hamel_language::algebra::graph::Graph;
@@ -7,7 +7,7 @@ use hamel_language::model::layout::Block;
 use hamel_language::model::nearest::{Nearest, nearest};
 use hamel_language::model::points::Points;
 
-/// max |φ| where φ are these constants, or NaN: no start helps.
+/// Searches with constant φ, so that no start helps; returns max |φ|, or infinity for NaN.
 fn largest(list: &[f64]) -> Nearest {
     let mut graph = Graph::new(1);
     let phi: Vec<_> = (list.iter().enumerate())

@@ -1,9 +1,14 @@
-//! Literals: decimals are exact, and all else is refused.
+//! Literals: decimals are exact, and everything else is refused.
 
 use included::value;
 
+<<<<<<< HEAD:codegen/tests/language/number.rs
 // An empty literal never comes out of the text of a description.
 #[path = "../../language/src/syntax/number.rs"]
+=======
+// Included, since the text of a description never gives an empty literal.
+#[path = "../../src/syntax/number.rs"]
+>>>>>>> w-textB:codegen/language/tests/suite/number.rs
 mod included;
 
 fn exact(text: &str) -> String {

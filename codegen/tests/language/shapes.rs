@@ -1,5 +1,5 @@
-//! Shapes that are inferred from the text are those of the values that are computed: in all descriptions of the
-//! repository, and in random expressions.
+//! Shapes inferred from the text equal those of computed values, in all descriptions of the repository and in random
+//! expressions.
 
 use hamel_language::algebra::fp::Random;
 use hamel_language::lower::inspect::{CALLS as OF_JOINTS, Found, inspect};
@@ -14,7 +14,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use std::path::Path;
 
-/// The shape of a value in words, and whether its rows are of one length.
+/// Returns the shape of a value in words, and checks that its rows have equal lengths.
 fn shape(value: &Value) -> String {
     match value {
         Value::Scalar(_) => "a scalar".into(),
@@ -28,8 +28,8 @@ fn shape(value: &Value) -> String {
     }
 }
 
-/// Whether text and graph agree about an expression. What has a shape has a value of that shape, with those numbers, or
-/// a mathematical reason why not; what has none has an error.
+/// Returns whether text and graph agree about an expression. An expression with a shape has a value of that shape, with
+/// the inferred numbers, or a mathematical reason why not; one without a shape has an error.
 fn agrees(found: &Found) -> bool {
     let value = found.value.as_ref();
     let value = value.map(|(value, entries)| (shape(value), entries));
@@ -46,7 +46,7 @@ fn agrees(found: &Found) -> bool {
     }
 }
 
-/// The expressions of statements.
+/// Collects the expressions of statements.
 struct Expressions(Vec<Expr>);
 
 impl Visit for Expressions {
@@ -59,7 +59,7 @@ impl Visit for Expressions {
     fn place(&mut self, _: &mut Span) {}
 }
 
-/// All expressions of a description and all their parts, but for the values of functions, which have parameters.
+/// Returns all expressions of a description and their parts, except for the values of functions, which have parameters.
 fn expressions(system: &System) -> Vec<Expr> {
     let mut all = Expressions(Vec::new());
     for item in &system.items {
@@ -69,7 +69,7 @@ fn expressions(system: &System) -> Vec<Expr> {
     }
     let (mut open, mut found) = (all.0, Vec::new());
     while let Some(expr) = open.pop() {
-        // `in body` is no expression by itself.
+        // `in body` is not an expression.
         let parts = expr.parts().into_iter();
         let body = |part: &&Expr| matches!(&part.kind, ExprKind::Name(name) if name == "body");
         open.extend(parts.filter(|part| !body(part)).cloned());
@@ -97,7 +97,7 @@ fn the_shapes_of_all_descriptions_are_those_of_their_values() {
             continue;
         }
         let text = std::fs::read_to_string(&path).expect("readable");
-        // What includes files, or has tables in files, is not read alone.
+        // Descriptions with included files or tables in files cannot be read alone.
         if text.contains("include \"") || text.contains("from \"") {
             continue;
         }
@@ -124,7 +124,7 @@ fn the_shapes_of_all_descriptions_are_those_of_their_values() {
     );
 }
 
-/// Names of every shape, functions of the description, of Rust and of tables.
+/// Names of every shape, and functions from the description, from Rust and from tables.
 const NAMES: &str = "system A {
     param a = 1, u: vec2 = [1, 2], v: vec3 = [1, 2, 3], M: mat3 = [[1, 2, 3], [4, 5, 6], [7, 8, 9]], S: sym2 = [[1, 0], [0, 1]];
     const k = 3 / 2, n = 2, K = [1, 2, 3], T = [[1, 2], [3, 4], [2, 1]];
@@ -153,7 +153,7 @@ const CALLS: [&str; 7] = ["twice", "drag", "pick", "turned", "lift", "side", "th
 
 struct Maker {
     random: Random,
-    /// Expressions that have shapes.
+    /// Expressions with a shape.
     known: Vec<Expr>,
 }
 
@@ -182,7 +182,7 @@ impl Maker {
         })
     }
 
-    /// One that is known, or a new leaf.
+    /// Returns a known expression, or a new leaf.
     fn part(&mut self) -> Expr {
         match self.below(4) {
             0 => self.leaf(),
@@ -201,7 +201,7 @@ impl Maker {
         (0..count).map(|_| self.part()).collect()
     }
 
-    /// A new expression of known ones.
+    /// Returns a new expression of known ones.
     fn expr(&mut self) -> Expr {
         Maker::of(match self.below(10) {
             0 => {
@@ -250,7 +250,7 @@ impl Maker {
                 let names = vocabulary::functions().map(|(name, _)| name);
                 let all: Vec<&str> = names.chain(own).chain(joints).collect();
                 let name = all[self.below(all.len())];
-                // What joints call is written for one axis or place.
+                // Functions of joints take one axis or point.
                 let count = match joints.contains(&name) {
                     true => 1,
                     false => self.below(4),
@@ -261,12 +261,12 @@ impl Maker {
     }
 }
 
-/// How deep an expression is.
+/// Returns the depth of an expression.
 fn depth(expr: &Expr) -> usize {
     1 + expr.parts().into_iter().map(depth).max().unwrap_or(0)
 }
 
-/// Expressions are made of expressions that have shapes, so that long ones occur that are right, and every mistake.
+/// Random expressions consist of expressions with shapes, so that long correct ones occur, and all kinds of mistakes.
 #[test]
 fn the_shapes_of_random_expressions_are_those_of_their_values() {
     let system = parse_text(NAMES).expect("a description");
@@ -274,7 +274,7 @@ fn the_shapes_of_random_expressions_are_those_of_their_values() {
     looked.unwrap_or_else(|errors| panic!("{errors:?}"));
 }
 
-/// The same, with what finds out about an expression.
+/// Checks the expressions by a function that analyses one.
 fn the_random_expressions_agree(find: &dyn Fn(&Expr) -> Found) {
     let (mut right, mut wrong, mut failed, mut numbers, mut deepest) = (0, 0, 0, 0, 0);
     for seed in 0..20 {

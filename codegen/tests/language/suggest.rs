@@ -1,4 +1,4 @@
-//! Words that were probably meant.
+//! Suggestions for misspelt words.
 
 use hamel_language::syntax::suggest::closest;
 

@@ -1,4 +1,5 @@
-//! The language as a whole: what is accepted, what is refused and how, and that nothing breaks the parser.
+//! The syntax of the language: accepted and refused texts with their messages, and inputs that must not break the
+//! parser.
 
 mod accepted;
 mod elements;
@@ -14,7 +15,7 @@ use hamel_language::syntax::ast::{
 };
 use hamel_language::syntax::parse_text;
 
-/// The system of a text that is known to be right.
+/// Parses a correct text.
 fn parsed(text: &str) -> System {
     match parse_text(text) {
         Ok(system) => system,
@@ -22,14 +23,14 @@ fn parsed(text: &str) -> System {
     }
 }
 
-/// The only statement of a system.
+/// Returns the only statement of a system.
 fn statement(text: &str) -> ItemKind {
     let mut items = parsed(&format!("system S {{ {text} }}")).items;
     assert_eq!(items.len(), 1);
     items.remove(0).kind
 }
 
-/// An expression with every operation in brackets.
+/// Formats an expression with brackets around every operation.
 fn spelled(expr: &Expr) -> String {
     let list = |entries: &[Expr]| entries.iter().map(spelled).collect::<Vec<_>>().join(", ");
     match &expr.kind {
@@ -84,7 +85,7 @@ fn acts(acting: &Acting) -> String {
     }
 }
 
-/// What an invariant claims.
+/// Formats the claim of an invariant.
 fn kept(conserved: &hamel_language::syntax::ast::Conserved) -> String {
     use hamel_language::syntax::ast::Conserved::*;
     let frame =
@@ -100,7 +101,7 @@ fn kept(conserved: &hamel_language::syntax::ast::Conserved) -> String {
     }
 }
 
-/// A statement in one line.
+/// Formats a statement in one line.
 fn told(kind: &ItemKind) -> String {
     use ItemKind::*;
     use hamel_language::syntax::ast::{Declaration, Load::*};

@@ -1,9 +1,9 @@
-//! Warnings of declarations that nothing uses.
+//! Warnings for unused declarations.
 
 use hamel_language::lower::build;
 use hamel_language::syntax::parse_text;
 
-/// What is said of a description with further statements.
+/// Returns the warnings for a description with further statements.
 fn said(statements: &str) -> Vec<String> {
     let text =
         format!("system A {{ coord q; velocity w; rate q = w; kinetic w^2 / 2; {statements} }}");
@@ -13,7 +13,7 @@ fn said(statements: &str) -> Vec<String> {
         Err(errors) => panic!("{text}: {errors:?}"),
     };
     let list = model.warnings.into_iter().map(|warning| warning.message);
-    // Others are about what is not computed well.
+    // Other warnings concern numerical losses.
     list.filter(|message| message.ends_with("is never used"))
         .collect()
 }
@@ -58,7 +58,7 @@ fn every_place_is_a_use() {
             "frame g = pose(rotz(q), [2, 0, 0]); damper coefficient 1 from f to [1, 0, 0] on g;",
         ),
         ("frame f = world", "invariant p = linear_momentum of f;"),
-        // Two statements about one frame: it relates two others.
+        // Two statements about one frame relate two others.
         (
             "frame f = world",
             "frame f on g = world; body on g { mass 1; }",

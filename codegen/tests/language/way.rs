@@ -1,16 +1,22 @@
-//! The way between two points of a coordinate: its slope is the factor that is said, in both charts of rotations.
+//! The displacement between two points of a coordinate: its slope is the documented factor, in both charts of
+//! rotations.
 
 use hamel_language::algebra::fp::Random;
-// The included file has it by this name, too.
+// The included file uses this name, too.
 use hamel_language::model::layout;
 use included::{chart_rate, turned, way};
 use layout::{Block, rotation};
 
+<<<<<<< HEAD:codegen/tests/language/way.rs
 // Searches for the nearest configuration take ways, and show where they end alone.
 #[path = "../../language/src/model/way.rs"]
+=======
+// Included, since searches for the nearest configuration only show final positions.
+#[path = "../../src/model/way.rs"]
+>>>>>>> w-textB:codegen/language/tests/suite/way.rs
 mod included;
 
-/// The rate of the way between two points is the product that it should be, by differences of the way.
+/// The rate of the displacement between two points is the documented product, compared with differences.
 #[test]
 fn the_way_changes_as_its_factor_says() {
     let mut random = Random::new(5);
@@ -40,7 +46,7 @@ fn the_way_changes_as_its_factor_says() {
             let factor = way(block, from, &q(0.0)).1;
             for k in 0..3 {
                 let expected: f64 = (0..3).map(|l| factor[k][l] * spin[l]).sum();
-                // The way is cut where the turn is by π.
+                // The displacement is discontinuous at a rotation by π.
                 let cut = (slope[k]).abs() > 1e3;
                 assert!(cut || (slope[k] - expected).abs() < 1e-6 * (1.0 + expected.abs()));
             }

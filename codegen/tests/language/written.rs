@@ -1,4 +1,4 @@
-//! Expressions as text: what was written is what is read.
+//! Expressions as text: printing and parsing are inverse.
 
 use hamel_language::syntax::ast::{Conserved, ItemKind};
 use hamel_language::syntax::written::{conditions, written};

@@ -1,5 +1,5 @@
-//! Starts by guesses: the branch in which a loop is assembled, against the intersections of two circles in closed form,
-//! and the distance from the guesses against all of them.
+//! Starts from guesses: the branch in which a loop is assembled is compared with the intersections of two circles in
+//! closed form, and the distance from the guesses with that of all branches.
 
 use crate::common::size;
 use hamel_codegen::algebra::fp::Random;
@@ -8,10 +8,10 @@ use hamel_codegen::syntax::parse_text;
 use std::f64::consts::{PI, TAU};
 
 const FIVE_BAR: &str = include_str!("../../../tests/models/five_bar.eom");
-/// Cranks, rods, distance of the pivots, as the model has them.
+/// Lengths of cranks and rods, and the distance of the pivots, in the model.
 const LENGTHS: (f64, f64, f64) = (0.3, 0.5, 0.25);
 
-/// x at the start of the five-bar with other starts, in the order q1, q2, p1, p2.
+/// Returns x at the start of the five-bar for these start statements, in the order q1, q2, p1, p2.
 fn started(starts: &str) -> Vec<f64> {
     let (text, _) = FIVE_BAR.split_once("start q1").expect("starts");
     let text = format!("{text}{starts} output tip = tip1; }}");
@@ -20,7 +20,7 @@ fn started(starts: &str) -> Vec<f64> {
         .start_x
 }
 
-/// The relative angles of the two rods for the two points in which the circles about the ends of the cranks meet.
+/// Returns the relative angles of the two rods for the two intersections of the circles about the ends of the cranks.
 fn modes(q1: f64, q2: f64) -> [[f64; 2]; 2] {
     let (a, b, d) = LENGTHS;
     let (left, right) = (
@@ -40,13 +40,13 @@ fn modes(q1: f64, q2: f64) -> [[f64; 2]; 2] {
     })
 }
 
-/// An angle in −π to π of another one.
+/// Returns an angle modulo full turns, within π of another one.
 fn near(angle: f64, other: f64) -> f64 {
     other + (angle - other + PI).rem_euclid(TAU) - PI
 }
 
-/// Where a crank is prescribed to be is known before the guesses are asked: a four-bar is assembled as guessed at any
-/// angle of its crank, in both modes.
+/// The prescribed position of a crank is known before guesses are used: a four-bar is assembled as guessed for any
+/// crank angle, in both modes.
 #[test]
 fn guesses_beside_a_driven_crank_choose_the_mode() {
     let (l1, l2, l3, d) = (0.4, 1.2, 0.8, 0.9);
@@ -100,7 +100,8 @@ fn guesses_choose_between_both_ways_to_assemble_a_five_bar() {
     }
 }
 
-/// With the cranks fixed, M of the two rods is a multiple of 1, so that the nearest is so in the plane of the angles.
+/// With fixed cranks, M of the two rods is a multiple of the identity, so that distance is measured in the plane of the
+/// angles.
 #[test]
 fn what_is_found_is_the_nearest_of_all_assemblies() {
     let mut random = Random::new(0x5ba2);
@@ -113,7 +114,7 @@ fn what_is_found_is_the_nearest_of_all_assemblies() {
             k(0).hypot(k(1))
         };
         let [one, other] = modes(q1, q2);
-        // Where both are as near, either will do.
+        // If both are about equally near, either one is correct.
         if (away(one) - away(other)).abs() < 0.05 {
             continue;
         }
@@ -130,9 +131,9 @@ fn what_is_found_is_the_nearest_of_all_assemblies() {
     }
 }
 
-/// The kinetic metric at the guess: a light crank gives way to a heavy one, by the ratio that Lagrange's multipliers say.
-/// The time has no mass, and what moves with it makes M singular; neither changes what gives way, nor does what is without mass
-/// and takes no part.
+/// The metric is the kinetic one at the guess: a light crank moves more than a heavy one, by the ratio from Lagrange's
+/// multipliers. The time has no mass, and parts that move with it make M singular; neither this nor an uninvolved
+/// massless coordinate changes the result.
 #[test]
 fn what_is_light_gives_way() {
     for [more, moved] in [
@@ -154,7 +155,7 @@ fn what_is_light_gives_way() {
             }}"
         );
         let model = build(&parse_text(&text).expect("a description")).expect("a start");
-        // The least of (x - 1)² + 9 (y - 1)² with x + y = 3, and of (u - 2)² + 9 (v - 1)² with u + v = 0.
+        // Minimises (x - 1)² + 9 (y - 1)² with x + y = 3, and (u - 2)² + 9 (v - 1)² with u + v = 0.
         for (found, expected) in [(&model.start_x, [1.9, 1.1]), (&model.start_xi, [-0.7, 0.7])] {
             for (found, expected) in found.iter().zip(expected) {
                 assert!(
@@ -166,7 +167,8 @@ fn what_is_light_gives_way() {
     }
 }
 
-/// Constraints among the coordinates themselves, too: the nearest point of an ellipse has its normal through the guess.
+/// Constraints among coordinates are handled, too: at the nearest point of an ellipse, the normal passes through the
+/// guess.
 #[test]
 fn constraints_are_solved_near_the_guesses() {
     let mut random = Random::new(3);
@@ -194,8 +196,8 @@ fn constraints_are_solved_near_the_guesses() {
     }
 }
 
-/// Of the parabola b = a², (1, 1) is nearest to (3, 0): 2 (a − 3) + 4 a³ vanishes there; however the axes are turned, and
-/// to all digits, which distances do not tell.
+/// On the parabola b = a², (1, 1) is nearest to (3, 0): 2 (a − 3) + 4 a³ vanishes there. It is found for any
+/// orientation of the axes, and to all digits, which a minimum of distances alone would not give.
 #[test]
 fn the_nearest_is_found_to_all_digits() {
     for axes in [
@@ -219,7 +221,7 @@ fn the_nearest_is_found_to_all_digits() {
     }
 }
 
-/// A hanging body on a ball joint and a rod: rotations and quaternions take part.
+/// A body that hangs from a ball joint and a rod, with a rotation matrix or a quaternion.
 #[test]
 fn rotations_are_guessed_by_rotations() {
     for (kind, guess) in [
@@ -248,7 +250,7 @@ fn rotations_are_guessed_by_rotations() {
                 -(x[0] * x[0] - x[1] * x[1] - x[2] * x[2] + x[3] * x[3]),
             ],
         };
-        // A turn about the first axis is the shortest way, as it is the axis of the guess.
+        // The shortest way is a rotation about the first axis, the axis of the guess.
         let expected = [0.0, 0.6, -0.8];
         assert!(
             (0..3).all(|k| (tip[k] - expected[k]).abs() < 1e-13),
@@ -257,7 +259,7 @@ fn rotations_are_guessed_by_rotations() {
     }
 }
 
-/// A bead on a ring of any size: what is off it by half of it is refused, what is off by rounding is not.
+/// A bead on a ring of any size: a start off by half of the size is refused, one off by rounding is not.
 #[test]
 fn rings_are_of_any_size() {
     let start = |radius: f64, start: &str| {
@@ -284,7 +286,7 @@ fn rings_are_of_any_size() {
     }
 }
 
-/// A linkage is closed, and set in motion, whatever unit its lengths are in.
+/// A linkage is closed and set in motion for any unit of length.
 #[test]
 fn lengths_are_in_any_unit() {
     let start = |unit: f64, closing: &str| {
@@ -319,8 +321,8 @@ fn lengths_are_in_any_unit() {
     }
 }
 
-/// Each loop is judged beside its own terms: one of a million metres excuses none that cannot be closed, and no guess that is
-/// far away does.
+/// Each loop is judged by the size of its terms: neither a loop of a million metres nor a distant guess excuses another
+/// that cannot be closed.
 #[test]
 fn large_loops_excuse_no_others() {
     let open = |text: &str| {
@@ -344,7 +346,7 @@ fn large_loops_excuse_no_others() {
     ));
 }
 
-/// Loops that say a thing twice, of velocities without mass: steps back to them are proved.
+/// Redundant loops with massless velocities: the projection onto them is proved.
 #[test]
 fn redundant_loops_without_mass_are_led_back_to() {
     crate::common::generated(
@@ -353,7 +355,7 @@ fn redundant_loops_without_mass_are_led_back_to() {
     );
 }
 
-/// Steps along A leave a constraint of the coordinates by their square: a start that loops have moved is on φ = 0 all the same.
+/// A step along A violates a coordinate constraint to second order: a start moved by loops still satisfies φ = 0.
 #[test]
 fn starts_that_loops_have_moved_keep_constraints() {
     let mut random = Random::new(0x9_4a1);

@@ -1,5 +1,5 @@
-//! Scenes that are built at random, beside texts that are written apart: with parentheses around every operation, with
-//! numbers in other spellings. What is built is what the text says, and what is printed reads back.
+//! Random scenes are built and also written independently as text, with parentheses around every operation and numbers
+//! in other spellings. Both agree, and the printed scene parses to itself.
 
 use crate::common::Random;
 use hamel_codegen::scene::{
@@ -7,7 +7,7 @@ use hamel_codegen::scene::{
     Parameter, Point, Scene, SceneBuilder, ShapeKind, WORLD, call, choice, in_axes,
 };
 
-/// Names that are legal: words of the language where it does not want them, words of generated code, other letters.
+/// Legal names: keywords of the language where they are allowed, words of generated code, other letters.
 const NAMES: [&str; 20] = [
     "a",
     "m",
@@ -30,10 +30,10 @@ const NAMES: [&str; 20] = [
     "grid[i, k - 1]",
     "__",
 ];
-/// Names that a statement can declare.
+/// Number of names that a statement can declare.
 const DECLARED: usize = 16;
 
-/// Something built, and how the text has it.
+/// A built part with its text.
 type Both<T> = (T, String);
 
 fn name(random: &mut Random) -> &'static str {
@@ -44,7 +44,7 @@ fn word(random: &mut Random) -> &'static str {
     NAMES[random.below(DECLARED)]
 }
 
-/// A number, exactly, in one of several spellings.
+/// Returns an exact number in one of several spellings.
 fn number(random: &mut Random) -> Both<Expr> {
     let whole = random.below(2000) as i32;
     let few = random.below(3) as i32;
@@ -119,13 +119,13 @@ fn expression(random: &mut Random, depth: usize) -> Both<Expr> {
     }
 }
 
-/// A statement of any kind.
+/// Adds a statement of any kind.
 fn statement(random: &mut Random, scene: &mut SceneBuilder) -> String {
     let kind = random.below(40);
     stated(kind, random, scene)
 }
 
-/// A statement that may stand inside of others.
+/// Adds a statement that may be nested.
 fn inner(random: &mut Random, scene: &mut SceneBuilder) -> String {
     let alone = [12, 24, 35, 36, 37, 38, 39];
     let kinds: Vec<usize> = (0..40).filter(|kind| !alone.contains(kind)).collect();
@@ -385,7 +385,7 @@ fn stated(kind: usize, random: &mut Random, scene: &mut SceneBuilder) -> String 
             format!("component C(base: frame, s: vec3 = {of_e}, k) {{ {text} }}")
         }
         _ => {
-            // Names that are made while the program runs.
+            // Names created at run time.
             let argument = format!("k{}", random.below(9));
             scene.part(n, "C", [(argument.as_str(), e)]);
             scene.part("none", "C", []);

@@ -1,4 +1,4 @@
-//! That care rejects the cheapest program, where it should.
+//! The cheapest program is rejected where it loses too many digits.
 
 use hamel_codegen::algebra::double::Double;
 use hamel_codegen::generate::from_text;
@@ -6,10 +6,9 @@ use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{FunctionId, Program};
 
-/// Potentials (x − a)² (x − b)² of places near the start, far from the origin. The slope of their force is a sum of
-/// squares and products of such differences, and expanded it is cheaper: a x² + b x + c, the difference of large terms.
-/// The constraint is there because states are then measured near the start alone. Near the origin, where START is 0.1,
-/// nothing is lost.
+/// Potentials (x − a)² (x − b)² with zeros near the start, far from the origin. The slope of their force is a sum of
+/// squares and products of such differences; expanded, it is cheaper: a x² + b x + c, the difference of large terms.
+/// With the constraint, states are only measured near the start. Near the origin, where START is 0.1, nothing is lost.
 const TEXT: &str = "system Far {
     coord x, y, z; velocity u, v; rate x = u; rate y = y * v; rate z = -z * v;
     constraint y * z = 1; kinetic (u^2 + v^2) / 2;
@@ -18,12 +17,12 @@ const TEXT: &str = "system Far {
     generate accel, linearize;
 }";
 
-/// The digits that ∂(du/dt)/∂x loses at a place, and the operations of the linearisation.
+/// Returns the digits that ∂(du/dt)/∂x loses at a position, and the operations of the linearisation.
 fn digits_and_cost(program: &Program, x: f64) -> (f64, usize) {
     let function = program.function(FunctionId::Linearize).expect("asked for");
     let compiled = Interpreter::new(program, function, &[]);
     let found = compiled.call(&[x, 1.0, 1.0], &[0.0; 2], &[], &[]);
-    // Two displacements, two changes of velocities: row 3, column 1.
+    // Two displacements and two changes of velocities: row 3, column 1.
     let found = found.expect("a value")[2 * 4];
     let exact = [[9999.0, 10000.0], [10001.0, 10002.0]].map(|places| {
         let [a, b] = places.map(|place| Double::new(x) - Double::new(place));
@@ -44,7 +43,7 @@ fn emitted(start: &str) -> Program {
         .program
 }
 
-/// What is emitted keeps the digits that the cheapest program loses, for some operations more.
+/// The emitted program keeps the digits that the cheapest one loses, at the cost of some operations.
 #[test]
 fn the_cheapest_program_is_rejected_for_its_digits() {
     let (cheapest, careful) = (emitted("0.1"), emitted("10000.1"));
@@ -59,7 +58,7 @@ fn the_cheapest_program_is_rejected_for_its_digits() {
     }
 }
 
-/// A spring that hardens, −4 s (q − 1)³, in an arm whose second joint a stiff spring holds.
+/// A hardening spring, −4 s (q − 1)³, in an arm whose second joint is held by a stiff spring.
 const HARDENING: &str = "system Springs {
     param m = 0.5, l = 0.3, g = 0, s = 1e6;
     coord q, p; velocity w, v; rate q = w, p = v;
@@ -71,7 +70,7 @@ const HARDENING: &str = "system Springs {
     generate accel, linearize;
 }";
 
-/// Half as far from its rest it pushes with an eighth, to the last digits: expanded, its terms would cancel there.
+/// At half the deflection its force is an eighth, to the last digits: in expanded form, the terms would cancel.
 #[test]
 fn powers_of_differences_keep_their_digits() {
     let generated = from_text(HARDENING).unwrap_or_else(|errors| panic!("{errors:?}"));

@@ -1,9 +1,10 @@
-//! An attack on claims: random mechanisms with claims of what is constant that are true by construction, and false twins of them.
-//! Every true one is accepted, and every false one refused where it stands.
+//! Attacks claims of invariance: random mechanisms with claims that are true by construction, and false twins of them.
+//! Every true claim is accepted, and every false one is refused at its place.
 //!
-//! Momenta are those of a root that gravity and everything else leave alone; energies need that nothing depends on time; what
-//! vanishes on circles and where constraints hold may be added, times anything. In a twin one number is another one, or a condition
-//! is missing. Both are checked by the motion of a reference in numbers: a twin whose rate of change is zero there is no twin.
+//! Momenta are those of a root on which neither gravity nor other loads act; energies require that nothing depends on
+//! time; multiples of expressions that vanish on circles and on constraints may be added. In a twin, a number is
+//! changed or a condition is missing. Both are checked numerically by the motion of a reference: a twin whose rate of
+//! change is zero does not count.
 
 mod mechanisms;
 mod pieces;
@@ -17,16 +18,16 @@ use mechanisms::drawn;
 use pieces::{Piece, View};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Least pivot, relative to the diagonal, of a matrix that counts as regular here.
+/// Least pivot, relative to the diagonal, of a matrix that counts as regular.
 const REGULAR: f64 = 1e-3;
-/// Rates of change below this, relative to those of the terms, are 0.
+/// Rates of change below this, relative to those of the terms, count as 0.
 const ZERO: f64 = 1e-9;
-/// Rates of change above this are none of rounding.
+/// Rates of change above this cannot be rounding.
 const CERTAIN: f64 = 1e-6;
-/// States at which claims are checked in numbers.
+/// Number of states at which claims are checked numerically.
 const STATES: usize = 3;
 
-/// How the text of a claim is made of its terms.
+/// The form in which a claim contains its terms.
 #[derive(Clone, Copy)]
 enum Form {
     Sum,
@@ -40,7 +41,7 @@ struct Claim {
     named: Option<String>,
     pieces: Vec<Piece>,
     form: Form,
-    /// The values of F and d that it is claimed for.
+    /// The values of F and d in its conditions.
     when: [Option<f64>; 2],
 }
 
@@ -81,7 +82,7 @@ impl Claim {
         format!("invariant {name} = {said}{when};")
     }
 
-    /// The rate of change relative to those of the terms.
+    /// Returns the rate of change relative to those of the terms.
     fn rate(&self, system: &System, (q, v): &(Vec<f64>, Vec<f64>)) -> f64 {
         let mut system = system.clone();
         if let Some((_, values)) = &mut system.acted {
@@ -97,7 +98,7 @@ impl Claim {
         (sum / size).abs()
     }
 
-    /// The same with one number changed, or a condition.
+    /// Returns the claim with a changed number or condition.
     fn twin(&self, random: &mut Random) -> Self {
         let mut twin = self.clone();
         let set: Vec<usize> = (0..2).filter(|&i| twin.when[i].is_some()).collect();
@@ -106,7 +107,7 @@ impl Claim {
             twin.when[place] = [None, Some(0.5)][random.below(2)];
             return twin;
         }
-        // Other numbers have no place in what is named.
+        // Keyword claims have no numbers to change.
         if twin.named.is_some() && random.below(2) == 0 {
             return twin;
         }
@@ -118,7 +119,7 @@ impl Claim {
     }
 }
 
-/// States at which the constraints hold.
+/// Returns states that satisfy the constraints.
 fn states(system: &System, random: &mut Random) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut all = Vec::new();
     for _ in 0..STATES {
@@ -138,13 +139,13 @@ fn states(system: &System, random: &mut Random) -> Vec<(Vec<f64>, Vec<f64>)> {
     all
 }
 
-/// The largest rate of change of a claim at some states.
+/// Returns the largest rate of change of a claim at some states.
 fn largest(claim: &Claim, system: &System, states: &[(Vec<f64>, Vec<f64>)]) -> f64 {
     let rates = states.iter().map(|state| claim.rate(system, state));
     rates.fold(0.0, f64::max)
 }
 
-/// The lines of the claims that are refused in a text.
+/// Returns the lines of the refused claims in a text.
 ///
 /// # Errors
 /// Returns the rendered errors if one of them is not the refusal of a claim.
@@ -185,7 +186,7 @@ fn faults_of(
     if lies.is_empty() {
         return faults;
     }
-    // The false ones between the true ones.
+    // Inserts the false claims between the true ones.
     let mut claims = truths.to_vec();
     for (i, lie) in lies.iter().enumerate() {
         claims.insert((2 * i).min(claims.len()), lie.clone());

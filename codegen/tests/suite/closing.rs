@@ -1,5 +1,5 @@
-//! Closing joints of robots: of their equations those are written that say something. How many these are is counted by hand; that
-//! the others say nothing is shown by writing them again.
+//! Closing joints of robots: only equations that are not redundant are written. Their number is counted by hand; that
+//! the others are redundant is shown by adding them again.
 
 use crate::common::{difference, generated, value};
 use hamel_codegen::derive::reduction::reduce;
@@ -8,7 +8,7 @@ use hamel_codegen::lower::build;
 use hamel_codegen::syntax::parse_text;
 use hamel_codegen::urdf::{Imported, Options, import};
 
-/// A link with mass.
+/// Returns a link with mass.
 fn link(name: &str) -> String {
     format!(
         "<link name='{name}'><inertial><origin xyz='0.2 0.03 0'/><mass value='1.5'/>\
@@ -16,7 +16,7 @@ fn link(name: &str) -> String {
     )
 }
 
-/// A hinge about z, or about another axis.
+/// Returns a hinge about an axis.
 fn hinge(name: &str, [parent, child]: [&str; 2], origin: &str, axis: &str) -> String {
     format!(
         "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
@@ -24,7 +24,8 @@ fn hinge(name: &str, [parent, child]: [&str; 2], origin: &str, axis: &str) -> St
     )
 }
 
-/// Bars on a base that is tilted, two of them side by side and the third one between, and what closes them.
+/// Returns bars on a tilted base, two of them in series and the third one parallel to them, and the joint that closes
+/// them.
 fn bars(tilt: &str, lengths: [&str; 3], more: &str) -> String {
     let [crank, turned, base] = lengths;
     let z = "0 0 1";
@@ -47,7 +48,7 @@ fn bars(tilt: &str, lengths: [&str; 3], more: &str) -> String {
     .concat()
 }
 
-/// `<loop_joint>` between ends of two bars.
+/// Returns a `<loop_joint>` between ends of two bars.
 fn closing(kind: &str, axis: &str, ends: [&str; 4]) -> String {
     let [first, at, second, to] = ends;
     format!(
@@ -59,19 +60,19 @@ fn imported(urdf: &str) -> Imported {
     import(urdf, &Options::default(), "bars.urdf", false).expect("a robot")
 }
 
-/// The equations that are comments.
+/// Returns the equations that are comments.
 fn comments(text: &str) -> Vec<&str> {
     let parts = text.lines().filter(|line| {
         line.ends_with("` always holds") || line.ends_with("` follows from the others")
     });
-    // The equation stands behind the direction.
+    // The equation follows the direction.
     parts
         .map(|line| line.split(": `").nth(1).expect("an equation"))
         .map(|rest| rest.split('`').next().expect("its end"))
         .collect()
 }
 
-/// The same description with the equations that are comments.
+/// Returns the description with the equations that are comments.
 fn with_all(text: &str) -> String {
     let mut all = text.trim_end().trim_end_matches('}').to_string();
     for equation in comments(text) {
@@ -80,7 +81,7 @@ fn with_all(text: &str) -> String {
     all + "}\n"
 }
 
-/// Warnings about rows that say nothing.
+/// Returns the number of warnings about redundant rows.
 fn warnings(text: &str) -> usize {
     let model = build(&parse_text(text).expect("a description")).expect("a model");
     let reduction = reduce(&model).expect("it moves").expect("it has loops");
@@ -95,8 +96,8 @@ fn accel(of: &Generated) -> Vec<f64> {
 
 const LENGTHS: [&str; 3] = ["0.4", "0.9", "0.7"];
 
-/// In a plane a pin takes two equations, a weld three and a slider two, whichever plane it is and however many equations the
-/// closing joint has in space. The others may be written again: they are warned of, and change nothing.
+/// In any plane, a pin needs two equations, a weld three and a slider two, however many equations the closing joint has
+/// in space. Adding the others gives warnings and does not change the motion.
 #[test]
 fn closing_joints_in_a_plane_have_as_many_equations_as_the_plane() {
     let tip = "xyz='0.4 0 0'";
@@ -132,7 +133,8 @@ fn closing_joints_in_a_plane_have_as_many_equations_as_the_plane() {
     }
 }
 
-/// Where all bars lie in one line, the equation along it has no slope: it counts beside that place, and stays.
+/// If all bars are aligned, the equation along them has slope zero; but it is not redundant at neighbouring points, and
+/// remains.
 #[test]
 fn what_vanishes_at_the_start_alone_is_written() {
     let pin = closing(
@@ -151,7 +153,7 @@ fn what_vanishes_at_the_start_alone_is_written() {
     }
 }
 
-/// A ball at the end of bars about axes that are not parallel takes three equations.
+/// A ball joint at the ends of bars with axes that are not parallel needs three equations.
 #[test]
 fn in_space_all_equations_are_written() {
     let skew = [
@@ -172,7 +174,7 @@ fn in_space_all_equations_are_written() {
     assert_eq!(comments(&robot.text), [""; 0]);
 }
 
-/// Ends that no motion brings together are no ends that are together anyway.
+/// Ends that no motion brings together do not count as ends that always coincide.
 #[test]
 fn what_cannot_be_closed_is_refused_as_before() {
     for (tilt, reason) in [
@@ -194,7 +196,7 @@ fn what_cannot_be_closed_is_refused_as_before() {
     }
 }
 
-/// A closing joint that another one makes superfluous is a comment, without its frames.
+/// A redundant closing joint is a comment, without its frames.
 #[test]
 fn a_second_pin_at_the_same_place_is_a_comment() {
     let ends = ["B", "xyz='0.7 0 0'", "C", "xyz='0.4 0 0'"];

@@ -1,12 +1,13 @@
-//! Constraints whose X has several components: the equations are those of the component of the start, however the
-//! constraint is written.
+//! Constraints whose X has several components: the equations are those of the component that contains the start, for
+//! any form of the constraint.
 
 use crate::common::{generated, value};
 
 /// A constraint, the rates of x, y, z, their start, and ξ̇ there.
 type Case = (&'static str, [&'static str; 3], [&'static str; 3], [f64; 2]);
 
-/// Lines, planes and a cylinder in one equation: the slope of the potential y along each velocity, M = I.
+/// Lines, planes and a cylinder as one equation, with M = I and the potential y: ξ̇ is minus its slope along
+/// each velocity.
 #[test]
 fn the_component_of_the_start_is_meant() {
     let cases: [Case; 12] = [
@@ -96,8 +97,8 @@ fn the_component_of_the_start_is_meant() {
     }
 }
 
-/// Four bars of two lengths, by absolute angles: crank and rocker turn alike and the coupler stays level, which is
-/// one of two ways in which the bars close. The velocity is given by its rate, and by its definition.
+/// Four bars of two lengths, by absolute angles: crank and rocker turn equally and the coupler stays level, which is
+/// one of two assemblies. The velocity is given by its rate, or by its definition.
 #[test]
 fn a_parallelogram_stays_one() {
     for rates in [
@@ -129,8 +130,8 @@ fn a_parallelogram_stays_one() {
     }
 }
 
-/// What is nearly a line, a circle or a pair of lines near the start, and is none farther off: ẋ = A ξ against the
-/// derivative of x as a function of y and z.
+/// A set that is almost a line, a circle or a pair of lines near the start, but not elsewhere: ẋ = A ξ is compared with
+/// the derivative of x as a function of y and z.
 #[test]
 fn what_holds_near_the_start_alone_is_no_equation() {
     let state = [0.7, 0.95];
@@ -142,7 +143,7 @@ fn what_holds_near_the_start_alone_is_no_equation() {
                 ("x^2 = 1 - y^2", true),
             ] {
                 let curved = format!("{constraint} + {small:e} * z^{power}");
-                // x or x² as a function of y and z, and its slopes.
+                // x or x² as a function of y and z, and its slopes
                 let at = |[y, z]: [f64; 2]| {
                     let bent = small * z.powi(power);
                     let slope = small * f64::from(power) * z.powi(power - 1);

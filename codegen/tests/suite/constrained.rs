@@ -1,7 +1,7 @@
-//! An attack: constraints on velocities, solved or with multipliers, under forces that are all kinds of
-//! functions of the velocities, dependent ones among them, against M ξ̇ = f + Bᵀ λ, B ξ̇ = −Ḃ ξ in numbers.
+//! Attacks velocity constraints, eliminated or with multipliers, under forces that are functions of all velocities,
+//! including dependent ones: comparison with M ξ̇ = f + Bᵀ λ, B ξ̇ = −Ḃ ξ in numbers.
 //!
-//! Twenty systems in every run, eighty with `HAMEL_ATTACK=more`, two thousand with `HAMEL_ATTACK=full`.
+//! Twenty systems by default, eighty with `HAMEL_ATTACK=more`, two thousand with `HAMEL_ATTACK=full`.
 
 use crate::common::{Random, attack, generated, value};
 use hamel_codegen::generate::from_text;
@@ -82,7 +82,7 @@ fn force(random: &mut Random, n: usize) -> Force {
     }
 }
 
-/// The solution of a small dense system, rows with their right sides.
+/// Returns the solution of a small dense system, given by rows with right sides.
 fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
@@ -99,12 +99,12 @@ fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     (0..n).map(|k| rows[k][n] / rows[k][k]).collect()
 }
 
-/// What is wrong with a random system.
+/// Returns the faults of a random system.
 fn faults(seed: u64) -> Vec<String> {
     let random = &mut Random::new(seed ^ 0xc057);
     let n = 2 + random.below(4);
     let count = 1 + random.below((n - 1).min(2));
-    // Row r stands for velocity r: with the others it has a factor of its own there.
+    // Row r has a nonzero factor at velocity r, at which the other rows have none.
     let rows: Vec<Vec<Option<Factor>>> = (0..count)
         .map(|r| {
             let mut row: Vec<Option<Factor>> = (0..n).map(|_| None).collect();
@@ -208,8 +208,8 @@ fn constraints_under_functions_of_velocities() {
     attack(20, 2000, faults);
 }
 
-/// Constraints may make velocities multiples of one another, and the norm of them √c |ξ| with a c that is no square: of
-/// two bars, whatever the field of the proof is, one is of this kind. Drag along a rail: m ṡ = −|s| s.
+/// Constraints may make velocities proportional, so that their norm is √c |ξ| where c is not a square: in any field of
+/// the proofs, this happens for one of these. Drag along a rail: m ṡ = −|s| s.
 #[test]
 fn norms_of_velocities_that_are_tied_have_roots() {
     for slope in ["2", "3", "5", "1.3 / 0.372"] {
@@ -243,7 +243,7 @@ fn norms_of_velocities_that_are_tied_have_roots() {
     }
 }
 
-/// The value of a/b.
+/// Evaluates the text a/b.
 fn ratio(text: &str) -> f64 {
     let parts = text.split('/').map(|part| part.trim().parse::<f64>());
     let parts: Vec<f64> = parts.map(|part| part.expect("a number")).collect();

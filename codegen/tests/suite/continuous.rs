@@ -1,9 +1,10 @@
-//! What has to be continuous: places that jump are refused wherever they stand, and what only bends is accepted.
+//! Expressions that must be continuous: those with jumps are refused in every statement, and those with kinks are
+//! accepted.
 
 use crate::common::{difference, generated, value};
 use hamel_codegen::generate::from_text;
 
-/// A particle, a number and an angle, and what is said of them.
+/// Returns a system of a particle, a number and an angle, with further statements.
 fn text(said: &str) -> String {
     format!(
         "system A {{ param k = 50, L = 1; coord r: R3, x, z, a: S1; velocity v: vec3, u, w, o;
@@ -13,7 +14,7 @@ fn text(said: &str) -> String {
     )
 }
 
-/// The pull of a rope of length L, as its definition has it.
+/// Returns the pull of a rope of length L, by its definition.
 fn pull(r: &[f64]) -> Vec<f64> {
     let length = r.iter().map(|r| r * r).sum::<f64>().sqrt();
     let pull = 50.0 * (length - 1.0).max(0.0);
@@ -72,7 +73,7 @@ fn what_jumps_is_refused() {
     }
 }
 
-/// A table that is linear between its points moves things with impulses; as a velocity it does not.
+/// A piecewise linear table as a prescribed position implies impulses, and gives a warning; as a velocity it does not.
 #[test]
 fn corners_of_motions_over_time_are_shown() {
     let text = |between: &str, said: &str| {

@@ -1,8 +1,8 @@
-//! One heavy top in many sets of coordinates: with ω for its velocities M, Γ ξ ξ, ∂V and ξ̇ are the same in all of them.
+//! One heavy top in many sets of coordinates: with the velocities ω, M, Γ ξ ξ, ∂V and ξ̇ are the same in all of them.
 
 use crate::common::{difference, generated, value};
 
-/// The top, its rotation `turn` as the description says it.
+/// Returns the top, whose rotation `turn` the description defines.
 fn top(coordinates: &str, velocity: &str) -> String {
     format!(
         "system Top {{
@@ -21,14 +21,14 @@ fn top(coordinates: &str, velocity: &str) -> String {
     )
 }
 
-/// Rates that are given for ω, or ω that is given by rates.
+/// ω defined by rates of the rotation.
 const DEFINED: [&str; 3] = [
     "",
     " = angular_velocity(f) in f",
     " = vee(turn.T * rate(turn))",
 ];
 
-/// Coordinates of the rotation of the quaternion [1, 2, 4, 2] / 5, and which of the definitions ω has.
+/// Coordinates for the rotation of the quaternion [1, 2, 4, 2] / 5, each with the index of the definition of ω.
 const COORDINATES: [(&str, usize); 14] = [
     (
         "coord R: SO3; let turn = R; rate R = R * hat(w); start R = rot([1, 2, 4, 2] / 5);",
@@ -45,13 +45,13 @@ const COORDINATES: [(&str, usize); 14] = [
          start a = 1 / 5, b = 2 / 5, c = 4 / 5, d = 2 / 5;",
         0,
     ),
-    // The same, twice as long.
+    // The same with twice the length.
     (
         "coord a, b, c, d; constraint a^2 + b^2 + c^2 + d^2 = 4; let turn = rot([a, b, c, d] / 2);
          start a = 2 / 5, b = 4 / 5, c = 8 / 5, d = 4 / 5;",
         1,
     ),
-    // Rodrigues' parameters, and the modified ones.
+    // Rodrigues parameters, standard and modified.
     (
         "coord r: R3; let n = 1 + dot(r, r); let turn = identity(3) + (2 / n) * (hat(r) + hat(r) * hat(r));
          rate r = (w + cross(r, w) + r * dot(r, w)) / 2; start r = [2, 4, 2];",
@@ -63,7 +63,7 @@ const COORDINATES: [(&str, usize); 14] = [
          rate r = ((1 - n) * w + 2 * cross(r, w) + 2 * r * dot(r, w)) / 4; start r = [1, 2, 1] / 3;",
         0,
     ),
-    // Two columns, and three rows of which one follows.
+    // Two columns, and three rows of which one is redundant.
     (
         "coord a: R3, b: R3; constraint dot(a, a) = 1, dot(b, b) = 1, dot(a, b) = 0;
          let c = cross(a, b); let turn = [[a[1], b[1], c[1]], [a[2], b[2], c[2]], [a[3], b[3], c[3]]];
@@ -83,7 +83,7 @@ const COORDINATES: [(&str, usize); 14] = [
          let turn = [a, b, c]; start a = [-15, 12, 16] / 25, b = [4 / 5, 9 / 25, 12 / 25], c = [0, 20, -15] / 25;",
         2,
     ),
-    // Angles, as numbers and as circles.
+    // Angles, as numbers and on circles.
     (
         "coord y, p, r; let turn = rotz(y) * roty(p) * rotx(r);
          start y = atan2(4, -3), p = 0, r = atan2(4, -3);",
@@ -98,7 +98,7 @@ const COORDINATES: [(&str, usize); 14] = [
         "coord y, p, r; let turn = rotz(y) * rotx(p) * rotz(r); start y = atan2(4, -3), p = acos(-3 / 5), r = 0;",
         1,
     ),
-    // An axis and an angle; a vector of both.
+    // Axis and angle, and the rotation vector.
     (
         "coord e: R3, t; constraint dot(e, e) = 1;
          let turn = identity(3) + sin(t) * hat(e) + (1 - cos(t)) * hat(e) * hat(e);
@@ -122,7 +122,7 @@ fn a_top_is_the_same_in_all_coordinates() {
         let state: [&[f64]; 4] = [&model.start_x, &model.start_xi, &[0.3, -0.2, 0.5], &[]];
         functions.map(|name| value(&of, name, state))
     });
-    // M is J, whatever describes the rotation.
+    // M is J for all coordinates of the rotation.
     let inertia = [0.5, 0.02, -0.03, 0.02, 0.6, 0.04, -0.03, 0.04, 0.3];
     for (of, (coordinates, _)) in numbers.iter().zip(COORDINATES) {
         assert!(difference(&inertia, &of[1]) < 1e-15, "{coordinates}");

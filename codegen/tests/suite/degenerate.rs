@@ -1,11 +1,11 @@
-//! Systems of which little is left: only time, only states, everything prescribed. No stage panics.
+//! Degenerate systems: only time, only states, everything prescribed. No stage panics.
 
 use hamel_codegen::emit::c::{Options, Precision, files};
 use hamel_codegen::emit::rust;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::proof::check::{Verdict, check};
 
-/// Descriptions that are right.
+/// Correct descriptions.
 const SYSTEMS: [&str; 8] = [
     "time t; coord x; velocity v; rate x = v; particle mass 1 at [x, 0, 0]; prescribe x = sin(1000000 * t);",
     "time t; joint h: revolute [0, 0, 1] moves f; body on f { mass 1; com [1, 0, 0]; inertia diag(1, 1, 1) about com; }
@@ -49,7 +49,7 @@ fn no_stage_panics() {
             };
             files(&generated.program, &options);
         }
-        // A table that there is not is refused, too.
+        // A table that does not exist is refused, too.
         let _ = generated.tables(&[]);
     }
 }

@@ -1,4 +1,4 @@
-//! Text that parses, names that are legal, parts of bounded size.
+//! Generated text parses, names are legal, and parts have bounded size.
 
 mod comment;
 mod evaluate;
@@ -17,7 +17,7 @@ use sketch::{Declared, function, sketch};
 use std::collections::HashSet;
 
 fn methods(file: &syn::File) -> Vec<&syn::ImplItemFn> {
-    // The type itself stands first; what follows are views of its parameters, states and inputs.
+    // The type comes first, followed by views of its parameters, states and inputs.
     let of = file.items.iter().find_map(|item| match item {
         syn::Item::Struct(item) => Some(item.ident.clone()),
         _ => None,
@@ -221,7 +221,7 @@ fn names_are_unique() {
     }
 }
 
-/// The names of the parameters, and those of the functions after them.
+/// Returns the names of the parameters and functions in generated code.
 fn named(params: &[&str], functions: &[&str]) -> (Vec<String>, Vec<String>) {
     let params: Vec<_> = params.iter().map(|&p| (p, ShapeKind::Scalar)).collect();
     let declared = Declared {
@@ -256,7 +256,7 @@ fn names_of_parameters_depend_on_parameters_alone() {
             "e"
         ]
     );
-    // Capitals alone are no reason for another name; letters of the same name are told apart by numbers.
+    // Capitals do not need other names; names that differ only in case are distinguished by numbers.
     assert_eq!(named(&["M", "Theta"], &["m"]).0, ["m", "theta"]);
     assert_eq!(
         named(&["Θ", "θ", "theta"], &[]).0,
@@ -278,8 +278,8 @@ fn names_of_parameters_do_not_depend_on_what_is_generated() {
     assert_eq!(names.accessors, ["energy_2"]);
 }
 
-/// Where values are read far from where they are computed parts are short, elsewhere long; both are worth what the
-/// program is.
+/// Parts are short if values are read far from their computation, otherwise long; both compute the values of the
+/// program.
 #[test]
 fn long_functions_are_cut() {
     for (program, limit) in [(random(3000, 5), 70), (reaching(3000, 5, 12), 500)] {
@@ -334,7 +334,7 @@ fn long_functions_are_cut() {
     }
 }
 
-/// In C a number is returned, and what a function returns it reads from where it is: there is no `out`.
+/// In C a number is returned, and the function reads it from the slots: there is no `out`.
 #[test]
 fn numbers_of_long_functions_are_returned_in_c() {
     let files = c::files(&random(3000, 0), &c::Options::default());
@@ -348,10 +348,10 @@ fn numbers_of_long_functions_are_returned_in_c() {
     assert!(!parts.contains("out["), "{energy}");
 }
 
-/// What depends on parameters alone is computed once, and is one function in C, however long it is.
+/// Values that depend on parameters only are computed once, by a single function in C of any length.
 #[test]
 fn only_what_is_called_often_is_in_short_parts() {
-    // As for C, whose compilers take functions of any length.
+    // As for C, whose compilers accept functions of any length.
     let options = Options {
         chunk: usize::MAX,
         ..Options::default()

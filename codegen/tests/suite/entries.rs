@@ -1,9 +1,9 @@
-//! Statements about entries of vectors do what they do about scalars in their place.
+//! Statements about entries of vectors are equivalent to those about scalars.
 
 use crate::common::{Random, difference, generated, value};
 use hamel_codegen::generate::{Generated, from_text};
 
-/// A particle by a vector, and by three numbers; the same is said of both.
+/// Returns a particle given by a vector, and by three numbers, with the same statements.
 fn both(said: &str) -> [Generated; 2] {
     let forces = "accel, constraint_force, inverse_dynamics";
     let text = |declared: &str, at: &str, said: &str| {
@@ -56,7 +56,7 @@ fn entries_are_prescribed_pushed_and_started_as_scalars_are() {
     }
 }
 
-/// Counters are indices, and so are the parts of components and of poses.
+/// Counters can be indices, also in components and poses.
 #[test]
 fn entries_are_named_by_counters_and_in_parts() {
     let text = |said: &str| {

@@ -1,25 +1,25 @@
-//! An attack: random expressions with roots, powers of 2, decimals of all sizes, exact angles and what
-//! is nearly equal, against their value in numbers of 200 bits.
+//! Attacks expressions: random ones with roots, powers of 2, decimals of all sizes, exact angles and nearly equal
+//! values are compared with their value in numbers of 200 bits.
 //!
-//! An output may be off by some dozens of roundings of the expression as it was written, as a bound that
-//! is carried along has it, and by nothing else. A hundred expressions in every run, five
-//! hundred with `HAMEL_ATTACK=more`, ten thousand with `HAMEL_ATTACK=full`.
+//! The error of an output is bounded by several dozen roundings of the expression as written, according to a propagated
+//! bound. A hundred expressions by default, five hundred with `HAMEL_ATTACK=more`, ten thousand with
+//! `HAMEL_ATTACK=full`.
 
 use crate::common::{Random, attack, value};
 use crate::precise::Precise;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 
-/// Outputs of a system.
+/// Number of outputs of a system.
 const OUTPUTS: usize = 12;
-/// Roundings that another order of the same operations may cost.
+/// Factor for the rounding of the same operations in another order.
 const ORDERS: f64 = 64.0;
 
 #[derive(Clone, Debug)]
 enum Expr {
     /// Text and value.
     Number(String, Precise),
-    /// One of a, b (parameters), x, y (coordinates).
+    /// One of the parameters a, b or coordinates x, y.
     Symbol(usize),
     Add(Box<Expr>, Box<Expr>),
     Sub(Box<Expr>, Box<Expr>),
@@ -50,8 +50,8 @@ impl Expr {
         }
     }
 
-    /// Value and a bound of what roundings to 2⁻⁵³ do to it; `None` where it has no value, or none that
-    /// roundings leave anything of.
+    /// Returns the value and a bound of its error from roundings to 2⁻⁵³; `None` if it is undefined, or rounding may
+    /// make it so.
     fn at(&self, symbols: &[Precise; 4]) -> Option<(Precise, Precise)> {
         let unit = Precise::power_of_two(-53);
         let rounded = |value: Precise, error: Precise| {
@@ -76,7 +76,7 @@ impl Expr {
             }
             Expr::Div(a, b) => {
                 let ((a, e), (b, f)) = (a.at(symbols)?, b.at(symbols)?);
-                // Of a divisor a few digits have to be left.
+                // The divisor must keep at least three digits.
                 let least = &b.abs() - &(&f * &Precise::of(1e3));
                 if least.is_negative() || b.abs().to_f64() < 1e-200 {
                     return None;
@@ -92,7 +92,7 @@ impl Expr {
             }
             Expr::Sqrt(a) => {
                 let (a, e) = a.at(symbols)?;
-                // Whether there is a value has to be certain.
+                // The sign of the radicand must be certain.
                 let least = &a - &(&e * &Precise::of(1e3));
                 if least.is_negative() {
                     return None;
@@ -111,7 +111,7 @@ impl Expr {
                 } else {
                     a.cos()
                 };
-                // A program may reduce an exact angle in another way.
+                // A program may reduce an exact angle differently.
                 let error = &e + &(&a.abs() * &unit);
                 rounded(value, error)
             }
@@ -127,7 +127,7 @@ fn number(random: &mut Random) -> Expr {
             exact(format!("2^{power}"), Precise::power_of_two(power as i32))
         }
         1 => {
-            // One beside a power of 2.
+            // One less than a power of 2.
             let power = 20 + random.below(50);
             let value = &Precise::power_of_two(power as i32) - &Precise::of(1.0);
             exact(format!("(2^{power} - 1)"), value)
@@ -147,7 +147,7 @@ fn number(random: &mut Random) -> Expr {
         4 => {
             let k = 1 + random.below(23);
             let angle = &(&Precise::of(k as f64) * &Precise::pi()) / &Precise::of(12.0);
-            // Right angles are exact, and π of 200 bits is not.
+            // Right angles are exact, whereas π of 200 bits is not.
             let cosine = random.below(2);
             match cosine {
                 0 if k % 12 == 6 => exact(format!("cos({k} * pi / 12)"), Precise::of(0.0)),
@@ -203,7 +203,7 @@ fn expression(random: &mut Random, depth: usize, pool: &[Expr]) -> Expr {
         7 => Expr::Square(next(random)),
         8 | 9 => Expr::Sqrt(next(random)),
         10 => {
-            // |e| in disguise.
+            // |e| as a root.
             Expr::Sqrt(Box::new(Expr::Square(next(random))))
         }
         _ => {
@@ -217,7 +217,7 @@ fn expression(random: &mut Random, depth: usize, pool: &[Expr]) -> Expr {
     }
 }
 
-/// What is wrong with the outputs of a random system.
+/// Returns the faults of the outputs of a random system.
 fn faults(seed: u64) -> Vec<String> {
     let random = &mut Random::new(seed);
     let mut pool: Vec<Expr> = Vec::new();
@@ -237,7 +237,7 @@ fn faults(seed: u64) -> Vec<String> {
         Ok(of) => of,
         Err(errors) => {
             let said = render(&errors, "test", &text, false);
-            // True where an output has no value anywhere.
+            // Correct if an output is undefined everywhere.
             let reasons = [
                 "something that is identically zero",
                 "root of a negative number",
@@ -260,7 +260,7 @@ fn faults(seed: u64) -> Vec<String> {
             let Some((expected, bound)) = e.at(&symbols) else {
                 continue;
             };
-            // What f64 cannot hold is no fault of the program.
+            // Values out of the range of f64 are not faults of the program.
             let size = expected.abs().to_f64();
             let is_zero = !(-&expected.abs()).is_negative();
             if !is_zero && !(1e-250..1e250).contains(&size) {

@@ -1,5 +1,4 @@
-//! Functions in Rust: what is the same and what is not, how often they are called, which names they get; and parameters
-//! of components with a shape.
+//! Functions in Rust: equality, number of calls, and names; and parameters of components with a shape.
 
 use hamel_codegen::emit;
 use hamel_codegen::generate::{Generated, from_text};
@@ -17,7 +16,7 @@ fn code(text: &str) -> String {
     emit::file(&generated(text).program, &options).expect("Rust")
 }
 
-/// A top with a load from elsewhere, redundant coordinates and constraints on velocities.
+/// A top with an external load, redundant coordinates and velocity constraints.
 const TOP: &str = "pub system Top {
     param m = 2, l = 0.5;
     extern fn wind(height, speed) -> 2;
@@ -35,7 +34,7 @@ const TOP: &str = "pub system Top {
     generate all, linearize;
 }";
 
-/// R₃₃ is the third entry of the third axis; the lengths are written in two ways, but f(−a) is not f(a).
+/// R₃₃ is the third entry of the third axis, and the lengths have two equivalent forms; but f(−a) is not f(a).
 #[test]
 fn equal_arguments_have_equal_values() {
     let top = generated(TOP);
@@ -61,7 +60,7 @@ fn identities_hold_for_any_function() {
     }
 }
 
-/// One call for all components, another for all slopes.
+/// One call returns all components, another one all slopes.
 #[test]
 fn functions_are_called_once() {
     let text = code(TOP);
@@ -80,7 +79,7 @@ fn functions_are_called_once() {
     assert!(text.contains("fn wind_jacobian(&self, height: S, speed: S) -> [[S; 2]; 2];"));
 }
 
-/// Whatever names there are, the text is Rust, and a system without such functions has no trait.
+/// For any names, the generated text is valid Rust, and a system without such functions has no trait.
 #[test]
 fn names_do_not_collide() {
     let text = |name: &str, function: &str, parameter: &str| {
@@ -104,7 +103,7 @@ fn names_do_not_collide() {
     assert!(!alone.contains("trait ") && alone.contains("struct A<S>"));
 }
 
-/// With a shape or without, arguments are the same expressions.
+/// With or without a shape, arguments are the same expressions.
 #[test]
 fn parameters_with_shapes_are_their_arguments() {
     let robot = |hip: &str, turn: &str| {

@@ -1,14 +1,14 @@
-//! Multibody systems of the literature, written with joints, each against something independent:
-//! published equations, a mass matrix derived by hand, another description, Newton and Euler.
+//! Multibody systems of the literature, described with joints, each compared with an independent source: published
+//! equations, a mass matrix derived by hand, another description, or the Newton-Euler equations.
 
 use crate::common::{Random, difference, generated, value};
 use crate::tree::{Kind, Link, Tree};
 use hamel_codegen::generate::Generated;
 use std::fmt::Write;
 
-/// Roundings of a few hundred operations.
+/// Rounding of a few hundred operations.
 const CLOSE: f64 = 1e-11;
-/// States tried per system.
+/// Number of states per system.
 const STATES: usize = 5;
 
 fn text(path: &str) -> String {
@@ -16,7 +16,7 @@ fn text(path: &str) -> String {
     std::fs::read_to_string(format!("{folder}{path}.eom")).expect("it is in the repository")
 }
 
-/// A fixture with the functions that are asked for.
+/// Returns a fixture with the requested functions.
 fn model(path: &str, functions: &str) -> Generated {
     let text = text(path);
     let end = text.rfind('}').expect("a system ends with a brace");
@@ -51,7 +51,7 @@ fn furuta_pendulum_has_the_published_equations() {
     }
 }
 
-/// A cart with n pendulums in a row, point masses at the ends of rods; unequal in every respect.
+/// Returns a cart with a chain of n pendulums, point masses at the ends of rods; all different.
 fn cart_chain(n: usize) -> String {
     let mut text = String::from(
         "system CartChain {\n joint cart: prismatic [1, 0, 0] moves f0;\n body on f0 { mass 2; }\n",
@@ -69,13 +69,13 @@ fn cart_chain(n: usize) -> String {
     text + " gravity [0, 0, -9.81];\n generate mass_matrix, potential_force, bias;\n}\n"
 }
 
-/// Mass and length of a rod.
+/// Returns mass and length of a rod.
 fn link(i: usize) -> (f64, f64) {
     (0.5 + 0.25 * i as f64, 0.75 + 0.125 * i as f64)
 }
 
-/// With angles θᵢ from the vertical, M₀₀ = Σ m, M₀ᵢ = μᵢ lᵢ cos θᵢ, M_ij = μ_max lᵢ l_j cos(θᵢ − θ_j)
-/// with μᵢ the mass from rod i on; joint angles add up to θᵢ.
+/// With angles θᵢ from the vertical, M₀₀ = Σ m, M₀ᵢ = μᵢ lᵢ cos θᵢ, M_ij = μ_max lᵢ l_j cos(θᵢ − θ_j), where μᵢ is the
+/// mass from rod i on; θᵢ is the sum of the joint angles.
 #[test]
 fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
     let mut random = Random::new(0xca);
@@ -96,7 +96,7 @@ fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
                     link(low).1 * moment(high) * (theta[i - 1] - theta[j - 1]).cos()
                 }
             };
-            // ∂/∂qᵢ = Σ_{k ≥ i} ∂/∂θ_k.
+            // ∂/∂qᵢ = Σ_{k ≥ i} ∂/∂θ_k
             let from = |i: usize| if i == 0 { 0..=0 } else { i..=n };
             let mut wanted = Vec::new();
             for i in 0..=n {
@@ -119,7 +119,7 @@ fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
                 .collect();
             let found = value(&system, "potential_force", at);
             assert!(difference(&wanted, &found) < CLOSE, "gravity of {n} rods");
-            // The cart feels the centripetal forces of the rods alone.
+            // Only the centripetal forces of the rods act on the cart.
             let pull: f64 = (1..=n)
                 .map(|k| -moment(k) * theta[k - 1].sin() * spin[k - 1] * spin[k - 1])
                 .sum();
@@ -138,7 +138,7 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Rᵀ a.
+/// Rᵀ a
 fn back(r: &[f64], a: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| (0..3).map(|k| r[3 * k + i] * a[k]).sum())
 }
@@ -150,7 +150,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// `two_bodies` has the rotation and the spin of its second body in the world, by hand.
+/// `two_bodies` has the rotation and the spin of its second body in the world, converted by hand.
 #[test]
 fn double_spherical_pendulum_is_two_bodies() {
     let joints = model("multibody/double_spherical_pendulum", "accel, energy");
@@ -169,7 +169,7 @@ fn double_spherical_pendulum_is_two_bodies() {
         let (a, b) = (value(&joints, "energy", at), value(&hand, "energy", there));
         assert!(difference(&a, &b) < CLOSE, "energy");
         let (a, b) = (value(&joints, "accel", at), value(&hand, "accel", there));
-        // d/dt (Rᵀ ω₁ + ω) = Rᵀ ω̇₁ − ω × Rᵀ ω₁ + ω̇.
+        // d/dt (Rᵀ ω₁ + ω) = Rᵀ ω̇₁ − ω × Rᵀ ω₁ + ω̇
         let carried = back(relative, &a[..3]);
         let turned = cross([xi[3], xi[4], xi[5]], seen);
         let mut wanted = a[..3].to_vec();
@@ -178,7 +178,7 @@ fn double_spherical_pendulum_is_two_bodies() {
     }
 }
 
-/// The forces that a motion needs are those of Newton and Euler, and of the wrench on the hull.
+/// Inverse dynamics agrees with the Newton-Euler equations, including the wrench on the hull.
 #[test]
 fn quadrotor_with_load_obeys_newton_and_euler() {
     let system = model("multibody/quadrotor_load", "accel, inverse_dynamics");
@@ -216,7 +216,7 @@ fn quadrotor_with_load_obeys_newton_and_euler() {
     }
 }
 
-/// ν and n of every fixture.
+/// Checks ν and n of every fixture.
 #[test]
 fn fixtures_have_their_sizes() {
     for (name, size) in [
@@ -232,7 +232,7 @@ fn fixtures_have_their_sizes() {
     }
 }
 
-/// What a motion needs, and the motion under forces on joints, against Newton and Euler.
+/// Compares inverse dynamics, and forward dynamics with forces on joints, with the Newton-Euler equations.
 fn obeys_newton_and_euler(
     path: &str,
     links: &[Link],
@@ -254,7 +254,7 @@ fn obeys_newton_and_euler(
             difference(&tree.needed(&dot, 1.0), &needed) < CLOSE,
             "{path}"
         );
-        // Light parts are fast: the forces are compared, relative to the largest inertia force.
+        // Light parts have large accelerations, so forces are compared, relative to the largest inertia force.
         let motion = value(&system, "accel", at);
         let rest = tree.needed(&vec![0.0; program.n], 1.0);
         let (whole, wanted) = (tree.needed(&motion, 1.0), forces(&tree, &u));

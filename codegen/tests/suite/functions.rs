@@ -1,10 +1,10 @@
-//! Functions of a description: a call is the expression with the arguments in it, and nothing else.
+//! Functions in descriptions: a call is equivalent to the expression with its arguments inserted.
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::emit;
 use hamel_codegen::generate::from_text;
 
-/// A body in the plane with drag, a spring by a function of a function, a frame, and what is `given`.
+/// Returns a body in the plane with drag, a spring by a nested function, a frame, and further statements.
 fn body(statements: &str, drag: &str, spring: &str, place: &str) -> String {
     format!(
         "system Body {{
@@ -24,7 +24,7 @@ fn body(statements: &str, drag: &str, spring: &str, place: &str) -> String {
     )
 }
 
-/// The emitted code of a description, without the hash of its text.
+/// Returns the emitted code of a description, without the hash of its text.
 fn code(text: &str) -> String {
     let generated = from_text(text).unwrap_or_else(|errors| panic!("{text}: {errors:#?}"));
     let options = emit::Options::default();
@@ -62,7 +62,7 @@ fn a_call_is_the_expression() {
     );
 }
 
-/// Velocities of frames in a function wait for the rates, as they do elsewhere.
+/// Velocities of frames in a function are resolved after the rates, as elsewhere.
 #[test]
 fn functions_of_motion_wait_for_the_rates() {
     let functions = "fn speed(p: vec3) = norm(velocity(f, p)); let s = speed([0, 0, l]);";
@@ -176,8 +176,8 @@ fn a_function_without_a_call_is_a_warning() {
     );
 }
 
-/// Chains of calls and calls that double end with an error, soon and without an overflow of the stack that build scripts and
-/// the command line have.
+/// Chains of calls and doubling calls end with an error, quickly and without a stack overflow on the stack of build
+/// scripts and of the command line.
 #[test]
 fn what_functions_write_out_is_bounded() {
     let deep = std::thread::Builder::new().stack_size(8 << 20);

@@ -1,4 +1,4 @@
-//! The energy where what is written as `kinetic` has terms that are linear in the velocities, or without them: ẋ · ∂L/∂ẋ − L.
+//! The energy ẋ · ∂L/∂ẋ − L if `kinetic` has terms that are linear in the velocities or independent of them.
 
 use crate::common::{Random, generated, value};
 use hamel_codegen::generate::from_text;
@@ -12,13 +12,13 @@ const MAGNETIC: &str = "system Magnetic {
     invariant energy;
 }";
 
-/// A charge in a uniform field turns at q B / m and keeps ½ m v² + V; the field does no work.
+/// A charge in a uniform field rotates at q B / m and conserves ½ m v² + V; the field does no work.
 #[test]
 fn a_magnetic_field_does_no_work() {
     let of = generated(MAGNETIC);
     let mut random = Random::new(3);
     for _ in 0..20 {
-        // The time, then r.
+        // The time, then r
         let (x, v) = (random.numbers(4), random.numbers(3));
         let squares: f64 = v.iter().map(|v| v * v).sum();
         let kinetic = value(&of, "kinetic_energy", [&x, &v, &[], &[]])[0];
@@ -30,14 +30,14 @@ fn a_magnetic_field_does_no_work() {
         for (found, expected) in rates.iter().zip([turn * v[1], -turn * v[0], -0.7]) {
             assert!((found - expected).abs() < 1e-13, "{rates:?}");
         }
-        // The momentum has the potential of the field.
+        // The momentum includes the vector potential of the field.
         let p = value(&of, "momentum", [&x, &v, &[], &[]]);
         assert!((p[0] - 1.3 * v[0] + 3.0 * x[2]).abs() < 1e-13);
         assert!((p[1] - 1.3 * v[1] - 3.0 * x[1]).abs() < 1e-13);
     }
 }
 
-/// In axes that turn, T₂ − T₀ + V is Jacobi's integral; a velocity that is 0 takes nothing from it.
+/// In rotating axes, T₂ − T₀ + V is Jacobi's integral; an inactive velocity does not change it.
 #[test]
 fn jacobis_integral_is_constant() {
     for more in [
@@ -66,8 +66,8 @@ fn jacobis_integral_is_constant() {
     }
 }
 
-/// Random energies T₂ + T₁ + T₀ and V keep T₂ − T₀ + V as long as they do not depend on the time: the claim is proved, and the
-/// one of T + V is refuted.
+/// Random energies T₂ + T₁ + T₀ and V conserve T₂ − T₀ + V if they are independent of time: the claim is proved, and it
+/// is refuted with a V that depends on time.
 #[test]
 fn the_energy_of_random_gyroscopic_terms_is_constant() {
     for seed in 0..6 {
@@ -88,7 +88,7 @@ fn the_energy_of_random_gyroscopic_terms_is_constant() {
     }
 }
 
-/// The energy of pivots that move with time is still the kinetic energy in space.
+/// With pivots that move with time, the energy is still the kinetic energy in space.
 #[test]
 fn moving_points_have_their_energy_in_space() {
     let of = generated(
@@ -107,7 +107,7 @@ fn moving_points_have_their_energy_in_space() {
     }
 }
 
-/// Velocities that are seen from a drifting frame do not change the energy: T is quadratic in ẋ, and so is its part of h.
+/// Velocities relative to a drifting frame do not change the energy: T is quadratic in ẋ, and so is its part of h.
 #[test]
 fn drifting_velocities_leave_the_energy_as_it_is() {
     let of = generated(

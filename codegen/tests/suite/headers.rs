@@ -1,4 +1,4 @@
-//! Headers of C.
+//! C headers.
 
 use hamel_codegen::emit::c::{Options, Precision, files};
 use hamel_codegen::generate::from_text;

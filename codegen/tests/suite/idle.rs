@@ -1,8 +1,8 @@
-//! Where M is singular since nothing resists the motion of a joint, the message names it, and its advice can be followed.
+//! If M is singular because the motion of a joint has no inertia, the message names the joint, and its help is valid.
 
 use hamel_codegen::generate::from_text;
 
-/// The message and the advice that a description gets.
+/// Returns message and help for a refused description.
 fn refusal(text: &str) -> [String; 2] {
     let errors = from_text(text).expect_err("M is singular");
     let [error] = errors.as_slice() else {
@@ -14,8 +14,8 @@ fn refusal(text: &str) -> [String; 2] {
     ]
 }
 
-/// A crank and a rocker with a slender rod between ball joints, along an axis of its frame: its spin about itself is idle. With the
-/// joint that is proposed it moves.
+/// A slender rod between ball joints connects a crank and a rocker, along an axis of its frame: the spin about itself
+/// has no inertia. With the proposed joint the mechanism can be derived.
 #[test]
 fn the_spin_of_a_slender_rod_is_named() {
     for (axis, shown) in [
@@ -50,7 +50,7 @@ fn the_spin_of_a_slender_rod_is_named() {
         let joint = joint.expect("a joint is proposed");
         let heeded = text.replace("joint ball: spherical", joint);
         assert!(from_text(&heeded).is_ok(), "{heeded}");
-        // So does a little inertia.
+        // A small inertia also suffices.
         assert!(from_text(&text.replace("identity(3) - [", "identity(3) - 0.99 * [")).is_ok());
     }
 }
@@ -69,7 +69,7 @@ fn a_joint_that_moves_nothing_is_named() {
         help.starts_with("nothing resists the motion of the joint `c`"),
         "{help}"
     );
-    // What several joints do together has no name.
+    // A combined motion of several joints has no name.
     let [_, help] = refusal(
         "system Arm {
             joint a: revolute [0, 0, 1] moves A;

@@ -1,11 +1,11 @@
-//! Included files: what they say counts where they are included, and what is wrong in them is shown there.
+//! Included files: their statements take effect where they are included, and errors point into them.
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::{Generated, from_file, from_text, from_tokens};
 use hamel_codegen::render::{render, to_compile_errors, warnings};
 use std::io::{Error, ErrorKind};
 
-/// Files by their paths from the description.
+/// Files by their paths relative to the description.
 type Files<'a> = &'a [(&'a str, &'a str)];
 
 fn read(text: &str, files: Files<'_>) -> Result<Generated, Vec<Diagnostic>> {
@@ -23,7 +23,7 @@ fn correct(text: &str, files: Files<'_>) -> Generated {
     generated.unwrap_or_else(|errors| panic!("{}", render(&errors, "main.eom", text, false)))
 }
 
-/// What is shown of a description that has to be wrong.
+/// Returns the rendered errors of a wrong description.
 fn shown(text: &str, files: Files<'_>) -> String {
     let errors = read(text, files).expect_err("wrong");
     assert!(
@@ -69,19 +69,19 @@ fn what_is_included_counts_where_it_is() {
     assert!(system.model.warnings.is_empty());
     let written = from_text(WRITTEN).expect("correct");
     assert!(code(system.clone()) == code(written), "other code");
-    // What the file says is part of the hash.
+    // The hash includes the contents of the file.
     let other = correct(
         MAIN,
         &[("lib/cart.eom", &CART.replace("stiff = 3", "stiff = 4"))],
     );
     assert_ne!(other.hash, system.hash);
-    // Tokens, as a macro has them.
+    // As tokens, for the macro.
     let tokens = MAIN.parse().expect("tokens");
     let (_, expanded) = from_tokens(tokens, &mut |name| open(files, name));
     assert_eq!(expanded.expect("correct").hash, system.hash);
 }
 
-/// Paths start at the file in which they stand, those of tables as well; a file counts once.
+/// Paths are relative to the file that contains them, including those of tables; a file is included once.
 #[test]
 fn files_include_files() {
     let main = "system S {
@@ -125,7 +125,7 @@ fn errors_are_in_the_included_text() {
 #[test]
 fn what_cannot_be_included_is_refused() {
     let mut all = shown(MAIN, &[]);
-    // In a circle, over a second file.
+    // A cycle through a second file.
     let circle: Files<'_> = &[
         ("lib/cart.eom", "include \"more.eom\";\n"),
         ("lib/more.eom", "const a = 1;\ninclude \"cart.eom\";\n"),
@@ -140,7 +140,7 @@ fn what_cannot_be_included_is_refused() {
     let closed: Files<'_> = &[("lib/cart.eom", "const a = 1;\n}\n")];
     all += &shown(MAIN, closed);
     insta::assert_snapshot!(all);
-    // Deeper than files are.
+    // Beyond the greatest depth.
     let names: Vec<String> = (0..20).map(|i| format!("{i}.eom")).collect();
     let texts: Vec<String> = (1..21).map(|i| format!("include \"{i}.eom\";")).collect();
     let deep: Vec<(&str, &str)> = names
@@ -156,7 +156,7 @@ fn what_cannot_be_included_is_refused() {
     );
 }
 
-/// What is wrong in a claim is found after all is read; a warning is placed, too.
+/// Errors in claims are found after parsing; warnings have places, too.
 #[test]
 fn later_errors_and_warnings_have_their_places() {
     let claim = CART.replace("potential", "invariant p = x; potential");
@@ -180,7 +180,7 @@ fn later_errors_and_warnings_have_their_places() {
     );
 }
 
-/// The macro shows errors of an included file where it is included, with the line.
+/// The macro shows errors of an included file at the `include`, with file and line.
 #[test]
 fn the_macro_says_where_in_the_file() {
     let wrong = CART.replace("mass m;", "mass [m, 1];");

@@ -1,11 +1,11 @@
-//! Inerters (Smith 2002), whose force is in proportion to the relative acceleration, against the equations by hand.
+//! Inerters (Smith 2002), whose force is proportional to the relative acceleration, compared with equations by hand.
 
 use crate::common::{Random, difference, generated, value};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::proof::check::{Verdict, check};
 use hamel_codegen::scene::{CoordKind, Element, Expr, Point, Scene, ShapeKind, WORLD};
 
-/// ξ̇ at (x, ξ, u).
+/// Returns ξ̇ at (x, ξ, u).
 fn accel(of: &Generated, x: &[f64], xi: &[f64], u: &[f64]) -> Vec<f64> {
     value(of, "accel", [x, xi, u, &[]])
 }
@@ -17,7 +17,7 @@ fn proved(of: &Generated) {
     }
 }
 
-/// A quarter of a car: two masses, and between them spring, damper and inerter.
+/// A quarter-car model: two masses with a spring, damper and inerter between them.
 const SUSPENSION: &str = "
 system Suspension {
     param m = 250, w = 35, k = 15000, c = 900, b = 130, tyre = 150000;
@@ -39,7 +39,7 @@ fn a_suspension_has_the_textbook_equations() {
     let mut random = Random::new(5);
     for _ in 0..8 {
         let (x, xi) = (random.numbers(2), random.numbers(2));
-        // m (z̈ + s̈) = −k s − c ṡ − b s̈ of the cabin, w z̈ = −tyre z + k s + c ṡ + b s̈ of the wheel.
+        // m (z̈ + s̈) = −k s − c ṡ − b s̈ for the cabin, w z̈ = −tyre z + k s + c ṡ + b s̈ for the wheel
         let pull = k * x[1] + c * xi[1];
         let road = -tyre * x[0];
         let determinant = w * (m + b) + m * b;
@@ -51,7 +51,7 @@ fn a_suspension_has_the_textbook_equations() {
     }
 }
 
-/// Along a line that turns: (m + b) r̈ = m r θ̇², and m r² θ̇ is constant.
+/// Along a rotating line: (m + b) r̈ = m r θ̇², and m r² θ̇ is constant.
 const TURNING: &str = "
 system Turning {
     param m = 2;
@@ -78,7 +78,7 @@ fn a_line_that_turns_bears_no_moment() {
             (x * v[0] + y * v[1]) / length,
             (x * v[1] - y * v[0]) / length,
         ];
-        // r̈ and the acceleration along the line are apart by r θ̇² = across² / r; across the line nothing acts.
+        // r̈ differs from the acceleration along the line by r θ̇² = across² / r; no force acts across the line.
         let outwards = 2.0 * across * across / length / 5.0 - across * across / length;
         let expected = [outwards * x / length, outwards * y / length];
         let found = accel(&of, &r, &v, &[]);
@@ -86,7 +86,7 @@ fn a_line_that_turns_bears_no_moment() {
     }
 }
 
-/// A flywheel between two shafts, on the difference of their speeds.
+/// A flywheel between two shafts, driven by the difference of their speeds.
 #[test]
 fn rates_are_as_good_as_lines() {
     let of = generated(

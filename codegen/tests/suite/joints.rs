@@ -1,17 +1,17 @@
-//! Joints are a shorthand: every kind is the same system as the one written by hand with
-//! coordinates, velocities, rates and frames, by values and by operation counts.
+//! Joints are a shorthand: every kind is equivalent to a system written by hand with coordinates, velocities, rates and
+//! frames, in values and in operation counts.
 
 use crate::common::{Random, difference, generated, value};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::count;
 use hamel_codegen::proof::check::{Verdict, check};
 
-/// Two descriptions of one system in the same coordinates: roundings of a few hundred operations.
+/// Tolerance for two descriptions of one system in the same coordinates: rounding of a few hundred operations.
 const SAME: f64 = 1e-12;
-/// States tried per pair.
+/// Number of states per pair.
 const STATES: usize = 5;
 
-/// What carries the joint, and what it carries.
+/// The base and the body of the joint.
 const REST: &str = "
     joint ground: revolute [0, 0, 1] moves base { damping 0.3; };
     body on base { mass 2; com [0.1, 0, 0.2]; inertia diag(0.3, 0.2, 0.1) about com; }
@@ -21,7 +21,7 @@ const REST: &str = "
     generate accel, energy, inverse_dynamics;
 ";
 
-/// A joint, and the same by hand.
+/// Joints, each with its equivalent by hand.
 const PAIRS: [(&str, &str); 17] = [
     (
         "joint j: continuous [0, 0, 2] on base at [0, 0, 1] moves g { stiffness 3; rest 0.4; }",
@@ -129,7 +129,7 @@ fn every_kind_is_what_is_written_by_hand() {
         let program = &short.program;
         for _ in 0..STATES {
             let x = random.configuration(&program.blocks);
-            // Coordinates stand in the same order in both: those of `ground` are last.
+            // Coordinates are in the same order in both: those of `ground` are last.
             let (xi, u) = (random.numbers(program.n), random.numbers(program.m));
             let dot = random.numbers(program.n);
             let at = [x.as_slice(), &xi, &u, &dot];
@@ -142,7 +142,7 @@ fn every_kind_is_what_is_written_by_hand() {
     }
 }
 
-/// The shorthand costs nothing: never more than what is written by hand.
+/// Joints never cost more than the description by hand.
 #[test]
 fn joints_cost_nothing() {
     for (joint, hand) in PAIRS {
@@ -158,7 +158,7 @@ fn joints_cost_nothing() {
     }
 }
 
-/// Identities, energy and power of a system with many kinds.
+/// Checks identities, energy and power of a system with many kinds of joints.
 #[test]
 fn identities_hold() {
     let text = "system S {
@@ -177,7 +177,7 @@ fn identities_hold() {
     }
 }
 
-/// What the recursion over the tree reads: pose in the frame before, its zeros and ones exact.
+/// Relative poses for the recursion over the tree have exact zeros and ones.
 #[test]
 fn relative_poses_are_sparse() {
     let text = "system S {
@@ -196,7 +196,7 @@ fn relative_poses_are_sparse() {
         let (rotation, _) = &model.frames[index].relative;
         rotation.iter().flatten().filter(known).count()
     };
-    // Cosine twice, sine twice, and five of 0 and ±1.
+    // Two cosines, two sines, and five entries of 0 and ±1.
     assert_eq!([constants(0), constants(1)], [5, 5]);
     assert_eq!(model.joints.len(), 2);
     assert_eq!(model.joints[1].velocities, ["shoulder_dot"]);

@@ -1,4 +1,4 @@
-//! Numbers of generated C.
+//! Numbers in generated C.
 
 use hamel_codegen::emit::c::Precision::{Double, Float};
 

@@ -1,9 +1,9 @@
-//! Closed loops some of whose rows vanish or follow from others, against what the mechanism does by hand.
+//! Closed loops with rows that vanish or are redundant, compared with the motion by hand.
 
 use crate::common::{generated, value};
 use hamel_codegen::generate::Generated;
 
-/// ξ̇ at the start.
+/// Returns ξ̇ at the start.
 fn accel(of: &Generated) -> Vec<f64> {
     let model = &of.active;
     let inputs = vec![0.0; model.u.len()];
@@ -15,8 +15,8 @@ fn close(found: f64, expected: f64) {
     assert!(error < 1e-9, "{found} for {expected}");
 }
 
-/// Two hinges with parallel axes keep the second link level: b = -a. The rows of the loop are -sin(a + b) and cos(a + b)
-/// times the same velocities, and the first of them vanishes where the loop is closed.
+/// Two hinges with parallel axes keep the second link level: b = -a. The rows of the loop are -sin(a + b) and cos(a +
+/// b) times the same velocities, and the first one vanishes where the loop is closed.
 #[test]
 fn a_link_is_kept_level() {
     for a in [0.7, -1.9, 3.0] {
@@ -38,7 +38,7 @@ fn a_link_is_kept_level() {
     }
 }
 
-/// A ball joint with one axis held turns about this axis: Θ ẇ = torque of the weight.
+/// A ball joint with one axis held rotates about this axis: Θ ẇ is the torque of the weight.
 #[test]
 fn an_axis_of_a_ball_joint_is_held() {
     for (axis, turn, theta, arms) in [
@@ -60,7 +60,7 @@ fn an_axis_of_a_ball_joint_is_held() {
     }
 }
 
-/// A table on an arm, kept from turning by all nine entries of its rotation: every point of it moves as the arm's end does.
+/// A table on an arm, kept from rotating by all nine entries of its rotation: every point of it moves as the arm's end.
 #[test]
 fn a_table_is_kept_from_turning() {
     for held in [
@@ -97,7 +97,7 @@ fn a_table_is_kept_from_turning() {
     }
 }
 
-/// Two angles on circles are the same: one of the two rows vanishes at each multiple of a right angle, never both.
+/// Two equal angles on circles: at each multiple of a right angle, one of the two rows vanishes, but never both.
 #[test]
 fn one_row_may_vanish_on_the_way() {
     let of = generated(
@@ -120,14 +120,14 @@ fn one_row_may_vanish_on_the_way() {
     }
 }
 
-/// Bennett's mechanism, `more` beside it.
+/// Returns Bennett's mechanism, with further statements.
 fn bennett(more: &str) -> Generated {
     let second =
         "body on g2 { mass 1; com [b / 2, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }";
     bennett_with(second, more)
 }
 
-/// The same with what the second link carries.
+/// Returns Bennett's mechanism with this load on its second link.
 fn bennett_with(second: &str, more: &str) -> Generated {
     generated(&format!(
         "system Bennett {{
@@ -153,8 +153,8 @@ fn bennett_with(second: &str, more: &str) -> Generated {
     ))
 }
 
-/// Opposite links of Bennett's mechanism turn alike, and what moves it does no work beyond that of its weight: also where
-/// a row of the loop vanishes, at q1 = 0.
+/// Opposite links of Bennett's mechanism rotate equally, and the total power of loads and inertia is zero, even where a
+/// row of the loop vanishes, at q1 = 0.
 #[test]
 fn bennetts_mechanism_passes_its_folded_position() {
     for q1 in [0.0, 1e-7, 0.3, 1.0] {
@@ -169,7 +169,7 @@ fn bennetts_mechanism_passes_its_folded_position() {
     }
 }
 
-/// Overconstrained mechanisms are driven as others are.
+/// Overconstrained mechanisms can be driven like others.
 #[test]
 fn overconstrained_mechanisms_are_driven() {
     let pushed =
@@ -184,7 +184,7 @@ fn overconstrained_mechanisms_are_driven() {
     close(other[other.len() - 2], rates[1]);
 }
 
-/// A crank that drives a slider by a rod without mass: M of the three joints alone is singular.
+/// Returns a crank that drives a slider by a massless rod: M of the three joints is singular.
 fn slider(rod: &str, more: &str) -> Generated {
     generated(&format!(
         "system Slider {{
@@ -201,7 +201,7 @@ fn slider(rod: &str, more: &str) -> Generated {
     ))
 }
 
-/// s = r cos a + √(l² − r² sin² a), (J + m s'²) ä + m s' s'' ȧ² = −m g s', whatever is said of a rod whose mass is 0.
+/// s = r cos a + √(l² − r² sin² a), (J + m s'²) ä + m s' s'' ȧ² = −m g s', with or without a rod of mass 0.
 #[test]
 fn links_of_a_loop_need_no_mass() {
     let (inertia, mass, r, l) = (0.02, 0.7, 0.1, 0.3_f64);
@@ -221,7 +221,7 @@ fn links_of_a_loop_need_no_mass() {
             close(found[2], slope * expected + bend * rate * rate);
         }
     }
-    // Where rows depend on one another, too: the coupler has no mass, or nearly none.
+    // With redundant rows as well: the coupler has no mass, or almost none.
     let folded = "start q1 = 0, q2 ~ 3, q3 ~ 0, w1 = -0.7;";
     let (none, little) = (
         bennett_with("", folded),
@@ -236,7 +236,7 @@ fn links_of_a_loop_need_no_mass() {
             "{none} and {little}"
         );
     }
-    // And where the crank is driven.
+    // With a driven crank.
     let driven = slider(
         "",
         "input F; prescribe rate(a_dot) = F; start a = 0.7, a_dot = 2;",

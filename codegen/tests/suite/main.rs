@@ -1,4 +1,5 @@
-//! Laws of what is derived and emitted, one module for each subject; a module alone: `cargo test -p hamel-codegen --test suite mounts::`.
+//! Laws of derivation and emission, one module for each subject. To run a single module:
+//! `cargo test -p hamel-codegen --test suite mounts::`.
 
 #[path = "common/arm.rs"]
 mod arm;

@@ -1,8 +1,8 @@
-//! An attack: coordinates without inertia that loops or given rates tie to others, against M ξ̇ = f + Bᵀ λ, B ξ̇ = b by
-//! elimination with pivots.
+//! Attacks coordinates without inertia that loops or prescribed rates relate to others: comparison with M ξ̇ = f + Bᵀ
+//! λ, B ξ̇ = b by elimination with pivots.
 //!
-//! What moves is determined where M is positive definite on the directions that B leaves; M itself may have any rank. Forty systems
-//! in every run, four times as many with `HAMEL_ATTACK=more`, three thousand with `HAMEL_ATTACK=full`.
+//! The motion is determined if M is positive definite on the kernel of B; M itself may have any rank. Forty systems by
+//! default, four times as many with `HAMEL_ATTACK=more`, three thousand with `HAMEL_ATTACK=full`.
 
 mod joints;
 
@@ -11,9 +11,9 @@ use crate::dense::{least_pivot, solution};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 
-/// Least pivot, relative to the diagonal, of a matrix that counts as regular here.
+/// Least pivot, relative to the diagonal, of a matrix that counts as regular.
 const REGULAR: f64 = 1e-3;
-/// Bound of rounding, relative to the size of what is compared.
+/// Bound of rounding, relative to the size of the compared values.
 const ROUNDING: f64 = 1e-9;
 
 /// Σ cⱼ qⱼ + d sin qᵢ.
@@ -49,7 +49,7 @@ impl Function {
         slopes
     }
 
-    /// The second derivative along a motion of constant rates.
+    /// Returns the second derivative along a motion of constant rates.
     fn curvature(&self, q: &[f64], v: &[f64]) -> f64 {
         let (d, i) = self.sine;
         -d * q[i].sin() * v[i] * v[i]
@@ -70,7 +70,7 @@ struct System {
     couplings: Vec<(f64, usize, usize)>,
     stiffness: Vec<f64>,
     loops: Vec<Loop>,
-    /// A velocity with a given rate.
+    /// A velocity with a prescribed rate.
     driven: Option<(usize, f64)>,
 }
 
@@ -81,7 +81,7 @@ impl System {
         let random = &mut Random::new(seed);
         let n = 2 + random.below(4);
         let count = 1 + random.below(n - 1);
-        // The last coordinates follow the first ones.
+        // The last coordinates depend on the first ones.
         let loops: Vec<Loop> = (n - count..n)
             .map(|given| {
                 let mut by = Function::random(random, n);
@@ -140,7 +140,7 @@ impl System {
         }
     }
 
-    /// M and f − h − ∂V.
+    /// Returns M and f − h − ∂V.
     fn inertia_and_force(&self, q: &[f64], v: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let n = self.n;
         let mut mass = vec![vec![0.0; n]; n];
@@ -170,7 +170,7 @@ impl System {
         (mass, force)
     }
 
-    /// B and b.
+    /// Returns B and b.
     fn rows(&self, q: &[f64], v: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let (mut rows, mut right) = (Vec::new(), Vec::new());
         for row in &self.loops {
@@ -188,7 +188,7 @@ impl System {
         (rows, right)
     }
 
-    /// A point and a velocity that satisfy the loops.
+    /// Returns a point and a velocity that satisfy the loops.
     fn state(&self, mut free: impl FnMut() -> f64) -> (Vec<f64>, Vec<f64>) {
         let mut q: Vec<f64> = (0..self.n).map(|_| free()).collect();
         let mut v: Vec<f64> = (0..self.n).map(|_| free()).collect();
@@ -202,7 +202,7 @@ impl System {
         (q, v)
     }
 
-    /// The least pivot of M on the directions that the rows leave, relative to the diagonal; 1 where they leave none.
+    /// Returns the least pivot of M on the kernel of the rows, relative to the diagonal; 1 if the kernel is zero.
     fn least_pivot(&self, q: &[f64]) -> f64 {
         let n = self.n;
         let still = vec![0.0; n];
@@ -222,7 +222,7 @@ impl System {
         least_pivot(&mass, &columns)
     }
 
-    /// ξ̇ of M ξ̇ − Bᵀ λ = f, B ξ̇ = b.
+    /// Returns ξ̇ of M ξ̇ − Bᵀ λ = f, B ξ̇ = b.
     fn acceleration(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         solution(self.inertia_and_force(q, v), self.rows(q, v))
     }
@@ -288,7 +288,7 @@ fn ties_carry_what_has_no_inertia() {
     });
 }
 
-/// An inerter that amplifies rounding in M, and a loop that ties the direction that has none.
+/// An inerter that amplifies rounding in M, and a loop that determines the massless direction.
 #[test]
 fn a_loop_over_a_direction_without_mass() {
     let text = "system C {
@@ -313,8 +313,8 @@ fn a_loop_over_a_direction_without_mass() {
     );
 }
 
-/// A slider without mass that a loop ties to a given motion: M is 0 for all that is solved for, and the loop alone says how it
-/// moves, and carries its spring.
+/// A massless slider that a loop relates to a prescribed motion: M is 0 for the unknowns, and the loop alone determines
+/// the motion and carries the spring.
 #[test]
 fn loops_to_given_motions_carry_what_has_no_mass_at_all() {
     let of = generated(
@@ -347,7 +347,7 @@ fn loops_to_given_motions_carry_what_has_no_mass_at_all() {
         (rate[0] - expected).abs() < 1e-12,
         "{rate:?}, not {expected}"
     );
-    // 0 = −3 a + λ (1 + 0.3 cos a); the drive moves its own mass and what the loop asks of it.
+    // 0 = −3 a + λ (1 + 0.3 cos a); the drive accelerates its mass and carries the force of the loop.
     let forces = value(&of, "constraint_force", [&x, &[v], &[], &[]]);
     let bond = 3.0 * a / slope;
     for (found, expected) in forces.iter().zip([bond, -2.0 * t.sin() + bond]) {

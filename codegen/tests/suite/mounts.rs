@@ -1,9 +1,9 @@
-//! An attack: arms whose mounts have exact angles, roots and awkward numbers in them, against their
-//! definition in numbers of 200 bits.
+//! Attacks mounts: arms whose mounts contain exact angles, roots and awkward numbers are compared with their definition
+//! in numbers of 200 bits.
 //!
-//! M = Σ m Jᵥᵀ Jᵥ + J_ωᵀ Θ J_ω with the Jacobians of absolute poses, Γ ξ ξ by differences of M over 2⁻⁶⁰,
-//! and ∂V by Jacobians: nothing of this is the generator's. Some arms in every run, dozens with
-//! `HAMEL_ATTACK=more`, two thousand with `HAMEL_ATTACK=full`.
+//! M = Σ m Jᵥᵀ Jᵥ + J_ωᵀ Θ J_ω with the Jacobians of absolute poses, Γ ξ ξ by differences of M over 2⁻⁶⁰, and ∂V by
+//! Jacobians, independently of the generator. A few arms by default, dozens with `HAMEL_ATTACK=more`, two thousand with
+//! `HAMEL_ATTACK=full`.
 
 use crate::common::{Random, attack, value};
 use crate::precise::{
@@ -14,7 +14,7 @@ use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 
-/// Roundings of a program, relative to the size of what it adds up.
+/// Rounding of a program, relative to the size of its terms.
 const CLOSE: f64 = 1e-13;
 
 /// A number: its text in the language and its value.
@@ -24,7 +24,7 @@ fn decimal(text: &str) -> Number {
     (text.to_string(), Precise::parse(text))
 }
 
-/// A number that people write, or one that a program wrote.
+/// Returns a number as written by people or by a program.
 fn number(random: &mut Random) -> Number {
     match random.below(4) {
         0 => decimal(&format!("{}", random.below(5) as i64 - 2)),
@@ -34,7 +34,7 @@ fn number(random: &mut Random) -> Number {
     }
 }
 
-/// An angle whose sine, cosine or tangent is known, or one of another function.
+/// Returns an angle with a known sine, cosine or tangent, or a value of another function.
 fn inverse(random: &mut Random) -> Number {
     let (n, d) = (1 + random.below(11), 12 + random.below(4));
     let part = &Precise::of(n as f64) / &Precise::of(d as f64);
@@ -49,7 +49,7 @@ fn inverse(random: &mut Random) -> Number {
     }
 }
 
-/// An angle: a multiple of π/12, that of a triangle of sides 3, 4, 5, one of an inverse function, or any.
+/// Returns an angle: a multiple of π/12, one of a triangle of sides 3, 4, 5, one of an inverse function, or any.
 fn angle(random: &mut Random) -> Number {
     match random.below(9) {
         8 => inverse(random),
@@ -69,7 +69,7 @@ fn angle(random: &mut Random) -> Number {
     }
 }
 
-/// A rotation.
+/// Returns a rotation.
 fn turn(random: &mut Random) -> (String, Matrix) {
     let unit =
         |k: usize| -> Three { std::array::from_fn(|i| Precise::of(f64::from(u8::from(i == k)))) };
@@ -84,7 +84,7 @@ fn turn(random: &mut Random) -> (String, Matrix) {
             )
         }
         4 => {
-            // Cosine and sine of a triangle.
+            // Cosine and sine of a triangle
             let text = "rotx(4/5, 3/5)".to_string();
             (
                 text,
@@ -185,14 +185,14 @@ impl Arm {
         }
     }
 
-    /// M and ∂V.
+    /// Returns M and ∂V.
     fn at(&self, q: &[Precise]) -> (Vec<Vec<Precise>>, Vec<Precise>) {
         let n = self.links.len();
         let zero = || Precise::of(0.0);
         let mut mass = vec![vec![zero(); n]; n];
         let mut slope = vec![zero(); n];
         let (mut frame, mut origin): (Matrix, Three) = (identity(), [zero(), zero(), zero()]);
-        // World axes and places of the joints so far.
+        // Axes and positions of the joints so far, in the world.
         let mut joints: Vec<(bool, Three, Three)> = Vec::new();
         for (link, q) in self.links.iter().zip(q) {
             origin = plus(&origin, &apply(&frame, &link.place));
@@ -206,7 +206,7 @@ impl Arm {
             }
             let centre = plus(&origin, &apply(&frame, &link.com));
             let none = || [zero(), zero(), zero()];
-            // Velocity of the centre, and angular velocity in the axes of the body.
+            // Velocity of the centre of mass, and angular velocity in body axes.
             let columns: Vec<(Three, Three)> = joints
                 .iter()
                 .map(|(slides, axis, place)| {
@@ -281,7 +281,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| value.abs().max(most))
 }
 
-/// The least pivot of a positive matrix without square roots, over the largest entry.
+/// Returns the least pivot of a positive definite matrix, without square roots, relative to the largest entry.
 fn least_pivot(mass: &[f64], n: usize) -> f64 {
     let (mut rest, scale) = (mass.to_vec(), largest(mass));
     let mut least = f64::INFINITY;
@@ -297,7 +297,7 @@ fn least_pivot(mass: &[f64], n: usize) -> f64 {
     least
 }
 
-/// How far a program is from the definition, in units of what is allowed; an error where refused.
+/// Compares a program with the definition; returns an error if it is refused or wrong.
 fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
     let of: Generated = match from_text(&arm.text) {
         Ok(of) => of,
@@ -323,7 +323,7 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
                 .zip(&found)
                 .map(|(a, b)| (a - b).abs())
                 .fold(0.0, f64::max);
-            // NaN is no small error.
+            // False for NaN as well.
             if error <= CLOSE * scale {
                 return Ok(());
             }
@@ -338,11 +338,11 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
         let compiled = Interpreter::new(&of.program, function, &of.program.defaults);
         let accel = match compiled.call_with([&x, &xi, &[], &[], &[]]) {
             Ok(accel) => accel,
-            // Two slides along one line and their like have no accelerations.
+            // Without accelerations: for example, two slides along the same line.
             Err(_) if least_pivot(&expected_mass, n) < 1e-12 => continue,
             Err(pivot) => return Err(format!("accel at {x:?}: pivot {pivot} is refused")),
         };
-        // M ξ̇ + h + ∂V = 0: the error of ξ̇ is that of a stable solution.
+        // M ξ̇ + h + ∂V = 0 up to the rounding of a stable solution.
         let force = scale * largest(&accel) + largest(&bias) + largest(&slope) + scale;
         for i in 0..n {
             let row = (0..n)
@@ -369,7 +369,7 @@ fn mounts_at_exact_and_awkward_angles() {
     });
 }
 
-/// Arms that were wrong, or were refused, modulo 2⁶¹ − 1: their M at rest, in closed form where short.
+/// Arms that were once wrong or refused modulo 2⁶¹ − 1: their M at rest, in closed form if short.
 #[test]
 fn arms_of_the_first_attack() {
     let quarter = "system A {

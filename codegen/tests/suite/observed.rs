@@ -1,6 +1,6 @@
-//! What is observed of a motion, on every model of the tests: poses, twists, Jacobians and bias accelerations of
-//! frames, the momentum about the centre of mass, and the slopes of outputs, of inverse dynamics and of ξ̇ by parameters,
-//! against differences of what they are slopes of, in numbers. What a proof says of them is another matter: here no derivative is taken.
+//! Observed functions on every model of the tests: poses, twists, Jacobians and bias accelerations of frames, the
+//! momentum about the centre of mass, and the slopes of outputs, of inverse dynamics and of ξ̇ by parameters, compared
+//! with numerical differences. This is independent of the proofs: no derivative is taken here.
 
 use crate::common::{Random, attack, generated, value};
 use crate::some::some;
@@ -15,9 +15,9 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/models");
-/// Step of differences that are extrapolated to fourth order.
+/// Step of differences, which are extrapolated to fourth order.
 const STEP: f64 = 2e-4;
-/// Of the largest entry: h⁴ with what derivatives there are, and roundings over h.
+/// Relative to the largest entry: h⁴ times derivatives, and rounding over h.
 const CLOSE: f64 = 1e-8;
 
 struct Case {
@@ -49,7 +49,7 @@ impl Case {
         value.unwrap_or_else(|pivot| panic!("{}: {function}: pivot {pivot}", self.name))
     }
 
-    /// x a time h later at constant ξ, by one step of Runge and Kutta.
+    /// Returns x after a time h at constant ξ, by one Runge-Kutta step.
     fn later(&self, h: f64) -> Vec<f64> {
         let rate = |x: &[f64]| self.call("rate", x, &self.xi, &[]);
         let ahead = |k: &[f64], h: f64| -> Vec<f64> {
@@ -77,7 +77,7 @@ impl Case {
     }
 }
 
-/// d/dh of f at 0, fourth order.
+/// d/dh of f at 0, to fourth order
 fn slope(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let central = |h: f64| -> Vec<f64> {
         let (ahead, behind) = (f(h), f(-h));
@@ -91,7 +91,7 @@ fn slope(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         .collect()
 }
 
-/// A model that is asked for everything that is observed; `None` where there is nothing.
+/// Generates a model with all observed functions; `None` if it has none.
 fn case(path: &Path) -> Option<Case> {
     let text = std::fs::read_to_string(path).expect("a text");
     let mut open = |name: &str| std::fs::read_to_string(path.with_file_name(name));
@@ -103,7 +103,7 @@ fn case(path: &Path) -> Option<Case> {
     if let Some(name) = frame {
         asked.push(format!("jacobian {name}, jacobian {name} in {name}"));
     }
-    // What `kinetic` says has no momentum in space, nor has what stands still.
+    // Energies given by `kinetic` have no momentum in space, and neither has a body at rest.
     if !model.bodies.is_empty() && !text.contains("kinetic") {
         asked.push("centroidal_map, centroidal_bias, centre_of_mass".into());
     }
@@ -119,12 +119,12 @@ fn case(path: &Path) -> Option<Case> {
     Some(case.unwrap_or_else(|errors| panic!("{errors}")))
 }
 
-/// A model that is asked for these functions, near its start and not at rest; what is said where they are refused.
+/// Generates these functions of a model at a state near its start, not at rest; returns the errors if they are refused.
 fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
     let generated = crate::models::asked_for(path, asked)?;
     let name = path.display().to_string();
     let model = &generated.active;
-    // Somewhere near the start, and not at rest.
+    // Near the start, and not at rest.
     let moving = |i: usize| 0.3 + 0.17 * i as f64 - 0.01 * (i * i) as f64;
     let xi = [&model.start_xi[..], &model.start_z].concat();
     let n = model.n();
@@ -139,7 +139,7 @@ fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
     })
 }
 
-/// The models that slow comparisons look at, and what they make of a number that is meant for all.
+/// Returns the models for slow comparisons, and a function that scales a count for all models to these.
 fn slow() -> (Vec<PathBuf>, impl Fn(usize) -> usize) {
     let all = crate::models::models(Path::new(FOLDER));
     let of = all.len();
@@ -177,12 +177,12 @@ fn what_is_observed_agrees_with_differences() {
     );
 }
 
-/// How often each was seen.
+/// Returns the sums of the counts.
 fn summed<const N: usize>(seen: impl ParallelIterator<Item = [usize; N]>) -> [usize; N] {
     seen.reduce(|| [0; N], |a, b| std::array::from_fn(|i| a[i] + b[i]))
 }
 
-/// Of inverse dynamics by displacements and velocities, and of ξ̇ by parameters.
+/// Slopes of inverse dynamics by displacements and velocities, and of ξ̇ by parameters.
 #[test]
 fn slopes_of_dynamics_agree_with_differences() {
     let (all, part) = slow();
@@ -244,7 +244,7 @@ fn parameter_slopes(case: &Case) {
             let value = changed.call(&case.x, &case.xi, &case.u, &[]);
             value.unwrap_or_else(|pivot| panic!("{}: pivot {pivot}", case.name))
         };
-        // Steps that are short for parameters of any size.
+        // Small steps for parameters of any size.
         let scale = 1e-2 * defaults[column].abs().clamp(1e-3, 1.0);
         let slopes = slope(|d| along(d * scale));
         let ours: Vec<f64> = ours.iter().map(|slope| slope * scale).collect();
@@ -252,7 +252,7 @@ fn parameter_slopes(case: &Case) {
     }
 }
 
-/// Random trees with all kinds of joints, mounts in any direction, frames placed on frames, joints that follow others.
+/// Random trees with all kinds of joints, mounts in any direction, frames on frames, and joints that follow others.
 #[test]
 fn frames_of_random_trees_agree_with_differences() {
     attack(6, 600, |seed| {
@@ -328,7 +328,7 @@ fn frame(case: &Case, jacobian: &Jacobian) {
     columns(case, "a Jacobian", &map, |xi| twist_at(&case.x, xi));
 }
 
-/// The columns of a map are what each velocity adds.
+/// Checks that each column of a map is the contribution of one velocity.
 fn columns(case: &Case, what: &str, map: &[f64], of: impl Fn(&[f64]) -> Vec<f64>) {
     let n = case.generated.active.n();
     let here = of(&case.xi);
@@ -353,7 +353,7 @@ fn momentum(case: &Case) {
         &bias,
         &slope(|h| at(&case.later(h), &case.xi)),
     );
-    // P = m ċ, m of what moves: the same factor in all directions.
+    // P = m ċ, where m is the moving mass: the same factor in all directions.
     let speed = slope(|h| case.call("centre_of_mass", &case.later(h), &case.xi, &[]));
     let largest = (0..3).max_by(|&i, &j| speed[i].abs().total_cmp(&speed[j].abs()));
     let largest = largest.expect("three");
@@ -407,8 +407,8 @@ fn output_slopes(case: &Case, output: &str) {
     }
 }
 
-/// The momentum about the centre of mass is the same in orbit as on the ground: nothing is lost to the place and the
-/// velocity of the whole.
+/// The momentum about the centre of mass is the same in orbit and on the ground, without loss of digits from position
+/// and velocity of the whole.
 #[test]
 fn momenta_about_the_centre_of_mass_are_the_same_anywhere() {
     let of = generated(

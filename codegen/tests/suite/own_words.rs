@@ -1,5 +1,5 @@
-//! Messages have no names but those that the user wrote, and the words of the language: what the generator calls things inside is
-//! nobody's business. Wrong descriptions, and right ones with names that are misspelt at random.
+//! Messages contain only names that the user wrote and words of the language, no internal names of the generator.
+//! Checked for wrong descriptions, and for correct ones with randomly misspelt names.
 
 use crate::common::{Random, attack};
 use crate::models::models;
@@ -11,25 +11,25 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Names of fewer letters stand for anything in what messages propose, as in `rate q = v;`.
+/// Shorter names are placeholders in proposals, such as `rate q = v;`.
 const LETTERS: usize = 4;
 
-/// What stands behind names that joints, functions and words of Rust become.
+/// Suffixes of names derived from joints, functions and keywords of Rust.
 const BEHIND: [&str; 13] = [
     "dot", "r", "R", "v", "w", "d", "p", "1", "2", "slopes", "twist", "body", "",
 ];
 
-/// Words of proposals that stand for what the user would write there, or for what a text has there.
+/// Words of proposals that are placeholders for what the user would write.
 const PROPOSED: &str = "DEFAULT EXPRESSION LOWER NAME Name UPPER argument error f64 false file foot force from ground knee left link mat3
     mount name number path pchip point rate sym2 sym3 system then torque true values vec2 vec3 vecN when with y_slopes";
 
-/// The identifiers of a text.
+/// Returns the identifiers of a text.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
     words.filter(|word| word.starts_with(|c: char| c.is_alphabetic() || c == '_'))
 }
 
-/// The words of the language.
+/// Returns the words of the language.
 fn vocabulary_words() -> &'static BTreeSet<String> {
     static ALL: OnceLock<BTreeSet<String>> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -49,7 +49,7 @@ fn vocabulary_words() -> &'static BTreeSet<String> {
     })
 }
 
-/// The names in backticks that nobody wrote.
+/// Returns the names in backticks that are neither from the text nor from the language.
 fn foreign(error: &Diagnostic, text: &str) -> Vec<String> {
     let written: BTreeSet<&str> = words(text).collect();
     let is_known = |word: &str| written.contains(word) || vocabulary_words().contains(word);
@@ -114,7 +114,7 @@ fn messages_name_what_was_written() {
     assert!(all.is_empty(), "{}:\n{}", all.len(), all.join("\n"));
 }
 
-/// A name of a right description, misspelt in one place.
+/// Misspells a name of a correct description in one place.
 fn misspelt(text: &str, random: &mut Random) -> String {
     let names: Vec<&str> = words(text).collect();
     let name = names[random.below(names.len())];
@@ -142,7 +142,7 @@ fn misspelt_names_are_answered_by_those_that_were_written() {
     });
 }
 
-/// The rate of a coordinate by another name than its velocity has.
+/// Proposes the velocity of a coordinate where its rate is called by another name.
 #[test]
 fn a_rate_that_has_a_name_is_proposed() {
     let system = |more: &str| {

@@ -1,8 +1,8 @@
-//! Powers with a fractional exponent where their base is 0: contacts in the air, friction and drag at rest.
+//! Powers with a fractional exponent at base 0: contacts in the air, friction and drag at rest.
 
 use crate::common::{generated, value};
 
-/// The slopes of ẇ by (z, w) at a state, as A ends in them.
+/// Returns the slopes of ẇ by (z, w) at a state, the last entries of A.
 fn slopes(of: &hamel_codegen::generate::Generated, x: &[f64], xi: &[f64]) -> [f64; 2] {
     let all = value(of, "linearize", [x, xi, &[], &[]]);
     assert!(all.iter().all(|entry| entry.is_finite()), "{all:?}");
@@ -16,7 +16,7 @@ fn system(statements: &str) -> String {
     )
 }
 
-/// A contact by Hertz, and by Hunt and Crossley, does nothing in the air, and has the slopes of its law in the ground.
+/// Hertz and Hunt-Crossley contacts have no force in the air, and the slopes of their laws in the ground.
 #[test]
 fn a_contact_in_the_air_does_nothing() {
     for (law, p) in [
@@ -43,7 +43,7 @@ fn a_contact_in_the_air_does_nothing() {
     }
 }
 
-/// Slopes of forces at 0 are 0 where the exponent is above 1; beside it they are those of the laws.
+/// The slopes of forces at 0 are 0 if the exponent exceeds 1; elsewhere they are those of the laws.
 #[test]
 fn forces_by_powers_have_slopes_at_zero() {
     let third = 0.25_f64.powf(1.0 / 3.0);
@@ -83,7 +83,7 @@ fn forces_by_powers_have_slopes_at_zero() {
     }
 }
 
-/// A mass whose inverse is infinite is no mass.
+/// A mass with an infinite inverse is refused.
 #[test]
 fn a_subnormal_pivot_is_refused() {
     use hamel_codegen::program::interpret::Interpreter;
@@ -100,7 +100,7 @@ fn a_subnormal_pivot_is_refused() {
     }
 }
 
-/// √(c a⁴ b⁶) = √c a² |b| b² has slopes where a and b are 0.
+/// √(c a⁴ b⁶) = √c a² |b| b² has slopes at a = 0 and b = 0.
 #[test]
 fn roots_of_even_powers_have_slopes_everywhere() {
     type Case = (&'static str, fn(f64) -> f64, f64);

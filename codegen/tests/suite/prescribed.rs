@@ -1,5 +1,5 @@
-//! Random trees of bodies some of whose joints are prescribed, by time or by inputs: accelerations of the others and
-//! forces of the drives against Newton and Euler in numbers.
+//! Random trees of bodies with some joints prescribed by time or by inputs: accelerations of the others and forces of
+//! the drives, compared with the recursive Newton-Euler algorithm.
 
 use crate::common::{Random, attack, difference, generated, value};
 use crate::tree::{ALL, Kind, Link, Tree, text};
@@ -7,22 +7,22 @@ use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::Group;
 use hamel_codegen::render::render;
 
-/// Roundings of a few thousand operations, forces of the order of 100, times the condition of M.
+/// Rounding of a few thousand operations, with forces of order 100, times the condition of M.
 const CLOSE: f64 = 1e-9;
-/// States tried per tree.
+/// Number of states per tree.
 const STATES: usize = 3;
 
-/// How a velocity of a joint is given.
+/// The prescription of a joint's velocity.
 enum Given {
-    /// Its rate, by the input `r{joint}`.
+    /// Its rate is the input `r{joint}`.
     Rate,
-    /// The velocity is a + b t + c sin(d t), every entry of it.
+    /// Every entry is a + b t + c sin(d t).
     Velocity([f64; 4]),
     /// The coordinate is a + b t + c sin(d t).
     Time([f64; 4]),
 }
 
-/// A velocity that is given.
+/// A prescribed velocity.
 struct Drive {
     joint: usize,
     /// The name of the velocity.
@@ -36,7 +36,7 @@ fn short(number: f64) -> f64 {
     (number * 100.0).round() / 100.0
 }
 
-/// What is prescribed of a tree: something, one time in four a velocity of every joint.
+/// Draws prescribed motions: at least one, and in a quarter of all cases one for every joint.
 fn drives(random: &mut Random, links: &[Link]) -> Vec<Drive> {
     let mut drives = Vec::new();
     let free: Vec<usize> = (0..links.len())
@@ -75,7 +75,7 @@ fn drives(random: &mut Random, links: &[Link]) -> Vec<Drive> {
     drives
 }
 
-/// The description with what is prescribed, the time at a place of its own.
+/// Returns the description with the prescribed motions, and with the time at a random place.
 fn description(links: &[Link], drives: &[Drive]) -> String {
     let mut said = String::from("    time t;\n");
     for drive in drives {
@@ -110,16 +110,16 @@ fn places<'a>(groups: &'a [Group], name: &str) -> Option<std::ops::Range<usize>>
     group.map(|group| group.offset..group.offset + group.len)
 }
 
-/// A state of the tree: x, ξ and ξ̇ of all joints, given those that are free.
+/// A state of the tree: x, ξ and ξ̇ of all joints, from those of the free ones.
 struct Whole {
     x: Vec<f64>,
     xi: Vec<f64>,
     dot: Vec<f64>,
-    /// The places in ξ without ξ⁰ of the velocities that are free, of those of the state, and of those that are driven.
+    /// Indices in ξ without ξ⁰ of the velocities that are free, of those in the state, and of the driven ones.
     free: Vec<usize>,
     state: Vec<usize>,
     driven: Vec<usize>,
-    /// The rates that are given, in the order of the velocities.
+    /// The prescribed rates, in the order of the velocities.
     wanted: Vec<f64>,
 }
 
@@ -183,7 +183,7 @@ fn whole(
         count += group.len;
     }
     x.remove(clock.x);
-    // The forces of drives whose rates are given stand last.
+    // The forces of drives with prescribed rates come last.
     let (of_rates, of_time): (Vec<_>, Vec<_>) =
         (driven.into_iter().zip(drives)).partition(|(_, drive)| matches!(drive.given, Given::Rate));
     let [of_time, of_rates] = [of_time, of_rates].map(|list| {
@@ -201,7 +201,7 @@ fn whole(
     }
 }
 
-/// What is wrong with one random tree.
+/// Returns the faults of a random tree.
 fn faults(seed: u64) -> Vec<String> {
     let mut random = Random::new(0x9e5c ^ seed);
     let mut links: Vec<Link> = Vec::new();
@@ -233,7 +233,7 @@ fn faults(seed: u64) -> Vec<String> {
             }
         };
         let parts = (links.as_slice(), drives.as_slice());
-        // With any accelerations of the free velocities: inverse dynamics, momenta, energy.
+        // With arbitrary accelerations of the free velocities: inverse dynamics, momentum, energy.
         let at = whole(&system, parts, [&x, &xi, &u, &dot]);
         let tree = Tree::new(&links, &at.x, &at.xi);
         let needed = |dot: &[f64]| -> Vec<f64> {
@@ -253,7 +253,7 @@ fn faults(seed: u64) -> Vec<String> {
             &pick(&momentum, &at.state),
             &of("momentum", &dot),
         );
-        // With the emitted ones: nothing is left for those that are free, the forces of the drives for the others.
+        // With the emitted accelerations: no force on the free velocities, and the forces of the drives on the others.
         let at = whole(&system, parts, [&x, &xi, &u, &accel]);
         let forces = needed(&at.dot);
         let applied = tree.applied(u[0]);
@@ -282,7 +282,7 @@ fn trees_with_drives_obey_newton_and_euler() {
     attack(8, 2000, faults);
 }
 
-/// A crank without mass that is driven takes no part in what is solved: the piston falls, and the drive needs no torque.
+/// A driven crank without mass has no effect on the solution: the piston falls, and the drive needs no torque.
 #[test]
 fn what_is_driven_needs_no_mass() {
     let of = generated(
@@ -300,7 +300,7 @@ fn what_is_driven_needs_no_mass() {
     );
     let model = &of.active;
     let found = value(&of, "accel", [&model.start_x, &model.start_xi, &[0.4], &[]]);
-    // Along the crank: b̈ = b ȧ² − 0.5 ä − g.
+    // Along the crank: b̈ = b ȧ² − 0.5 ä − g
     let expected = [0.4, 0.2 * 0.49 - 0.5 * 0.4 - 9.81, -9.81];
     for (found, expected) in found.iter().zip(expected) {
         assert!((found - expected).abs() < 1e-12, "{found} for {expected}");

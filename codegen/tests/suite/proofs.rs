@@ -1,5 +1,5 @@
-//! The numbers that proofs compare with are those of the symbolic derivations, and what is wrong in one entry alone of an emitted
-//! function is refused: its value, its sign, or that it is left out.
+//! The reference numbers of proofs agree with the symbolic derivations, and a single wrong entry of an emitted function
+//! is refused: a wrong value, a wrong sign, or an omission.
 
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate_at;
@@ -15,8 +15,8 @@ use hamel_codegen::proof::reference::Reference;
 use hamel_codegen::proof::{correction, prove, regressor, validate};
 use hamel_codegen::syntax::parse_text;
 
-/// Everything that has a route of its own: bodies with their centres beside the origin, a particle, a
-/// kinetic energy that was written, noncommuting velocities, loads and dampers of all kinds.
+/// A model for every path of derivation: bodies with centres off the origin, a particle, a `kinetic` statement,
+/// noncommuting velocities, loads and dampers of all kinds.
 const WHOLE: &str = "system Whole {
     param m = 1.3, g = 9.81, J = 0.02, k = 3, c = 0.4;
     param s: vec3 = [0.1, -0.2, 0.3];
@@ -160,7 +160,7 @@ fn one_wrong_entry_of_a_regressor_is_refused() {
     }
 }
 
-/// Columns of Y_b that are wrong, and those of Y as they would be then; most of their parameters are zero in the description.
+/// Wrong columns of Y_b with the matching columns of Y; most of their parameters are zero in the description.
 #[test]
 fn wrong_columns_of_parameters_that_are_zero_are_refused() {
     let text = "system Arm {
@@ -192,7 +192,7 @@ fn wrong_columns_of_parameters_that_are_zero_are_refused() {
     }
 }
 
-/// What is wrong in one entry alone is noticed: in its value, in its sign, and where it is left out.
+/// A single wrong entry is detected: a wrong value, a wrong sign, or an omission.
 #[test]
 fn one_wrong_entry_of_a_correction_is_refused() {
     let text = "system A {
@@ -223,7 +223,7 @@ fn one_wrong_entry_of_a_correction_is_refused() {
     }
 }
 
-/// Coordinates of every kind, and velocities that a constraint takes away.
+/// Coordinates of every kind, and dependent velocities.
 const CHARTS: [&str; 2] = [
     "system Kinds {
         coord r: R3, q: S3, R: SO3, a: S1, z;
@@ -267,7 +267,8 @@ fn a_wrong_sign_in_the_rate_of_the_chart_is_refused() {
     }
 }
 
-/// A wrong sign in any entry of what reduced systems are compared with is noticed, with constraints of several kinds beside it.
+/// A wrong sign in any entry of the reference for reduced systems is detected, together with several kinds of
+/// constraints.
 #[test]
 fn a_wrong_sign_in_the_full_frame_is_noticed() {
     let text = "system Sleigh {

@@ -1,4 +1,4 @@
-//! Nothing is emitted unproved: a wrong sign in an entry of any function of any model is refused.
+//! Every emitted function is proved: a wrong sign in an entry of any function of any model is refused.
 
 use crate::models::{asked_for, models};
 use crate::some::some;
@@ -10,14 +10,14 @@ use hamel_codegen::proof::prove;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// The most that a model can be asked for, then less.
+/// The largest request that a model may support, then smaller ones.
 const ASKED: [&str; 3] = [
     "all, linearize, inverse_dynamics_slopes, parameter_slopes, centre_of_mass, centroidal_momentum, centroidal_map, centroidal_bias",
     "all, linearize",
     "all",
 ];
 
-/// The functions of a model in which a wrong sign goes unnoticed, and the number of those that were tried.
+/// Returns the functions of a model in which a wrong sign goes unnoticed, and the number of trials.
 fn unnoticed(generated: &Generated) -> (Vec<String>, usize) {
     let (model, program) = (&generated.model, &generated.program);
     let reduction = reduce(model).expect("it was derived");
@@ -52,7 +52,7 @@ fn unnoticed(generated: &Generated) -> (Vec<String>, usize) {
 #[test]
 fn a_wrong_sign_in_any_function_is_refused() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/models");
-    // Each is changed in more than thirty places: every ninth, and all with `HAMEL_ATTACK`.
+    // Each model is changed in more than thirty places: every ninth model, or all with `HAMEL_ATTACK`.
     let all: Vec<(String, Vec<String>, usize)> = (some(some(models(&folder))).par_iter())
         .map(|path| {
             let name = path.display().to_string();

@@ -1,11 +1,11 @@
-//! Lie algebras by their names, in any basis.
+//! Lie algebras are recognised by name, in any basis.
 
 use hamel_codegen::algebra::poly::field::Field;
 use hamel_codegen::derive::geometry::lie_algebra::LieAlgebra;
 use hamel_codegen::derive::geometry::recognise::recognise;
 use num_rational::BigRational;
 
-/// An algebra by its brackets (i, j, k, c): [eᵢ, eⱼ] = c eₖ + …, in a sheared basis.
+/// Returns an algebra given by its brackets (i, j, k, c): [eᵢ, eⱼ] = c eₖ + …, in a sheared basis.
 fn algebra(n: usize, brackets: &[(usize, usize, usize, i64)]) -> LieAlgebra {
     let zero = BigRational::integer(0);
     let mut constants = vec![vec![vec![zero.clone(); n]; n]; n];
@@ -14,7 +14,7 @@ fn algebra(n: usize, brackets: &[(usize, usize, usize, i64)]) -> LieAlgebra {
         constants[j][i][k] -= BigRational::integer(c);
     }
     let plain = LieAlgebra::new(constants).expect("a Lie algebra");
-    // e'ᵢ = eᵢ + Σ j<i (i + 2 j) eⱼ: names must not depend on the basis.
+    // e'ᵢ = eᵢ + Σ j<i (i + 2 j) eⱼ: names must be independent of the basis.
     let sheared: Vec<Vec<BigRational>> = (0..n)
         .map(|i| {
             let entry = |j: usize| match j.cmp(&i) {

@@ -1,4 +1,4 @@
-//! Recursions against the derivation that knows no trees: the same values on X.
+//! Recursions have the same values on X as the derivation that does not use trees.
 
 use hamel_codegen::algebra::derivation::Derivation;
 use hamel_codegen::algebra::graph::{Edge, Graph};
@@ -28,7 +28,7 @@ fn chain(n: usize, placement: &str) -> Model {
     built(&text)
 }
 
-/// Joints of all kinds on two roots, with armatures, a particle, a body on a welded frame.
+/// Joints of all kinds on two roots, with armatures, a particle, and a body on a welded frame.
 const MIXED: &str = "system Mixed {
     gravity [1, -2, -9.81];
     joint base: free moves hull;
@@ -45,7 +45,7 @@ const MIXED: &str = "system Mixed {
     particle mass 0.4 at position(tin, [0.1, 0.2, 0.3]);
 }";
 
-/// A plate slides along axes that do not turn with it.
+/// A plate that slides along axes that do not rotate with it.
 const FLAT: &str = "system Flat {
     gravity [1, -2, -9.81];
     joint flat: planar [0, 0, 1] moves plate;
@@ -60,7 +60,7 @@ fn built(text: &str) -> Model {
     hamel_codegen::lower::build(&system).expect("is a model")
 }
 
-/// Legs of three hinges on a free hull, of which two are parallel; one leg hangs at awkward angles, and an arm slides.
+/// Legs of three hinges on a free hull, two of them parallel; one leg is mounted at awkward angles, and an arm slides.
 const LEGGED: &str = "system Legged {
     gravity [1, -2, -9.81];
     input push: vec3, twist: vec3, knee;
@@ -81,8 +81,8 @@ const LEGGED: &str = "system Legged {
     body on hand { mass 0.5; com [0.1, 0.2, -0.2]; inertia diag(1, 2, 2.5) about com; }
 }";
 
-/// Inverse dynamics, M, forward dynamics and slopes by recursion, wherever the frames are, against the derivation that traces
-/// every body by itself.
+/// Compares inverse dynamics, M, forward dynamics and slopes by recursion, for any placement of the frames, with the
+/// derivation that treats every body separately.
 fn agree(model: Model, steady: bool) {
     let placements = [Placement::Chosen, Placement::Parallel, Placement::Described];
     for placement in placements {
@@ -159,7 +159,7 @@ fn chains_have_the_values_of_the_plain_derivation() {
     }
 }
 
-/// Hinges in parallel on a slide, in two branches of which one has a ball behind it and one a hinge across.
+/// Parallel hinges on a slide, in two branches, one followed by a ball joint and one by a perpendicular hinge.
 #[test]
 fn parallel_hinges_have_the_values_of_the_plain_derivation() {
     let body = "inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com";
@@ -188,11 +188,11 @@ fn joints_of_all_kinds_have_the_values_of_the_plain_derivation() {
     agree(built(LEGGED), true);
 }
 
-/// M e = M s on what hangs on a joint, M⁻¹ by branches is that of M, and ξ̇ is proper acceleration and what all links have in
-/// common.
+/// M e = M s for the parts carried by a joint, M⁻¹ by branches is that of M, and ξ̇ is proper acceleration plus the
+/// acceleration common to all links.
 #[test]
 fn branches_answer_as_the_mass_matrix_does() {
-    // What slides on the other hull has an armature, which only its own velocity moves.
+    // A slider on the other hull has an armature, which only the velocity of the slider moves.
     for (text, expected) in [(LEGGED, 3), (MIXED, 0)] {
         for placement in [Placement::Chosen, Placement::Parallel] {
             let mut model = built(text);
@@ -222,7 +222,7 @@ fn branches_answer_as_the_mass_matrix_does() {
             };
             let mut columns: Vec<Vec<Edge>> = (0..n).map(|i| unit(graph, i)).collect();
             columns.push(xi.clone());
-            // Of a wrench on what hangs on the first hip: one branch, and what is before it.
+            // A wrench on the parts carried by the first hip: one branch and its ancestors.
             columns.push((0..n).map(|i| if i < 9 { xi[i] } else { zero }).collect());
             for column in columns {
                 let solved = branches.solve(graph, &column);
@@ -246,7 +246,7 @@ fn branches_answer_as_the_mass_matrix_does() {
     }
 }
 
-/// Spin in world axes: the freedoms of the joint vary with x, and drift.
+/// Spin in world axes: the axes of the joint vary with x, and drift.
 #[test]
 fn joints_with_world_axes_have_the_values_of_the_plain_derivation() {
     let text = "system World { gravity [0, 0, -9.81]; coord r: R3, R: SO3; velocity v: vec3, w: vec3; rate r = v;
@@ -257,7 +257,7 @@ fn joints_with_world_axes_have_the_values_of_the_plain_derivation() {
     agree(built(text), false);
 }
 
-/// Inertia that no frame carries is not that of links.
+/// Inertia that is not attached to a frame does not belong to links.
 #[test]
 fn other_inertia_is_no_tree() {
     let kinds = [

@@ -1,5 +1,5 @@
-//! Rows that say nothing new: dropped with a warning, whatever they are of. The motion is that of the rows that are left, and so
-//! are the multipliers that are unique; the others are named.
+//! Redundant rows of any kind are dropped with a warning. The motion is that of the remaining rows, and so are the
+//! multipliers that are unique; the others are named.
 
 use crate::common::{Random, attack, difference, generated, value};
 use hamel_codegen::derive::reduction::reduce;
@@ -8,7 +8,7 @@ use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::Program;
 use hamel_codegen::proof::prove;
 
-/// The values of a function at the start, with rates.
+/// Returns the values of a function at the start, with these rates.
 fn at_start(of: &Generated, name: &str, rates: &[f64]) -> Vec<f64> {
     let model = &of.active;
     let inputs = vec![0.0; model.u.len()];
@@ -24,7 +24,7 @@ fn messages(of: &Generated) -> Vec<&str> {
     warnings.map(|warning| warning.message.as_str()).collect()
 }
 
-/// λ by least squares: Bᵀ λ = M ξ̇ + h + ∂V − f with B = ∂φ/∂ξ by differences, where ẋ = ξ.
+/// Returns λ by least squares: Bᵀ λ = M ξ̇ + h + ∂V − f with B = ∂φ/∂ξ by differences, where ẋ = ξ.
 fn least_squares(of: &Generated) -> Vec<f64> {
     let model = &of.active;
     let xi_dot = accel(of);
@@ -49,7 +49,7 @@ fn least_squares(of: &Generated) -> Vec<f64> {
     };
     let columns: Vec<Vec<f64>> = (0..n).map(slope).collect();
     let m = columns[0].len();
-    // B Bᵀ λ = B r.
+    // B Bᵀ λ = B r
     let mut rows: Vec<Vec<f64>> = (0..m)
         .map(|i| {
             let entry = |j: usize| columns.iter().map(|c| c[i] * c[j]).sum::<f64>();
@@ -71,7 +71,7 @@ fn least_squares(of: &Generated) -> Vec<f64> {
     (0..m).map(|i| rows[i][m] / rows[i][i]).collect()
 }
 
-/// A plate that two arms carry, welded to the tip of the second one.
+/// Returns a plate carried by two arms, and welded to the tip of the second one.
 fn weld(rows: &str) -> String {
     format!(
         "system Weld {{
@@ -91,7 +91,8 @@ fn weld(rows: &str) -> String {
     )
 }
 
-/// The force of the pin is unique, and turns the second arm; which rows of the weld share a torque is said.
+/// The force of the pin is unique, and rotates the second arm; the documentation names the rows of the weld that share
+/// a torque.
 #[test]
 fn the_force_of_a_pin_is_given_beside_rows_without_one() {
     let of = generated(&weld("loop position(P) = position(Q), P.R = Q.R;"));
@@ -129,7 +130,7 @@ fn the_force_of_a_pin_is_given_beside_rows_without_one() {
     assert!(difference(&forces[..2], &unique[..2]) < 1e-8);
     assert!(difference(&unique, &least_squares(&fewer)) < 1e-8);
     assert!(difference(&accel(&of), &accel(&fewer)) < 1e-8);
-    // The arm D about its pivot: J ḋ̇ = c × m g + q × (−λ), and no torque, as its hinge passes none.
+    // The arm D about its pivot: J ḋ̇ = c × m g + q × (−λ), without a torque, since its hinge transmits none.
     let d = of.model.start_x[3];
     let (sin, cos) = d.sin_cos();
     let (c, q) = ([-0.5 * sin, 0.5 * cos], [-sin, cos]);
@@ -138,7 +139,8 @@ fn the_force_of_a_pin_is_given_beside_rows_without_one() {
     assert!((accel(&of)[3] - expected).abs() < 1e-8, "{expected}");
 }
 
-/// A row alone, one of a vector, a component's, a ball in a tube: the system is that without them.
+/// A single row, a row of a vector, one of a component, a ball in a tube: the system is the one without the redundant
+/// row.
 #[test]
 fn whatever_follows_is_dropped_with_a_warning() {
     let four_bar = |rows: &str| {
@@ -177,7 +179,7 @@ fn whatever_follows_is_dropped_with_a_warning() {
     assert!(difference(&forces[0], &forces[1]) < 1e-12);
     assert!(difference(&forces[0], &least_squares(&hinge)) < 1e-8);
 
-    // A ball between two walls of a tube does not slip at either: the second contact says nothing that the first does not say.
+    // A ball between two walls of a tube does not slip at either: the second contact is redundant.
     let ball = |rows: &str| {
         format!(
             "system Ball {{
@@ -205,13 +207,13 @@ fn whatever_follows_is_dropped_with_a_warning() {
         ]
     );
     assert!(difference(&accel(&one), &accel(&both)) < 1e-12);
-    // What was dropped might carry a part of any force.
+    // The dropped rows might carry a part of any force.
     assert_eq!(undetermined(&one.model), [false; 3]);
     assert_eq!(undetermined(&both.model), [true; 3]);
     assert_eq!(at_start(&both, "constraint_force", &[]).len(), 3);
 }
 
-/// What cannot be left out is an error: drives that contradict or double others.
+/// Redundant or contradictory drives are errors.
 #[test]
 fn drives_are_not_dropped() {
     let text = "system S { time t; joint a: revolute [0, 0, 1] moves A; joint b: revolute [0, 0, 1] on A at [1, 0, 0] moves B;
@@ -220,7 +222,7 @@ fn drives_are_not_dropped() {
     assert!(from_text(text).is_err());
 }
 
-/// A turn with entries of few digits.
+/// Returns a rotation whose entries have few digits.
 fn turn(random: &mut Random) -> [[f64; 3]; 3] {
     let parts = [(0.6, 0.8), (0.28, 0.96), (0.8, 0.6), (0.96, 0.28)];
     let mut turn = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -234,8 +236,8 @@ fn turn(random: &mut Random) -> [[f64; 3]; 3] {
     turn
 }
 
-/// The faults of a four-bar in a tilted plane, or across it, with a hinge or a weld to a fifth joint, closed by all rows that one
-/// would write, beside the same with rows that are just enough.
+/// Returns the faults of a four-bar in a tilted plane, or perpendicular to it, with a hinge or a weld to a fifth joint:
+/// closed by all rows that one would write, and compared with the minimal rows.
 fn faults(seed: u64) -> Vec<String> {
     let mut random = Random::new(0x4ed0 + seed);
     let tilt = if seed.is_multiple_of(3) {
@@ -325,7 +327,7 @@ fn faults(seed: u64) -> Vec<String> {
         difference(&unique, &least_squares(&few)),
         1e-7,
     );
-    // The force at the hinge in its plane, with 0 for what was dropped.
+    // The force at the hinge in its plane, with 0 for dropped rows.
     let mut next = all.iter();
     let rows = many.model.constraints.iter();
     let mut force = [0.0; 3];
@@ -343,7 +345,7 @@ fn faults(seed: u64) -> Vec<String> {
         let scale = unique.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
         judge("force", (along - unique[axis]).abs() / scale, 1e-6);
     }
-    // Of a plane along the axes the forces are unique.
+    // For a plane along the axes, the forces are unique.
     let free = undetermined(&many.model);
     if seed.is_multiple_of(3) && free[..2] != [false, false]
         || undetermined(&few.model).contains(&true)
@@ -361,8 +363,8 @@ fn redundant_rows_change_neither_motion_nor_unique_forces() {
     attack(9, 200, faults);
 }
 
-/// A crank q of 0.5, two more of its length, and the plate that they carry; a bar on the plate, to the ground by another one. Three
-/// equations close the plate, one too many; two close the bars.
+/// A crank q of 0.5, two more of the same length, and the plate that they carry; a bar on the plate, connected to the
+/// ground by another one. Three equations close the plate, one of them redundant; two close the bars.
 const CRANKS: &str = "
     joint q: revolute [0, 0, 1] moves first;
     joint b: revolute [0, 0, 1] at [0.7, 0.1, 0] moves second;
@@ -384,8 +386,8 @@ const CRANKS: &str = "
     body on last { mass 0.9; com [0.4, 0, 0]; inertia diag(0.1, 0.2, 0.15) about com; }
     start q = 0.8, b ~ 0.8, c ~ 0.8, top ~ -0.8, d ~ 0.3, e ~ 1.5;";
 
-/// Bricard's mechanism of six hinges at right angles, with one equation too many, and a pendulum that hangs on it and is held by an
-/// equation of its own.
+/// Bricard's mechanism of six hinges at right angles, with one redundant equation, and a pendulum on it that is held by
+/// a separate equation.
 const BRICARD: &str = "
     joint q: revolute [0, 0, 1] moves f1;
     joint r: revolute [0, 0, 1] on f1 at pose(rotx(pi / 2), [1, 0, 0]) moves f2;
@@ -406,7 +408,7 @@ const BRICARD: &str = "
     body on pendulum { mass 0.5; com [0.02, 0, 0.3]; inertia diag(0.1, 0.15, 0.1) about com; }
     start q = 1.4, r ~ 1.72, s ~ 1.4, t ~ 1.72, v ~ 1.4, hung ~ 0.3;";
 
-/// B of the loops by differences of φ, where ẋ = ξ, by rows.
+/// Returns B of the loops by rows, by differences of φ, where ẋ = ξ.
 fn bonds(of: &Generated) -> Vec<Vec<f64>> {
     let model = &of.active;
     let residual = |i: usize, h: f64| {
@@ -431,8 +433,8 @@ fn bonds(of: &Generated) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The unknowns that Σ rows[k] λ[k] = right determines, each with its value, by elimination with the largest pivots; `None` where it
-/// leaves one free.
+/// Returns the unknowns of Σ rows[k] λ[k] = right by elimination with the largest pivots; `None` for an unknown
+/// that is not determined.
 fn eliminated(rows: &[Vec<f64>], right: &[f64]) -> Vec<Option<f64>> {
     let (count, n) = (rows.len(), right.len());
     let mut left: Vec<Vec<f64>> = (0..n)
@@ -469,7 +471,7 @@ fn eliminated(rows: &[Vec<f64>], right: &[f64]) -> Vec<Option<f64>> {
     (0..count).map(value).collect()
 }
 
-/// The cranks, one of which has no mass of its own.
+/// Returns the cranks without the body on the third one.
 fn light_cranks() -> String {
     let lines = CRANKS.lines();
     let lines: Vec<&str> = lines
@@ -478,7 +480,7 @@ fn light_cranks() -> String {
     lines.join("\n")
 }
 
-/// A mechanism in which the rate of a joint's velocity is prescribed.
+/// Returns a mechanism in which the rate of a joint's velocity is prescribed.
 fn driven(text: &str, joint: &str) -> Generated {
     generated(&format!(
         "system Driven {{
@@ -491,8 +493,8 @@ fn driven(text: &str, joint: &str) -> Generated {
     ))
 }
 
-/// Where rows depend on one another and a rate is prescribed, the forces that are unique are those of an elimination, the drive's
-/// among them; the others are named, and all balance.
+/// With redundant rows and a prescribed rate, unique forces, including that of the drive, agree with an elimination;
+/// the others are named, and all forces balance.
 #[test]
 fn unique_forces_are_given_beside_prescribed_rates() {
     let light = light_cranks();
@@ -550,7 +552,7 @@ fn unique_forces_are_given_beside_prescribed_rates() {
     }
 }
 
-/// The proof sees a wrong sign in the force of any row, beside gears that are solved for, too.
+/// The proof detects a wrong sign in the force of any row, also with gears that are eliminated.
 #[test]
 fn wrong_forces_beside_prescribed_rates_are_refused() {
     let geared = format!(

@@ -1,10 +1,10 @@
-//! Descriptions that once were refused, or ended in a panic, without reason.
+//! Descriptions that were once refused wrongly, or caused a panic.
 
 use crate::common::{generated, value};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::proof::check::{Verdict, check};
 
-/// All of what dampers and springs are made of is there when the identities are proved.
+/// All terms of dampers and springs are available when identities are proved.
 #[test]
 fn proofs_know_of_dampers() {
     let text = "system A {
@@ -23,7 +23,7 @@ fn proofs_know_of_dampers() {
     }
 }
 
-/// An M that is not positive concerns what needs its inverse alone.
+/// An M that is not positive definite only affects functions that need its inverse.
 #[test]
 fn inverse_dynamics_need_no_positive_mass() {
     let text = |list: &str| {
@@ -45,7 +45,7 @@ fn inverse_dynamics_need_no_positive_mass() {
     }
 }
 
-/// A number that a prime of the proofs divides is 0 there: it is refused, and its neighbours are not.
+/// A number that a prime of the proofs divides is 0 modulo it: it is refused, and its neighbours are not.
 #[test]
 fn multiples_of_the_primes_are_refused() {
     let text = |number: &str| {
@@ -76,8 +76,8 @@ fn multiples_of_the_primes_are_refused() {
     }
 }
 
-/// Twists of a link's freedoms may vary in its axes although their drift is 0: those of a spin in axes of the
-/// world do. What is found by recursion for constant twists must not be taken for these.
+/// Twists of a joint may vary in body axes although their drift is 0, as for spin in world axes. Results of the
+/// recursion for constant twists must not be used for these.
 #[test]
 fn spins_in_axes_of_the_world() {
     let body = |i: usize| {
@@ -94,7 +94,7 @@ fn spins_in_axes_of_the_world() {
     assert!(of.program.function("momentum_rate").is_some());
 }
 
-/// Numbers of inverse functions are compared as real numbers, too: sin² + cos² of such an angle is 1.
+/// Values of inverse functions are also compared as real numbers: sin² + cos² of such an angle is 1.
 #[test]
 fn mounts_turn_by_angles_of_inverse_functions() {
     for angle in [
@@ -116,8 +116,8 @@ fn mounts_turn_by_angles_of_inverse_functions() {
     }
 }
 
-/// What a slider cannot feel goes to the link before in that one's axes, which were turned for a hinge beside it:
-/// the trace of M at rest, all of it by hand.
+/// The inertia that a slider does not see is passed to the previous link in its axes, which were rotated for another
+/// hinge on it: M at rest has the diagonal computed by hand.
 #[test]
 fn a_slider_stands_beside_a_hinge() {
     let of = generated(
@@ -137,8 +137,8 @@ fn a_slider_stands_beside_a_hinge() {
     }
 }
 
-/// Forces that are functions of a velocity which constraints give, and many roots of velocities: of particles with
-/// M = I and one constraint b ξ = 0, ξ̇ = f − b (b f) / (b b).
+/// Forces as functions of a dependent velocity, and many roots of velocities: for particles with M = I and one
+/// constraint b ξ = 0, ξ̇ = f − b (b f) / (b b).
 #[test]
 fn forces_depend_on_dependent_velocities() {
     for law in [
@@ -177,8 +177,7 @@ fn forces_depend_on_dependent_velocities() {
     }
 }
 
-/// Functions of sums of velocities that constraints make multiples of one another, and of velocities that they keep
-/// at 0: proofs take the values of both from one linear form.
+/// Functions of sums of velocities that constraints make proportional or zero: proofs evaluate both by one linear form.
 #[test]
 fn forces_depend_on_multiples_of_velocities() {
     let text = "system A { coord x, y, z; velocity u, v, w; rate x = u; rate y = v; rate z = w;
@@ -211,8 +210,8 @@ fn forces_depend_on_multiples_of_velocities() {
     }
 }
 
-/// Rows are solved for factors that are not small: with 1e-5 for one, half of the digits were lost. For M = I and
-/// rows b₁, b₂ the motion is ξ = s n, n = b₁ × b₂, and ξ̇ follows by cross products.
+/// Rows are solved for large factors: with a pivot of 1e-5, half of the digits were lost. For M = I and rows b₁, b₂ the
+/// motion is ξ = s n, n = b₁ × b₂, and ξ̇ follows by cross products.
 #[test]
 fn small_factors_are_no_pivots() {
     let of = generated(
@@ -254,8 +253,8 @@ fn small_factors_are_no_pivots() {
     }
 }
 
-/// √(e²) of an e that is positive everywhere and turns up later, when slopes are taken: at some points modulo the
-/// primes the root is e, at others −e.
+/// √(e²) of an e that is positive everywhere but occurs only later, in slopes: at some points modulo the primes the
+/// root is e, at others −e.
 #[test]
 fn roots_of_squares_may_turn_out_to_be_known() {
     for (potential, slope) in [
@@ -269,7 +268,7 @@ fn roots_of_squares_may_turn_out_to_be_known() {
         ("sqrt(2 + exp(x) + exp(-x))", |x: f64| (0.5 * x).sinh()),
     ] as [(&str, fn(f64) -> f64); 6]
     {
-        // Parameters that take part in nothing else move the points.
+        // Unused parameters change the points.
         for count in 0..6 {
             let idle: String = (0..count).map(|k| format!(", _p{k} = 2")).collect();
             let of = generated(&format!(
@@ -282,9 +281,9 @@ fn roots_of_squares_may_turn_out_to_be_known() {
     }
 }
 
-/// Roots of velocities that constraints with a root of no square modulo the primes give, or that proofs move to where
-/// constraints hold: they lie outside the prime fields, and so does what is under the roots. For M = I and one
-/// constraint b ξ = 0, ξ̇ = f − b (b f) / (b b).
+/// Roots of velocities whose constraints contain a root of a non-square modulo the primes, or that proofs move onto
+/// constraints: they are outside the prime fields, and so are their radicands. For M = I and one constraint
+/// b ξ = 0, ξ̇ = f − b (b f) / (b b).
 #[test]
 fn roots_of_velocities_outside_the_prime_fields() {
     for square in [0.99999999_f64, 0.43, 0.47, 0.59, 0.1009] {
@@ -302,7 +301,7 @@ fn roots_of_velocities_outside_the_prime_fields() {
             -(w * w + v * v + 1.0_f64).sqrt(),
         ];
         let b = [1.0, -scale, -z.cos()];
-        // d/dt (b ξ) = b ξ̇ + sin z w² = 0.
+        // d/dt (b ξ) = b ξ̇ + sin z w² = 0
         let push = b.iter().zip(&f).map(|(b, f)| b * f).sum::<f64>() + z.sin() * w * w;
         let along = push / b.iter().map(|b| b * b).sum::<f64>();
         let expected = [f[1] - b[1] * along, f[2] - b[2] * along];
@@ -316,7 +315,7 @@ fn roots_of_velocities_outside_the_prime_fields() {
     }
 }
 
-/// ξ̇ that comes out on the way to [A B] of a tree has the rates of states behind it, as `accel` has.
+/// ξ̇ as a by-product of [A B] of a tree is followed by the rates of states, as in `accel`.
 #[test]
 fn trees_with_states_have_slopes() {
     let of = generated(
@@ -330,8 +329,9 @@ fn trees_with_states_have_slopes() {
     assert_eq!(rows[42..], [0.0, 0.0, 0.0, 0.0, 0.0, 12.0, -2.0]);
 }
 
-/// Runs are led back to every loop that is not straight, also where the factor of a velocity in it is constant: as long as the
-/// velocity of the slider followed from the others, its place drifted away from the rod. Gears are kept by every method.
+/// Runs are projected onto every nonlinear loop, even if the factor of a velocity in it is constant: while the velocity
+/// of the slider was dependent, its position drifted away from the rod. Every method preserves linear loops such as
+/// gears.
 #[test]
 fn runs_are_led_back_to_sliders() {
     let text = |kept: &str| {
@@ -343,7 +343,7 @@ fn runs_are_led_back_to_sliders() {
     };
     let slider = generated(&text("cos(q) + 3 * cos(p) = x, sin(q) + 3 * sin(p) = 0"));
     assert_eq!(slider.active.n(), 3);
-    // φ = (cos q + 3 cos p − x, sin q + 3 sin p), beside the loop.
+    // φ = (cos q + 3 cos p − x, sin q + 3 sin p), off the loop.
     let [x, p] = [0.0_f64, 0.25];
     let off = value(&slider, "constraint", [&[0.0, p, x], &[], &[], &[]]);
     assert_eq!(off, [1.0 + 3.0 * p.cos() - x, 3.0 * p.sin()]);
@@ -356,14 +356,14 @@ fn runs_are_led_back_to_sliders() {
     assert_eq!(gears.active.n(), 2);
 }
 
-/// Terms without a velocity may stand inside of products: a spin that is known in part, beside Euler's equations of
-/// the whole spin, and a constraint of which a moving factor is taken out.
+/// Terms without a velocity may be inside products: a partly prescribed spin, with Euler's equations of the total spin,
+/// and a constraint with a common factor that varies.
 #[test]
 fn terms_without_a_velocity_stand_in_products() {
     let spin = "[w[1] + 0.3 * cos(t), w[2], w[3]]";
     let (t, w) = (0.7_f64, [0.4, -0.8, 1.1]);
     let full = [w[0] + 0.3 * t.cos(), w[1], w[2]];
-    // Θ = diag(2, 3, 4): Θ dΩ/dt = (Θ Ω) × Ω, and Ω₁ = w₁ + 0.3 cos t.
+    // Θ = diag(2, 3, 4): Θ dΩ/dt = (Θ Ω) × Ω, and Ω₁ = w₁ + 0.3 cos t
     let expected = [
         (3.0 - 4.0) * full[1] * full[2] / 2.0 + 0.3 * t.sin(),
         (4.0 - 2.0) * full[2] * full[0] / 3.0,
@@ -400,20 +400,20 @@ fn terms_without_a_velocity_stand_in_products() {
                 nonholonomic {constraint}; start x = 1; start v = 2; }}"
         )
     };
-    // v = x (u + sin t): one freedom u of mass 1 + x², moved by d/dt of x (u + sin t) along it.
+    // v = x (u + sin t): one degree of freedom u of mass 1 + x², with the force from d/dt of x (u + sin t).
     let of = generated(&text("time t;", "x * (u + sin(t)) = v"));
     let [x, u] = [1.3, 0.4];
     let other = u * (u + t.sin()) + x * t.cos();
     let expected = -x * other / (1.0 + x * x);
     let found = value(&of, "accel", [&[t, x, 0.2], &[u], &[], &[]]);
     assert!((found[0] - expected).abs() < 1e-14, "{found:?} {expected}");
-    // Without time, it is said what is wrong with the same text.
+    // Without time, an error explains that the same text is wrong.
     let errors = from_text(&text("", "x * (u + 3) = y * v")).expect_err("no time");
     assert!(errors[0].message.contains("a term without a velocity"));
 }
 
-/// d/dt (B ξ) = −λ B ξ where a constraint of velocities is stabilised, and φ̈ = −2 λ φ̇ − λ² φ where a loop is: either
-/// violation decays like exp(−λ t).
+/// With stabilisation, d/dt (B ξ) = −λ B ξ for a velocity constraint and φ̈ = −2 λ φ̇ − λ² φ for a loop: violations
+/// decay like exp(−λ t).
 #[test]
 fn violations_decay_at_the_rate_that_is_given() {
     let (x, xi) = ([0.4, 0.1], [0.7, -0.3]);
@@ -424,19 +424,19 @@ fn violations_decay_at_the_rate_that_is_given() {
         ));
         value(&of, "accel", [&x, &xi, &[], &[]])
     };
-    // s = x u + y v.
+    // s = x u + y v
     let found = accel("nonholonomic x * u + y * v = 0 stabilized 5;");
     let s = x[0] * xi[0] + x[1] * xi[1];
     let s_dot = x[0] * found[0] + x[1] * found[1] + xi[0] * xi[0] + xi[1] * xi[1];
     assert!((s_dot + 5.0 * s).abs() < 1e-14, "{s_dot} {s}");
-    // φ = x² + y² − 1, of the same directions.
+    // φ = x² + y² − 1, with the same directions
     let found = accel("loop x^2 + y^2 = 1 stabilized 5;");
     let phi = x[0] * x[0] + x[1] * x[1] - 1.0;
     let twice = 2.0 * (x[0] * found[0] + x[1] * found[1] + xi[0] * xi[0] + xi[1] * xi[1]);
     assert!((twice + 10.0 * 2.0 * s + 25.0 * phi).abs() < 1e-13);
 }
 
-/// Roots of a velocity that follows from another by a factor whose primes are no squares of the proof's fields.
+/// Roots of a dependent velocity, whose factor contains primes that are not squares in the fields of the proof.
 #[test]
 fn roots_of_velocities_that_follow_from_others_are_proved() {
     let text = |law: &str| {
@@ -463,7 +463,7 @@ fn roots_of_velocities_that_follow_from_others_are_proved() {
     }
 }
 
-/// An angle on a circle that is given: what moves it away changes nothing, since it is not read.
+/// A prescribed angle on a circle: its displacement has no effect, since it is not read.
 #[test]
 fn given_circles_have_a_linearisation() {
     let of = generated(
@@ -472,11 +472,11 @@ fn given_circles_have_a_linearisation() {
     );
     let x = [0.5, 0.7, 0.15_f64.cos(), 0.15_f64.sin()];
     let found = value(&of, "linearize", [&x, &[0.2], &[], &[]]);
-    // ḣ of q is δu, that of c is 0; δu̇ = −3 h − 2 δu.
+    // ḣ of q is δu, that of c is 0; δu̇ = −3 h − 2 δu
     assert_eq!(found, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -3.0, 0.0, -2.0]);
 }
 
-/// The stars of a block comment are no points of a list, as rustdoc has it; those of other texts stay.
+/// The leading stars of a block comment are not list items, as in rustdoc; those of other texts are kept.
 #[test]
 fn stars_of_block_comments_are_no_docs() {
     let docs = |docs: &str| {
@@ -493,7 +493,7 @@ fn stars_of_block_comments_are_no_docs() {
     assert_eq!(docs("/// * a\n/// * b\n///"), ["* a", "* b", ""]);
 }
 
-/// Functions of accelerations that come out as numbers, or as sums of velocities, are proved with these in their place.
+/// Functions of accelerations that are constants or sums of velocities are proved with these inserted.
 #[test]
 fn functions_of_known_accelerations_are_proved() {
     let stone = |more: &str| {
@@ -520,7 +520,7 @@ fn functions_of_known_accelerations_are_proved() {
     );
 }
 
-/// Components in the axes of frames with an index, and of those of parts.
+/// Components in the axes of frames with an index, and of frames of parts.
 #[test]
 fn frames_of_arrays_have_axes() {
     let of = |axes: &str| {

@@ -1,4 +1,5 @@
-//! Repetition, components and parts: what they stand for is what is written out by hand, and what Newton and Euler say.
+//! Repetition, components and parts are equivalent to the statements written out, and agree with the Newton-Euler
+//! equations.
 
 use crate::common::{Random, difference, generated, value};
 use crate::tree::{Kind, Link, Tree};
@@ -15,7 +16,7 @@ fn models() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/models")
 }
 
-/// A description with the files that it includes.
+/// Returns a description with its included files.
 fn model(name: &str) -> (String, Generated) {
     let folder = models().join(match name {
         "hexapod.eom" => "reuse",
@@ -28,14 +29,14 @@ fn model(name: &str) -> (String, Generated) {
     (text, system)
 }
 
-/// Generated code without what depends on the spelling of the description.
+/// Returns generated code without parts that depend on the spelling of the description.
 fn code(system: &Generated) -> String {
     let mut system = system.clone();
     system.hash = 0;
     written(&system, "x.eom").expect("Rust")
 }
 
-/// The statements of a rope as a loop of another program writes them.
+/// Returns the statements of a rope, written by a loop of this program.
 fn rope(n: usize) -> String {
     let mut text = String::from(
         "/// A rope of `n` links that hangs from the ceiling, swings in a plane, and is stiff in bending.
@@ -81,7 +82,7 @@ fn a_rope_is_what_is_written_out() {
     }
 }
 
-/// The statements of the hexapod without components.
+/// Returns the statements of the hexapod without components.
 fn hexapod() -> String {
     let mut text = String::from(
         "/// A body that floats on six legs of one kind, three on each side.
@@ -136,7 +137,7 @@ fn a_hexapod_is_what_is_written_out() {
     assert!(code(&system) == code(&generated(&hexapod())), "other code");
 }
 
-/// F, M and the energy of a tree are those of Newton and Euler, and ξ̇ solves F = 0.
+/// Compares F, M and the energy of a tree with the recursive Newton-Euler algorithm, and checks that ξ̇ solves F = 0.
 fn obeys_newton(system: &Generated, links: &[Link], seed: u64, close: f64) {
     let mut random = Random::new(seed);
     let n = system.program.n;
@@ -158,7 +159,7 @@ fn obeys_newton(system: &Generated, links: &[Link], seed: u64, close: f64) {
     }
 }
 
-/// A chain of hinges about alternating axes by `for`, for Newton and Euler and as text.
+/// Returns a chain of hinges about alternating axes: links for the Newton-Euler algorithm, and a text with `for`.
 fn chain(n: usize) -> (Vec<Link>, String) {
     let axes = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
     let mut links: Vec<Link> = Vec::new();
@@ -191,7 +192,7 @@ fn chains_of_any_length_obey_newton() {
     }
 }
 
-/// A rope of a hundred links, in a plane as ropes of the fixture are, against Newton and Euler.
+/// A rope of a hundred links, in a plane like the ropes of the fixture, agrees with the Newton-Euler equations.
 #[test]
 fn a_hundred_links_obey_newton() {
     let moments = [0.02 / 12.0, 0.02 / 12.0, 0.0];
@@ -217,7 +218,7 @@ fn a_hundred_links_obey_newton() {
     obeys_newton(&system, &links, 0x100, 1e-8);
 }
 
-/// Six legs of two joints on a body that floats: parts of a component against Newton and Euler.
+/// Six legs of two joints on a floating body: parts of a component agree with the Newton-Euler equations.
 #[test]
 fn legs_obey_newton() {
     let quarter = std::f64::consts::FRAC_PI_2;
@@ -284,7 +285,7 @@ fn legs_obey_newton() {
     obeys_newton(&system, &links, 6, 1e-10);
 }
 
-/// Descriptions that repeat nothing are what they were.
+/// Descriptions without repetition are unchanged.
 #[test]
 fn nothing_else_is_changed() {
     let mut count = 0;
@@ -311,14 +312,14 @@ fn nothing_else_is_changed() {
     assert!(count > 70, "{count} models");
 }
 
-/// The code of a system with these statements.
+/// Returns the code of a system with these statements.
 fn of(statements: &str) -> String {
     let text = format!("system S {{ {statements} }}");
     let system = from_text(&text);
     code(&system.unwrap_or_else(|errors| panic!("{}", render(&errors, "S", &text, false))))
 }
 
-/// Pairs of statements that say the same.
+/// Pairs of equivalent statements.
 #[test]
 fn what_is_repeated_is_what_is_written_out() {
     for (short, long) in [
@@ -343,8 +344,8 @@ fn what_is_repeated_is_what_is_written_out() {
              output e_2 = q_1 + a_1_1;",
         ),
         (
-            // Names of a component hide those of the description, others are seen; functions, tables and constants
-            // of a component are its own.
+            // Names of a component hide those of the description, others are visible; functions, tables and constants
+            // of a component are local to it.
             "param m = 2, k = 3;
              fn twice(a) = 2 * a;
              component Mass(x0, stiff = k) {
@@ -378,7 +379,7 @@ fn what_is_repeated_is_what_is_written_out() {
              output y = a_x * b_x_dot + m + a_m + a_half;",
         ),
         (
-            // A frame of a component that is placed from outside, springs between parts, loads on them.
+            // A frame argument of a component, springs between parts, loads on them.
             "component Rod(tip: frame) {
                  frame tip on rod = pose(identity(3), [1, 0, 0]);
                  body on rod { mass 1; com [0.5, 0, 0]; inertia diag(0, 1, 1) / 12 about com; }
@@ -411,7 +412,7 @@ fn what_is_repeated_is_what_is_written_out() {
              output v = velocity(two_rod, [0, 1, 0], one_rod) + two_rod.R * one_rod.p;",
         ),
         (
-            // Joints of all kinds in an array, by the endings of their coordinates and velocities; parts of vectors.
+            // Joints of all kinds in an array, with the suffixes of their coordinates and velocities; parts of vectors.
             "for i in 1..2 {
                  joint a[i]: free moves f[i];
                  joint b[i]: universal [1, 0, 0], [0, 1, 0] on f[i] moves g[i];
@@ -448,7 +449,7 @@ fn what_is_repeated_is_what_is_written_out() {
              generate accel, p;",
         ),
         (
-            // Arguments are expressions as they stand, not text: signs and sums keep together.
+            // Arguments are expressions, not text: signs and sums keep their precedence.
             "component A(s, t = s0) { coord q; velocity w; rate q = w; kinetic w^2; potential -s^2 * q - 2 * t * q; }
              const s0 = 4;
              param k = 2;
@@ -467,7 +468,7 @@ fn what_is_repeated_is_what_is_written_out() {
     }
 }
 
-/// A name depends on nothing but itself.
+/// Names are independent of other statements.
 #[test]
 fn names_stay_when_something_is_added() {
     let text = "component Leg(m) { joint x: prismatic [1, 0, 0] moves f; body on f { mass m; } output y = x; }
@@ -488,7 +489,7 @@ fn names_stay_when_something_is_added() {
     assert!(before.iter().all(|name| after.contains(name)), "{after:?}");
 }
 
-/// What the book shows is right.
+/// The example of the book is correct.
 #[test]
 fn the_book_shows_a_description() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/src/mechanisms.md");

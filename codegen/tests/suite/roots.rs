@@ -1,14 +1,14 @@
-//! Square roots have the sign of real roots: √ of products, of sums of roots and of squares, of
-//! numbers, parameters and coordinates, in whatever order they are written.
+//! Square roots have the sign of real roots: √ of products, of sums of roots and squares, of numbers, parameters and
+//! coordinates, in any order.
 
 use crate::common::{Random, generated, value};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::count;
 
-/// Roundings of a few operations, some of which cancel.
+/// Rounding of a few operations, with some cancellation.
 const CLOSE: f64 = 1e-13;
 
-/// An expression of parameters a, b and coordinates x, y, and its value.
+/// An expression of parameters a, b and coordinates x, y, with its value.
 type Case = (&'static str, fn([f64; 4]) -> f64);
 
 const NUMBERS: [Case; 18] = [
@@ -87,7 +87,7 @@ const FUNCTIONS: [Case; 11] = [
     }),
 ];
 
-/// A point with these outputs, the last one first where asked.
+/// Checks the outputs of a system, optionally declared in reverse order.
 fn outputs(cases: &[Case], reversed: bool) {
     let order: Vec<&Case> = if reversed {
         cases.iter().rev().collect()
@@ -122,7 +122,7 @@ fn outputs(cases: &[Case], reversed: bool) {
     }
 }
 
-/// An output at a configuration, at rest.
+/// Returns an output at a configuration, at rest.
 fn output(of: &Generated, name: &str, x: &[f64]) -> f64 {
     let rest = vec![0.0; of.active.xi.len()];
     value(of, name, [x, &rest, &[], &[]])[0]
@@ -148,7 +148,7 @@ fn within_other_functions() {
 
 #[test]
 fn on_a_circle_and_on_a_loop() {
-    // |s| of a circle, and the distance of a slider that a rod keeps apart: both change sign.
+    // |s| of a circle, and the distance of a slider kept away by a rod: both change sign.
     let of = generated(
         "system Crank {
             coord q: S1, x;
@@ -201,7 +201,7 @@ fn many_roots_and_roots_of_both_signs_have_points() {
     }
 }
 
-/// Numbers that modulo 2⁶¹ − 1 are other ones: √2 is ±2³¹ there.
+/// Numbers with special values modulo 2⁶¹ − 1, where √2 is ±2³¹.
 #[test]
 fn powers_of_two_are_no_roots() {
     let of = generated(
@@ -224,7 +224,7 @@ fn powers_of_two_are_no_roots() {
     }
 }
 
-/// Roots within roots within roots.
+/// Deeply nested roots.
 #[test]
 fn eighteen_deep() {
     let mut text = "2".to_string();
@@ -242,7 +242,7 @@ fn eighteen_deep() {
     assert!((output(&of, "a", &[1.0]) - expected).abs() < 1e-14);
 }
 
-/// Roots whose values are far from where points are usually taken.
+/// Roots that are defined only far from the usual points.
 #[test]
 fn where_the_start_is_far_away() {
     for (potential, start, slope) in [
@@ -258,7 +258,7 @@ fn where_the_start_is_far_away() {
     }
 }
 
-/// What is true on one branch of a constraint only is not used on another.
+/// Identities that hold on only one branch of a constraint are not used on another.
 #[test]
 fn branches_of_constraints_are_told_apart() {
     let text = |start: &str| {
@@ -272,7 +272,7 @@ fn branches_of_constraints_are_told_apart() {
     let of = generated(&text("start x = 0.6; start y = 0.8;"));
     let mass = value(&of, "mass_matrix", [&[0.6, 0.8], &[0.0], &[], &[]]);
     assert!((mass[0] - 6.76).abs() < 1e-14, "{mass:?}");
-    // On the other branch.
+    // On the other branch
     let of = generated(&text("start x = 3; start y = 1;"));
     let mass = value(&of, "mass_matrix", [&[3.0, 1.0], &[0.0], &[], &[]]);
     assert!((mass[0] - 1.0).abs() < 1e-14, "{mass:?}");
@@ -283,8 +283,8 @@ fn branches_of_constraints_are_told_apart() {
     );
 }
 
-/// Of a product the factor that vanishes at the start says which points there are; with factors of parameters,
-/// several rows and powers of what does not vanish.
+/// A product as a constraint means the factor that vanishes at the start, also with parameters, several rows and powers
+/// of other factors.
 #[test]
 fn products_mean_the_factor_of_the_start() {
     let text = |constraint: &str, start: &str| {
@@ -296,7 +296,7 @@ fn products_mean_the_factor_of_the_start() {
         )
     };
     for (constraint, start, at, rate) in [
-        // The plane and the curve x = z², y = z.
+        // The plane and the curve x = z², y = z
         (
             "[c * x * (x - y^2), y - z] = [0, 0]",
             "start x = 0, y = 0.5, z = 0.5;",
@@ -335,7 +335,7 @@ fn products_mean_the_factor_of_the_start() {
             "{constraint} {start}: {mass}"
         );
     }
-    // Where two branches meet there is no motion that the constraint determines.
+    // At the intersection of two branches, the constraint does not determine the motion.
     let errors = hamel_codegen::generate::from_text(&text(
         "[x * (x - y^2), y - z] = [0, 0]",
         "start x = 0; start y = 0; start z = 0;",
@@ -344,7 +344,7 @@ fn products_mean_the_factor_of_the_start() {
     assert!(!errors[0].message.contains("internal"), "{errors:?}");
 }
 
-/// Whether log n is a square modulo p is a matter of chance, and its root is outside of F_p where it is none.
+/// Whether log n is a square modulo p is random; if it is not, its root is outside of F_p.
 #[test]
 fn roots_of_roots_of_logarithms_have_values() {
     for n in 2..60 {
@@ -360,12 +360,12 @@ fn roots_of_roots_of_logarithms_have_values() {
     }
 }
 
-/// e of x and y, and a form of e, with their values.
+/// An expression e of x and y, and a form of e, with their values.
 type Part = (&'static str, fn(f64, f64) -> f64);
 type Form = (&'static str, fn(f64) -> f64);
 
-/// |e| by a root, and e, whatever stands beside it: e of either sign, with roots in it, of which many real values of
-/// coordinates know nothing.
+/// |e| as a root, and e, in various combinations: e has either sign and contains roots that are undefined for many
+/// values of the coordinates.
 #[test]
 fn roots_of_squares_are_absolute() {
     let parts: [Part; 6] = [
@@ -386,7 +386,7 @@ fn roots_of_squares_are_absolute() {
     ];
     for (part, of_part) in parts {
         for case in 0..8 {
-            // Other symbols before them lead to other points.
+            // Other symbols before them change the points.
             let count = 2 + case % 3;
             let chosen: Vec<_> = (0..count)
                 .map(|k| forms[(case + k * (1 + case / 3)) % 6])
@@ -415,8 +415,8 @@ fn roots_of_squares_are_absolute() {
     }
 }
 
-/// An axis that is tilted by 1e-7 has a root in its length, and entries near rounding: what is equal is still one node, and the
-/// hinge is found.
+/// The length of an axis tilted by 1e-7 contains a root, and some entries are close to rounding: equal expressions are
+/// still one node, and the hinge is recognised.
 #[test]
 fn hinges_that_are_tilted_by_little_are_hinges() {
     let of = generated(

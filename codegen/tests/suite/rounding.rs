@@ -1,5 +1,5 @@
-//! What rounding takes of the emitted functions: arms with axes almost parallel, perpendicular or
-//! intersecting, against their dynamics from the definitions in numbers of twice the length.
+//! Rounding of emitted functions: arms with almost parallel, perpendicular or intersecting axes, compared with their
+//! dynamics from the definitions in doubled precision.
 
 use crate::arm::{Angle, Arm, Decimal, Joint};
 use crate::common::{Random, generated, size, value};
@@ -10,11 +10,11 @@ use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
 
-/// Largest error relative to the scale of a result.
+/// Bound of the error, relative to the scale of a result.
 const CLOSE: f64 = 1e-13;
-/// Arms of a run by default, and of one at full size.
+/// Number of arms by default and at full size.
 const ARMS: (u64, u64) = (10, 1000);
-/// States of each arm.
+/// Number of states of each arm.
 const STATES: usize = 3;
 
 fn largest<'a>(entries: impl IntoIterator<Item = &'a Double>) -> f64 {
@@ -22,7 +22,7 @@ fn largest<'a>(entries: impl IntoIterator<Item = &'a Double>) -> f64 {
     sizes.fold(0.0, f64::max)
 }
 
-/// The largest difference; a NaN is as far away as can be.
+/// Returns the largest difference; infinity for NaN.
 fn apart(found: &[f64], wanted: &[Double]) -> f64 {
     assert_eq!(found.len(), wanted.len());
     let both = found.iter().zip(wanted);
@@ -36,7 +36,7 @@ fn apart(found: &[f64], wanted: &[Double]) -> f64 {
     })
 }
 
-/// The errors of M, bias, slope of the potential and ξ̇ at random states, each relative to its scale.
+/// Returns the errors of M, bias, slope of the potential and ξ̇ at random states, each relative to its scale.
 fn errors(arm: &Arm, system: &Generated, seed: u64) -> [f64; 4] {
     let n = arm.0.len();
     let mut random = Random::new(seed);
@@ -73,7 +73,7 @@ fn errors(arm: &Arm, system: &Generated, seed: u64) -> [f64; 4] {
     worst
 }
 
-/// The arm of the tables: M of KR18 (20) as people read it.
+/// Returns the error of M in the printed tables, KR18 (20).
 fn error_of_tables(arm: &Arm, system: &Generated, seed: u64) -> f64 {
     let n = arm.0.len();
     let geometry = Geometry::new(&system.model).expect("velocities that determine the rates");
@@ -126,7 +126,7 @@ fn awkward_axes_keep_their_digits() {
     );
 }
 
-/// An axis across two parallel ones, the last of which is tilted.
+/// Returns an axis perpendicular to two parallel ones, the last of which is tilted.
 fn arm_of_three(tilt: Decimal) -> Arm {
     let (zero, one) = (Decimal(0, 0), Decimal(1, 0));
     let joint = |axis: usize, tilt: Decimal, place: Decimal, mass: Decimal| Joint {
@@ -145,7 +145,7 @@ fn arm_of_three(tilt: Decimal) -> Arm {
     ])
 }
 
-/// M₁₁ was 7.20 instead of 10.04.
+/// A regression: M₁₁ was 7.20 instead of 10.04.
 #[test]
 fn a_tilt_of_a_hundredth_of_a_millionth() {
     let arm = arm_of_three(Decimal(1, -8));
@@ -157,7 +157,7 @@ fn a_tilt_of_a_hundredth_of_a_millionth() {
     assert!(worst.iter().all(|&error| error <= CLOSE), "{worst:?}");
 }
 
-/// What a description loses whichever candidate is taken is measured, and said.
+/// Digits that are lost by every candidate are measured and documented.
 #[test]
 fn lost_digits_are_measured() {
     let text = "system Lost {
@@ -173,7 +173,7 @@ fn lost_digits_are_measured() {
             .position(|function| function.name == name)
             .expect("it is there")
     };
-    // 1 − cos(1e-4 x) is some 1e-9 and is known to 1e-16.
+    // 1 − cos(1e-4 x) is about 1e-9, with an error of 1e-16.
     let (small, fine) = (of("small"), of("fine"));
     let lost = losses[small].expect("it has values");
     assert!((7.0..10.0).contains(&lost), "{lost}");
@@ -185,14 +185,14 @@ fn lost_digits_are_measured() {
             .contains("Rounding takes")
     };
     assert!(says(small) && !says(fine));
-    // The measure is what f64 does: against x² − 1e-8 x⁴ / 12.
+    // The measure agrees with f64: compared with x² − 1e-8 x⁴ / 12.
     let (x, v) = (0.7, 0.2);
     let found = value(&system, "small", [&[x], &[v], &[], &[]])[0];
     let error = (found - (x * x - 1e-8 * x.powi(4) / 12.0)).abs();
     assert!(error > 1e-12 && error < 1e-6, "{error:e}");
 }
 
-/// Where the scene stands in the world does not loosen the bounds for its frames.
+/// The position of the scene in the world does not affect the accuracy of its frames.
 #[test]
 fn far_from_the_origin_of_the_world() {
     let text = "system Far {

@@ -1,10 +1,10 @@
-//! Velocities by what they are, rates of expressions, motions in axes of any frame, and which velocities stay: against
-//! the formulas of textbooks, and against the same systems in other words.
+//! Velocities given by definitions, rates of expressions, motions in axes of any frame, and the choice of independent
+//! velocities: compared with formulas of textbooks, and with equivalent descriptions.
 
 use crate::common::{Random, difference, generated, value};
 use hamel_codegen::generate::Generated;
 
-/// A few hundred operations of f64.
+/// Rounding of a few hundred operations of f64.
 const CLOSE: f64 = 1e-11;
 
 type V3 = [f64; 3];
@@ -38,7 +38,7 @@ fn scaled(factor: f64, a: V3) -> V3 {
     a.map(|entry| factor * entry)
 }
 
-/// Body to world by yaw, pitch, roll, written out as in books on flight.
+/// The rotation from body to world by yaw, pitch, roll, as in textbooks on flight.
 fn attitude(phi: f64, theta: f64, psi: f64) -> M3 {
     let ((sf, cf), (st, ct), (sp, cp)) = (phi.sin_cos(), theta.sin_cos(), psi.sin_cos());
     [
@@ -52,13 +52,14 @@ fn three(list: &[f64]) -> V3 {
     [list[0], list[1], list[2]]
 }
 
-/// A state of the aircraft away from a pitch of 90 degrees: r, φ, θ, ψ; v, ω; F, τ.
+/// Returns a state of the aircraft with a pitch below 90 degrees: r, φ, θ, ψ; v, ω; F, τ.
 fn state(random: &mut Random) -> ([f64; 6], [f64; 6], [f64; 6]) {
     let mut list = |scale: f64| -> [f64; 6] { std::array::from_fn(|_| scale * random.number()) };
     (list(1.2), list(3.0), list(5.0))
 }
 
-/// Body rates with Euler angles as coordinates: ψ̇, θ̇, φ̇ of the books, and Newton's and Euler's laws in body axes.
+/// Body rates with Euler angles as coordinates: ψ̇, θ̇, φ̇ of the textbooks, and the Newton-Euler equations in body
+/// axes.
 #[test]
 fn an_aircraft_in_euler_angles_obeys_the_textbook() {
     let aircraft = generated(AIRCRAFT);
@@ -99,13 +100,13 @@ fn an_aircraft_in_euler_angles_obeys_the_textbook() {
     }
 }
 
-/// An accelerometer away from the centre feels Rᵀ (a − g) with α × p + ω × (ω × p), in the axes in which it is mounted; a
-/// gyro ω, a velocity log on the tail Rₘᵀ (v + ω × p).
+/// An accelerometer off the centre measures Rᵀ (a − g) with α × p + ω × (ω × p), in the axes of its mounting; a gyro
+/// measures ω, and a velocity log on the tail Rₘᵀ (v + ω × p).
 #[test]
 fn sensors_of_an_aircraft_feel_the_closed_form() {
     let aircraft = generated(AIRCRAFT);
     let mut random = Random::new(2);
-    // The box is turned by 0.3 about its second axis.
+    // The box is rotated by 0.3 about its second axis.
     let (s, c) = 0.3_f64.sin_cos();
     let mount: M3 = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]];
     for _ in 0..20 {
@@ -140,8 +141,8 @@ fn sensors_of_an_aircraft_feel_the_closed_form() {
     }
 }
 
-/// Straight and level flight at 20 m/s with a pitch, held by constant forces: the trim is one, and the linearisation
-/// along it is δv̇ = v × δω + (Rᵀg) × h, δω̇ = 0, ḣ = δv + …, worked out by hand.
+/// Straight and level flight at 20 m/s with a pitch, under constant forces: it is a trim, and the linearisation about
+/// it is δv̇ = v × δω + (Rᵀg) × h, δω̇ = 0, ḣ = δv + …, by hand.
 #[test]
 fn a_trimmed_aircraft_is_linearised_as_by_hand() {
     let aircraft = generated(AIRCRAFT);
@@ -158,8 +159,8 @@ fn a_trimmed_aircraft_is_linearised_as_by_hand() {
     let flat = value(&aircraft, "linearize", [&x, &xi, &u, &[]]);
     let row = |i: usize| &flat[18 * i..18 * i + 18];
     let hat = |a: V3| -> M3 { [[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]] };
-    // States are h = (h_v, h_w), δv, δω; inputs F, τ. δω turns the axes in which v is constant: −δω × v = v × δω;
-    // h_w turns them as well, and the velocity of the displacement with it.
+    // States are h = (h_v, h_w), δv, δω; inputs F, τ. δω rotates the axes in which v is constant: −δω × v = v × δω; h_w
+    // rotates them as well, and with them the velocity of the displacement.
     let (turned, felt) = (hat(v), hat(weight));
     for i in 0..3 {
         let mut expected = [0.0; 18];
@@ -196,7 +197,7 @@ fn a_trimmed_aircraft_is_linearised_as_by_hand() {
     }
 }
 
-/// The same body in an SO3 coordinate: the velocities of the definitions are those of its rates.
+/// The same body with an SO3 coordinate: velocities by definitions equal those by rates.
 #[test]
 fn a_rotation_matrix_gives_the_same_velocities() {
     let body = |kinematics: &str| {
@@ -239,7 +240,7 @@ fn agree(a: &Generated, b: &Generated) {
     }
 }
 
-/// d/dt of expressions: the chain rule by hand, first and second derivatives, of an angle as well.
+/// d/dt of expressions: the chain rule by hand, first and second derivatives, also of an angle.
 #[test]
 fn rates_of_expressions_are_the_chain_rule() {
     let system = generated(
@@ -261,7 +262,7 @@ fn rates_of_expressions_are_the_chain_rule() {
             random.number(),
         );
         let (q2, s2) = (random.number(), random.number());
-        // The time is declared in front.
+        // The time is declared first.
         let names: Vec<&str> = system
             .active
             .coordinates
@@ -290,7 +291,7 @@ fn rates_of_expressions_are_the_chain_rule() {
     }
 }
 
-/// Chaplygin's sleigh with its blade ahead: whichever velocity stays, the motion is one.
+/// Chaplygin's sleigh with its blade ahead: the motion is the same for any choice of the independent velocity.
 #[test]
 fn the_velocity_that_stays_is_the_users_choice() {
     let sleigh = |choice: &str| {
@@ -323,7 +324,7 @@ fn the_velocity_that_stays_is_the_users_choice() {
         let x = [0.3, -0.2, q];
         let one = value(&by_w, "accel", [&x, &[u, w], &[], &[]]);
         let other = value(&by_v, "accel", [&x, &[u, 0.4 * w], &[], &[]]);
-        // u̇ = v w = 0.4 w², and (J + 0.16 m) ẇ = −0.4 m u w.
+        // u̇ = v w = 0.4 w², and (J + 0.16 m) ẇ = −0.4 m u w
         let expected = [0.4 * w * w, -0.8 * u * w / (0.7 + 0.32)];
         assert!(difference(&expected, &one) < CLOSE, "{expected:?} {one:?}");
         assert!(

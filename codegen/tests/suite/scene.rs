@@ -1,4 +1,4 @@
-//! Scenes: what is printed reads back as an equal scene, and what is built is what the same text says.
+//! Scenes: printing and parsing are inverse, and a built scene equals the parsed one.
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::scene::{
@@ -7,7 +7,7 @@ use hamel_codegen::scene::{
 };
 use std::path::Path;
 
-/// All descriptions of the repository that are right.
+/// Returns all correct descriptions of the repository.
 fn descriptions() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = [
@@ -45,7 +45,7 @@ fn what_is_printed_reads_back() {
     }
 }
 
-/// Statements of all kinds, with all that each can have.
+/// Statements of all kinds, with all of their options.
 const EVERYTHING: &str = "
 /// All statements.
 ///
@@ -156,7 +156,7 @@ fn scenes_that_say_something_else_are_not_equal() {
     }
 }
 
-/// A cart with a pole on a spring, built; and the same as text.
+/// Builds a cart with a pole on a spring, which is also given as text.
 fn cart() -> Result<Scene, SceneError> {
     let mut cart = Scene::builder("Cart");
     cart.doc("A cart with a pole.");
@@ -231,9 +231,9 @@ fn what_is_built_is_what_the_text_says() {
     );
 }
 
-/// A disk that rolls, in coordinates of one's own: rates, a nonholonomic constraint, a circle.
+/// A rolling disk in user-defined coordinates: rates, a nonholonomic constraint, a circle.
 /// Choices and tables, built and as text.
-/// Repetition and components, built as the text has them.
+/// Repetition and components, built as in the text.
 #[test]
 fn components_are_built() {
     let mut arm = Scene::builder("Arm");
@@ -295,7 +295,7 @@ fn components_are_built() {
             "further_2_q"
         ]
     );
-    // Errors are at the component, with the part.
+    // Errors point to the component, and mention the part.
     arm.part(
         "wrong",
         "Link",
@@ -308,7 +308,7 @@ fn components_are_built() {
     let error = scene.generate().expect_err("an angle is no vector");
     assert_eq!(messages(&error)[0], "`sin` cannot take a vector of 1");
     assert!(error.to_string().contains("in the part `wrong`, made here"));
-    // Files have no folder here.
+    // There is no folder for files here.
     arm.include("legs.eom");
     let error = arm
         .build()
@@ -407,7 +407,7 @@ fn errors_show_the_statement_that_they_are_about() {
     assert!(arm.text("parm k = 2;").is_err());
 }
 
-/// Numbers are the decimals that are written, with their signs and to the last digit.
+/// Numbers are exactly the given decimals, with their signs.
 #[test]
 fn numbers_are_exact() {
     for (value, text) in [
@@ -436,7 +436,7 @@ fn scenes_and_errors_can_be_sent_to_other_threads() {
     sent::<Diagnostic>();
 }
 
-/// Guesses, independent velocities and components in axes have methods of their own.
+/// Guesses, independent velocities and components in axes have separate methods.
 #[test]
 fn starts_that_are_near_and_velocities_that_stay_are_built() -> Result<(), SceneError> {
     let mut sleigh = Scene::builder("Sleigh");
@@ -474,7 +474,7 @@ fn starts_that_are_near_and_velocities_that_stay_are_built() -> Result<(), Scene
         assert!(text.contains(statement), "{text}");
     }
     let generated = scene.generate()?;
-    // The least of 2 (v - 3)² + w² with v = 2 w.
+    // Minimises 2 (v - 3)² + w² with v = 2 w.
     assert!((generated.model.start_xi[0] - 8.0 / 3.0).abs() < 1e-8);
     assert_eq!(generated.solved, [(1, 0)]);
     Ok(())

@@ -1,10 +1,10 @@
-//! An attack: chains of hinges, sliders and balls behind products of constant rotations, against d'Alembert's principle in
-//! numbers of 200 bits.
+//! Attacks tilted mounts: chains of hinges, sliders and ball joints behind products of constant rotations are compared
+//! with d'Alembert's principle in numbers of 200 bits.
 //!
 //! M = Σ m Jᵥᵀ Jᵥ + J_ωᵀ Θ J_ω and h = Σ m Jᵥᵀ a + J_ωᵀ (Θ α + ω × Θ ω) at ξ̇ = 0, with Jacobians and accelerations of
-//! absolute motion, link by link: nothing of this is the generator's. Sines and cosines of numbers, and roots of sums of their
-//! products, are everywhere in these descriptions; none may be refused, and none may be wrong. Some chains in every run, dozens
-//! with `HAMEL_ATTACK=more`, three thousand with `HAMEL_ATTACK=full`.
+//! absolute motion, link by link, independently of the generator. These descriptions contain many sines and cosines of
+//! numbers, and roots of sums of their products; none may be refused or wrong. A few chains by default, dozens with
+//! `HAMEL_ATTACK=more`, three thousand with `HAMEL_ATTACK=full`.
 
 use crate::common::{Random, attack, value};
 use crate::precise::{
@@ -33,7 +33,7 @@ fn unit(k: usize) -> Three {
 /// A text of the language with its value.
 type Number = (String, Precise);
 
-/// A decimal as people write it: whole, with one digit, with three, or with all of them.
+/// Returns a decimal as people write it: whole, with one digit, with three, or with all of them.
 fn decimal(random: &mut Random) -> Number {
     let text = match random.below(4) {
         0 => format!("{}", random.below(7) as i64 - 3),
@@ -44,7 +44,7 @@ fn decimal(random: &mut Random) -> Number {
     (text.clone(), Precise::parse(&text))
 }
 
-/// The kinds of angles that a chain is written with: where all are of one kind, sines and cosines of the same number meet.
+/// The kind of angles in a chain: if all are of one kind, sines and cosines of the same number meet.
 #[derive(Clone, Copy)]
 enum Angles {
     Whole,
@@ -55,7 +55,7 @@ enum Angles {
     Degrees,
 }
 
-/// An angle: a decimal, a multiple of π, close to one, or degrees.
+/// Returns an angle: a decimal, a multiple of π, close to one, or degrees.
 fn angle(random: &mut Random, angles: Angles) -> Number {
     let pi = Precise::pi();
     let kind = match angles {
@@ -110,7 +110,7 @@ fn rotation(random: &mut Random, angles: Angles) -> (String, Matrix) {
     }
 }
 
-/// A product of one to four constant rotations.
+/// Returns a product of one to four constant rotations.
 fn turn(random: &mut Random, angles: Angles) -> (String, Matrix) {
     let (mut text, mut turn) = rotation(random, angles);
     for _ in 0..random.below(4) {
@@ -126,7 +126,7 @@ fn three(random: &mut Random) -> (String, Three) {
     (format!("[{}, {}, {}]", a.0, b.0, c.0), [a.1, b.1, c.1])
 }
 
-/// A symmetric matrix that is positive definite and satisfies the triangle inequalities.
+/// Returns a symmetric positive definite matrix that satisfies the triangle inequalities.
 fn inertia(random: &mut Random) -> (String, Matrix) {
     let diagonal: [String; 3] =
         std::array::from_fn(|_| format!("{:.2}", 1.5 + 0.3 * random.number()));
@@ -179,7 +179,7 @@ impl Joint {
         }
     }
 
-    /// A configuration: an angle, a length, or a rotation matrix by rows.
+    /// Returns a configuration: an angle, a length, or a rotation matrix by rows.
     fn configuration(&self, random: &mut Random) -> Vec<f64> {
         match self {
             Joint::Ball => random.configuration(&[hamel_codegen::model::layout::Block::Rotation]),
@@ -197,7 +197,7 @@ struct Link {
     inertia: Matrix,
 }
 
-/// ½ k (ℓ − l)² from a point of a link to one of the world.
+/// A spring ½ k (ℓ − l)² between a point of a link and one of the world.
 struct Spring {
     link: usize,
     stiffness: Precise,
@@ -213,7 +213,7 @@ struct Chain {
     springs: Vec<Spring>,
 }
 
-/// A link that moves, in world axes.
+/// The motion of a link, in world axes.
 struct Moving {
     frame: Matrix,
     origin: Three,
@@ -222,7 +222,7 @@ struct Moving {
     acceleration: Three,
 }
 
-/// One velocity of a joint: a turn about an axis through a point, or a slide.
+/// One velocity of a joint: a rotation about an axis through a point, or a translation.
 enum Freedom {
     Turn { axis: Three, through: Three },
     Slide { along: Three },
@@ -323,7 +323,7 @@ impl Chain {
         self.links.iter().map(|link| link.joint.freedoms()).sum()
     }
 
-    /// The motion of each link at ξ̇ = 0, with the freedoms of its joint.
+    /// Returns the motion of each link at ξ̇ = 0, with the degrees of freedom of its joint.
     fn motion(&self, x: &[Precise], xi: &[Precise]) -> Vec<(Moving, Vec<Freedom>)> {
         let (mut x, mut xi) = (x, xi);
         let mut all: Vec<(Moving, Vec<Freedom>)> = Vec::new();
@@ -384,7 +384,7 @@ impl Chain {
                     let moving = Moving {
                         acceleration: carried(&arm),
                         omega: plus(&before.omega, &spin),
-                        // The components of the spin are constant in the axes of the link.
+                        // The components of the spin are constant in the link's axes.
                         alpha: plus(&before.alpha, &cross(&before.omega, &spin)),
                         origin: place.clone(),
                         frame,
@@ -465,11 +465,11 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| value.abs().max(most))
 }
 
-/// Derives a chain and compares its numbers with the definition; the error says that it is refused, or which number differs.
+/// Derives a chain and compares its numbers with the definition; returns an error if it is refused or a number differs.
 fn verdict(chain: &Chain, seed: u64) -> Result<(), String> {
     let of: Generated = match from_text(&chain.text) {
         Ok(of) => of,
-        // The end of a spring on the axis of the first hinge is at rest.
+        // Correctly refused: the end of a spring on the axis of the first hinge is at rest.
         Err(errors)
             if errors
                 .iter()
@@ -497,7 +497,7 @@ fn verdict(chain: &Chain, seed: u64) -> Result<(), String> {
         let compare = |name: &str, expected: &[f64], scale: f64| {
             let found = value(&of, name, [&x, &xi, &[], &[]]);
             let differences = expected.iter().zip(&found).map(|(a, b)| (a - b).abs());
-            // A difference that is not a number is not small.
+            // False for NaN as well.
             if differences
                 .clone()
                 .all(|difference| difference <= ROUNDING * scale)
@@ -542,7 +542,7 @@ fn chains_behind_products_of_constant_rotations() {
     });
 }
 
-/// One hinge behind three mounts, in closed form: its axis leans by 2 from the vertical, M = Θ + m s² = 2.
+/// One hinge behind three mounts, in closed form: its axis is tilted by 2 rad from the vertical, M = Θ + m s² = 2.
 #[test]
 fn a_tilted_hinge_is_a_pendulum() {
     let text = "system TiltedHinge {
@@ -557,13 +557,13 @@ fn a_tilted_hinge_is_a_pendulum() {
         let state = [&[q][..], &[0.7], &[], &[]];
         assert!((value(&of, "mass_matrix", state)[0] - 2.0).abs() < 1e-14);
         assert!(value(&of, "bias", state)[0].abs() < 1e-14);
-        // z of the tip is sin(q + 1) sin 2.
+        // z of the tip is sin(q + 1) sin 2
         let slope = 10.0 * 2.0_f64.sin() * (q + 1.0).cos();
         assert!((value(&of, "potential_force", state)[0] - slope).abs() < 1e-14);
     }
 }
 
-/// A mount that is turned by almost π; M at rest as d'Alembert's principle gives it.
+/// A mount rotated by almost π; M at rest by d'Alembert's principle.
 #[test]
 fn a_mount_that_is_almost_turned_over() {
     let text = "system T {

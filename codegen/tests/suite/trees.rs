@@ -1,4 +1,4 @@
-//! Random trees of bodies: what is generated against Newton and Euler in numbers, and against the
+//! Random trees of bodies: generated functions are compared with the recursive Newton-Euler algorithm, and with the
 //! tables of M and Γ, KR18 (20) and (23).
 
 use crate::common::{Random, difference, generated, size, value};
@@ -8,11 +8,11 @@ use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::proof::levi_civita::{contracted, levi_civita};
 
-/// Roundings of a few thousand operations, forces of the order of 100.
+/// Rounding of a few thousand operations, with forces of order 100.
 const CLOSE: f64 = 1e-10;
-/// The same where accelerations of light links at the end of a long chain are large.
+/// Rounding where accelerations of light links at the end of a long chain are large.
 const LONG: f64 = 1e-8;
-/// States tried per tree.
+/// Number of states per tree.
 const STATES: usize = 3;
 
 const SIMPLE: [Kind; 4] = [
@@ -24,7 +24,7 @@ const SIMPLE: [Kind; 4] = [
 const FUNCTIONS: &str =
     "accel, inverse_dynamics, mass_matrix, bias, potential_force, energy, momentum";
 
-/// A state, with an input and accelerations.
+/// A state with an input and accelerations.
 struct State {
     x: Vec<f64>,
     xi: Vec<f64>,
@@ -56,7 +56,7 @@ fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// A random tree of so many links on at least one root.
+/// Returns a random tree with this number of links and at least one root.
 fn links(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
     let mut random = Random::new(seed);
     let mut links: Vec<Link> = Vec::new();
@@ -66,7 +66,7 @@ fn links(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
     links
 }
 
-/// The same, but for links that would leave nothing to move.
+/// Returns a random tree that has at least one degree of freedom.
 fn moving(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
     let mut links = links(seed, count, kinds);
     if links.iter().all(|link| link.kind == Kind::Fixed) {
@@ -80,7 +80,7 @@ fn moving(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
     links
 }
 
-/// F, M, the bias, gravity and springs, ξ̇, momenta and the energy are those of Newton and Euler.
+/// Compares F, M, the bias, gravity and springs, ξ̇, momenta and the energy with the recursive Newton-Euler algorithm.
 fn obeys_newton(links: &[Link], seed: u64, close: f64) -> Generated {
     let text = text(links, FUNCTIONS);
     let system = generated(&text);
@@ -116,7 +116,7 @@ fn obeys_newton(links: &[Link], seed: u64, close: f64) -> Generated {
         }
         let momentum = minus(&tree.needed(&state.xi, 0.0), &bias);
         same("momentum", &of("momentum"), &momentum);
-        // Both sides of the equations of motion, relative to the larger of their terms.
+        // Compares both sides of the equations of motion, relative to the larger of their terms.
         let motion = of("accel");
         let largest = |list: &[f64]| list.iter().fold(1.0, |most: f64, f| most.max(f.abs()));
         let size = largest(&motion) * largest(&mass);
@@ -130,7 +130,7 @@ fn obeys_newton(links: &[Link], seed: u64, close: f64) -> Generated {
     system
 }
 
-/// M ξ̇ + Γ ξ ξ + ∂V, put together from the tables of M, γ and Γ, is what the recursion gives.
+/// Checks that M ξ̇ + Γ ξ ξ + ∂V, assembled from the tables of M, γ and Γ, agrees with the recursion.
 fn obeys_the_tables(system: &Generated, seed: u64) {
     let mut geometry = Geometry::new(&system.model).expect("velocities that determine the rates");
     let (mass, connection) = (geometry.mass.clone(), geometry.connection.clone());
@@ -172,7 +172,7 @@ fn trees_of_all_kinds() {
     }
 }
 
-/// Small enough for tables of n³ coefficients.
+/// The trees are small enough for tables of n³ coefficients.
 #[test]
 fn trees_obey_the_tables_of_the_paper() {
     for seed in 0xc0..0xc5 {
@@ -182,7 +182,7 @@ fn trees_obey_the_tables_of_the_paper() {
     }
 }
 
-/// Point masses are no links.
+/// Point masses are not links.
 #[test]
 fn trees_with_particles() {
     for seed in 0xd0..0xd4 {
@@ -196,8 +196,8 @@ fn trees_with_particles() {
     }
 }
 
-/// A hinge that carries sliders and hinges: its axes are turned for the hinges, and the sliders keep theirs.
-/// Two hundred of them with `HAMEL_ATTACK=full`.
+/// Hinges that carry sliders and hinges: their axes are rotated for the hinges but not for the sliders. Two hundred
+/// with `HAMEL_ATTACK=full`.
 #[test]
 fn sliders_beside_hinges() {
     for seed in 0x1000..0x1000 + size(3, 200) {
@@ -218,7 +218,7 @@ fn sliders_beside_hinges() {
     }
 }
 
-/// 32 links in a row.
+/// 32 links in a chain.
 #[test]
 fn a_long_chain() {
     let mut random = Random::new(0x32);

@@ -1,4 +1,4 @@
-//! What a program builds and no text can say: it is refused where it stands.
+//! Scenes built by a program that cannot be written as text are refused at the faulty statement.
 
 use hamel_codegen::scene::{Expr, Extrapolation, Interpolation, Scene, SceneBuilder, SceneError};
 
@@ -10,7 +10,7 @@ fn messages(scene: &SceneBuilder) -> Vec<String> {
     all
 }
 
-/// What no text can say is refused where it stands, whatever else is called so.
+/// Numbers without a text form are refused at their place, whatever the names.
 #[test]
 fn numbers_that_are_not_finite_are_refused() {
     let mut scene = Scene::builder("S");
@@ -44,7 +44,7 @@ fn numbers_that_are_not_finite_are_refused() {
     );
 }
 
-/// All statements with names that are none are shown.
+/// All statements with invalid names are shown.
 #[test]
 fn every_name_that_is_no_word_is_shown() {
     let mut scene = Scene::builder("S");
@@ -63,7 +63,7 @@ fn every_name_that_is_no_word_is_shown() {
     );
 }
 
-/// A sum that a loop makes longer and longer ends in an error, not in the end of the stack.
+/// A sum built in an endless loop ends in an error, not in a stack overflow.
 #[test]
 fn endless_expressions_are_refused() {
     let long = |count| {
@@ -83,7 +83,7 @@ fn endless_expressions_are_refused() {
     assert_eq!(messages(&scene)[0], deep);
 }
 
-/// Docs are kept to the last blank, and carriage returns end lines.
+/// Docs keep trailing blanks, and carriage returns end lines.
 #[test]
 fn docs_read_back() {
     let mut scene = Scene::builder("S");

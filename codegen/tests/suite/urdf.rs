@@ -1,4 +1,4 @@
-//! Robots in URDF: what is imported is derived, and errors are shown where they come from.
+//! Robots in URDF: an imported robot is derived, and errors point to their origin.
 
 use hamel_codegen::generate::from_text;
 use hamel_codegen::urdf::{Options, import, refused};
@@ -34,7 +34,7 @@ fn errors_about_the_description_are_shown_in_the_urdf() {
         shown.contains("arm.urdf:7:") && shown.contains("mass heavy;"),
         "{shown}"
     );
-    // The gravity is made from no line of the URDF.
+    // The gravity does not come from a line of the URDF.
     imported.text = imported.text.replace("-9.81", "-g");
     let errors = from_text(&imported.text).expect_err("`g` is nothing");
     let shown = refused(&errors, &imported, "arm.urdf", &text, false);

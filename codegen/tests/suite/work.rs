@@ -1,5 +1,5 @@
-//! Bounded work: descriptions whose expansion would never end, and large ones in which little depends on
-//! little. Work is measured in nodes of the graph, which repeat to the one.
+//! Bounded work: descriptions whose expansion would never end, and large ones with few dependencies. Work is measured
+//! in nodes of the graph, which are exactly reproducible.
 
 use crate::common::size;
 use hamel_codegen::generate::{Generated, from_text};
@@ -14,7 +14,7 @@ fn derived(text: &str) -> Generated {
     }
 }
 
-/// A tower of lets, each made of the one before, for the potential.
+/// Returns a tower of `let` statements, each using the previous one, with the last one in a potential or an output.
 fn tower(steps: &[String], of: &str) -> String {
     let mut text = "system Tower {\n coord a0; velocity v; rate a0 = v;\n".to_string();
     for (i, step) in steps.iter().enumerate() {

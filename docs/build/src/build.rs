@@ -1,4 +1,4 @@
-//! All pages of the book, with what their directives stand for, in a folder that mdBook reads.
+//! Writes all pages of the book, with their directives expanded, to a folder that mdBook reads.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,14 +11,14 @@ use crate::lists;
 use crate::page::{CRATES, blocks, directive, own};
 use crate::shell::Shell;
 
-/// What the directives of pages stand for.
+/// Expands the directives of pages.
 pub struct Book<'a> {
     root: &'a Path,
     program: &'a Path,
     examples: Vec<Example>,
 }
 
-/// The files below a folder, by their paths from there.
+/// Lists the files below a folder, by their paths relative to it.
 fn below(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut open = vec![PathBuf::new()];
     let mut found = Vec::new();
@@ -35,10 +35,10 @@ fn below(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// The pages of the book, by their paths from `docs/book/src`.
+/// Returns the pages of the book, by their paths relative to `docs/book/src`.
 ///
 /// # Errors
-/// Pages that cannot be read.
+/// If a page cannot be read.
 pub fn pages(root: &Path) -> Result<BTreeMap<PathBuf, String>> {
     let source = root.join("docs/book/src");
     let files = below(&source)?.into_iter();
@@ -48,10 +48,10 @@ pub fn pages(root: &Path) -> Result<BTreeMap<PathBuf, String>> {
         .collect()
 }
 
-/// Writes the book to a folder; `program` is what answers to the name `hamel`.
+/// Writes the book to a folder; `program` is run wherever a command says `hamel`.
 ///
 /// # Errors
-/// Commands that fail, and files that cannot be read or written.
+/// If a command fails, or a file cannot be read or written.
 pub fn build(root: &Path, to: &Path, program: &Path) -> Result<()> {
     let book = Book::new(root, program);
     if to.exists() {
@@ -76,7 +76,7 @@ pub fn build(root: &Path, to: &Path, program: &Path) -> Result<()> {
 }
 
 impl<'a> Book<'a> {
-    /// The book of a repository.
+    /// Prepares the book of a repository.
     pub fn new(root: &'a Path, program: &'a Path) -> Self {
         let examples = crate::errors::examples(root);
         Book {
@@ -86,10 +86,11 @@ impl<'a> Book<'a> {
         }
     }
 
-    /// A page with what its directives stand for; the commands of a page without any of their directives are not run.
+    /// Expands the directives of a page. The commands of a page are run only if one of its directives needs their
+    /// output.
     ///
     /// # Errors
-    /// Commands that fail, and pictures that they have not made.
+    /// If a command fails, or a picture was not made.
     pub fn page(&self, path: &Path, text: &str, to: &Path) -> Result<String> {
         let wants = |name: &str| {
             text.lines()
@@ -149,7 +150,7 @@ impl<'a> Book<'a> {
     }
 }
 
-/// Copies a picture beside its page; the line that shows it.
+/// Copies a picture next to its page, and returns the line that shows it.
 fn picture(shell: &Shell, page: &Path, rest: &str, to: &Path) -> Result<String> {
     let (file, description) = rest.split_once(' ').unwrap_or((rest, ""));
     let stem = page.file_stem().unwrap_or_default().to_string_lossy();

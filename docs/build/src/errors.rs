@@ -1,8 +1,8 @@
-//! The errors of the generator: descriptions that have them, which message they get, and at which place of the generator
-//! that is made.
+//! The errors of the generator: example descriptions, the messages for them, and the places in the generator that
+//! create these messages.
 //!
-//! The examples are the descriptions in `tests/wrong`, whose messages are locked by a test of their own, and those in
-//! `docs/book/errors`, which have the rest.
+//! The examples are the descriptions in `tests/wrong`, whose messages another test locks, and those in
+//! `docs/book/errors`, which cover the rest.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -16,28 +16,28 @@ use hamel_codegen::generate::from_file;
 use hamel_codegen::render::{render, warnings};
 use hamel_codegen::vocabulary::statements;
 
-/// A place of the generator where a message is made: file, line and column.
+/// A place in the generator that creates a message: file, line and column.
 pub type Site = (String, u32, u32);
 
-/// An error or a warning with a description that has it.
+/// An error or a warning, with a description that causes it.
 #[derive(Clone, Debug)]
 pub struct Example {
-    /// Where the generator makes the message.
+    /// The place in the generator that creates the message.
     pub site: Site,
-    /// What is wrong.
+    /// The message.
     pub message: String,
-    /// What to do.
+    /// The help: a remedy.
     pub help: String,
-    /// The statement that it is about.
+    /// The keyword of the statement with the error.
     pub statement: &'static str,
-    /// The message as users see it.
+    /// The message with its context, as users see it.
     pub shown: String,
 }
 
-/// The folders that have examples.
+/// The folders with examples.
 const FOLDERS: [&str; 2] = ["tests/wrong", "docs/book/errors"];
 
-/// All examples, in the order of their files.
+/// Returns all examples, in the order of their files.
 pub fn examples(root: &Path) -> Vec<Example> {
     let mut files: Vec<PathBuf> = Vec::new();
     for folder in FOLDERS {
@@ -82,7 +82,7 @@ fn example(error: &Diagnostic, text: &str, warning: bool) -> Example {
     }
 }
 
-/// One example of every place for every statement, the shortest, by statement in the order of the language.
+/// Selects the shortest example for every site and statement, by statement in the order of the language.
 fn shortest(examples: &[Example]) -> Vec<(&'static str, Vec<&Example>)> {
     let mut kept: BTreeMap<(&str, &Site), &Example> = BTreeMap::new();
     for example in examples {
@@ -104,7 +104,7 @@ fn shortest(examples: &[Example]) -> Vec<(&'static str, Vec<&Example>)> {
         .collect()
 }
 
-/// The errors of a statement as a table that can be opened.
+/// Renders the errors of a statement as a collapsible table.
 pub fn of_statement(examples: &[Example], word: &str) -> String {
     let all = shortest(examples);
     let list = all.iter().find(|(statement, _)| *statement == word);
@@ -129,7 +129,7 @@ pub fn of_statement(examples: &[Example], word: &str) -> String {
     text
 }
 
-/// All errors with the texts that have them, by statement, and those without.
+/// Renders all errors with their descriptions, by statement, and the errors without an example.
 pub fn all(examples: &[Example]) -> String {
     let mut text = String::new();
     for (word, list) in shortest(examples) {
@@ -148,7 +148,7 @@ pub fn all(examples: &[Example]) -> String {
     text
 }
 
-/// The first word of the statement that a place is in; `system` outside of all.
+/// Returns the first word of the statement at an offset; `system` outside of all statements.
 fn statement_at(text: &str, place: usize) -> &'static str {
     let mut found = "system";
     let mut first = true;
@@ -178,12 +178,12 @@ fn statement_at(text: &str, place: usize) -> &'static str {
     found
 }
 
-/// Lines of the code around a place.
+/// Lines of code shown before a site.
 const BEFORE: usize = 14;
-/// Lines behind it.
+/// Lines of code shown after it.
 const BEHIND: usize = 5;
 
-/// The places where sources below a folder make messages, each with the code around it.
+/// Finds the sites below a folder where sources create messages, each with the code around it.
 pub fn sites(root: &Path, folder: &str) -> BTreeMap<Site, String> {
     let mut found = BTreeMap::new();
     let mut open = vec![PathBuf::from(folder)];

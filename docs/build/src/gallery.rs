@@ -1,14 +1,14 @@
-//! The gallery: the descriptions of `examples/gallery` with their pictures, what they cost, and what to run.
+//! The gallery: the descriptions of `examples/gallery` with their pictures, operation counts and commands.
 //!
-//! Each file begins with two lines about the mechanism, and with what is shown of it:
+//! Each file begins with two lines about the mechanism, followed by its remark and options:
 //!
 //! ```text
 //! /// Its name: what it is made of.
-//! /// What it does.
-//! // remark: What is interesting about it, for who has read the two lines.
+//! /// Its motion.
+//! // remark: What is interesting about it, for readers of the two lines.
 //! // draw: the options of `hamel draw`
 //! // run: the options of `hamel simulate`
-//! // keeps: what is constant in this run, with the largest relative change, as in `energy 1e-8, place 1e-9`
+//! // keeps: the constants of this run, each with its largest relative change, as in `energy 1e-8, place 1e-9`
 //! ```
 
 use std::fmt::Write;
@@ -21,39 +21,39 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::shell::Shell;
 
-/// Where the descriptions are.
+/// The folder of the descriptions.
 pub const FOLDER: &str = "examples/gallery";
 
 /// A description of the gallery.
 #[derive(Clone, Debug)]
 pub struct Exhibit {
-    /// The name of its file, without the end.
+    /// The name of its file, without the extension.
     pub name: String,
-    /// What the mechanism is called.
+    /// The name of the mechanism.
     pub title: String,
-    /// What it is made of, and what it does.
+    /// Its parts and its motion.
     pub about: String,
-    /// What is interesting about it.
+    /// The remark on the mechanism.
     pub remark: String,
     /// The options of `hamel draw`.
     pub draw: String,
     /// The options of `hamel simulate`.
     pub run: String,
-    /// What is constant in this run, and the largest relative change of it.
+    /// The quantities that are constant in this run, each with its largest relative change.
     pub keeps: Vec<(String, f64)>,
-    /// The description without what is said above.
+    /// The description without the lines above.
     pub text: String,
 }
 
-/// An exhibit as it is shown.
+/// The results of the commands that show an exhibit.
 pub struct Shown {
     /// Its picture.
     pub picture: String,
-    /// Names of functions with their operations and their pairs of sine and cosine.
+    /// Names of functions, each with its operations and its pairs of sine and cosine.
     pub counts: Vec<(&'static str, u64, u64)>,
 }
 
-/// The functions whose operations are shown, with what they are called.
+/// The functions whose operations are shown, each with its label.
 const COUNTED: [(&str, &str); 4] = [
     ("accel", "accelerations"),
     ("inverse_dynamics", "forces"),
@@ -62,10 +62,10 @@ const COUNTED: [(&str, &str); 4] = [
 ];
 
 impl Exhibit {
-    /// Reads what a file says of itself.
+    /// Reads the header of a file.
     ///
     /// # Errors
-    /// What is missing.
+    /// If a part of it is missing.
     pub fn of(name: &str, file: &str) -> Result<Self> {
         let wrong = |what: &str| Error::other(format!("{FOLDER}/{name}.eom: {what}"));
         let mut lines = file.lines();
@@ -105,15 +105,15 @@ impl Exhibit {
         })
     }
 
-    /// The path of its file from the root of the repository.
+    /// Returns the path of its file relative to the root of the repository.
     pub fn file(&self) -> String {
         format!("{FOLDER}/{}.eom", self.name)
     }
 
-    /// Draws it and counts its operations.
+    /// Draws the mechanism and counts its operations.
     ///
     /// # Errors
-    /// What the commands say.
+    /// If a command fails.
     pub fn shown(&self, shell: &Shell) -> Result<Shown> {
         let file = self.file();
         let picture = shell.run(&format!("hamel draw {file} {}", self.draw))?;
@@ -123,7 +123,7 @@ impl Exhibit {
                 .lines()
                 .map(|line| line.split_whitespace().collect::<Vec<_>>());
             let row = rows.find(|row| row.first() == Some(function))?;
-            // add, mul, div, sqrt, sincos, other, flops, unshared.
+            // The columns: add, mul, div, sqrt, sincos, other, flops, unshared.
             Some((*name, row.get(7)?.parse().ok()?, row.get(5)?.parse().ok()?))
         });
         Ok(Shown {
@@ -132,7 +132,7 @@ impl Exhibit {
         })
     }
 
-    /// Its section of the page.
+    /// Renders its section of the page.
     pub fn section(&self, shown: &Shown) -> String {
         let mut text = format!(
             "## {}\n\n![{}](gallery/{}.svg)\n\n{} {}\n\n",
@@ -174,10 +174,10 @@ fn capital(text: &str) -> String {
     first.unwrap_or_default() + letters.as_str()
 }
 
-/// All exhibits, by the names of their files.
+/// Reads all exhibits, sorted by the names of their files.
 ///
 /// # Errors
-/// Files that cannot be read, or that do not say what is needed.
+/// If a file cannot be read, or its header is incomplete.
 pub fn exhibits(root: &Path) -> Result<Vec<Exhibit>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(root.join(FOLDER))? {
@@ -197,7 +197,7 @@ pub fn exhibits(root: &Path) -> Result<Vec<Exhibit>> {
     all.collect()
 }
 
-/// Does something for every exhibit, on all cores; in the order of the exhibits.
+/// Applies a function to every exhibit, on all cores, and returns the results in the order of the exhibits.
 pub fn for_all<T: Send>(exhibits: &[Exhibit], act: impl Fn(&Exhibit) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let done: Mutex<Vec<(usize, T)>> = Mutex::default();
@@ -223,10 +223,10 @@ pub fn for_all<T: Send>(exhibits: &[Exhibit], act: impl Fn(&Exhibit) -> T + Sync
     done.into_iter().map(|(_, one)| one).collect()
 }
 
-/// The sections of the page; pictures go to a folder.
+/// Renders the sections of the page, and writes the pictures to a folder.
 ///
 /// # Errors
-/// What the commands say, and files that cannot be written.
+/// If a command fails, or a file cannot be written.
 pub fn sections(root: &Path, shell: &Shell, pictures: &Path) -> Result<String> {
     let exhibits = exhibits(root)?;
     fs::create_dir_all(pictures)?;

@@ -1,15 +1,15 @@
-//! The links of the pages that mdBook has made: each leads to a file and a place that are there, and nothing that a page needs
-//! comes from the network.
+//! Checks the pages that mdBook has made: each link leads to an existing file and place, and a page loads nothing from
+//! the network.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Result;
 use std::path::{Path, PathBuf};
 
-/// Links that lead nowhere, each with its page; the number of all links.
+/// Returns the broken links, each with its page, and the number of all links.
 ///
 /// # Errors
-/// Pages that cannot be read.
+/// If a page cannot be read.
 pub fn broken(folder: &Path) -> Result<(Vec<String>, usize)> {
     let mut open = vec![folder.to_owned()];
     let (mut wrong, mut links) = (Vec::new(), 0);
@@ -20,7 +20,7 @@ pub fn broken(folder: &Path) -> Result<(Vec<String>, usize)> {
             }
             continue;
         }
-        // The error page of a server, whose links begin at the root of a site.
+        // Skips the error page of a server, whose links are relative to the root of a site.
         if path.extension().is_none_or(|end| end != "html") || path.ends_with("404.html") {
             continue;
         }
@@ -35,7 +35,7 @@ pub fn broken(folder: &Path) -> Result<(Vec<String>, usize)> {
     Ok((wrong, links))
 }
 
-/// What `href` and `src` of a page name.
+/// Returns the values of `href` and `src` in a page.
 fn targets(text: &str) -> Vec<(&str, &str)> {
     let mut found = Vec::new();
     for tag in text.split('<').skip(1) {

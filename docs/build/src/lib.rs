@@ -1,13 +1,13 @@
-//! Builds the book from `docs/book`: runs the commands that its pages show and puts in what they print, and writes the
-//! parts of the reference that follow from the code.
+//! Builds the book from `docs/book`: runs the commands of its pages, inserts their output, and writes the parts of the
+//! reference that are derived from the code.
 //!
 //! | file | owns |
 //! |---|---|
 //! | `page` | the blocks and directives of a page |
 //! | `shell` | the folder in which the commands of a page run |
-//! | `lists` | the functions and options, as the code has them |
-//! | `errors` | the errors of the generator, with descriptions that have them |
-//! | `rare` | the errors that no example has |
+//! | `lists` | the functions and options, taken from the code |
+//! | `errors` | the errors of the generator, with descriptions that cause them |
+//! | `rare` | the errors without an example |
 //! | `build` | all pages, into a folder that mdBook reads |
 //! | `gallery` | the mechanisms of `examples/gallery`, each with its picture, counts and a remark |
 //! | `html` | the links of the pages that mdBook has made |
@@ -21,7 +21,7 @@ pub mod page;
 pub mod rare;
 pub mod shell;
 
-/// The pages that have programs in Rust: each is compiled and run, but for build scripts, which are compiled.
+/// The pages that contain programs in Rust: each program is compiled and run; build scripts are only compiled.
 #[cfg(doctest)]
 mod programs {
     #[doc = include_str!("../../../README.md")]

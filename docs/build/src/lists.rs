@@ -1,5 +1,5 @@
-//! The lists of the reference that the code has: what expressions can call, what can be generated, the options of the
-//! command line.
+//! The lists of the reference that are derived from the code: the functions of expressions, the functions that can be
+//! generated, and the options of the command line.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use clap::{Arg, Command};
 use hamel_codegen::functions::{Argument, FunctionId, Row, Serves};
 use hamel_codegen::vocabulary::functions;
 
-/// The functions of expressions.
+/// Lists the functions of expressions.
 pub fn expressions() -> String {
     let mut table = String::from("| function | takes |\n|---|---|\n");
     for (name, usage) in functions() {
@@ -16,7 +16,7 @@ pub fn expressions() -> String {
     table
 }
 
-/// The functions that `generate` can name, and those that come along.
+/// Lists the functions that `generate` can name, and those generated with them.
 pub fn generated() -> String {
     let named = FunctionId::ALL
         .iter()
@@ -70,7 +70,7 @@ fn symbol(argument: Argument) -> &'static str {
     }
 }
 
-/// Every subcommand with its arguments and options.
+/// Lists every subcommand with its arguments and options.
 pub fn options() -> String {
     let mut text = String::new();
     for command in subcommands() {
@@ -102,7 +102,7 @@ pub fn options() -> String {
     text
 }
 
-/// The subcommands, complete with what they share.
+/// Returns the subcommands, complete with the options that they share.
 pub fn subcommands() -> Vec<Command> {
     let mut line = hamel_cli::described();
     line.build();
@@ -112,14 +112,14 @@ pub fn subcommands() -> Vec<Command> {
         .collect()
 }
 
-/// The arguments and options of a subcommand, but for help.
+/// Returns the arguments and options of a subcommand, except for help.
 pub fn arguments(command: &Command) -> impl Iterator<Item = &Arg> {
     command
         .get_arguments()
         .filter(|argument| !argument.is_hide_set() && argument.get_id() != "help")
 }
 
-/// How an argument is written.
+/// Returns the syntax of an argument.
 pub fn spelling(argument: &Arg) -> String {
     let takes = argument.get_action().takes_values();
     let names = argument.get_value_names().unwrap_or_default();
@@ -137,7 +137,7 @@ pub fn spelling(argument: &Arg) -> String {
     }
 }
 
-/// What an argument is for, and the values that it can have.
+/// Returns the purpose of an argument and its possible values.
 pub fn help(argument: &Arg) -> String {
     let help = argument.get_long_help().or(argument.get_help());
     let mut help = help.map(ToString::to_string).unwrap_or_default();
@@ -153,7 +153,7 @@ pub fn help(argument: &Arg) -> String {
     help
 }
 
-/// A text in one cell of a table.
+/// Formats a text for a cell of a table.
 pub fn cell(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     line.replace('|', "\\|")

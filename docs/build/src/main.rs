@@ -1,6 +1,6 @@
-//! `hamel-book build` writes the pages for mdBook below `target`; `hamel-book check FOLDER` looks at what mdBook has made;
-//! `hamel-book gallery` writes the page of the gallery alone, with its pictures, below `target/gallery`.
-//! Called by the name `hamel` it is the command line, which the commands of the pages run.
+//! `hamel-book build` writes the pages for mdBook below `target`; `hamel-book check FOLDER` checks the pages that
+//! mdBook has made; `hamel-book gallery` writes only the page of the gallery, with its pictures, below
+//! `target/gallery`. Under the name `hamel`, the program is the command line, which the commands of the pages run.
 
 use std::io::Result;
 use std::path::Path;

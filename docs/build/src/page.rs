@@ -1,17 +1,18 @@
 //! The blocks and directives of a page.
 //!
-//! A directive is a comment of its own line; what it stands for is put in its place when the book is built:
+//! A directive is a comment on a separate line; it is replaced when the book is built:
 //!
-//! | directive | what it stands for |
+//! | directive | replacement |
 //! |---|---|
-//! | `<!-- output -->` | what the block before it prints, one for a shell (`sh`), or one that makes a crate beside a clone (`sh,crates`) |
+//! | `<!-- output -->` | the output of the shell block before it (`sh`), or of a block that makes a crate next to a
+//! clone (`sh,crates`) |
 //! | `<!-- picture: file.svg A description -->` | a picture that a command of the page has made |
 //! | `<!-- expressions -->`, `<!-- functions -->`, `<!-- options -->` | the lists of the reference |
 //! | `<!-- errors: param -->` | the errors of a statement |
 //! | `<!-- all errors -->` | all errors, by statement |
 //! | `<!-- gallery -->` | the mechanisms of the gallery |
 
-/// The text of the blocks of a page that begin with a word behind their backticks.
+/// Returns the contents of the blocks of a page with this info string.
 pub fn blocks<'a>(page: &'a str, info: &str) -> Vec<&'a str> {
     let begin = format!("```{info}\n");
     let blocks = page.split(&*begin).skip(1);
@@ -20,11 +21,11 @@ pub fn blocks<'a>(page: &'a str, info: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// The info of blocks for a shell that make crates beside a clone: all of what they say is run.
+/// Info string of shell blocks that make crates next to a clone: every line of these is run.
 pub const CRATES: &str = "sh,crates";
 
-/// What is run of a block for a shell: the command line, and files that are written for it. Other programs have tests
-/// of their own.
+/// Extracts the lines of a shell block that are run: calls of the command line, and files written for it. Other
+/// programs have separate tests.
 pub fn own(block: &str) -> String {
     let mut script = String::new();
     let (mut file, mut goes_on) = (false, false);
@@ -41,7 +42,7 @@ pub fn own(block: &str) -> String {
     script
 }
 
-/// A directive: its name, and what follows its colon.
+/// Parses a directive into its name and the text after the colon.
 pub fn directive(line: &str) -> Option<(&str, &str)> {
     let inner = line.trim().strip_prefix("<!-- ")?.strip_suffix(" -->")?;
     let (name, rest) = inner.split_once(": ").unwrap_or((inner, ""));
@@ -58,7 +59,7 @@ pub fn directive(line: &str) -> Option<(&str, &str)> {
     known.contains(&name).then_some((name, rest))
 }
 
-/// The section of a page below the heading that names a word first: `### `param``.
+/// Returns the section of a page whose heading begins with a word: `### `param``.
 pub fn section<'a>(page: &'a str, word: &str) -> Option<&'a str> {
     let heading = format!("\n### `{word}`");
     let begin = page.find(&heading)?;

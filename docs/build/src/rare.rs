@@ -1,6 +1,6 @@
-//! Errors that no example has, each with the file that makes it and words of its code, and what is said of it in the book.
+//! Errors without an example, each with the file that creates it, a part of its code, and its explanation in the book.
 
-/// File, words of the code, the message, and when it occurs.
+/// File, part of the code, the message, and the condition for it.
 pub const RARE: &[(&str, &str, &str, &str)] = &[
     (
         "builder.rs",

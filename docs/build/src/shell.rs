@@ -1,28 +1,28 @@
-//! The folder in which the commands of a page run: it has the descriptions of the repository, the files that pages speak of
-//! and do not make, and what the page itself has made.
+//! The folder in which the commands of a page run: it contains the descriptions of the repository, the files that pages
+//! mention but do not make, and the files that the page has made.
 
 use std::fs;
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where a clone of the repository is, from a crate beside it.
+/// The path of a clone of the repository, relative to a crate next to it.
 const CLONE: &str = "../hamel/";
 
 /// The folder of one page.
 pub struct Shell {
     root: PathBuf,
-    /// Where commands run.
+    /// The working directory of the commands.
     pub folder: PathBuf,
-    /// The folders of programs, `hamel` in the first.
+    /// The search path of programs, with the folder of `hamel` first.
     path: String,
 }
 
 impl Shell {
-    /// A new folder; `program` is what answers to the name `hamel`.
+    /// Creates the folder; `program` is run wherever a command says `hamel`.
     ///
     /// # Errors
-    /// Files that cannot be read or written.
+    /// If a file cannot be read or written.
     pub fn new(root: &Path, folder: &Path, program: &Path) -> Result<Self> {
         if folder.exists() {
             fs::remove_dir_all(folder)?;
@@ -45,29 +45,34 @@ impl Shell {
         })
     }
 
-    /// What a script prints.
+    /// Runs a script, and returns its output.
     ///
     /// # Errors
-    /// The script and what it says, where a command fails.
+    /// If a command fails, with the script and its messages.
     pub fn run(&self, script: &str) -> Result<String> {
         self.done(script, &self.folder, &[])
     }
 
-    /// What a script prints that makes crates beside a clone of the repository, `../hamel`; the crates are then in the folder of the
-    /// page as well.
+    /// Runs a script that makes crates next to a clone of the repository, `../hamel`, and returns its output. The
+    /// crates are also copied to the folder of the page.
     ///
+<<<<<<< HEAD
     /// The clone is this repository, by its own path, so that what `lab/` has compiled is not compiled again. The
     /// packages are those of this repository's lock file, and nothing is downloaded.
+=======
+    /// The clone is this repository under its real path, so that everything that `tests/apart` has compiled is reused.
+    /// The packages are those of this repository's lock file, and nothing is downloaded.
+>>>>>>> w-textB
     ///
     /// # Errors
-    /// The script and what it says, where a command fails.
+    /// If a command fails, with the script and its messages.
     pub fn run_beside(&self, script: &str) -> Result<String> {
         let place = self.root.join("target/book-crates");
         if place.exists() {
             fs::remove_dir_all(&place)?;
         }
         fs::create_dir_all(&place)?;
-        // Otherwise the crates would become members of this repository's workspace.
+        // Otherwise, the crates would become members of this repository's workspace.
         fs::write(place.join("Cargo.toml"), "[workspace]\nresolver = \"3\"\n")?;
         fs::copy(self.root.join("Cargo.lock"), place.join("Cargo.lock"))?;
         let target = self.root.join("lab/target").display().to_string();
@@ -102,7 +107,7 @@ impl Shell {
     }
 }
 
-/// The descriptions and tables below a folder.
+/// Copies the descriptions and tables below a folder.
 fn copy(from: &Path, to: &Path) -> Result<()> {
     for entry in fs::read_dir(from)? {
         let path = entry?.path();

@@ -1,5 +1,6 @@
-//! README and book: their commands run as they stand, one after the other on each page, in a folder that has nothing but what the
-//! page has made and the repository's descriptions; links lead somewhere; every chapter is in the list of chapters.
+//! The README and the book: the commands of each page run in order and unchanged, in a folder that contains only the
+//! files made by the page and the descriptions of the repository; links are valid; every chapter is in the table of
+//! contents.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,14 +10,14 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use hamel_book::page::{CRATES, blocks, own};
 use hamel_book::shell::Shell;
 
-/// Lines of a README at most.
+/// Largest number of lines of a README.
 const SHORT: usize = 150;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// README and chapters, with their texts.
+/// Returns README and chapters, with their texts.
 fn pages() -> Vec<(PathBuf, String)> {
     let root = root();
     let chapters = hamel_book::build::pages(&root).expect("the book");
@@ -32,7 +33,7 @@ fn pages() -> Vec<(PathBuf, String)> {
 fn commands_run_as_they_stand() {
     let pages = pages();
     let next = AtomicUsize::new(0);
-    // Pages know nothing of one another.
+    // Pages are independent.
     let ran = std::thread::scope(|scope| {
         let workers = [(); 2].map(|()| {
             let work = || std::iter::from_fn(|| pages.get(next.fetch_add(1, Relaxed)));
@@ -46,20 +47,20 @@ fn commands_run_as_they_stand() {
     assert!(commands > 25, "{commands}");
 }
 
-/// Whether crates that pages make are made, and all members of sweeps: with `HAMEL_ATTACK`, as in `cargo xtask ci`.
+/// Whether to make the crates of pages, and all members of sweeps: with `HAMEL_ATTACK`, as in `cargo xtask ci`.
 fn everything() -> bool {
     std::env::var_os("HAMEL_ATTACK").is_some()
 }
 
-/// Runs the commands of a page; how many there are of `hamel`, and of crates that are made.
+/// Runs the commands of a page; returns the numbers of calls of `hamel` and of crates made.
 fn run(page: &Path, text: &str) -> [usize; 2] {
     let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
     let mut script: String = blocks(text, "sh").into_iter().map(own).collect();
-    // Sweeps of a tenth of their members.
+    // Runs a tenth of the members of sweeps.
     if !everything() {
         script = script.replace("000 --until", "00 --until");
     }
-    // They are compiled from nothing, with the generator.
+    // Crates are compiled from scratch, together with the generator.
     let crates = match everything() {
         true => blocks(text, CRATES).concat(),
         false => String::new(),
@@ -75,7 +76,7 @@ fn run(page: &Path, text: &str) -> [usize; 2] {
         panic!("{}:\n{error}", page.display());
     }
     if !crates.is_empty() {
-        // They share a folder.
+        // The crates of all pages share a folder.
         static ONE: Mutex<()> = Mutex::new(());
         let _one = ONE.lock().expect("no page panics with its crates");
         let printed = shell.run_beside(&crates);
@@ -92,7 +93,7 @@ fn run(page: &Path, text: &str) -> [usize; 2] {
     ]
 }
 
-/// Who runs or compiles the blocks of each kind: nothing that a page shows is only shown.
+/// Every block of a page is compiled or run by some test.
 #[test]
 fn nothing_is_only_shown() {
     let programs = fs::read_to_string(root().join("docs/build/src/lib.rs")).expect("the library");
@@ -105,16 +106,20 @@ fn nothing_is_only_shown() {
         let fences = text.lines().filter_map(|line| line.strip_prefix("```"));
         for kind in fences.step_by(2) {
             let held = match kind {
-                // `commands_run_as_they_stand`, and in tests/complete.rs.
+                // By `commands_run_as_they_stand`, and by tests/complete.rs.
                 "sh" | CRATES | "eom" | "ebnf" => true,
                 "toml" => name == "README.md" && text.contains("path = \"../hamel/runtime\""),
-                // Tests of this crate's documentation.
+                // By the doc tests of this crate.
                 "rust" | "rust,no_run" => {
                     programs.contains(name.strip_prefix("docs/").unwrap_or(&name))
                 }
+<<<<<<< HEAD
                 // tests/emitted/tests/c.rs
+=======
+                // By tests/c99/tests/attack.rs.
+>>>>>>> w-textB
                 "c" => name == "docs/book/src/front-ends.md",
-                // python/tests/test_pages.py, tests/sweep/readers.py
+                // By python/tests/test_pages.py and tests/sweep/readers.py.
                 "python" => python.contains(&name) || name == "docs/book/src/ensembles.md",
                 _ => false,
             };

@@ -1,4 +1,4 @@
-//! Nothing is missing from the reference: statements, functions, joints, options and errors, as the code has them.
+//! The reference is complete: it has all statements, functions, joints, options and errors of the code.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The pages of the reference as they are written, and with what their directives stand for.
+/// Returns the pages of the reference as written, and with their directives expanded.
 fn reference() -> (String, String) {
     let root = root();
     let book = Book::new(&root, Path::new(""));
@@ -31,7 +31,7 @@ fn reference() -> (String, String) {
     (written, built)
 }
 
-/// Of every statement there is a section, with its grammar, an example in which it occurs, and its errors.
+/// Every statement has a section with its grammar, an example of its use, and its errors.
 #[test]
 fn every_statement_has_a_section() {
     let (written, _) = reference();
@@ -59,7 +59,7 @@ fn every_statement_has_a_section() {
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 
-/// A section for every statement that there is, and for no other.
+/// Every section is about an existing statement.
 #[test]
 fn no_section_is_about_a_statement_that_does_not_exist() {
     let (written, _) = reference();
@@ -111,7 +111,7 @@ fn functions_and_options_are_complete() {
     assert!(options > 50, "{options}");
 }
 
-/// Examples are whole descriptions, which the generator takes without a word.
+/// The examples are complete descriptions, which the generator accepts without warnings.
 #[test]
 fn examples_of_the_reference_are_derived() {
     let folder = root().join("docs/book/given");
@@ -135,7 +135,8 @@ fn examples_of_the_reference_are_derived() {
     assert!(count >= vocabulary::statements().count(), "{count}");
 }
 
-/// Every place of the generator that makes a message has an example on the page of errors, or a line among the rare ones.
+/// Every place in the generator that creates a message has an example on the page of errors, or an entry among the rare
+/// ones.
 #[test]
 fn every_error_has_an_example() {
     let examples = examples(&root());

@@ -1,4 +1,4 @@
-//! Operations that the book and the README speak of are those that tests lock.
+//! Checks that the operation counts in the book and the README are the locked ones of the tests.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -12,7 +12,7 @@ fn read(path: &str) -> String {
     fs::read_to_string(root().join(path)).expect(path)
 }
 
-/// Operations of every function of every system in a snapshot.
+/// Returns the operations of every function of every system in a snapshot.
 fn counts(path: &str) -> BTreeMap<(String, String), u64> {
     let (mut system, mut all) = (String::new(), BTreeMap::new());
     for line in read(path).lines() {
@@ -28,7 +28,7 @@ fn counts(path: &str) -> BTreeMap<(String, String), u64> {
     all
 }
 
-/// The cells of the row of a page that begins with a text.
+/// Returns the cells of the row of a page that begins with a text.
 fn row(page: &str, first: &str) -> Vec<String> {
     let rows = page.lines().filter(|line| line.starts_with("| "));
     let mut cells = rows.map(|line| {
@@ -39,7 +39,7 @@ fn row(page: &str, first: &str) -> Vec<String> {
     found.unwrap_or_else(|| panic!("no row {first}"))
 }
 
-/// The number that a cell begins with.
+/// Parses the number at the beginning of a cell.
 fn number(cell: &str) -> u64 {
     let digits = cell.split(' ').next().unwrap_or_default().replace(',', "");
     digits
@@ -52,7 +52,7 @@ const ROBOTS: &str =
     "cli/tests/suite/snapshots/suite__counts__robots_cost_no_more_than_their_bars.snap";
 const CHAINS: &str = "cli/tests/suite/snapshots/suite__counts__chains_grow_by_the_link.snap";
 
-/// Rows of the chapter on costs, with the models behind them.
+/// The rows of the chapter on costs, each with its model.
 const SYSTEMS: [(&str, &str); 10] = [
     ("torque-free body, principal axes", "principal_axes"),
     (
@@ -94,7 +94,7 @@ fn the_chapter_on_costs_has_the_counts_of_the_snapshots() {
             assert_eq!(number(cell), locked, "{first}, {function}");
         }
     }
-    // What a link adds.
+    // The increment per link.
     let chains = counts(CHAINS);
     let added = |function: &str, (from, to): (u64, u64)| {
         let count = |links: u64| chains[&(format!("{links} links"), function.to_string())];

@@ -1,5 +1,5 @@
-//! Every mechanism of the gallery is derived without a warning, its identities hold, its run keeps what the file says that it keeps,
-//! and it is shown with a picture, counts and a remark.
+//! Every mechanism of the gallery is derived without a warning, its identities hold, its run conserves the quantities
+//! that the file lists, and its section has a picture, counts and a remark.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -8,16 +8,16 @@ use hamel_book::gallery::{Exhibit, exhibits, for_all};
 use hamel_book::shell::Shell;
 use hamel_cli::{Asked, Motion, RobotOptions, Session, Stepping};
 
-/// As many mechanisms at least.
+/// Smallest number of mechanisms.
 const LEAST: usize = 24;
-/// Bytes of all pictures at most.
+/// Largest size of all pictures, in bytes.
 const LARGEST: usize = 1_200_000;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// What is wrong with one exhibit, with its picture where the commands are run that show it.
+/// Checks an exhibit; returns the errors, and its picture if there is a shell to run the commands.
 fn seen(exhibit: &Exhibit, shell: Option<&Shell>) -> (Vec<String>, String) {
     let mut wrong = run(exhibit);
     let Some(shell) = shell else {
@@ -51,7 +51,7 @@ fn seen(exhibit: &Exhibit, shell: Option<&Shell>) -> (Vec<String>, String) {
     (wrong.collect(), shown.picture)
 }
 
-/// What is wrong with its run.
+/// Checks its run; returns the errors.
 fn run(exhibit: &Exhibit) -> Vec<String> {
     let until = exhibit
         .run
@@ -108,7 +108,7 @@ fn run(exhibit: &Exhibit) -> Vec<String> {
     wrong
 }
 
-/// The largest change of a quantity, over the largest of its entries, or over 1 where they are smaller.
+/// Returns the largest change of a quantity, relative to its largest initial entry, or absolute if that is almost zero.
 fn change(motion: &Motion, name: &str) -> Option<f64> {
     if name == "energy" {
         return Some(motion.energy_deviation);
@@ -135,7 +135,7 @@ fn change(motion: &Motion, name: &str) -> Option<f64> {
     Some(largest / scale)
 }
 
-/// What is wrong with a picture: it is well-formed, has parts, and its ellipses and texts are within its view box.
+/// Checks a picture: it is well-formed, has parts, and its ellipses and texts are within its view box.
 fn picture(text: &str) -> Vec<String> {
     let document = match roxmltree::Document::parse(text) {
         Ok(document) => document,
@@ -209,7 +209,7 @@ fn every_mechanism_of_the_gallery_holds() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gallery");
     let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
     let shell = Shell::new(&root, &folder, program).expect("a folder");
-    // Every run, and the commands of every third mechanism, or of all with `HAMEL_ATTACK`.
+    // Checks every run, and the commands of every third mechanism, or of all with `HAMEL_ATTACK`.
     let apart = if std::env::var_os("HAMEL_ATTACK").is_some() {
         1
     } else {

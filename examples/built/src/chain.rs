@@ -1,10 +1,10 @@
-//! A chain of any number of links, each on a hinge of the one before.
+//! A chain of any number of links, each connected to the previous one by a hinge.
 
 use hamel_codegen::scene::{
     Body, Expr, Frame, Joint, Scene, SceneError, ShapeKind, diagonal, shifted,
 };
 
-/// A chain of `n` links that hangs from the world; the axes of its hinges alternate.
+/// Builds a chain of `n` links that hangs from the world; the axes of its hinges alternate.
 pub fn chain(n: usize) -> Result<Scene, SceneError> {
     let mut chain = Scene::builder("Chain");
     chain.doc(
@@ -19,7 +19,7 @@ pub fn chain(n: usize) -> Result<Scene, SceneError> {
     );
     chain.gravity([0.into(), 0.into(), -g]);
 
-    // The centre of a link is at half of its length, and the next hinge at its end.
+    // The centre of mass of a link is at half its length, and the next hinge at its end.
     let along = |length: Expr| [0.into(), 0.into(), -length];
     let mut last: Option<Frame> = None;
     for i in 1..=n {

@@ -1,10 +1,10 @@
-//! A drone: forces of four rotors along its axis, the drag of the air, and what its sensors measure.
+//! A drone: forces of four rotors along its axis, air drag, and the readings of its sensors.
 
 use hamel_codegen::scene::{
     Body, CoordKind, Expr, Load, Scene, SceneError, ShapeKind, WORLD, call, diagonal, pose,
 };
 
-/// The drone of `tests/models/drone.eom`.
+/// Builds the drone of `tests/models/drone.eom`.
 pub fn drone() -> Result<Scene, SceneError> {
     let mut drone = Scene::builder("Drone");
     drone.doc(
@@ -16,7 +16,7 @@ pub fn drone() -> Result<Scene, SceneError> {
     let kappa = drone.param("kappa", 0.02);
     let d = drone.param("d", 0.15);
     let vector = ShapeKind::Vector(3);
-    // The centre of mass, the inertia about it, and the place of the sensors, in the axes of the body.
+    // The centre of mass, the inertia about it, and the position of the sensors, in body axes.
     let s = drone.param_of("s", vector, [0.01, 0.0, -0.03]);
     let theta = drone.param_of(
         "Theta",
@@ -36,7 +36,7 @@ pub fn drone() -> Result<Scene, SceneError> {
     drone.body(Body::on(&hull).mass(m).com(&s).inertia_about_com(theta));
     drone.gravity([0.into(), 0.into(), -&g]);
 
-    // Rotors stand ahead, to the left, behind and to the right; neighbours turn in opposite directions.
+    // The rotors are ahead, to the left, behind and to the right; neighbours turn in opposite directions.
     let f = drone.input_of("f", ShapeKind::Vector(4));
     let zero = || Expr::from(0);
     let places = [

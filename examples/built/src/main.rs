@@ -1,7 +1,7 @@
-//! Mechanisms that are described in Rust, without any text: a drone, and a chain of ten links.
+//! Mechanisms described in Rust, without a text: a drone, and a chain of ten links.
 //!
-//! `cargo run -p built` prints the tables of both, and how long the code is that is generated for them. A test
-//! generates the same code from descriptions that were written as text.
+//! `cargo run -p built` prints the tables of both and the length of the code generated for them. A test generates the
+//! same code from textual descriptions.
 
 mod chain;
 mod drone;
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints the tables of a mechanism, and says how much code it takes.
+/// Prints the tables of a mechanism and the length of its code.
 fn print(scene: &Scene) -> Result<(), Box<dyn Error>> {
     let generated = scene.generate()?;
     println!("{}", text(&generated.tables(&[])?, false));
@@ -31,7 +31,7 @@ fn print(scene: &Scene) -> Result<(), Box<dyn Error>> {
 mod tests {
     use hamel_codegen::scene::Scene;
 
-    /// The code without its head, which names the description that it was made of.
+    /// Returns the code without its header, which names the source of the description.
     fn code(scene: &Scene) -> String {
         let generated = scene.generate().expect("a correct description");
         let file = scene.rust(&generated).expect("Rust");

@@ -1,15 +1,15 @@
-//! One mechanism through two of the three front ends: the macro and the build script give the same
-//! functions. The third front end is the command line: `hamel emit examples/three-doors/pendulum.eom`.
+//! One mechanism through two of the three front ends: the macro and the build script generate the same functions. The
+//! third front end is the command line: `hamel emit examples/three-doors/pendulum.eom`.
 
 use hamel::methods::Rkmk4;
 use hamel::{Monitor, State, integrate};
 
-/// What the build script wrote.
+/// The code written by the build script.
 mod built {
     include!(concat!(env!("OUT_DIR"), "/pendulum.rs"));
 }
 
-/// What the macro expands to.
+/// The expansion of the macro.
 mod expanded {
     hamel::rigid_eom! {
         /// A spherical pendulum.

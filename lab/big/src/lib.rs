@@ -1,6 +1,6 @@
-//! Forward dynamics of a spatial chain of 16 links with run-time parameters, and its derivatives: more
-//! than 20,000 statements, cut into parts that rustc compiles comfortably with debug information on. Beside it a tree of
-//! the size of a humanoid robot.
+//! Forward dynamics of a spatial chain of 16 links with run-time parameters, and its derivatives: more than 20,000
+//! statements, split into parts that rustc compiles easily with debug information. Also a tree of the size of a
+//! humanoid robot.
 
 include!(concat!(env!("OUT_DIR"), "/chain.rs"));
 
@@ -18,10 +18,10 @@ pub mod humanoid {
 mod tests {
     use super::Chain;
 
-    /// Rounding of some ten thousand operations on accelerations of order 100.
+    /// Rounding of about ten thousand operations on accelerations of order 100.
     const ROUNDING: f64 = 1e-7;
 
-    /// Statements of the text, one `let` each.
+    /// Counts the statements of the text, one `let` each.
     #[test]
     fn it_is_a_big_model() {
         let text = include_str!(concat!(env!("OUT_DIR"), "/chain.rs"));
@@ -45,7 +45,7 @@ mod tests {
         a.is_finite() && (a - b).abs() <= ROUNDING * (1.0 + a.abs())
     }
 
-    /// Reflection in time: accelerations are even in the velocities, exactly.
+    /// Time reversal: accelerations are even in the velocities, exactly.
     #[test]
     fn accelerations_are_even_in_the_velocities() {
         let (x, xi) = state();
@@ -55,8 +55,8 @@ mod tests {
         }
     }
 
-    /// Accelerations are quadratic in the velocities, so that half the difference of two states is the
-    /// derivative, exactly; ξ̇ and ξ are the second halves of rows and columns.
+    /// Accelerations are quadratic in the velocities, so that half the difference of two states is exactly the
+    /// derivative; ξ̇ and ξ are the second halves of rows and columns.
     #[test]
     fn derivatives_by_velocities_are_differences() {
         let (x, xi) = state();

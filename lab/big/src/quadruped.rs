@@ -1,7 +1,7 @@
 //! The description of a robot with four legs.
 
-/// A floating trunk with four legs of three hinges each, mounted at odd angles, and a torque at each hinge. Slopes
-/// are asked for.
+/// A floating trunk with four legs of three hinges each, mounted at odd angles, with a torque at each hinge. The
+/// description requests slopes.
 pub fn quadruped() -> String {
     let legs = ["lf", "rf", "lh", "rh"];
     let joints = legs.map(|leg| ["hip", "thigh", "shank"].map(|part| format!("{leg}_{part}")));

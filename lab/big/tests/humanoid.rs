@@ -1,4 +1,5 @@
-//! The compiled functions of a tree with 38 freedoms against Newton and Euler in numbers.
+//! Compares the compiled functions of a tree with 38 degrees of freedom with the recursive Newton-Euler algorithm in
+//! numbers.
 
 use common::{Random, generated};
 use hamel_tests_big::humanoid::Humanoid;
@@ -9,11 +10,11 @@ mod common;
 #[path = "../../../codegen/tests/suite/common/tree/mod.rs"]
 mod tree;
 
-/// Rounding of some thousand operations, relative to the largest force.
+/// Rounding of several thousand operations, relative to the largest force.
 const ROUNDING: f64 = 1e-10;
-/// The same of the motion, where light links at the end of long limbs are fast.
+/// Rounding of the motion, in which light links at the end of long limbs are fast.
 const MOTION: f64 = 1e-8;
-/// States tried.
+/// Number of states.
 const STATES: usize = 5;
 
 fn largest(list: &[f64]) -> f64 {
@@ -21,7 +22,7 @@ fn largest(list: &[f64]) -> f64 {
         .fold(1.0, |most: f64, entry| most.max(entry.abs()))
 }
 
-/// Written so that NaN fails.
+/// Fails for NaN as well.
 fn assert_near(what: &str, found: &[f64], wanted: &[f64], bound: f64) {
     assert_eq!(found.len(), wanted.len());
     for (a, b) in found.iter().zip(wanted) {
@@ -52,7 +53,7 @@ fn forces_and_motion_are_those_of_newton_and_euler() {
         let found = system.inverse_dynamics(&x, &xi, &wanted);
         assert_near("force", &found, &force, ROUNDING * largest(&force));
         let motion = system.accel(&x, &xi, &u).expect("all links have mass");
-        // The terms of the forces at this motion are of the size of M ξ̇.
+        // The terms of the forces in this motion are of the size of M ξ̇.
         let rest = needed(&[0.0; 38]);
         let balance = needed(&motion);
         let inertial: Vec<f64> = balance.iter().zip(&rest).map(|(a, b)| a - b).collect();

@@ -1,4 +1,4 @@
-//! The slopes of a robot with legs, whose function is cut in short parts, against dual numbers through its
+//! Compares the slopes of a robot with legs, whose function is split into short parts, with dual numbers through its
 //! accelerations.
 
 use common::{Random, generated};
@@ -10,9 +10,9 @@ mod common;
 #[path = "../src/quadruped.rs"]
 mod quadruped;
 
-/// Coordinates: place and rotation of the trunk, and the hinges.
+/// Number of coordinates: position and rotation of the trunk, and the hinges.
 const X: usize = 24;
-/// Velocities, and inputs: twelve torques.
+/// Numbers of velocities and of inputs, which are twelve torques.
 const XI: usize = 18;
 const U: usize = 12;
 /// Rounding of ten thousand operations, relative to the largest slope.
@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-10;
 
 type Slope = Dual<f64, 1>;
 
-/// A number with its slope.
+/// Makes a number with its slope.
 fn along(value: f64, slope: f64) -> Slope {
     Dual {
         value,
@@ -46,7 +46,7 @@ fn slopes_are_those_of_dual_numbers() {
         let xi: [f64; XI] = random.numbers(XI).try_into().expect("as many");
         let u: [f64; U] = random.numbers(U).try_into().expect("as many");
         let frame = system.displacement_frame(&x);
-        // What is there already is no part of the answer.
+        // The previous contents must not affect the result.
         let mut slopes = [[f64::NAN; 2 * XI + U]; 2 * XI];
         let motion = system.accel_and_linearize(&x, &xi, &u, &mut slopes);
         let motion = motion.expect("all links have mass");

@@ -1,7 +1,12 @@
-//! Times generated C against generated Rust for the same models, by turns in one process.
+//! Times generated C against generated Rust for the same models, alternately in one process.
 //!
+<<<<<<< HEAD:lab/c/src/main.rs
 //! Started by `lab/c/run.sh`; inputs, rounds and medians are those of `lab/casadi`. Both have to agree before they are
 //! timed. Ends with 1 where the C takes more than 1.05 times as long as the Rust.
+=======
+//! Started by `bench/c/run.sh`; inputs, rounds and medians are those of `bench/casadi`. Results are compared before
+//! they are timed. The exit status is 1 if the C takes more than 1.05 times as long as the Rust.
+>>>>>>> w-textB:bench/c/src/main.rs
 
 
 use hamel_lab::{input, measure};
@@ -24,34 +29,34 @@ mod solo12 {
     include!(concat!(env!("OUT_DIR"), "/solo12.rs"));
 }
 
-/// The most that the C may take, over the Rust.
+/// The largest accepted ratio of the time of the C to that of the Rust.
 const BAR: f64 = 1.05;
-/// Largest difference of results, relative to the largest component.
+/// Largest accepted difference of results, relative to the largest component.
 const AGREEMENT: f64 = 1e-12;
-/// Numbers of the largest structure of parameters and constants, and of results.
+/// Room for the largest structure of parameters and constants, and for the largest result, in numbers.
 const ROOM: usize = 10_000;
 
-/// What C and Rust write to, the same for both: it begins with a line of the cache, since what crosses two of them takes
+/// Memory for results, shared by C and Rust. It is aligned to a cache line, since writes that cross two lines take
 /// longer.
 #[repr(align(64))]
 struct Place([f64; ROOM]);
 
 impl Place {
-    /// The slopes there.
+    /// Views the memory as slopes.
     fn slopes<S: Tangent<Scalar = f64>>(&mut self) -> &mut S::Slopes {
         assert!(size_of::<S::Slopes>() <= size_of::<Self>());
-        // SAFETY: a table consists of numbers alone, for which there is room.
+        // SAFETY: a table consists of numbers only, and the assertion checks that there is room for it.
         unsafe { &mut *self.0.as_mut_ptr().cast() }
     }
 }
 
 type Default = unsafe extern "C" fn(*mut c_void);
 type Set = unsafe extern "C" fn(*mut c_void, *const c_void) -> c_int;
-/// Of a state and inputs, after the constants.
+/// A generated function of the constants, a state and inputs.
 type Function =
     unsafe extern "C" fn(*const c_void, *const f64, *const f64, *const f64, *mut f64) -> c_int;
 
-/// The C of a system at its default parameters.
+/// The generated C of a system, with its default parameters.
 struct InC<'a> {
     library: &'a Library,
     prefix: &'a str,
@@ -68,7 +73,7 @@ impl<'a> InC<'a> {
             )
         };
         let (mut parameters, mut constants) = (vec![0.0_f64; ROOM], vec![0.0_f64; ROOM]);
-        // SAFETY: both structures consist of numbers, fewer than there is room for.
+        // SAFETY: both structures consist of numbers, at most `ROOM` of them.
         let status = unsafe {
             default(parameters.as_mut_ptr().cast());
             set(constants.as_mut_ptr().cast(), parameters.as_ptr().cast())
@@ -83,8 +88,8 @@ impl<'a> InC<'a> {
         }
     }
 
-    /// Prints one row of the table; what the C takes over the Rust, where both agree. `rust` is what is timed, `values` what
-    /// it computes.
+    /// Compares both results, prints one row of the table, and returns the ratio of the time of the C to that of the
+    /// Rust. `rust` is the call that is timed, `values` returns its result.
     fn row<S: System<Scalar = f64>>(
         &self,
         function: &str,
@@ -97,7 +102,7 @@ impl<'a> InC<'a> {
         let c = unsafe { self.library.get::<Function>(name.as_bytes())? };
         let call = |c: Function, input: &Input<S>, place: &mut [f64]| {
             let [x, xi, u] = [input.x.as_ref(), input.xi.as_ref(), input.u.as_ref()];
-            // SAFETY: lengths are those of the header, which come from the same program as the Rust.
+            // SAFETY: lengths are those of the header, which the same program generated as the Rust.
             unsafe {
                 c(
                     self.constants.as_ptr().cast(),
@@ -143,7 +148,7 @@ impl<'a> InC<'a> {
         Ok(c / rust)
     }
 
-    /// Forward dynamics and their slopes, which Rust writes to the same place each time, as C does.
+    /// Times forward dynamics and their slopes. Rust writes the slopes to the same memory in each call, as C does.
     fn rows<S: Tangent<Scalar = f64>>(&self, system: &S) -> Result<[f64; 2], Box<dyn Error>> {
         type Forward<S> = fn(
             &S,
@@ -192,7 +197,7 @@ impl<'a> InC<'a> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("the library is missing")?;
-    // SAFETY: generated functions without constructors; nothing runs when it is opened.
+    // SAFETY: generated functions have no constructors, so opening the library runs nothing.
     let library = unsafe { Library::new(path)? };
     println!("| function | C, ns | Rust, ns | C / Rust |\n|---|---:|---:|---:|");
     let ratios = [

@@ -1,9 +1,15 @@
-//! Times generated Rust against C that CasADi generated for the same model, by turns in one process.
+//! Times generated Rust against C that CasADi generated for the same model, alternately in one process.
 //!
+<<<<<<< HEAD:lab/casadi/src/main.rs
 //! Started by `lab/casadi/run.sh`. Every function gets 32 different inputs, through a pointer, so that
 //! nothing is hoisted; times are thread CPU times, a batch of one and a batch of the other by turns; a
 //! figure is the lowest of the rounds' medians, because the machine may have other work.
 //! Before anything is timed, both have to agree.
+=======
+//! Started by `bench/casadi/run.sh`. Every function gets 32 different inputs through a pointer, so that nothing is
+//! hoisted. Times are thread CPU times; batches of both functions alternate. A figure is the lowest of the rounds'
+//! medians, because the machine may have other work. Results are compared before anything is timed.
+>>>>>>> w-textB:bench/casadi/src/main.rs
 
 mod ours;
 mod peer;
@@ -13,7 +19,7 @@ use serde::Deserialize;
 use std::error::Error;
 use std::path::Path;
 
-/// Largest difference of results, relative to the largest component.
+/// Largest accepted difference of results, relative to the largest component.
 const AGREEMENT: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
@@ -81,7 +87,7 @@ fn agree(name: &str, ours: &[Vec<f64>], theirs: &[Vec<f64>]) -> Result<(), Strin
     for (ours, theirs) in ours.iter().zip(theirs) {
         let scale = ours.iter().fold(1.0_f64, |largest, v| largest.max(v.abs()));
         for (a, b) in ours.iter().zip(theirs) {
-            // Also where one is NaN.
+            // This is false if either one is NaN.
             let near = (a - b).abs() <= AGREEMENT * scale;
             if !near {
                 return Err(format!("{name}: {ours:?} of hamel, {theirs:?} of CasADi"));

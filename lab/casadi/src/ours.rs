@@ -9,11 +9,11 @@ use std::hint::black_box;
 pub trait Model {
     fn name(&self) -> &str;
     fn freedoms(&self) -> usize;
-    /// x, ξ, and τ or ξ̇ of every input.
+    /// Returns x, ξ, and τ or ξ̇ of every input.
     fn inputs(&self, kind: Kind) -> Vec<[Vec<f64>; 3]>;
     fn results(&self, kind: Kind) -> Vec<Vec<f64>>;
-    /// So many times over all inputs. Results are looked at where they lie, as the peer's are: a copy of
-    /// pairs of numbers that were stored one by one waits for the stores, which costs 5 ns.
+    /// Evaluates all inputs `count` times. Results are read in place, as the peer's are: a copy of pairs of numbers
+    /// that were stored one by one waits for the stores, which costs 5 ns.
     fn run(&self, kind: Kind, count: u32);
 }
 
@@ -60,7 +60,7 @@ impl<Sys: System<Scalar = f64>> Generated<Sys> {
     }
 }
 
-/// The start of the description moved along its manifold, other velocities and loads for every k.
+/// The start of the description displaced along its manifold, with different velocities and loads for every k.
 fn input<Sys: System<Scalar = f64>>(system: &Sys, k: usize) -> Input<Sys> {
     let wave = |i: usize| ((k * 37 + i * 11) as f64 * 0.618).sin();
     let fill = |list: &mut [f64], first: usize| {

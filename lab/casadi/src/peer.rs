@@ -1,4 +1,4 @@
-//! Functions of C that CasADi generated.
+//! C functions that CasADi generated.
 
 use crate::measure::INPUTS;
 use libloading::Library;
@@ -21,13 +21,13 @@ type Work = unsafe extern "C" fn(
     *mut c_longlong,
 ) -> c_int;
 
-/// The library that `run.sh` compiled.
+/// Opens the library that `run.sh` compiled.
 pub fn open(path: &Path) -> Result<Library, libloading::Error> {
-    // SAFETY: generated functions without constructors; nothing runs when it is opened.
+    // SAFETY: generated functions have no constructors, so opening the library runs nothing.
     unsafe { Library::new(path) }
 }
 
-/// One function (x, ξ, u) → n numbers, with its inputs.
+/// A function (x, ξ, u) → n numbers, with its inputs.
 pub struct Function<'a> {
     evaluate: libloading::Symbol<'a, Evaluate>,
     inputs: Vec<[Vec<f64>; 3]>,
@@ -44,7 +44,7 @@ impl<'a> Function<'a> {
         width: usize,
     ) -> Result<Self, Box<dyn Error>> {
         assert_eq!(inputs.len(), INPUTS);
-        // SAFETY: CasADi documents these signatures of what it generates.
+        // SAFETY: CasADi documents these signatures for the code that it generates.
         let (evaluate, work) = unsafe {
             (
                 library.get::<Evaluate>(name.as_bytes())?,
@@ -53,9 +53,9 @@ impl<'a> Function<'a> {
         };
         let mut sizes = [0; 4];
         let [arguments, results, integers, numbers] = &mut sizes;
-        // SAFETY: four places to write to.
+        // SAFETY: the function writes to these four places.
         unsafe { work(arguments, results, integers, numbers) };
-        // The three arguments and the result are all there may be.
+        // There is room for the three arguments and the result only.
         if sizes[0] > 3 || sizes[1] > 1 {
             return Err(format!("{name} asks for {sizes:?}").into());
         }
@@ -74,7 +74,7 @@ impl<'a> Function<'a> {
         found
     }
 
-    /// So many times over all inputs.
+    /// Evaluates all inputs `count` times.
     pub fn run(&self, count: u32) {
         self.each(count, |result| {
             black_box(result);
@@ -93,8 +93,8 @@ impl<'a> Function<'a> {
         let mut results = [result.as_mut_ptr()];
         for _ in 0..count {
             for argument in &arguments {
-                // SAFETY: lengths as `cases.json` has them for this function, work vectors as asked for;
-                // the lists live until the end of this function.
+                // SAFETY: the lengths are those of this function in `cases.json`, the work vectors have the lengths
+                // that it requires, and the lists live until the end of this function.
                 unsafe {
                     evaluate(
                         argument.as_ptr(),
@@ -104,7 +104,7 @@ impl<'a> Function<'a> {
                         0,
                     )
                 };
-                // SAFETY: `results` points to `width` numbers, which nobody writes now.
+                // SAFETY: `results` points to `width` numbers, to which nothing writes now.
                 see(unsafe { std::slice::from_raw_parts(results[0], self.width) });
             }
         }

@@ -1,10 +1,10 @@
-//! Descriptions that ask for their linearisation, for build scripts of benches.
+//! Descriptions that request their linearisation, for build scripts of benches.
 
 use hamel_codegen::urdf::Options;
 use std::error::Error;
 use std::path::Path;
 
-/// The description of a robot.
+/// Returns the description of a robot.
 pub fn imported(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> {
     let options = Options {
         floating,
@@ -15,7 +15,7 @@ pub fn imported(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> 
     Ok(imported.text)
 }
 
-/// A description that asks for its linearisation, too.
+/// Adds the request for the linearisation to a description.
 pub fn linearised(description: &str) -> Result<String, Box<dyn Error>> {
     let body = description.trim_end().strip_suffix('}').ok_or("no end")?;
     Ok(format!("{body}    generate all, linearize;\n}}\n"))

@@ -1,15 +1,15 @@
-//! States and inputs that systems are timed at.
+//! States and inputs at which systems are timed.
 
 use hamel::{Scalar, System, manifold};
 
-/// What ξ̇ is a function of.
+/// The arguments of forward dynamics.
 pub struct Input<S: System> {
     pub x: S::Coordinates,
     pub xi: S::Velocities,
     pub u: S::Inputs,
 }
 
-/// The start moved along its manifold, other velocities and loads for every k.
+/// The start displaced along its manifold, with different velocities and loads for every k.
 pub fn input<S: System>(system: &S, k: usize) -> Input<S> {
     let fill = |list: &mut [S::Scalar], first: usize| {
         for (i, entry) in list.iter_mut().enumerate() {

@@ -1,15 +1,16 @@
-//! Times of two functions by turns.
+//! Times two functions alternately.
 
 use cpu_time::ThreadTime;
 
 const ROUNDS: usize = 12;
 const BATCHES: usize = 41;
-/// A batch takes about so long, in ns.
+/// Approximate duration of a batch, in ns.
 const BATCH: f64 = 4e5;
-/// Inputs of one run.
+/// Number of inputs of one run.
 pub const INPUTS: usize = 32;
 
-/// ns of a call of each: the lowest of the rounds' medians. A function runs over all inputs so many times.
+/// Returns the time of one call of each function in ns: the lowest of the rounds' medians. The argument of a function
+/// is the number of its passes over all inputs.
 pub fn by_turns(first: &dyn Fn(u32), second: &dyn Fn(u32)) -> (f64, f64) {
     let (n, m) = (repeats(first), repeats(second));
     let mut best = (f64::INFINITY, f64::INFINITY);

@@ -1,7 +1,8 @@
-//! The controller on a board: instructions of every iteration by the system timer, and the depth of the stack.
+//! The controller on a board: measures the instructions of every iteration by the system timer, and the depth of the
+//! stack.
 //!
-//! Numbers leave by semihosting as hexadecimal digits of their bits, so that nothing is rounded, and no formatting of
-//! floating-point numbers, which can panic, comes along.
+//! Numbers are written by semihosting as hexadecimal digits of their bits, so that nothing is rounded, and the program
+//! contains no formatting of floating-point numbers, which can panic.
 
 #![allow(
     unsafe_code,
@@ -19,18 +20,18 @@ use panic_halt as _;
 
 use crate::control::{ITERATIONS, Regulator};
 
-/// The timer counts down from here: 24 bits.
+/// Value from which the timer counts down: 24 bits.
 const RELOAD: u32 = 0x00FF_FFFF;
-/// Turns of the loop that the timer is tried on.
+/// Turns of the loop for the calibration of the timer.
 const TURNS: u32 = 400_000;
 
 unsafe extern "C" {
-    /// The lowest address of the stack, and the one above its highest.
+    /// The lowest address of the stack, and the address above the highest.
     static _stack_end: u32;
     static _stack_start: u32;
 }
 
-/// Writes words and numbers to the host, and remembers whether it could.
+/// Writes words and numbers to the host, and records failures.
 struct Lines {
     stream: HostStream,
     complete: bool,
@@ -41,7 +42,7 @@ impl Lines {
         self.complete &= self.stream.write_all(bytes).is_ok();
     }
 
-    /// A name, and the bits of numbers.
+    /// Writes a name and the bits of numbers.
     fn line<const N: usize>(&mut self, name: &str, numbers: [u64; N]) {
         self.write(name.as_bytes());
         for number in numbers {
@@ -60,7 +61,7 @@ impl Lines {
     }
 }
 
-/// Ticks of the timer that some work takes.
+/// Returns the ticks of the timer during some work.
 fn ticks<T>(work: impl FnOnce() -> T) -> (T, u64) {
     let before = SYST::get_current();
     let result = work();
@@ -68,13 +69,13 @@ fn ticks<T>(work: impl FnOnce() -> T) -> (T, u64) {
     (result, u64::from(before.wrapping_sub(after) & RELOAD))
 }
 
-/// How many bytes of the stack have been written since the reset, and how many there are.
+/// Returns the number of bytes of the stack written since the reset, and its size.
 fn stack() -> [u64; 2] {
     let (end, start) = (&raw const _stack_end, &raw const _stack_start);
     let room = (start as usize).wrapping_sub(end as usize);
     let mut place = end;
     // SAFETY: all words between the two symbols are memory of the stack, which `cortex-m-rt` has painted before `main`.
-    // Those read are below what is in use, except perhaps for the last one, of which only the value is looked at.
+    // The words read are below the part in use, except perhaps for the last one; only its value is compared.
     while place < start && unsafe { place.read_volatile() } == STACK_PAINT_VALUE {
         place = place.wrapping_add(1);
     }
@@ -82,7 +83,7 @@ fn stack() -> [u64; 2] {
     [used as u64, room as u64]
 }
 
-/// Plans, and says what that costs.
+/// Plans, and writes the cost.
 fn plan<S: Scalar>(lines: &mut Lines) -> Result<(), StepError> {
     let mut regulator = Regulator::<S>::tilted();
     regulator.hover()?;
@@ -96,7 +97,7 @@ fn plan<S: Scalar>(lines: &mut Lines) -> Result<(), StepError> {
     Ok(())
 }
 
-/// All of the program; it ends by leaving QEMU.
+/// Runs the program, and ends by leaving QEMU.
 pub fn main<S: Scalar>() -> ! {
     let done = match (Peripherals::take(), hstdout()) {
         (Some(mut board), Ok(stream)) => {
@@ -109,7 +110,7 @@ pub fn main<S: Scalar>() -> ! {
                 stream,
                 complete: true,
             };
-            // Two instructions a turn, and a turn more than asked for.
+            // The loop has two instructions a turn, and one more turn than requested.
             let ((), tried) = ticks(|| cortex_m::asm::delay(TURNS - 1));
             lines.line("loop", [2 * u64::from(TURNS), tried]);
             let planned = plan::<S>(&mut lines);

@@ -1,10 +1,10 @@
-//! The iterated linear-quadratic regulator: forwards a run, backwards the best answer to deviations from it, by the
-//! exact slopes of the steps that the run makes.
+//! The iterative linear-quadratic regulator: a forward run, then backwards the optimal feedback for deviations from it,
+//! from the exact slopes of the run's steps.
 //!
 //! W. Li, E. Todorov, *Iterative linear quadratic regulator design for nonlinear biological movement systems*, ICINCO
-//! (2004). What the state is off by costs ½ (a |r|² + b tr(I − R) + c |v|² + d |w|²), whose slopes along displacements
-//! (δr, R ĥ) are a r and ½ b vee(R − Rᵀ), and the curvature in the attitude is taken as that at R = I, so that all
-//! values are positive definite.
+//! (2004). The cost of a deviation is ½ (a |r|² + b tr(I − R) + c |v|² + d |w|²). Its slopes along displacements (δr, R
+//! ĥ) are a r and ½ b vee(R − Rᵀ); its curvature in the attitude is taken at R = I, so that all values are positive
+//! definite.
 
 use core::array::from_fn;
 
@@ -17,28 +17,28 @@ use crate::matrix::{
 };
 use crate::model::{Drone, DroneState};
 
-/// Steps of the horizon.
+/// Number of steps of the horizon.
 pub const NODES: usize = 20;
-/// How often the plan is made better.
+/// Number of iterations.
 pub const ITERATIONS: usize = 8;
 /// Length of a step, in s.
 const STEP: f64 = 0.05;
-/// Displacements: δr and a turn in body axes, then those of ξ = (v, w).
+/// Number of displacements: δr and a rotation in body axes, then those of ξ = (v, w).
 const N: usize = 12;
-/// The thrust and three torques.
+/// Number of inputs: the thrust and three torques.
 const M: usize = 4;
-/// What place, attitude, velocity and angular velocity cost over a second, and at the end.
+/// Costs of position, attitude, velocity and angular velocity over a second, and at the end.
 const RUNNING: [f64; 4] = [2.0, 1.0, 0.5, 0.1];
 const END: [f64; 4] = [80.0, 20.0, 10.0, 1.0];
-/// What thrust beyond the weight and torques cost over a second.
+/// Costs of thrust in excess of the weight, and of torques, over a second.
 const EFFORT: [f64; M] = [0.05, 20.0, 20.0, 20.0];
-/// The thrust that carries the drone, in N.
+/// The thrust that balances the weight, in N.
 const WEIGHT: f64 = 1.1 * 9.81;
 
-/// A place in the state space of the drone.
+/// A state of the drone.
 pub type Place<S> = State<Drone<S>>;
 
-/// States and inputs over the horizon, and what they cost.
+/// States and inputs over the horizon, and their cost.
 #[derive(Clone, Debug)]
 pub struct Plan<S: Scalar> {
     states: [Place<S>; NODES + 1],
@@ -46,7 +46,7 @@ pub struct Plan<S: Scalar> {
     cost: S,
 }
 
-/// The answer to a deviation e: u + s k + K e, where s is how much of the change k is made.
+/// The feedback u + s k + K e for a deviation e, where s is the applied fraction of the change k.
 #[derive(Clone, Copy, Debug)]
 struct Answer<S> {
     change: [S; M],
@@ -54,7 +54,7 @@ struct Answer<S> {
 }
 
 impl<S: Scalar> Answer<S> {
-    /// To go on as before.
+    /// Leaves the inputs unchanged.
     const fn none(zero: S) -> Self {
         Answer {
             change: [zero; M],
@@ -63,7 +63,7 @@ impl<S: Scalar> Answer<S> {
     }
 }
 
-/// What a state costs by these weights, and its slope.
+/// The weighted cost of a state, and its slope.
 fn cost<S: Scalar>(place: &Place<S>, weights: [f64; 4]) -> (S, [S; N]) {
     let [a, b, c, d] = weights.map(S::from_f64);
     let half = S::from_f64(0.5);
@@ -99,10 +99,10 @@ fn curvature<S: Scalar>(weights: [f64; 4]) -> [S; N] {
     [a, a, a, b, b, b, c, c, c, d, d, d]
 }
 
-/// The deviation of a state from another one, to first order of the turn between them.
+/// The deviation of a state from another one, to first order in the relative rotation.
 fn deviation<S: Scalar>(place: &Place<S>, from: &Place<S>) -> [S; N] {
     let (new, old) = (DroneState::from(place), DroneState::from(from));
-    // Columns of both rotations; the skew part of RᵀS is the turn.
+    // Columns of both rotations; the skew part of RᵀS is the relative rotation.
     let (mut r, mut s) = (zeros(), zeros());
     transpose(&old.r_upper, &mut r);
     transpose(&new.r_upper, &mut s);
@@ -127,13 +127,13 @@ fn deviation<S: Scalar>(place: &Place<S>, from: &Place<S>) -> [S; N] {
     ]
 }
 
-/// What inputs are beyond those that hover.
+/// The inputs relative to hover.
 fn effort<S: Scalar>(u: &[S; M]) -> [S; M] {
     let [thrust, x, y, z] = *u;
     [thrust - S::from_f64(WEIGHT), x, y, z]
 }
 
-/// The regulator: the drone, also in numbers with slopes, the plan as it is, and room for what an iteration tries.
+/// The regulator: the drone, also in numbers with slopes, the current plan, and memory for the trial of an iteration.
 #[derive(Clone, Debug)]
 pub struct Regulator<S: Scalar> {
     drone: Drone<S>,
@@ -144,7 +144,7 @@ pub struct Regulator<S: Scalar> {
 }
 
 impl<S: Scalar> Regulator<S> {
-    /// A drone two metres off, tilted and moving, whose plan is nothing yet.
+    /// Creates the regulator of a drone two metres off, tilted and moving, with an empty plan.
     #[inline(never)]
     pub fn tilted() -> Self {
         let drone = Drone::default();
@@ -167,25 +167,26 @@ impl<S: Scalar> Regulator<S> {
         }
     }
 
-    /// What the plan costs.
+    /// Returns the cost of the plan.
     pub fn cost(&self) -> S {
         self.plan.cost
     }
 
-    /// Plans to hover, as long as nothing better is known.
+    /// Initialises the plan with hovering.
     ///
     /// # Errors
-    /// Those of steps.
+    /// If a step fails.
     pub fn hover(&mut self) -> Result<(), StepError> {
         self.attempt(S::default())?;
         core::mem::swap(&mut self.plan, &mut self.tried);
         Ok(())
     }
 
-    /// One iteration: answers to the plan, and a plan that is no worse, by ever smaller parts of their changes.
+    /// Performs one iteration: computes the feedback for the plan, and applies ever smaller fractions of its changes
+    /// until the plan is no worse.
     ///
     /// # Errors
-    /// Those of steps.
+    /// If a step fails.
     #[inline(never)]
     pub fn improve(&mut self) -> Result<(), StepError> {
         if !self.answer()? {
@@ -201,7 +202,7 @@ impl<S: Scalar> Regulator<S> {
         Ok(())
     }
 
-    /// Tries the plan with `part` of the answers' changes.
+    /// Tries the plan with a fraction `part` of the changes.
     #[inline(never)]
     fn attempt(&mut self, part: S) -> Result<(), StepError> {
         let (half, length) = (S::from_f64(0.5), S::from_f64(STEP));
@@ -233,8 +234,8 @@ impl<S: Scalar> Regulator<S> {
         Ok(())
     }
 
-    /// Finds the best answers to deviations, backwards by the value ½ eᵀ V e + vᵀ e of what follows a state; whether
-    /// there are any.
+    /// Finds the optimal feedback backwards, from the value ½ eᵀ V e + vᵀ e of the steps after a state; returns whether
+    /// it exists.
     #[inline(never)]
     fn answer(&mut self) -> Result<bool, StepError> {
         let [.., last] = &self.plan.states;
@@ -253,7 +254,8 @@ impl<S: Scalar> Regulator<S> {
     }
 }
 
-/// The answer at a node, and V and v there by those of the next one; whether the inputs' part has an inverse.
+/// The feedback at a node, and V and v there, from those of the next one; returns whether the block of the inputs has
+/// an inverse.
 #[inline(never)]
 fn before<S: Scalar>(
     place: &Place<S>,
@@ -265,7 +267,7 @@ fn before<S: Scalar>(
 ) -> bool {
     let length = S::from_f64(STEP);
     let weights = EFFORT.map(S::from_f64);
-    // Aᵀ V A and Aᵀ v of the states, Bᵀ V [A B] and Bᵀ v of the inputs, with what the node itself costs.
+    // Aᵀ V A and Aᵀ v of the states, Bᵀ V [A B] and Bᵀ v of the inputs, plus the costs of the node.
     let mut half: Matrix<S, N, { N + M }> = zeros();
     let mut pushed: Matrix<S, M, { N + M }> = zeros();
     add_symmetric_product(&mut half, value, slopes);
@@ -281,7 +283,7 @@ fn before<S: Scalar>(
     for ((entry, u), weight) in first.iter_mut().zip(effort(u)).zip(weights) {
         *entry = (length * weight).mul_add(u, *entry);
     }
-    // The inputs' own part, and what it is solved for: K and k.
+    // The block of the inputs, and the right sides for K and k.
     let (mut inner, mut mixed) = (zeros::<S, M, M>(), zeros::<S, M, N>());
     let mut right: Matrix<S, M, { N + 1 }> = zeros();
     take(&pushed, N, &mut inner);

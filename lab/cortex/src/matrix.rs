@@ -1,5 +1,5 @@
-//! Small dense matrices by rows, as regulators need them. Loops are over entries, not over indices: nothing is left
-//! that could be out of bounds.
+//! Small dense matrices by rows, for the regulator. Loops iterate over entries, not indices, so that no access can be
+//! out of bounds.
 
 use hamel::Scalar;
 
@@ -24,7 +24,7 @@ pub(crate) fn dot<S: Scalar, const N: usize>(a: &[S; N], b: &[S; N]) -> S {
     pairs.fold(S::default(), |sum, (a, b)| a.mul_add(*b, sum))
 }
 
-/// Y + a D of a diagonal matrix D.
+/// Y + a D for a diagonal matrix D
 pub(crate) fn add_diagonal<S: Scalar, const N: usize>(y: &mut Matrix<S, N, N>, a: S, d: &[S; N]) {
     for ((i, row), d) in y.iter_mut().enumerate().zip(d) {
         if let Some(entry) = row.get_mut(i) {
@@ -33,8 +33,8 @@ pub(crate) fn add_diagonal<S: Scalar, const N: usize>(y: &mut Matrix<S, N, N>, a
     }
 }
 
-/// Y + Aᵀ B with the columns of A from `first` on, as far as Y goes, without the products with zeros of A: more than a
-/// half of the slopes of a step are.
+/// Y + Aᵀ B with the columns of A from `first` on, as many as Y has rows. Products with zeros of A are skipped: more
+/// than half of the slopes of a step are zero.
 pub(crate) fn add_transposed_product<
     S: Scalar,
     const R: usize,
@@ -71,7 +71,7 @@ pub(crate) fn transposed_apply<S: Scalar, const R: usize, const C: usize>(
     result
 }
 
-/// Y + A B of a symmetric A, without the products with zeros of B.
+/// Y + A B for a symmetric A, without the products with zeros of B
 pub(crate) fn add_symmetric_product<S: Scalar, const R: usize, const C: usize>(
     y: &mut Matrix<S, R, C>,
     a: &Matrix<S, R, R>,
@@ -90,7 +90,7 @@ pub(crate) fn add_symmetric_product<S: Scalar, const R: usize, const C: usize>(
     }
 }
 
-/// B becomes Aᵀ.
+/// Sets B to Aᵀ.
 pub(crate) fn transpose<S: Scalar, const R: usize, const C: usize>(
     a: &Matrix<S, R, C>,
     b: &mut Matrix<S, C, R>,
@@ -104,7 +104,7 @@ pub(crate) fn transpose<S: Scalar, const R: usize, const C: usize>(
     }
 }
 
-/// B becomes the columns of A from `first` on, as far as both go.
+/// Copies the columns of A from `first` on to B, as far as both extend.
 pub(crate) fn take<S: Scalar, const R: usize, const A: usize, const B: usize>(
     a: &Matrix<S, R, A>,
     first: usize,
@@ -117,7 +117,7 @@ pub(crate) fn take<S: Scalar, const R: usize, const A: usize, const B: usize>(
     }
 }
 
-/// B becomes X with A X = B of a symmetric A, by elimination in A; whether A is positive definite.
+/// Solves A X = B in place for a symmetric A, by elimination; returns whether A is positive definite.
 pub(crate) fn solve<S: Scalar, const N: usize, const C: usize>(
     a: &mut Matrix<S, N, N>,
     b: &mut Matrix<S, N, C>,

@@ -1,1 +1,2 @@
-"""Mechanisms by d'Alembert's principle and differences of many digits, beside what hamel says of the same texts."""
+"""Mechanisms by d'Alembert's principle and high-precision differences, compared with hamel's results for the same
+texts."""

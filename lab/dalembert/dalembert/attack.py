@@ -1,8 +1,10 @@
-"""python -m dalembert.attack HAMEL FOLDER [--what KIND …] [--seeds FIRST COUNT] [--largest N] [--hard] [--rust FIRST COUNT] [--jobs N]: random
-mechanisms by their kinds and seeds.
+"""Attacks random mechanisms by their kinds and seeds:
 
-Ends with status 1 where hamel says something else than the definitions, or refuses without a reason that is known here, and
-where a text with a wrong sign is not found."""
+    python -m dalembert.attack HAMEL FOLDER [--what KIND …] [--seeds FIRST COUNT] [--largest N] [--hard]
+        [--rust FIRST COUNT] [--jobs N]
+
+Ends with status 1 if hamel's results differ from the definitions, if it refuses a mechanism without a reason known
+here, or if a text with a wrong sign is not detected."""
 
 import argparse
 import multiprocessing
@@ -23,18 +25,18 @@ from .spoken import External, Spoken
 from .trees import Forest
 from .written import Written
 
-# What hamel cannot do and says so, with what is left out of `generate` then.
+# Limitations that hamel reports, each with the functions that are then left out of `generate`.
 LEFT_OUT = {
     "has no regressor": ", regressor",
     "`centroidal_map` is not known": ", centroidal_map",
     "`parameter_slopes` is not known: the constraints": ", parameter_slopes",
 }
-# What a random mechanism should not have been.
+# Messages for random mechanisms that are degenerate.
 MEANINGLESS = ["can coincide", "its points keep their distance", "the velocity by others", "leave it none of its own"]
 
 
 def settled(doors, text, language="c"):
-    """Takes out of the list of functions what hamel says that it has not; whether there is anything to compare."""
+    """Removes the functions that hamel reports as unavailable; returns whether there is anything to compare."""
     while True:
         try:
             doors.write(text)
@@ -50,7 +52,7 @@ def settled(doors, text, language="c"):
 
 
 def tree(seed, largest, hard, kind=Forest):
-    """A random tree that is neither too large nor hardly one."""
+    """A random tree, neither too large nor trivial."""
     r = random.Random(seed)
     while True:
         made = kind(r, 1 + r.randrange(5), hard=hard)
@@ -60,7 +62,7 @@ def tree(seed, largest, hard, kind=Forest):
 
 
 def loop(seed, largest, hard, kind=Loops):
-    """A random mechanism with closed loops, and a state in which they are closed."""
+    """A random mechanism with closed loops, and a state that closes them."""
     r = random.Random(seed)
     while True:
         try:
@@ -74,18 +76,18 @@ def loop(seed, largest, hard, kind=Loops):
 
 
 def moves(made):
-    """Whether ties alone leave some motion."""
+    """Whether the ties leave any motion."""
     ties = Definitions(made.m).conditions(made.state)
     return bool(made.m.driven or made.m.accelerated) or len(independent(ties, 1e-9)) < made.m.n
 
 
 def driven(seed, largest, hard):
-    """One with motions that are given."""
+    """A mechanism with prescribed motions."""
     return loop(seed, largest, hard, Driven)
 
 
 def written(seed, largest, hard):
-    """A mechanism with rates and constraints of its own."""
+    """A mechanism with explicit rates and constraints."""
     r = random.Random(seed)
     while True:
         made = Written(r, 1 + r.randrange(4), hard=hard)
@@ -95,35 +97,35 @@ def written(seed, largest, hard):
 
 
 def awkward(seed, largest, hard):
-    """A tree, loops or a motion that is given, with awkward geometry."""
+    """A tree, loops or a prescribed motion with awkward geometry."""
     if seed % 3 == 0:
         return tree(seed, largest, hard, AwkwardTrees)
     return loop(seed, largest, hard, (AwkwardLoops, AwkwardDriven)[seed % 3 - 1])
 
 
 def platform(seed, largest, hard):
-    """One on more cranks than it needs, whose motion is given or not."""
+    """A platform on more cranks than necessary, with or without prescribed motion."""
     return loop(seed, largest, hard, (Platforms, DrivenPlatforms)[seed % 2])
 
 
 def spoken(seed, largest, hard):
-    """A tree in other words."""
+    """A tree in other forms of the language."""
     return tree(seed, largest, hard, Spoken)
 
 
 def external(seed, largest, hard):
-    """The same with a function in Rust, perhaps."""
+    """Such a tree, sometimes with a function in Rust."""
     return tree(seed, largest, hard, External)
 
 
-# What is compared, by name.
+# The comparisons, by name.
 WHAT = {"trees": tree, "loops": loop, "written": written, "driven": driven, "awkward": awkward, "spoken": spoken}
-# And what is only on demand.
+# Further ones on request.
 ASKED = WHAT | {"platforms": platform}
 
 
 def one(job):
-    """Compares the mechanism of a seed; what was found, and whether there was anything to compare."""
+    """Compares the mechanism of a seed; returns the errors, and whether there was anything to compare."""
     asked, what, seed = job
     begin, errors, where = time.time(), Errors(), f"{what} {seed}"
     made = ASKED[what](seed, asked.largest, asked.hard)
@@ -143,7 +145,7 @@ def one(job):
 
 
 def emitted(asked, first, count):
-    """Some small mechanisms of three kinds as Rust, in one crate; what was found."""
+    """Compares several small mechanisms of three kinds as Rust, in one crate; returns the errors."""
     errors, made = Errors(), []
     crate = Crate(asked.hamel, os.path.join(asked.folder, "rust"), asked.root)
     makers = [("spoken", external), ("written", written), ("loops", loop)]

@@ -1,5 +1,5 @@
-"""Awkward geometry: mounts at angles whose sines are roots, axes that are nearly parallel, links without mass, parameters that are
-zero, platforms on more cranks than they need."""
+"""Awkward geometry: mounts at angles whose sines are roots, axes that are nearly parallel, massless links, parameters
+that are zero, platforms on more cranks than necessary."""
 
 from .driven import Driven
 from .expressions import PI, STILL, Mat, Vec, call, lift, rotation, rpy
@@ -11,7 +11,7 @@ NEARLY = [[0, 0, 1], [0, "1e-7", 1], ["-1e-7", 0, 1], ["1e-7", "1e-7", -1], [1, 
 
 
 class Awkward:
-    """What is put before a kind of mechanism."""
+    """Mixin for a kind of mechanism."""
 
     def __init__(self, random, size, **more):
         self.nearly = random.random() < 0.5
@@ -27,14 +27,14 @@ class Awkward:
         _, place = super().mount(moving)
         angle = lambda: self.pick(ANGLES)  # noqa: E731
         turned = self.pick([lambda: rpy(angle(), angle(), angle()), lambda: rotation(self.pick("xyz"), angle()) * rotation(self.pick("xyz"), angle()), lambda: STILL])()
-        # A place in the numbers of the same angles.
+        # A position among the numbers of the same angles.
         if r.random() < 0.3:
             a = angle()
             place = Vec.of([call("cos", a), call("sin", a), 0])
         return turned, place
 
     def value(self):
-        """A parameter that is zero may be a part of it."""
+        """A positive number or a parameter, possibly with a term whose parameter is zero."""
         value = super().value()
         if self.r.random() < 0.3:
             if not hasattr(self, "zero"):
@@ -43,7 +43,7 @@ class Awkward:
         return value
 
     def body(self, frame):
-        """Some have no mass, some no extension."""
+        """Adds a body, sometimes without mass or extension."""
         m, r = self.m, self.r
         if r.random() < 0.6:
             return super().body(frame)
@@ -56,12 +56,12 @@ class Awkward:
 
 
 class AwkwardTrees(Awkward, Forest):
-    """Trees."""
+    """Trees with awkward geometry."""
 
 
 class Platforms(Loops):
-    """A platform on three parallel cranks of one length: a row more than there need be, but only where it is closed.
-    Slopes have half of the digits there, and a third of them in `float`."""
+    """A platform on three parallel cranks of the same length: one row is redundant, but only in closed configurations.
+    There, slopes have half of the digits, or a third of them in `float`."""
 
     def tree(self, size, free):
         zero, z, length = Vec.of([0, 0, 0]), Vec.of([0, 0, 1]), self.length()
@@ -85,7 +85,7 @@ class Platforms(Loops):
 
 
 class DrivenPlatforms(Platforms, Driven):
-    """The same where the rate of a crank is given: of all multipliers the force of its drive alone is unique."""
+    """Platforms in which the rate of a crank is prescribed: the only unique multiplier is the force of its drive."""
 
     def constraints(self):
         Loops.constraints(self)
@@ -93,11 +93,11 @@ class DrivenPlatforms(Platforms, Driven):
 
 
 class AwkwardLoops(Awkward, Loops):
-    """Loops."""
+    """Loops with awkward geometry."""
 
 
 class AwkwardDriven(Awkward, Driven):
-    """Motions that are given."""
+    """Prescribed motions with awkward geometry."""
 
 
 __all__ = ["AwkwardTrees", "AwkwardLoops", "AwkwardDriven", "DrivenPlatforms", "Platforms"]

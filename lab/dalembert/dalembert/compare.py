@@ -1,4 +1,5 @@
-"""One mechanism at one state: every function of generated C, and what `eval` and `linearize` print, beside the definitions."""
+"""Compares one mechanism at one state: every function of generated C, and the output of `eval` and `linearize`, with
+the definitions."""
 
 from itertools import combinations
 
@@ -15,7 +16,7 @@ def flat(value):
 
 
 class Errors:
-    """The largest error of each quantity, as a part of its largest entry."""
+    """The largest error of each quantity, relative to its largest entry."""
 
     def __init__(self):
         self.worst = {}
@@ -32,7 +33,7 @@ class Errors:
             self.found.append((where, name, f"{len(theirs)} numbers in place of {len(mine)}"))
             return
         size = max([abs(a) for a in mine], default=mpf(0))
-        # Numbers that are nearly 0 are compared with `least`.
+        # Numbers close to 0 are compared with `least`.
         error = max([abs(mpf(b) - a) for a, b in zip(mine, theirs)], default=mpf(0)) / max(size, mpf(least))
         if any(b != b for b in theirs):
             error = mpf("inf")
@@ -43,7 +44,7 @@ class Errors:
 
 
 def state_of(m, s, active):
-    """A state as `--at` takes it."""
+    """A state in the format of `--at`."""
     coordinates = {}
     for name, kind, place in m.coordinates:
         size = {"real": 1, "S1": 2, "S3": 4, "SO3": 9, "R2": 2, "R3": 3}[kind]
@@ -67,19 +68,19 @@ def state_of(m, s, active):
 
 
 class Comparison:
-    """Of a mechanism that moves freely: all its velocities are its own."""
+    """The comparison for a mechanism."""
 
     def __init__(self, m, doors, errors, where, tolerance=1e-9, slopes=True):
         self.slopes = slopes
         self.m, self.d, self.doors, self.errors, self.where, self.tolerance = m, Definitions(m), doors, errors, where, tolerance
-        # Slopes that mean something along the ties alone, where ties follow from one another.
+        # Slopes that are meaningful only along the ties, if these are redundant.
         self.along = set()
 
     def note(self, name, mine, theirs, tolerance=None, least=1e-3):
         self.errors.note(name, mine, theirs, tolerance or self.tolerance, self.where, least)
 
     def quantities(self, s):
-        """Name, and a function that gives it."""
+        """Yields names, each with a function that evaluates it."""
         d, m = self.d, self.m
         yield "rate", lambda: m.rate(s)
         yield "mass_matrix", lambda: d.mass_active(s, [row[d.first :] for row in d.mass_matrix(s)[d.first :]])
@@ -118,12 +119,12 @@ class Comparison:
             yield f"{output.name}_slopes", (lambda o: lambda: kinematics.output_slopes(d, s, o))(output)
 
     def needed(self, s):
-        """The force of the given ξ̇ of active velocities."""
+        """The force for the given ξ̇ of active velocities."""
         d = self.d
         return d.on_active(d.inverse_dynamics(s, d.wide(s, [self.given[i] for i in d.active])), s)
 
     def start(self, c, s, single):
-        """Which velocities follow from others, and the state with them."""
+        """Determines the dependent velocities, and returns the state with them."""
         m = self.m
         said = self.doors.eval()
         names = tied.names(m)
@@ -142,7 +143,7 @@ class Comparison:
         return s.but(a=d.wide(s, [s.a[i] for i in d.active]))
 
     def run(self, s, single=False, c=None, kind=""):
-        """All functions of the generated C, or of what else has them, and what is printed."""
+        """Compares all functions of the generated C, or of a substitute, and the printed output."""
         m, kind = self.m, "f32 " if single else kind
         c = c or self.doors.compiled(single)
         if m.default or "set_parameters" in c:
@@ -154,7 +155,7 @@ class Comparison:
         if not self.unique:
             self.along = {"linearize"} | {f"{o.name}_slopes" for o in m.outputs if o.accelerations}
         if m.driven:
-            # A coordinate that is given is not read, wherever it is.
+            # A prescribed coordinate is not read, whatever its value.
             self.along = {"linearize", "inverse_dynamics_slopes"} | {f"{o.name}_slopes" for o in m.outputs}
         given = {
             "x": [float(e) for e in s.x],
@@ -187,13 +188,13 @@ class Comparison:
             self.printed(s, mine)
 
     def in_text(self, bonds):
-        """Rows of closures, of conditions on velocities and of given rates, in the order of the text."""
+        """Rows of closures, of velocity constraints and of prescribed rates, in the order of the text."""
         m = self.m
         rows = {"closure": iter(bonds), "kept": iter(bonds[len(m.closures) :])}
         return [next(rows[name]) for name in m.order] + bonds[len(m.order) :]
 
     def ties(self, c, s, given, kind, tolerance):
-        """What keeps ties, and what leads back onto them."""
+        """Compares constraint forces and projections."""
         d, m = self.d, self.m
         if "constraint_force" not in c:
             self.errors.found.append((self.where, kind + "constraint_force", "is missing"))
@@ -203,23 +204,23 @@ class Comparison:
             self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(bonds), [mpf(f) for f in force]), tolerance)
         else:
             self.shared(c, s, given, kind)
-        # From beside the ties.
+        # At a state off the ties.
         beside = tied.beside(d, s)
         given = {**given, "x": [float(e) for e in beside.x], "xi": [float(e) for e in [*(beside.xi[i] for i in d.active), *s.z]]}
         closures = [e for k, e in enumerate(m.closures) if k not in d.solved]
         if "constraint" in c and closures and self.unique:
-            # Behind those that kinds of coordinates bring along.
+            # After those of the kinds of coordinates.
             own = len(self.doors.eval(self.state(s))["constraint"]) - len(closures)
             said = c.call("constraint", own + len(closures), **given)[own:]
             self.note(kind + "constraint", [e.at(beside) for e in closures], said, tolerance)
         if not self.unique:
             return
         if "accel" in c and not m.driven:
-            # Where loops are off, they come back as fast as they are said to.
+            # Off the loops, violations decay at the stated rate.
             self.note(kind + "accel beside", d.accel(beside), c.call("accel", len(d.active) + m.nz, **given), tolerance)
         if "project_position" in c:
             step = tied.project_position(d, beside)
-            # States of first order stand behind the velocities, and do not move.
+            # First-order states follow the velocities, and do not move.
             step = [step[i] for i in d.active] + [mpf(0)] * m.nz
             self.note(kind + "project_position", step, c.call("project_position", len(step), **given), tolerance)
         if "project_velocity" in c:
@@ -227,8 +228,9 @@ class Comparison:
             self.note(kind + "project_velocity", projected, c.call("project_velocity", len(projected), **given), tolerance)
 
     def shared(self, c, s, given, kind):
-        """λ where rows depend on one another. Some of these are left out: which ones is not said by number, but the force of those that
-        are left is that of all. What is said to be unique is so by elimination, and has the value that this gives."""
+        """Compares λ of redundant rows. Some rows are left out, and their indices are not reported, but the remaining
+        ones carry the total force. Multipliers that are reported as unique must be so by elimination, and have its
+        values."""
         d = self.d
         bonds, total = self.in_text(d.bonds(s)), d.motion(s)[1]
         said = self.doors.eval(self.state(s))
@@ -257,7 +259,7 @@ class Comparison:
         if "regressor" not in c:
             return
         d, n = self.d, self.m.n
-        # As many as there is room for; the rest of the room is untouched.
+        # Limited by the available room, the rest of which is unchanged.
         room = 4096
         try:
             beta = c.call("base_parameters", room, **given)
@@ -266,7 +268,7 @@ class Comparison:
         beta = beta[: next(k for k, b in enumerate(beta) if b == 777.0)]
         y = c.call("regressor", n * len(beta), **given)
         force = [sum(y[i * len(beta) + k] * b for k, b in enumerate(beta)) for i in range(n)]
-        # With the force of dampers that joints have: they are parameters, too.
+        # With the force of dampers in joints, which are parameters, too.
         self.note(kind + "regressor", self.m.with_dampers(d, s), force, 1e-3 if single_of(kind) else None)
 
     def state(self, s):
@@ -280,7 +282,7 @@ class Comparison:
         self.note("eval gamma", d.gamma(s), said["gamma"])
         self.note("eval Gamma", d.connection(s), said["Gamma"])
         matrix = d.mass_matrix(s)
-        # The row of the time is no equation of motion, and is not compared.
+        # The row of the time is not an equation of motion, and is not compared.
         first = d.first
         self.note("eval M", [row[first:] for row in matrix[first:]], [row[first:] for row in said["M"][first:]])
         if not mine.get("linearize"):
@@ -301,24 +303,26 @@ class Comparison:
                 self.note("minimal linearize", least, whole(lin), self.tolerance * (1e2 if self.unique else 1e3))
 
     def of_slopes(self, single):
-        """Their tolerance: half of the digits where rows depend on one another, a third of them in `float`, also of what cancels."""
+        """The tolerance of slopes: half of the digits with redundant rows, a third of them in `float`, also for terms
+        that cancel."""
         if self.unique:
             return {"tolerance": 1e-3 if single else None}
         return {"tolerance": 2e-2 if single else 1e-6, "least": 1}
 
     def on_ties(self, rows, basis):
-        """What slopes say of what ties allow, and of the inputs."""
+        """Slopes along displacements that satisfy the ties, and along inputs."""
         size = min(len(basis), len(rows[0]) if rows else 0)
         return [times([row[:size]], basis[:size])[0] + list(row[size:]) for row in rows]
 
 
 def whole(lin):
-    """[A B] as they are printed."""
+    """[A B] in printed form."""
     return [a + b for a, b in zip(lin["A"], lin["B"])]
 
 
 def multipliers(bonds, total):
-    """The multipliers of rows whose force is given, each `None` where it is not unique: where its row depends on the others."""
+    """The multipliers of rows with this total force; `None` where a multiplier is not unique because its row depends on
+    the others."""
     rows = independent(bonds)
     b = [bonds[k] for k in rows]
     found = dict(zip(rows, solve([[dot(p, q) for q in b] for p in b], [dot(p, total) for p in b])))

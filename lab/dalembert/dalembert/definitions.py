@@ -1,5 +1,6 @@
-"""What hamel computes, from its definitions alone: poses are differentiated by differences of 80 digits, forces are balanced by
-d'Alembert's principle, and γ comes from commutators of the columns of A. Nothing here knows how hamel derives anything."""
+"""The quantities that hamel computes, from their definitions: poses are differentiated by differences of 80 digits,
+forces are balanced by d'Alembert's principle, and γ comes from commutators of the columns of A, independently of
+hamel's derivations."""
 
 from mpmath import mpf
 
@@ -7,7 +8,7 @@ from . import vectors
 from .vectors import NIL, ONE, add, cross, dot, least_squares, mpf as number, on, scale, solve, sub, times, transposed, vee
 
 STEP = number(10) ** -20
-# Of what is itself made of differences.
+# Tolerance of values that are computed from differences.
 WIDE = number(10) ** -13
 
 
@@ -16,21 +17,21 @@ def unit(n, i):
 
 
 class Definitions:
-    """Of a mechanism. With a time, everything is extended by the index 0, whose velocity is 1."""
+    """The definitions for a mechanism. With time, everything is extended by the index 0, whose velocity is 1."""
 
     def __init__(self, mechanism):
         self.of = mechanism
         self.time = mechanism.time is not None
         self.first = 1 if self.time else 0
-        # Places of the velocities from which the others follow, and the ties by which they do; here none do.
+        # Indices of the independent velocities, and the ties for the others; none here.
         self.active, self.solved = list(range(mechanism.n)), []
 
     def held(self, s):
-        """The same with the velocities that follow from others."""
+        """The state with its dependent velocities."""
         return s
 
     def wide(self, s, given):
-        """ξ̇ of all velocities, of those of the active ones."""
+        """ξ̇ of all velocities, from that of the active ones."""
         return list(given)
 
     def on_active(self, force, s):
@@ -41,10 +42,10 @@ class Definitions:
         """The inertia of active velocities."""
         return m
 
-    # The columns of A, and what moves along them.
+    # The columns of A, and displacements along them.
 
     def columns(self, s):
-        """The columns of A at a state: the first is that of the time, where there is one."""
+        """The columns of A at a state; with time, the first is that of the time."""
         n = self.of.n
         if "columns" in s.shape:
             return s.shape["columns"]
@@ -63,7 +64,7 @@ class Definitions:
         return difference(f(self.moved(s, direction, step)), f(self.moved(s, direction, -step)), 2 * step)
 
     def curve(self, s, xi_dot, t):
-        """Where a motion with ξ(t) = ξ + t ξ̇ is, to second order."""
+        """The position of a motion with ξ(t) = ξ + t ξ̇, to second order."""
         rate = self.of.rate(s)
         e = STEP
         ahead = self.of.rate(s.but(x=add(s.x, scale(e, rate)), xi=add(s.xi, scale(e, xi_dot))))
@@ -73,13 +74,13 @@ class Definitions:
         return s.but(x=x, xi=add(s.xi, scale(t, xi_dot)))
 
     def second(self, f, s, xi_dot):
-        """The second derivative of f along such a motion."""
+        """The second derivative of f along the motion of `curve`."""
         e = STEP
         ahead, here, behind = f(self.curve(s, xi_dot, e)), f(s), f(self.curve(s, xi_dot, -e))
         return combine(lambda a, b, c: (a - 2 * b + c) / e**2, ahead, here, behind)
 
     def first_order(self, f, s, xi_dot):
-        """The first derivative of f along such a motion."""
+        """The first derivative of f along the motion of `curve`."""
         e = STEP
         return difference(f(self.curve(s, xi_dot, e)), f(self.curve(s, xi_dot, -e)), 2 * e)
 
@@ -104,7 +105,7 @@ class Definitions:
         return s.shape["motions"]
 
     def written_energy(self, s):
-        """Kinetic energies that are no masses': written ones, of inerters, armatures."""
+        """Kinetic energies other than those of masses: `kinetic` statements, inerters, armatures."""
         t = sum((e.at(s) for e in self.of.kinetic), NIL)
         w = [ONE] * self.first + list(s.xi)
         for inertance, slopes in zip(self.of.inerters, self.stretches(s)):
@@ -126,7 +127,8 @@ class Definitions:
         return s.shape["written"]
 
     def polarised(self, s):
-        """Their second slopes by velocities, exactly, since they are quadratic; index 0 is homogeneous."""
+        """The second derivatives of these energies by velocities, exactly, since they are quadratic; index 0 is
+        homogeneous."""
         n, first = self.of.n, self.first
         size = n + first
         if not self.of.kinetic and not self.of.inerters:
@@ -180,7 +182,7 @@ class Definitions:
         return g
 
     def connection(self, s):
-        """Γᵢⱼₖ = ∫ ∂ᵢr · ∂ₖ∂ⱼr dm of the masses; of written energies by (23) from their inertia."""
+        """Γᵢⱼₖ = ∫ ∂ᵢr · ∂ₖ∂ⱼr dm of the masses; for other energies by (23) from their inertia."""
         d = self.motions(s)
         a = self.columns(s)
         size = len(a)
@@ -201,7 +203,7 @@ class Definitions:
     # Forces.
 
     def written_bias(self, s, xi_dot):
-        """d/dt ∂T/∂ξ − ∂ᵢT + γ ξ ∂T/∂ξ of written energies, along a motion, by Lagrange's and Hamel's form."""
+        """d/dt ∂T/∂ξ − ∂ᵢT + γ ξ ∂T/∂ξ of the other energies, along a motion, by Lagrange's and Hamel's form."""
         n, first = self.of.n, self.first
         if not self.of.kinetic and not self.of.inerters:
             return [NIL] * n
@@ -225,7 +227,7 @@ class Definitions:
         return difference(f(self.curve(s, xi_dot, e)), f(self.curve(s, xi_dot, -e)), 2 * e)
 
     def inertia_force(self, s, xi_dot):
-        """What masses need to be accelerated so, by d'Alembert: ∫ r̈ · ∂ᵢr dm."""
+        """The force that accelerates the masses, by d'Alembert: ∫ r̈ · ∂ᵢr dm."""
         pull = self.second(self.places, s, xi_dot)
         d = self.motions(s)[self.first :]
         return add([self.paired(pull, di, s) for di in d], self.written_bias(s, xi_dot))
@@ -235,7 +237,7 @@ class Definitions:
         return [self.along(lambda q: [energy(q)], s, c)[0] for c in self.columns(s)[self.first :]]
 
     def twists(self, s, frame, point):
-        """∂ᵢ of a point of a frame and the turning of the frame, in world axes."""
+        """∂ᵢ of a point of a frame and of the frame's rotation, in world axes."""
         found = []
         r = transposed(self.of.pose(s, frame)[0])
         for column in self.columns(s)[self.first :]:
@@ -244,7 +246,7 @@ class Definitions:
         return found
 
     def generalized_force(self, s):
-        """Applied loads by their virtual work."""
+        """The generalized force of applied loads, by virtual work."""
         of = self.of
         f = [NIL] * of.n
         columns = self.columns(s)[self.first :]
@@ -275,23 +277,23 @@ class Definitions:
     # Constraints: of the configuration, and on velocities.
 
     def kept(self, s):
-        """What has to be zero of a state: the rates of closures, and conditions on velocities."""
+        """Quantities that vanish at a valid state: the rates of closures, and velocity constraints."""
         rate = self.of.rate(s)
         rows = [self.along(lambda q: [e.at(q) for e in self.of.closures], s, rate)] if self.of.closures else [[]]
         return rows[0] + [e.at(s) for e in self.of.kept]
 
     def conditions(self, s):
-        """B of B ξ + b = 0."""
+        """B of B ξ + b = 0"""
         still = self.kept(s.but(xi=[NIL] * self.of.n))
         return transposed([sub(self.kept(s.but(xi=unit(self.of.n, i))), still) for i in range(self.of.n)])
 
     def bonds(self, s):
-        """The rows of B, and those of velocities whose rates are given."""
+        """The rows of B, and those of velocities with prescribed rates."""
         ties = self.conditions(s) if self.of.closures or self.of.kept else []
         return ties + [unit(self.of.n, place) for place, _ in self.of.accelerated]
 
     def decay(self, s):
-        """What is added to φ̈ so that (d/dt + λ)² φ = 0."""
+        """The term added to φ̈ so that (d/dt + λ)² φ = 0."""
         speeds, found = self.kept(s) if any(self.of.stabilized) else [], []
         for k, decay in enumerate(self.of.stabilized):
             rate = decay.at(s) if decay else NIL
@@ -299,7 +301,7 @@ class Definitions:
         return found + [NIL] * len(self.of.kept)
 
     def motion(self, s):
-        """ξ̇, and the force that keeps ties and given rates."""
+        """ξ̇, and the force of ties and prescribed rates."""
         n = self.of.n
         zero = [NIL] * n
         m = [row[self.first :] for row in self.mass_matrix(s)[self.first :]]
@@ -328,7 +330,7 @@ class Definitions:
     # Slopes.
 
     def displaced(self, s, k, step):
-        """Along h for k < n, δξ and then δz behind that, and δu."""
+        """Displaced along h for k < n, then along δξ, δz, and δu."""
         key = ("displaced", k, step > 0)
         if key not in s.kept:
             s.kept[key] = self.beside(s, k, step)
@@ -349,7 +351,7 @@ class Definitions:
         raise IndexError
 
     def count(self):
-        """How many h, δξ, δz and δu there are."""
+        """The number of h, δξ, δz and δu."""
         return self.of.n + len(self.active) + self.of.nz + self.of.m
 
     def slopes(self, f, s):
@@ -378,7 +380,7 @@ class Definitions:
 
 
 def combine(op, *values):
-    """An operation on numbers in lists of any depth."""
+    """Applies an operation to numbers in nested lists."""
     if isinstance(values[0], (list, tuple)):
         return [combine(op, *parts) for parts in zip(*values)]
     return op(*values)
@@ -389,9 +391,9 @@ def difference(a, b, over):
 
 
 def independent(rows, least=mpf(10) ** -10):
-    """Which rows do not depend on those before, by elimination: what is left of them is not so small a part: steps of
-    differences are far smaller, so that both sides of one have the same rows. Rows that are nothing but the rounding of
-    a state to doubles, or a step from it, count as zero."""
+    """Indices of rows that are independent of the earlier ones, by elimination: the remaining part is not small. Steps
+    of differences are far smaller, so that both sides of a difference have the same rows. Rows that consist only of
+    the rounding of a state to doubles, or of a step from it, count as zero."""
     found, reduced = [], []
     rounding = max((abs(e) for row in rows for e in row), default=NIL) * mpf(10) ** -12
     for index, row in enumerate(rows):

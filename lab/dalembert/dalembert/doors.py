@@ -1,4 +1,4 @@
-"""The doors of hamel through which numbers come: `eval` and `linearize`, and generated C, compiled."""
+"""The interfaces of hamel that return numbers: `eval` and `linearize`, and generated C, compiled."""
 
 import ctypes
 import json
@@ -8,11 +8,11 @@ import subprocess
 
 
 class Refused(Exception):
-    """hamel did not take the text, and says why."""
+    """Raised if hamel refuses a text, with its message."""
 
 
 class Doors:
-    """Of one text, in a folder of its own."""
+    """The interfaces for one text, in a separate folder."""
 
     def __init__(self, hamel, folder):
         self.hamel, self.folder = hamel, folder
@@ -42,7 +42,7 @@ class Doors:
 
 
 class Compiled:
-    """Generated C as a library; that of doubles has been written."""
+    """Generated C as a library; its version in doubles has been written."""
 
     def __init__(self, doors, single):
         base = os.path.join(doors.folder, "single" if single else "double")
@@ -85,7 +85,7 @@ class Compiled:
         return name in self.functions
 
     def call(self, name, size, **arguments):
-        """A function with as many results as are asked for; behind them nothing may be written."""
+        """Calls a function with this number of results; nothing may be written after them."""
         kind, names = self.functions[name]
         out = (self.number * (size + 8))(*([777.0] * (size + 8)))
         function = getattr(self.library, f"{self.prefix}_{name}")

@@ -1,5 +1,5 @@
-"""Random mechanisms some of whose motions are given: coordinates and velocities as functions of the time, and rates of
-velocities as anything else; the forces of their drives follow."""
+"""Random mechanisms with prescribed motions: coordinates and velocities as functions of time, and rates of velocities
+as any expressions; the forces of their drives follow."""
 
 from . import loops
 from .expressions import Ex, Vec, call, lift
@@ -25,7 +25,7 @@ class Driven(Loops):
         else:
             self.nearby()
         m, r = self.m, self.r
-        # Freedoms that drives may take: all of those of a tree, all but one beside loops.
+        # Velocities that drives may prescribe: all of a tree, all but one with loops.
         left = m.n - len(m.closures) - len(m.kept) - (1 if self.looped else r.random() < 0.9)
         groups = list(m.velocities)
         r.shuffle(groups)
@@ -34,12 +34,12 @@ class Driven(Loops):
                 left -= r.choice([self.coordinate, self.velocity, self.rate])(place)
 
     def law(self, now):
-        """A function of the time, which is near a value now."""
+        """A function of time with a value near `now`."""
         moving = call("sin", self.t * self.positive()) * self.number() + self.t * self.number() * "0.3"
         return lift(f"{float(now - moving.at(self.near)):.3f}") + moving
 
     def of(self, place):
-        """The velocity with an entry in this place: its name, its entries as expressions, the first place."""
+        """The velocity with the entry at this index: its name, its entries as expressions, its first index."""
         for name, size, first in self.m.velocities:
             if first <= place < first + size:
                 texts = [name] if size == 1 else [f"{name}[{k + 1}]" for k in range(size)]
@@ -47,7 +47,7 @@ class Driven(Loops):
         raise IndexError
 
     def coordinate(self, place):
-        """How many freedoms that takes, as of all of these."""
+        """Prescribes coordinates; returns the number of degrees of freedom that it takes."""
         m = self.m
         name, entries, _ = self.of(place)
         for coordinate, kind, at in m.coordinates:

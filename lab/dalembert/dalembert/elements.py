@@ -1,4 +1,4 @@
-"""Elements on scalars and on rates, choices, tables, and outputs that are made of them."""
+"""Elements on scalars and on rates, choices, tables, and outputs made of them."""
 
 from . import vectors
 from .expressions import Ex, call, lift
@@ -6,7 +6,7 @@ from .vectors import mpf
 
 
 def hang(forest):
-    """A few of them on a mechanism that has coordinates and velocities."""
+    """Adds a few of them to a mechanism with coordinates and velocities."""
     r = forest.r
     if not forest.plain or not forest.velocities:
         return
@@ -16,7 +16,7 @@ def hang(forest):
 
 
 def rate_of(forest):
-    """A rate that is linear in the velocities, with a factor that changes."""
+    """A rate that is linear in the velocities, with a factor that varies."""
     a, b = forest.pick(forest.velocities), forest.pick(forest.velocities)
     return a * (call("sin", forest.pick(forest.plain)) + "1.3") - b * forest.number()
 
@@ -54,7 +54,7 @@ def choice(left, sign, right, then, other):
 
 
 def butland(xs, ys):
-    """The slopes of Fritsch and Butland (1984) at points, with those of SciPy at the ends."""
+    """The Fritsch-Butland slopes (1984) at points, with those of SciPy at the ends."""
     h = [b - a for a, b in zip(xs, xs[1:])]
     d = [(b - a) / step for a, b, step in zip(ys, ys[1:], h)]
 
@@ -72,7 +72,7 @@ def butland(xs, ys):
 
 
 def cubic(x, xs, ys, slopes):
-    """Hermite's cubic between two points; beyond them the straight line of the slope there."""
+    """Hermite's cubic between two points; beyond them the straight line with the slope there."""
     h = xs[1] - xs[0]
     for end, before in ((0, x < xs[0]), (1, x > xs[1])):
         if before:
@@ -83,7 +83,7 @@ def cubic(x, xs, ys, slopes):
 
 
 def table(forest, name):
-    """Straight lines through points."""
+    """A piecewise linear table."""
     r = forest.r
     xs = [mpf(k) / 4 - 1 for k in range(5)] if r.random() < 0.5 else [mpf("-0.9"), mpf("-0.2"), mpf("0.15"), mpf("1.1")]
     ys = [mpf(forest.number()) for _ in xs]
@@ -108,7 +108,7 @@ def table(forest, name):
 
 
 def value(forest, name):
-    """Of a choice or a table."""
+    """The value of a choice or a table."""
     r = forest.r
     if r.random() < 0.5:
         return table(forest, name)(forest.pick(forest.plain + forest.velocities))

@@ -1,4 +1,4 @@
-"""Expressions that are text of the language and numbers at a state at once, each written from its own parts."""
+"""Expressions that are both text of the language and numbers at a state, each built from its parts."""
 
 import mpmath
 from mpmath import mpf
@@ -7,17 +7,18 @@ from . import vectors
 
 
 class State:
-    """What expressions and poses depend on: coordinates, velocities, inputs, states of first order, parameters, accelerations."""
+    """The arguments of expressions and poses: coordinates, velocities, inputs, first-order states, parameters,
+    accelerations."""
 
     __slots__ = ("x", "xi", "u", "z", "p", "a", "shape", "kept")
 
     def __init__(self, x, xi=(), u=(), z=(), p=(), a=()):
         self.x, self.xi, self.u, self.z, self.p, self.a = x, xi, u, z, p, a
-        # What has been computed: from x and parameters alone, and from all.
+        # Cached values: those of x and parameters only, and those of everything.
         self.shape, self.kept = {}, {}
 
     def but(self, **changed):
-        """The same with other values."""
+        """The state with other values."""
         values = {name: changed.get(name, getattr(self, name)) for name in ("x", "xi", "u", "z", "p", "a")}
         made = State(**values)
         if not {"x", "p"} & changed.keys():
@@ -33,7 +34,7 @@ def once(at, still):
 
 
 class Ex:
-    """A scalar. What is the same at every state is computed once."""
+    """A scalar. It is computed once if it is the same at every state."""
 
     __slots__ = ("text", "at", "still")
 
@@ -72,7 +73,7 @@ class Ex:
 
 
 def lift(value):
-    """A number, by its decimals: hamel reads them exactly."""
+    """A number from its decimals, which hamel reads exactly."""
     if isinstance(value, Ex):
         return value
     text = str(value)
@@ -162,7 +163,7 @@ def rotation(axis, angle):
 
 
 def rpy(roll, pitch, yaw):
-    """Roll, pitch and yaw as URDF has them."""
+    """Roll, pitch and yaw in URDF's order."""
     roll, pitch, yaw = lift(roll), lift(pitch), lift(yaw)
     parts = rotation("z", yaw), rotation("y", pitch), rotation("x", roll)
 
@@ -173,6 +174,6 @@ def rpy(roll, pitch, yaw):
 
 
 def axis_angle(axis, angle):
-    """The turn about a vector, which is taken as a unit vector."""
+    """The rotation about a vector, which is normalised."""
     angle = lift(angle)
     return Mat(f"axis_angle({axis.text}, {angle.text})", lambda s: vectors.about(axis.at(s), angle.at(s)), axis.still and angle.still)

@@ -1,4 +1,4 @@
-"""What integrators call, and dampers: rates in charts, the way back to X, displacements and how they are read."""
+"""Functions for integrators, and dampers: chart rates, the correction back to X, displacements and their frames."""
 
 from . import tied
 from .vectors import NIL, ONE, dot, mpf, sub, times, transposed, vee
@@ -23,7 +23,7 @@ def chart_rate(m, s):
 
 
 def dissipation(d, s):
-    """Half of what dampers take."""
+    """Half of the power of dampers."""
     m = d.of
     half = sum((e.at(s) for e in m.dissipation), NIL)
     half += sum((force.at(s) * s.xi[place] / 2 for place, force in m.dampers), NIL)
@@ -33,7 +33,7 @@ def dissipation(d, s):
 
 
 def compare(comparison, c, s, given, kind, tolerance):
-    """Notes what there is of all that."""
+    """Compares all of these that exist."""
     d, m, note = comparison.d, comparison.m, comparison.note
     if "chart_rate" in c:
         mine = chart_rate(m, s)
@@ -54,7 +54,7 @@ def compare(comparison, c, s, given, kind, tolerance):
 
 
 def correction(m, c, s, note):
-    """What is off X by ε is off by ε² behind the step."""
+    """A correction reduces an error of ε to ε²."""
     off = lambda x: sub(x, tied.on_kinds(m, list(x)))  # noqa: E731
     x = [mpf(float(e * (1 + mpf((29 * k + 3) % 13 - 6) / 10**6))) for k, e in enumerate(s.x)]
     step = c.call("correction", m.nu, x=[float(e) for e in x])

@@ -1,4 +1,4 @@
-"""Joints: what they bring is written by hamel; here stands what the book says that they bring."""
+"""Joints: hamel expands them to coordinates and rates, which are given here as documented in the book."""
 
 from mpmath import cos, sin
 
@@ -16,7 +16,7 @@ def flat(matrix):
 
 
 def spin(place, at):
-    """Ṙ = R ω̂ for the matrix from a place in x, and ω from a place in ξ."""
+    """Ṙ = R ω̂ for the matrix at an index in x, and ω at an index in ξ."""
     return lambda s: flat(times(square(s.x[place : place + 9]), hat(s.xi[at : at + 3])))
 
 

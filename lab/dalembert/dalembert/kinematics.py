@@ -5,7 +5,7 @@ from .vectors import NIL, add, cross, dot, on, scale, sub, times, transposed, ve
 
 
 def frame(d: Definitions, s, name, own):
-    """Pose, twist, Jacobian and bias acceleration, in world axes or the frame's own."""
+    """Pose, twist, Jacobian and bias acceleration, in world axes or in the frame's axes."""
     of = d.of
     r, p = of.pose(s, name)
     back = transposed(r) if own else None
@@ -26,7 +26,7 @@ def frame(d: Definitions, s, name, own):
 
 
 def moving(d, s):
-    """Masses that move along a velocity or with the time: what is fixed to the world has no part in the momentum."""
+    """The masses that move along a velocity or with time: fixed ones do not contribute to the momentum."""
     if "moving" not in s.shape:
         ways = [*d.motions(s), d.along(d.places, s, d.of.rate(s))]
         s.shape["moving"] = [any(e != 0 for r, p in poses for e in [*p, *sum(r, [])]) for poses in zip(*ways)]
@@ -42,7 +42,7 @@ def centre(d, s):
 
 
 def momentum(d, s):
-    """Momentum of everything, and that about the centre of mass."""
+    """The total momentum, and the angular momentum about the centre of mass."""
     c = centre(d, s)
     rates = d.along(lambda q: [pose for pose, *_ in moving(d, q)], s, d.of.rate(s))
     linear, angular = [NIL] * 3, [NIL] * 3
@@ -69,7 +69,7 @@ def centroidal_bias(d, s):
 
 
 def output_slopes(d, s, output):
-    """[C D], along ξ̇ = F where the output has accelerations in it."""
+    """[C D], along ξ̇ = F if the output depends on accelerations."""
 
     def value(q):
         if output.accelerations:

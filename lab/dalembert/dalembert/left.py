@@ -1,5 +1,5 @@
-"""Velocities that follow from others, ξ = C ξₐ + c, since ties are solved for them. Which ones hamel solves is its choice, which
-is read from the text's names and from its `rate`; that they follow from as many ties, and what comes of that, is computed here."""
+"""Dependent velocities, ξ = C ξₐ + c, for which ties are solved. Which ones hamel chooses is read from its names and
+from its `rate`; that they depend on as many ties, and the consequences, are computed here."""
 
 from itertools import combinations
 
@@ -8,14 +8,14 @@ from .vectors import NIL, ONE, add, least_squares, on, scale, solve, sub, times,
 
 
 class Left(Definitions):
-    """Of the velocities that are left."""
+    """The definitions for the independent velocities."""
 
     def __init__(self, mechanism, active, solved):
         super().__init__(mechanism)
         self.active, self.solved = active, solved
 
     def section(self, s):
-        """C and c."""
+        """C and c"""
         if "section" not in s.shape:
             n, rows = self.of.n, self.conditions(s)
             rows = [rows[i] for i in self.solved]
@@ -41,7 +41,7 @@ class Left(Definitions):
 
 
 def section(rows, rest, active, n):
-    """C and c of some rows and what they say at rest."""
+    """C and c of some rows, with their values at rest."""
     others = [i for i in range(n) if i not in active]
     c = [[NIL] * len(active) for _ in range(n)]
     shift = [NIL] * n
@@ -55,7 +55,8 @@ def section(rows, rest, active, n):
 
 
 def found(mechanism, active, rate, s, tolerance):
-    """The definitions of what is left, by the ties that agree with rates of unit velocities; None where no ties do."""
+    """The definitions for the active velocities, from the ties that agree with rates of unit velocities; None if no
+    ties do."""
     n = mechanism.n
     if len(active) == n:
         return Definitions(mechanism)

@@ -1,6 +1,6 @@
-"""Random mechanisms with closed loops: planar linkages, cranks that drive sliders, rods between points, overconstrained
-ones, gears, links of which an axis or all of the rotation is kept by equations of vectors and matrices, and trees whose
-frames are pinned to one another or to the ground."""
+"""Random mechanisms with closed loops: planar linkages, slider-cranks, rods between points, overconstrained ones,
+gears, links with an axis or the whole rotation fixed by equations of vectors and matrices, and trees whose frames
+are pinned to one another or to the ground."""
 
 from . import vectors
 from .definitions import Definitions, independent
@@ -13,31 +13,31 @@ from .vectors import mpf
 
 KINDS = ["planar", "planar", "slider", "two loops", "rod", "rod", "ball", "flat", "bricard", "gears", "axis", "axis", "turned", "turned"]
 KINDS += ["tree", "tree", "tree"]
-# Where the loops stand: mounts of the whole mechanism.
+# Mounts of the whole mechanism.
 GROUNDS = [lambda: STILL, lambda: rotation("x", PI / 4), lambda: rotation("y", "0.3") * rotation("x", PI / 4), lambda: rotation("z", PI / 4)]
 
 
 class Open(Exception):
-    """No configuration was found in which the loops are closed."""
+    """Raised if no configuration was found that closes the loops."""
 
 
 class Loops(Forest):
-    """Trees with one loop or with more; what moves them is as for trees."""
+    """Trees with one or more loops; loads are those of trees."""
 
     def __init__(self, random, size, hard=False, time=0.2):
         self.kind = random.choice(KINDS)
-        # Between which points there are pins, in which of their directions; rods; axes that meet.
+        # The points connected by pins, with their directions; rods; axes that coincide.
         self.ends, self.guess = [], None
         super().__init__(random, size, free=0.1, time=time, hard=hard)
 
     def positive(self):
-        # Lengths as well: what is tiny makes a loop that cannot be closed.
+        # Lengths as well: tiny ones make loops that cannot be closed.
         return f"{self.r.uniform(0.2, 2):.3f}"
 
-    # What the loops are made of.
+    # Parts of loops.
 
     def link(self, name, kind, axis, parent, mount, body=True):
-        """A joint with a body; the name of its frame."""
+        """Adds a joint with a body; returns the name of its frame."""
         moves = f"{name}_link"
         fields, later = "", []
         if kind in ("revolute", "continuous", "prismatic"):
@@ -63,7 +63,8 @@ class Loops(Forest):
         return f"{self.r.uniform(0.4, 1.2):.2f}"
 
     def chain(self, name, parent, place, axis, count, kinds=("revolute", "continuous"), light=False):
-        """Links in a row about parallel axes; the last frame, and the place of its end. The last link may be light: without mass."""
+        """A chain of links about parallel axes; returns the last frame, and the position of its end. The last link may
+        be massless."""
         mount = (STILL, place)
         for k in range(count):
             parent = self.link(f"{name}{k}", self.pick(kinds), axis, parent, mount, not (light and k == count - 1))
@@ -84,7 +85,7 @@ class Loops(Forest):
         base = Vec.of([f"{self.r.uniform(0.5, 1.2):.2f}", self.number(0.3), 0])
         if self.hard and self.r.random() < 0.5:
             z = Vec.of([0, "1e-7", 1])
-        # What only the loop gives inertia.
+        # Links whose inertia comes only from the loop.
         light = self.r.random() < 0.3
         if kind == "planar":
             a = self.chain("a", ground, zero, z, 2, light=light)
@@ -102,24 +103,24 @@ class Loops(Forest):
             d = self.chain("d", ground, far, z, 1 + self.r.randrange(2))
             self.ends += [("pin", a, b), ("pin", c, d)]
         elif kind == "rod":
-            # A crank and a rocker about axes in space, with a rod without mass between balls.
+            # A crank and a rocker about axes in space, with a massless rod between ball joints.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 1)
             b = self.chain("b", ground, base + Vec.of([0, 0, self.number()]), Vec.of(self.pick(AXES)), 1 + self.r.randrange(2), light=light)
             self.ends.append(("rod", a, b))
         elif kind == "ball":
-            # The rod has mass and hangs on a ball; its other end is pinned.
+            # The rod has mass and hangs on a ball joint; its other end is pinned.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 1)
             rod = self.link("rod", self.pick(["spherical", "spherical3"]), None, a[0], (STILL, a[1]))
             b = self.chain("b", ground, base, Vec.of(self.pick(AXES)), 1)
             self.ends.append(("ball", (rod, Vec.of([self.length(), 0, "0.1"])), b))
         elif kind == "flat":
-            # Parallel axes, and a ball for a pin: a row more than there need be.
+            # Parallel axes, and a ball joint as a pin: one redundant row.
             m.frame("tilted", ground, rotation("x", "0.4"), zero)
             a = self.chain("a", "tilted", zero, Vec.of([0, 0, 1]), 2, light=light)
             b = self.chain("b", "tilted", base, Vec.of([0, 0, 1]), 1 + self.r.randrange(2))
             self.ends.append(("ball", a, b))
         elif kind == "axis":
-            # Three rows for a direction, of which one follows from the others: with parallel axes two of them do.
+            # Three rows for a direction, one of them redundant; with parallel axes two of them.
             if self.r.random() < 0.5:
                 last = self.chain("a", ground, zero, z, 2 + self.r.randrange(2))[0]
                 along = Vec.of(self.pick([[1, 0, 0], ["0.6", "0.8", 0]]))
@@ -129,7 +130,7 @@ class Loops(Forest):
                 along = Vec.of(self.pick(AXES))
             self.ends.append(("axis", (last, along), (ground, along)))
         elif kind == "turned":
-            # Nine rows for a rotation, of which at most three count.
+            # Nine rows for a rotation, at most three of them independent.
             if self.r.random() < 0.5:
                 last = self.chain("a", ground, zero, z, 2 + self.r.randrange(2))[0]
             else:
@@ -137,7 +138,7 @@ class Loops(Forest):
                 last = self.link("ball", self.pick(["spherical", "spherical3"]), None, a[0], (STILL, a[1]))
             self.ends.append(("turned", (last, zero), (ground, zero)))
         elif kind == "gears":
-            # Straight loops: velocities follow from others. Beside them, if there is room, a rod.
+            # Linear loops: velocities are dependent. In addition, if there is room, a rod.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 2, ("revolute",))
             b = self.chain("b", ground, base, Vec.of(self.pick(AXES)), 2, ("revolute", "prismatic"))
             self.ends.append(("gear", None, None))
@@ -149,7 +150,7 @@ class Loops(Forest):
             self.link("more", self.pick(["revolute", "prismatic", "continuous"]), Vec.of(self.pick(AXES)), self.pick(self.frames[1:]), self.mount())
 
     def bricard(self, ground):
-        """Six hinges, neighbours at right angles, rods of one length: overconstrained, one freedom."""
+        """Six hinges at right angles, with rods of the same length: overconstrained, one degree of freedom."""
         length, right = self.length(), PI / 2
         z, frame, mount = Vec.of([0, 0, 1]), ground, (STILL, Vec.of([0, 0, 0]))
         for k in range(5):
@@ -185,14 +186,14 @@ class Loops(Forest):
                 continue
             (f, p), (g, q) = a, b
             if q is None:
-                # Where the point is now, in few digits: Newton does the rest.
+                # The current position of the point, with few digits: Newton's method does the rest.
                 q = Vec.of([f"{float(e):.2f}" for e in m.point(s, f, p.at(s))])
             self.close(kind, f, p, g, q, s)
         if self.kind != "tree" and r.random() < 0.2:
             super().constraints()
 
     def nearby(self):
-        """A state near which the loops shall be closed."""
+        """A state near which to close the loops."""
         s = random_state(self.m, self.r)
         if self.guess:
             x = list(s.x)
@@ -230,7 +231,7 @@ class Loops(Forest):
             m.say(f"loop {a} = {b}{tail};")
             m.closures += [entry(k) for k in range(3)]
         elif kind == "pin":
-            # In the plane of the ground, whose axes may be turned.
+            # In the plane of the ground, whose axes may be rotated.
             frame = "ground" if "ground" in m.frames else WORLD
             for k in range(2):
                 n = Vec.of([[1, 0, 0], [0, 1, 0]][k])
@@ -263,11 +264,11 @@ class Loops(Forest):
         m.stabilized += [decay] * (len(m.closures) - len(m.stabilized))
 
     def varying(self, entries):
-        """Those that are no identities: the others are no equations."""
+        """The closures that are not identities, which would not be equations."""
         states = [random_state(self.m, self.r) for _ in range(2)]
         return [e for e in entries if abs(e.at(states[0]) - e.at(states[1])) > mpf(10) ** -30]
 
-    # Where they are closed.
+    # The closed configuration.
 
     def asked(self):
         """With guesses for the start, so that a run could begin."""
@@ -281,7 +282,7 @@ class Loops(Forest):
         super().asked()
 
     def complete(self):
-        """The state nearby, with parameters that came later."""
+        """The state nearby, with parameters that were added later."""
         return self.near.but(p=list(self.m.default))
 
     def configuration(self):
@@ -290,7 +291,7 @@ class Loops(Forest):
 
 
 def closed(m, s):
-    """The nearest closed configuration, by Newton's steps along A, in doubles."""
+    """The nearest closed configuration, by Newton steps along A, in doubles."""
     d = Definitions(m)
     for _ in range(60):
         off = [e.at(s) for e in m.closures]
@@ -300,7 +301,7 @@ def closed(m, s):
         rows = closing(d, m, s)
         kept = independent(rows, mpf(10) ** -9)
         if not kept:
-            # Nothing that moves can close them.
+            # No motion can close them.
             raise Open
         b = [rows[i] for i in kept]
         h = vectors.on(vectors.transposed(b), vectors.solve([[vectors.dot(p, q) for q in b] for p in b], [off[i] for i in kept]))
@@ -313,7 +314,7 @@ def closed(m, s):
     else:
         raise Open
     if m.closures and any(mpf(10) ** -30 < max(map(abs, row)) < mpf(10) ** -5 for row in closing(d, m, s)):
-        # A rod that is stretched out: what doubles say of the rate of its length is nothing but rounding.
+        # The rod is stretched out: in doubles, the rate of its length is only rounding.
         raise Open
     return s.but(x=[mpf(float(e)) for e in s.x])
 

@@ -9,7 +9,7 @@ SIZES = {"real": 1, "S1": 2, "S3": 4, "SO3": 9, "R2": 2, "R3": 3}
 
 
 class Listed(list):
-    """A list that notes in another one, which it shares, what is appended to it."""
+    """A list that records its appended items in another, shared list."""
 
     def __init__(self, order, name):
         super().__init__()
@@ -26,7 +26,7 @@ class Listed(list):
 
 
 class Mechanism:
-    """Filled by a generator; what it means is in `definitions`."""
+    """Filled by a generator; its meaning is in `definitions`."""
 
     def __init__(self, name):
         self.name = name
@@ -63,7 +63,7 @@ class Mechanism:
         self.externals = []  # functions in Rust, which C does not have
         self.time = None
 
-    # What a text says, and what it means.
+    # The lines of the text, and their meaning.
 
     def say(self, line):
         self.lines.append("    " + line)
@@ -180,14 +180,15 @@ class Mechanism:
         return v
 
     def with_dampers(self, d, s):
-        """What the regressor is of: inertia, gravity, springs and dampers of joints, and no other springs and potentials."""
+        """The quantity that the regressor describes: inertia, gravity, springs and dampers of joints, without other
+        springs and potentials."""
         force = vectors.add(d.inertia_force(s, list(s.a)), d.potential_force(s, lambda q: self.gravity_energy(q) + sum(e.at(q) for e in self.joint_springs)))
         for place, damping in self.dampers:
             force[place] += damping.at(s)
         return force
 
     def masses(self, s):
-        """Where masses are: of each body its pose, mass, first and second moments; of a particle its place."""
+        """The positions of masses: pose, mass, first and second moments of bodies; positions of particles."""
         found = []
         for frame, mass, com, inertia, where in self.bodies:
             m, c, j = mass.at(s), com.at(s), inertia.at(s)

@@ -1,4 +1,5 @@
-"""Emitted Rust as a door: some mechanisms in one crate, whose program takes a function and numbers by the line."""
+"""Emitted Rust as an interface: several mechanisms in one crate, whose program reads a function and numbers from each
+line."""
 
 import os
 import re
@@ -68,7 +69,7 @@ fn take<T: Numbers>(from: &mut SplitWhitespace) -> T {
 
 
 class Crate:
-    """Texts that hamel has taken, each by its doors, and what has to be said in Rust beside it."""
+    """Texts accepted by hamel, each with its interfaces, and the additional Rust code."""
 
     def __init__(self, hamel, folder, root):
         self.hamel, self.folder, self.root = hamel, folder, os.path.abspath(root)
@@ -76,7 +77,7 @@ class Crate:
         os.makedirs(os.path.join(folder, "src"), exist_ok=True)
 
     def add(self, doors, externals):
-        """The place of a text in the crate; what it says is known once all are built."""
+        """Adds a text, and returns its index in the crate; results are available once all are built."""
         place = len(self.made)
         file = os.path.join(self.folder, "src", f"m{place}.rs")
         doors.run("emit", doors.file, "-o", file)
@@ -121,7 +122,7 @@ class Crate:
 
 
 class Emitted:
-    """One system of the crate, in the place of generated C."""
+    """One system of the crate, as a substitute for generated C."""
 
     def __init__(self, crate, place, text, externals):
         self.crate, self.place, self.externals = crate, place, externals
@@ -142,7 +143,7 @@ class Emitted:
         return f"m{self.place}::{self.name}::<f64{', Polar' if self.externals else ''}>"
 
     def dispatcher(self):
-        """The function that calls what is named."""
+        """The function that calls a function by name."""
         lines = [f"fn call{self.place}(system: &mut {self.kind()}, n: &mut SplitWhitespace, out: &mut Vec<String>) {{\n", "    match n.next().unwrap() {\n"]
         if self.fields:
             values = ", ".join(f"{field}: take(n)" for field in self.fields)
@@ -166,7 +167,7 @@ class Emitted:
         if said.startswith("refused"):
             raise Refused(f"{name}: {said}")
         found = [float(word) for word in said.split()]
-        # As many as there is room for, as from C.
+        # As many as there is room for, as in C.
         return found + [777.0] * (size - len(found))
 
 

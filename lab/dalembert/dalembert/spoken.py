@@ -1,6 +1,6 @@
-"""Random trees in words that the other kinds do not use: constants, named expressions, functions, parameters and states that are
-vectors, particles, components and their parts, repetitions, functions in Rust, velocities that are held or follow from others by
-constant factors, and functions of expressions."""
+"""Random trees in forms of the language that the other kinds do not use: constants, named expressions, functions,
+vector parameters and states, particles, components and parts, repetition, functions in Rust, inactive velocities or
+velocities that depend on others by constant factors, and functions of expressions."""
 
 from . import vectors
 from .expressions import Ex, Mat, Vec, call, lift, rotation
@@ -11,7 +11,7 @@ from .vectors import dot, mpf
 
 
 class Spoken(Forest):
-    """What is said is what other trees say; how it is said differs."""
+    """Trees equivalent to others, in other forms."""
 
     rust = False
 
@@ -53,7 +53,7 @@ class Spoken(Forest):
         return self.named(total) if self.r.random() < 0.5 else total
 
     def named(self, ex):
-        """The same by a name, or as the value of a function."""
+        """The expression under a name, or as the value of a function."""
         m, name = self.m, self.name("e")
         if self.r.random() < 0.5:
             m.say(f"let {name} = {ex.text};")
@@ -73,7 +73,7 @@ class Spoken(Forest):
     # Bodies.
 
     def parameter(self, shape, rows):
-        """One that is a vector, or a symmetric matrix, with what is at its places."""
+        """A parameter that is a vector or a symmetric matrix, with its entries."""
         m, name, numbers = self.m, self.name("P"), [e for row in rows for e in row]
         at = len(m.default)
         m.parameters.append((name, len(numbers), at))
@@ -107,7 +107,7 @@ class Spoken(Forest):
             self.parts()
 
     def parts(self):
-        """A hinge with a body, as a component, and two of them; or the same by a repetition."""
+        """A hinge with a body as a component, and two parts of it; or the equivalent repetition."""
         m, r = self.m, self.r
         axis, damping, com, mount = Vec.of(self.pick(AXES)), self.positive(), self.vector(0.4), self.pick(self.frames)
         inertia = Mat.of([["0.4", "0.02", 0], ["0.02", "0.5", 0], [0, 0, "0.6"]])
@@ -162,7 +162,7 @@ class Spoken(Forest):
             self.external(single)
 
     def vector_state(self, single):
-        """Two numbers, whose rates may feel an acceleration."""
+        """A state of two numbers, whose rates may depend on an acceleration."""
         m, at = self.m, self.m.nz
         m.states.append(("zz", 2, at))
         m.nz += 2
@@ -181,7 +181,7 @@ class Spoken(Forest):
         m.generalized.append((place, z[0] - z[1]))
 
     def external(self, single):
-        """A function in Rust, with a stand-in that is the same."""
+        """A function in Rust, with an equivalent substitute."""
         m, v, q = self.m, self.pick(self.velocities), self.pick(self.plain)
         m.say("extern fn polar(a, b) -> 2 = [sin(a) * b, 0.1 * a - 0.2 * b^2];")
         m.externals.append(POLAR)
@@ -191,7 +191,7 @@ class Spoken(Forest):
         m.generalized.append((place, Ex("", law)))
 
     def constraints(self):
-        """Velocities that stay zero, and such as follow from others by constant factors."""
+        """Velocities that stay zero, and velocities that depend on others by constant factors."""
         m, r = self.m, self.r
         single = [v for v in self.velocities if v.text.endswith("_dot")]
         if len(single) < 2 or m.n < 3 or r.random() < 0.4:
@@ -241,7 +241,7 @@ impl crate::MODULE::TreeFunctions<f64> for crate::Polar {
 
 
 class External(Spoken):
-    """With a function in Rust, which C does not have."""
+    """Trees with a function in Rust, which C does not support."""
 
     rust = True
 

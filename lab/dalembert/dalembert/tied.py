@@ -1,4 +1,4 @@
-"""What ties leave: the force that keeps them, the way back onto them, and slopes along what they allow."""
+"""Ties: their forces, the projections onto them, and slopes along displacements that satisfy them."""
 
 from .definitions import Definitions, independent
 from .expressions import State
@@ -7,18 +7,19 @@ from .vectors import NIL, ONE, add, cross, dot, mp, mpf, on, scale, solve, sub, 
 
 
 def names(m):
-    """Velocities, entry by entry, as they are written."""
+    """The names of velocities, entry by entry, as in the text."""
     return [name if size == 1 else f"{name}[{k + 1}]" for name, size, _ in m.velocities for k in range(size)]
 
 
 def nearest(d, s, off):
-    """−M⁻¹ Bᵀ S⁻¹ of how far off ties are, with what has a given rate held: the shortest way, as M measures."""
+    """−M⁻¹ Bᵀ S⁻¹ times the violation of the ties, with prescribed rates held: the shortest displacement in the metric
+    M."""
     b = d.bonds(s)
     off = off + [NIL] * (len(b) - len(off))
     m = [row[d.first :] for row in d.mass_matrix(s)[d.first :]]
     kept = independent(b)
     b, off = [b[i] for i in kept], [off[i] for i in kept]
-    # The shortest of ways that close the ties is the same where their own size is added, and that is always regular.
+    # The shortest displacement that closes the ties is unchanged when BᵀB is added, which makes the matrix regular.
     m = [[entry + sum((row[i] * row[j] for row in b), NIL) for j, entry in enumerate(m_row)] for i, m_row in enumerate(m)]
     ways = [solve(m, row) for row in b]
     inner = solve([[dot(row, way) for way in ways] for row in b], off)
@@ -29,7 +30,7 @@ def nearest(d, s, off):
 
 
 def beside(d, s):
-    """A state a little beside the ties."""
+    """A state slightly off the ties."""
     x, xi = list(s.x), list(s.xi)
     for k, column in enumerate(d.columns(s)[d.first :]):
         x = add(x, scale(mpf((37 * k + 5) % 11 - 5) / 200, column))
@@ -39,7 +40,7 @@ def beside(d, s):
 
 
 def on_kinds(m, x):
-    """Circles, quaternions and matrices again, and what else is written of coordinates."""
+    """Normalises circles, quaternions and matrices, and satisfies further coordinate constraints."""
     for _, kind, place in m.coordinates:
         part = x[place : place + SIZES[kind]]
         if kind in ("S1", "S3"):
@@ -55,7 +56,7 @@ def on_kinds(m, x):
 
 
 def given(m, x):
-    """With what is given as a function of time."""
+    """Sets the coordinates prescribed as functions of time."""
     s = State(x)
     for place, kind, value in m.driven:
         value = value.at(s)
@@ -67,7 +68,7 @@ def given(m, x):
 
 
 def allowed_velocities(m, s):
-    """The state with the velocities nearest by that ties allow, in doubles."""
+    """The state with the nearest velocities that satisfy the ties, in doubles."""
     if not m.kept and not m.closures:
         return s
     d = Definitions(m)
@@ -83,13 +84,14 @@ def project_velocity(d, s):
 
 
 def project_position(d, s):
-    """Back to the loops, along what all other ties allow; those from which velocities follow cannot be left."""
+    """The projection onto the loops along displacements that satisfy all other ties; those that determine velocities
+    always hold."""
     off = [NIL if k in d.solved else e.at(s) for k, e in enumerate(d.of.closures)]
     return nearest(d, s, off)
 
 
 def allowed(d, s):
-    """A basis of the displacements, velocities and states of first order that keep to all ties; by its columns, and how many."""
+    """A basis of the displacements, velocities and first-order states that satisfy all ties, by columns."""
     of = d.of
     size = of.n + len(d.active) + of.nz
     loops = [row[:size] for row in d.slopes(lambda q: [e.at(q) for e in of.closures], s)] if of.closures else []
@@ -98,8 +100,8 @@ def allowed(d, s):
 
 
 def null_space(rows, size):
-    """Vectors on which rows vanish, by elimination with the largest pivots. What rows have of their own because a state is rounded
-    to doubles, and what elimination makes of that, is nothing."""
+    """A basis of the kernel of some rows, by elimination with the largest pivots. Parts that come from rounding of the
+    state to doubles, or from the elimination, count as zero."""
     reduced = []
     for row in [rows[i] for i in independent(rows, mpf(10) ** -9)]:
         for pivot, other in reduced:
@@ -119,8 +121,8 @@ def null_space(rows, size):
 
 
 def minimal(d, s, full, states):
-    """The linearisation of some displacements and velocities by their names; the others follow from the ties. None where these
-    are not as many as there are freedoms, or do not determine the others."""
+    """The linearisation in some displacements and velocities by name; the others follow from the ties. None if their
+    number is not that of the degrees of freedom, or if they do not determine the others."""
     of = d.of
     every = [f"h({v})" for v in names(of)] + [f"d({names(of)[i]})" for i in d.active]
     every += [f"d({name})" if size == 1 else f"d({name}[{k + 1}])" for name, size, _ in of.states for k in range(size)]

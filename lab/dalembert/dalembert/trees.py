@@ -1,4 +1,4 @@
-"""Random trees of bodies, with everything that can hang on them."""
+"""Random trees of bodies, with all kinds of elements and loads."""
 
 from . import vectors
 from .elements import hang
@@ -12,14 +12,14 @@ KINDS = ["revolute"] * 5 + ["continuous"] * 4 + ["prismatic"] * 3 + ["spherical"
 
 
 class Output:
-    """A named vector of numbers, and whether accelerations are in it."""
+    """A named vector of numbers, and whether it depends on accelerations."""
 
     def __init__(self, name, at, accelerations=False):
         self.name, self.at, self.accelerations = name, at, accelerations
 
 
 class Forest:
-    """One random tree; `random` is Python's."""
+    """A random tree; `random` is Python's."""
 
     def __init__(self, random, size, free=0.4, time=0.3, hard=False):
         self.r, self.hard = random, hard
@@ -67,7 +67,7 @@ class Forest:
         return Vec.of([self.number(size) if self.r.random() < 0.75 else 0 for _ in range(3)])
 
     def smooth(self, moving=True):
-        """A bounded expression of coordinates, parameters and the time."""
+        """A bounded expression of coordinates, parameters and time."""
         r = self.r
         parts = [lift(self.number())]
         if moving and self.plain:
@@ -83,7 +83,7 @@ class Forest:
         return total
 
     def effort(self):
-        """Anything that a load may be made of."""
+        """Any expression for a load."""
         r = self.r
         total = self.smooth()
         if self.inputs and r.random() < 0.7:
@@ -127,7 +127,7 @@ class Forest:
         if kind == 1:
             a, b = r.uniform(0.2, 1), r.uniform(0.2, 1)
             return Mat.of([[f"{scale * a:.9f}", 0, 0], [0, f"{scale * b:.9f}", 0], [0, 0, f"{scale * (a + b) * 0.8:.9f}"]])
-        # Of some particles, so that a body can have it.
+        # From some particles, so that a body can have it.
         points = [[r.uniform(-1, 1) for _ in range(3)] for _ in range(5)]
         rows = [[0.0] * 3 for _ in range(3)]
         for p in points:
@@ -143,7 +143,7 @@ class Forest:
         where = "com"
         inertia = self.inertia()
         if self.r.random() < 0.3:
-            # About the origin: with Steiner's part, so that it is a body's.
+            # About the origin: with Steiner's term, so that it belongs to a body.
             where = "origin"
             c, k, big = [e for e in com.at(None)] if self.fixed(com) else [0, 0, 0], mass.at(_defaults(m)), inertia.at(None)
             square = vectors.dot(c, c)
@@ -174,7 +174,7 @@ class Forest:
                 if axis[0].text == axis[1].text:
                     axis[1] = Vec.of([1, 1, 1])
             if self.t is not None and r.random() < 0.3:
-                # What moves by itself is a frame, and a joint stands on it.
+                # A link that moves by itself is a frame, and a joint is mounted on it.
                 m.frame(f"s{k}", parent, *self.mount(moving=True))
                 parent = f"s{k}"
             mount = self.mount()
@@ -208,7 +208,7 @@ class Forest:
                 self.frames.append(more)
                 if r.random() < 0.5:
                     self.body(more)
-        # Velocities without any inertia have no accelerations: the last frames get bodies that turn.
+        # Velocities without inertia have no accelerations: the last frames get bodies that rotate.
         last = self.frames[-1]
         heavy = Mat.of([["0.5", "0.05", "0.02"], ["0.05", "0.6", "0.03"], ["0.02", "0.03", "0.7"]])
         for frame in sorted({f for f in m.frames} - {p for p, _ in m.frames.values()} | {last}):
@@ -223,7 +223,7 @@ class Forest:
         if kind == "continuous":
             from mpmath import atan2
 
-            # The angle from the rest, within half a turn of it.
+            # The angle from the rest, within half a turn.
             def angle(rest):
                 c, s_ = (lambda s: s.x[x]), (lambda s: s.x[x + 1])
                 from mpmath import cos, sin
@@ -347,7 +347,7 @@ class Forest:
             m.generalized.append((place, z * "0.4"))
 
     def constraints(self):
-        """Velocities that are tied to one another, by factors that change: multipliers keep them so."""
+        """Velocity constraints with varying factors, which need multipliers."""
         r, m = self.r, self.m
         if not self.plain or m.n < 3 or r.random() > 0.3:
             return
@@ -361,7 +361,7 @@ class Forest:
             m.say(f"nonholonomic {tie.text} = 0;")
             m.kept.append(tie)
 
-    # What is asked for.
+    # Requested functions.
 
     def outputs(self):
         m = self.m
@@ -414,7 +414,7 @@ class Forest:
         m.say(f"generate {', '.join(wanted)};")
 
     def configuration(self):
-        """A random state, of numbers that doubles have; velocities are those nearest to it that are allowed."""
+        """A random state of doubles; its velocities are the nearest ones that satisfy the ties."""
         return allowed_velocities(self.m, random_state(self.m, self.r))
 
 
@@ -444,7 +444,7 @@ def random_state(m, r):
             x += [e for row in turned for e in row]
         else:
             x += [vectors.mpf(r.uniform(-1, 1)) for _ in range({"real": 1, "R2": 2, "R3": 3}[kind])]
-    # As doubles, and no others: where they are not quite on X, both are asked about the same numbers.
+    # Rounded to doubles: if they are slightly off X, both sides get the same numbers.
     x = [vectors.mpf(float(e)) for e in x]
     draw = lambda n: [vectors.mpf(r.uniform(-1.5, 1.5)) for _ in range(n)]  # noqa: E731
     return State(x, draw(m.n), draw(m.m), draw(m.nz), list(m.default), draw(m.n))

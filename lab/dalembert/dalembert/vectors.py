@@ -1,4 +1,5 @@
-"""Vectors and matrices of three, as lists of numbers of many digits: quicker than matrices of mpmath, and no more than is needed."""
+"""Vectors and matrices of size three, as lists of high-precision numbers: faster than matrices of mpmath, with only the
+needed functions."""
 
 from mpmath import cos, matrix, mp, mpf, sin, sqrt
 from mpmath import lu_solve
@@ -67,7 +68,7 @@ def unit(n):
 
 
 def turn(n, c, s):
-    """The turn about the unit vector n by the angle of cosine c and sine s."""
+    """The rotation about the unit vector n by the angle of cosine c and sine s."""
     h = hat(n)
     return plus(plus(IDENTITY, multiple(s, h)), multiple(1 - c, times(h, h)))
 
@@ -92,6 +93,6 @@ def solve(a, b):
 
 
 def least_squares(a, b):
-    """The solution of an overdetermined system of full rank, by its normal equations: half of many digits is enough."""
+    """The solution of an overdetermined system of full rank, by its normal equations: half of the digits are enough."""
     columns = transposed(a)
     return solve([[dot(p, q) for q in columns] for p in columns], [dot(p, b) for p in columns])

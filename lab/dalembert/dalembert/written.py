@@ -1,5 +1,5 @@
-"""Random mechanisms whose coordinates, constraints and rates are written by hand: circles of any radius, quaternions of any
-length, matrices turned from either side, curves; velocities are mixtures of what moves, or are said by rates."""
+"""Random mechanisms with explicit coordinates, constraints and rates: circles of any radius, quaternions of any length,
+matrices rotated from either side, curves; velocities are mixtures of the natural rates, or are defined by rates."""
 
 from mpmath import cos, mp, mpf, sin
 
@@ -21,20 +21,20 @@ def qmul(p, q):
 
 
 class Written(Forest):
-    """What moves stands in groups, each with natural rates ν of its own; ν = G(x) ξ + g(t), or ξ = H(x) ν."""
+    """Groups of coordinates, each with natural rates ν; ν = G(x) ξ + g(t), or ξ = H(x) ν."""
 
     def __init__(self, random, size, hard=False):
         self.groups, self.starts = [], []
         super().__init__(random, size, free=0, time=0.2, hard=hard)
 
-    # Groups: coordinates, how they move with ν, what they turn or shift.
+    # Groups: coordinates, their motion by ν, and the bodies that they rotate or shift.
 
     def tree(self, size, free):
         r, m = self.r, self.m
         kinds = [r.choice(KINDS)]
         while sum(SIZES.get(kind, 1) for kind in kinds) < 1 + size:
             kinds.append(r.choice(KINDS))
-        # Places of ν, once velocities are known.
+        # Indices of ν, once velocities are known.
         self.by_rows = self.t is None and r.random() < 0.35 and not {"world SO3", "S3"} & set(kinds)
         count, made = 0, []
         for k, kind in enumerate(kinds):
@@ -56,14 +56,14 @@ class Written(Forest):
             self.frames.append(frame)
             parent = frame
             self.body(frame)
-        # Whatever moves, moves a body.
+        # Every group moves a body.
         heavy = Mat.of([["0.5", "0.05", "0.02"], ["0.05", "0.6", "0.03"], ["0.02", "0.03", "0.7"]])
         for frame in self.frames[1:]:
             m.bodies.append((frame, lift("0.7"), Vec.of([0, "0.1", "0.2"]), heavy, "com"))
             m.say(f"body on {frame} {{ mass 0.7; com [0, 0.1, 0.2]; inertia {heavy.text} about com; }}")
 
     def mixture(self, n):
-        """ξ, and ν as text and numbers: by factors, some of which change, whose determinant does not vanish."""
+        """ξ, and ν as text and numbers: with factors, some of them varying, whose determinant does not vanish."""
         r, m = self.r, self.m
         triples = n >= 3 and r.random() < 0.5
         self.natural = n
@@ -74,7 +74,7 @@ class Written(Forest):
                 names += [w[i] for i in range(3)]
             names += [m.velocity(f"v{k}") for k in range(n - len(names))]
             self.velocities += names
-        # L U with ones on the diagonal of L, where what changes stands.
+        # L U with ones on the diagonal of L, in the entries that vary.
         lower = [[lift(self.number()) if i > j and r.random() < 0.4 else None for j in range(n)] for i in range(n)]
         for i in range(n):
             for j in range(i):
@@ -109,7 +109,7 @@ class Written(Forest):
         self.value_of = lambda s: [e.at(s) for e in self.nu]
 
     def said(self, n):
-        """ξ = H ν, where ν are said by rates: A is what hamel makes of that; here a system is solved."""
+        """ξ = H ν, where ν are given by rates: hamel derives A from this; here a system is solved."""
         m = self.m
         rates = [text for group in self.groups for text in group]
         places = []
@@ -131,7 +131,7 @@ class Written(Forest):
         self.value_of = value
 
     def line(self, text):
-        """A rate, where it is not said otherwise."""
+        """A rate statement, unless velocities define the rates."""
         return [] if self.by_rows else [text]
 
     def plain_coordinate(self, name, at):
@@ -161,7 +161,7 @@ class Written(Forest):
         return {"rates": rates, "shift": Vec.of([x, 0, y])}
 
     def group_circle(self, name, k):
-        """A circle of any radius by two plain coordinates."""
+        """A circle of any radius in two plain coordinates."""
         radius = self.positive()
         big = mpf(radius)
         c, pc = self.plain_coordinate(f"{name}c", lambda s: [-s.x[pc_ + 1] * self.value_of(s)[k]])
@@ -212,7 +212,7 @@ class Written(Forest):
         return self.matrix(name, k, True)
 
     def quaternion(self, name, k, length, kind):
-        """Of any length, with any factor; `kind` is that of the coordinate, or none for four plain ones."""
+        """A quaternion of any length, with any factor; `kind` is its coordinate, or none for four plain ones."""
         factor, world = self.pick(["0.5", "0.7", "-1.1"]), self.r.random() < 0.3
         place = self.m.nu
 
@@ -232,7 +232,7 @@ class Written(Forest):
             self.m.onto.append((place, 4, lambda q: scale(mpf(length), unit(q))))
             self.starts.append((place, lambda r: scale(mpf(length), unit([mpf(r.gauss(0, 1)) for _ in range(4)]))))
         self.plain += entries
-        # ν = 2 ... of the vector part of q* q̇, by the factor.
+        # ν = 2 times the vector part of q* q̇, up to the factor.
         back = f"[{entries[0].text}, -{entries[1].text}, -{entries[2].text}, -{entries[3].text}]"
         moved = f"rate({name})" if kind else f"[{', '.join(f'rate({e.text})' for e in entries)}]"
         product = f"qmul({moved}, {back})" if world else f"qmul({back}, {moved})"
@@ -255,7 +255,7 @@ class Written(Forest):
         return self.quaternion(name, k, self.positive(), None)
 
     def group_columns(self, name, k):
-        """A rotation by its columns, each of which is a vector."""
+        """A rotation given by its columns, each of which is a vector."""
         place = self.m.nu
 
         def rate(i):
@@ -303,7 +303,7 @@ class Written(Forest):
         return allowed_velocities(self.m, s.but(x=x))
 
     def asked(self):
-        """With a start that is on X."""
+        """With a start on X."""
         m, r = self.m, self.r
         for place, start in self.starts:
             values, k = start(r), 0

@@ -1,4 +1,4 @@
-"""Whether this test can fail: texts that say something else than the data beside them, each by one sign or number."""
+"""Checks that this test can fail: texts that differ from their data by one sign or number."""
 
 import os
 import random
@@ -15,7 +15,7 @@ from .vectors import mp, mpf
 from .wrong_driven import DRIVEN, driven_one, driven_state
 from .wrong_written import WRITTEN, written_one, written_state
 
-# What is replaced in the texts, and by what.
+# Replacements in the texts.
 SMALL = [
     ("[0, 0, (-9.81)]", "[0, 0, 9.81]"),
     ("com [0.1, 0.2, 0.3]", "com [0.1, -0.2, 0.3]"),
@@ -32,7 +32,7 @@ SMALL = [
 
 
 def small():
-    """Two links with a little of everything."""
+    """Two links with most kinds of elements."""
     m = Mechanism("Small")
     u = m.input("u")
     m.gravity = Vec.of([0, 0, "-9.81"])
@@ -70,7 +70,7 @@ CLOSED = [
 
 
 def closed_one():
-    """A crank with a slider, whose loop is stabilised, and a gear."""
+    """A slider-crank whose loop is stabilised, and a gear."""
     m = Mechanism("Closed")
     m.gravity = Vec.of([0, "-9.81", 0])
     m.say(f"gravity {m.gravity.text};")
@@ -101,7 +101,7 @@ def on_loops(m, random_):
     return allowed_velocities(m, s)
 
 
-# Texts with what is replaced in them, how a state is found, and whether slopes are needed.
+# Texts with their replacements, a function that finds a state, and whether slopes are needed.
 CASES = [
     (small, SMALL, random_state, False),
     (closed_one, CLOSED, on_loops, True),
@@ -111,7 +111,7 @@ CASES = [
 
 
 def unseen(hamel, folder):
-    """Changes that are not found; and what is found where nothing was changed."""
+    """Changes that are not detected, and errors without a change."""
     found = []
     for make, changes, state, slopes in CASES:
         for index, (before, after) in enumerate([("", ""), *changes]):

@@ -1,4 +1,4 @@
-"""A small driven mechanism with elements on scalars and rates, a choice and a table, and what is replaced in its text."""
+"""A small driven mechanism with elements on scalars and rates, a choice and a table; and replacements in its text."""
 
 from .elements import choice
 from .expressions import STILL, Ex, Mat, Vec, call, lift
@@ -20,7 +20,7 @@ DRIVEN = [
 
 
 def driven_one():
-    """Of three hinges one is driven, and the rate of another is given."""
+    """Three hinges, one driven, and one with a prescribed rate."""
     m = Mechanism("Driven")
     t = m.clock("t")
     m.gravity = Vec.of([0, 0, "-9.81"])

@@ -1,4 +1,4 @@
-"""A small mechanism whose coordinates, constraint and rates are written by hand, and what is replaced in its text."""
+"""A small mechanism with explicit coordinates, constraint and rates, and the replacements in its text."""
 
 from mpmath import cos, sin
 
@@ -20,7 +20,7 @@ WRITTEN = [
 
 
 def written_one():
-    """A circle of radius 2 by two numbers, a matrix that is turned from the left, and a shift; ξ are mixtures."""
+    """A circle of radius 2 in two numbers, a matrix rotated from the left, and a shift; ξ are mixtures."""
     m = Mechanism("Written")
     u_of = lambda s: s.xi[0] + mpf("0.3") * s.xi[1]  # noqa: E731
     m.coordinate("c", "real", lambda s: [-s.x[1] * u_of(s)])

@@ -1,4 +1,4 @@
-//! Generated systems in the solvers of diffsol: a heavy top against `Rkmk8`, and a stiff system.
+//! Integrates generated systems by the solvers of diffsol: a heavy top compared with `Rkmk8`, and a stiff system.
 
 use diffsol::{
     DenseMatrix, MatrixCommon, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod,
@@ -35,7 +35,7 @@ hamel::rigid_eom! {
     }
 }
 
-/// The end of a run of diffsol's BDF of variable order, and its steps.
+/// Returns the final state of a run by diffsol's BDF of variable order, and the number of its steps.
 fn bdf<Sys>(
     system: &Sys,
     lambda: f64,
@@ -82,7 +82,7 @@ fn a_heavy_top_agrees_with_rkmk8() -> Result<(), Box<dyn std::error::Error>> {
     let (end, steps) = bdf(&system, 10.0, 2.0, TOLERANCE)?;
     let error = distance(&end.x, &exact.x);
     println!("{error:e} in {steps} steps");
-    // Errors of a multistep method add up along a motion that oscillates: ten thousand tolerances.
+    // The errors of a multistep method accumulate in an oscillating motion: ten thousand tolerances.
     assert!(error < 1e4 * TOLERANCE);
     assert!(system.constraint_norm(&end.x) < 1e-14);
     Ok(())
@@ -97,7 +97,7 @@ fn a_stiff_system_takes_few_steps() -> Result<(), Box<dyn std::error::Error>> {
     let angle = hamel::s1::log([end.x[0], end.x[1]]);
     println!("{:e} in {steps} steps", angle - expected);
     assert!((angle - expected).abs() < 1e-6);
-    // An explicit method needs 1e6 steps a second.
+    // An explicit method would need 1e6 steps a second.
     assert!(steps < 1000);
     Ok(())
 }

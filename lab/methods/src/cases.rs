@@ -1,5 +1,4 @@
-//! The hard cases, one line each in [`ALL`]: which tables of methods run them, and what is constant in
-//! each.
+//! The hard cases, one line each in [`ALL`]: the tables of methods that run them, and the constants of motion of each.
 
 use crate::methods;
 use crate::peers::{self, Peers};
@@ -15,13 +14,13 @@ use hamel_report::problem::{Problem, Quantities};
 use hamel_report::solution::Solution;
 use std::path::Path;
 
-/// A case: its name, which is that of the reference, its model, and what runs it.
+/// A case: its name, which is that of the reference, its model, and the function that runs it.
 pub struct Job {
     /// Name of the reference solution.
     pub name: &'static str,
     /// Name of the description.
     pub model: &'static str,
-    /// Whether it has a picture of its own beside the report.
+    /// Whether the report has a separate picture of it.
     pub picture: bool,
     run: fn(&mut Runner) -> Result<(), BenchError>,
 }
@@ -33,7 +32,7 @@ macro_rules! jobs {
     };
 }
 
-/// Steps of long runs: 0.075 rad each on the benchmark, as much as on Kovalevskaya's top, and 0.1 rad.
+/// Step lengths of long runs: 0.075 rad each on the benchmark and on Kovalevskaya's top, and 0.1 rad.
 const BENCHMARK: Option<f64> = Some(5e-4);
 const KOVALEVSKAYA: Option<f64> = Some(0.02);
 const DZHANIBEKOV: Option<f64> = Some(0.1);
@@ -60,7 +59,7 @@ pub const ALL: &[Job] = jobs! {
     "rolling-disk" "rolling_disk" true |r| rolling(r, &mechanisms::rolling_disk());
 };
 
-/// A case as a problem, with its constants beside the energy.
+/// Makes a problem of a case, with its constants of motion in addition to the energy.
 fn problem<'a, Sys: System<Scalar = f64>>(
     runner: &mut Runner,
     case: &'a Case<Sys>,
@@ -105,7 +104,7 @@ fn angular<'a, Sys: System<Scalar = f64>>(
     }
 }
 
-/// A top: its vertical momentum is constant.
+/// Runs a top, whose vertical angular momentum is constant.
 fn top<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
 where
     Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
@@ -122,7 +121,7 @@ where
     Ok(())
 }
 
-/// A free body: its angular momentum is constant.
+/// Runs a free body, whose angular momentum is constant.
 fn free<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
 where
     Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
@@ -139,7 +138,7 @@ where
     Ok(())
 }
 
-/// Other bodies in potentials, or under loads that are given.
+/// Runs another body in a potential or under given loads.
 fn flight<Sys>(runner: &mut Runner, case: &Case<Sys>, conservative: bool) -> Result<(), BenchError>
 where
     Sys: Split<Scalar = f64> + Canonical,
@@ -152,7 +151,7 @@ where
     Ok(())
 }
 
-/// Several bodies, whose M depends on x.
+/// Runs several bodies, whose M depends on x.
 fn chain<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
     Sys: Canonical<Scalar = f64>,
@@ -164,7 +163,7 @@ where
     Ok(())
 }
 
-/// Bodies whose velocities are constrained.
+/// Runs bodies with constrained velocities.
 fn rolling<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
     Sys: System<Scalar = f64>,
@@ -175,10 +174,10 @@ where
 }
 
 impl Job {
-    /// Runs the case; peers read the reference of a folder.
+    /// Runs the case.
     ///
     /// # Errors
-    /// Where the reference is missing or not what the case takes it for.
+    /// If the reference is missing or does not fit the case.
     pub fn run(
         &self,
         references: &Path,

@@ -1,6 +1,6 @@
 //! The report of speed against error.
 //!
-//! One command makes it again, from the root of the repository:
+//! This command writes it, from the root of the repository:
 //!
 //! ```sh
 //! cargo run --release --manifest-path lab/Cargo.toml -p hamel-bench -- --out docs/report
@@ -9,10 +9,10 @@
 //! | module | owns |
 //! |---|---|
 //! | [`methods`] | the table of methods: one line each |
-//! | [`cases`] | the hard cases of `hamel-cases`, and what is constant in each |
+//! | [`cases`] | the hard cases of `hamel-cases`, and the constants of motion of each |
 //! | [`peers`] | other programs, each an optional feature or script |
-//! | [`runner`] | what is measured of a case |
-//! | [`output`] | the files, and what is kept of them in the repository |
+//! | [`runner`] | the measurements of a case |
+//! | [`output`] | the files, and the part of them that is kept in the repository |
 
 pub mod cases;
 pub mod methods;

@@ -12,25 +12,25 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Speed against error on the hard cases, with other programs beside it.
+/// Speed against error on the hard cases, compared with other programs.
 #[derive(Parser)]
 struct Arguments {
     /// Folder of the report.
     #[arg(long, value_name = "DIR", default_value = "docs/report")]
     out: PathBuf,
-    /// Only these cases; the book and its summary are then left alone.
+    /// Only these cases; the book and its summary are then not written.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     cases: Vec<String>,
-    /// How often each run is timed.
+    /// Number of timings of each run.
     #[arg(long, value_name = "N", default_value_t = 7)]
     repeats: u32,
     /// Leave out the runs of a million steps.
     #[arg(long)]
     short: bool,
-    /// Measure nothing: write the files anew from the report.json of the folder.
+    /// Measure nothing: write the files again from the report.json of the folder.
     #[arg(long)]
     rewrite: bool,
-    /// Python that has the wheel `mujoco`.
+    /// A Python that has the wheel `mujoco`.
     #[arg(long, value_name = "PYTHON", default_value = mujoco::PYTHON)]
     mujoco: PathBuf,
 }
@@ -118,7 +118,7 @@ fn bar(name: &str) -> ProgressBar {
     }
 }
 
-/// Where this runs: the kind of processor, not its name in a network.
+/// Describes the machine: the kind of processor, not its name in a network.
 fn machine(repeats: u32) -> Machine {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info.lines().find(|line| line.starts_with("model name"));

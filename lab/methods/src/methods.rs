@@ -1,4 +1,4 @@
-//! The table of methods: one line each, in tables by what they need of a system.
+//! The tables of methods, one line each, grouped by the traits that they need of a system.
 
 use hamel::adaptive::Adaptive;
 use hamel::methods::{
@@ -46,7 +46,7 @@ where
     entries
 }
 
-/// Methods that step momenta.
+/// Methods that integrate momenta.
 pub fn canonical<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Vec<Entry<'p>>
 where
     Sys: Canonical<Scalar = f64>,
@@ -86,7 +86,7 @@ where
     entries
 }
 
-/// The closed form: one evaluation, whatever the number of steps.
+/// The closed form, which takes one evaluation for any number of steps.
 fn closed<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Entry<'p>
 where
     Sys: Split<Scalar = f64>,
@@ -118,7 +118,7 @@ where
             let begin = Instant::now();
             let start = black_box(problem.start());
             black_box(free::at(&problem.system, &start, problem.until).ok()?);
-            // A run needs one evaluation; the caller scales from a part of the steps to all.
+            // A run takes one evaluation; the caller scales the time from a part of the steps to all.
             Some(begin.elapsed().as_secs_f64() * part as f64 / steps as f64)
         },
     )

@@ -12,13 +12,13 @@ use hamel_report::{excerpt, json, markdown};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The runs behind the part of the book that is written from them, in the repository.
+/// The runs from which the part of the book is written, in the repository.
 pub const SUMMARY: &str = "docs/summary.json";
 
-/// Writes `report.json`, `report.md`, `index.html` and the pictures; the names of the files.
+/// Writes `report.json`, `report.md`, `index.html` and the pictures, and returns the names of the files.
 ///
 /// # Errors
-/// Where a picture cannot be drawn or a file not be written.
+/// If a picture cannot be drawn or a file cannot be written.
 pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, BenchError> {
     let said = |error: PlotError| BenchError(error.to_string());
     fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
@@ -78,20 +78,20 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, BenchError>
         .collect()
 }
 
-/// The picture of a case beside the page, where it has one.
+/// The name of the separate picture of a case, if it has one.
 fn file_of(case: &Case) -> Option<String> {
     let job = ALL.iter().find(|job| job.name == case.name)?;
     job.picture.then(|| format!("{}.svg", case.name))
 }
 
-/// The chapter of the book that has a part written from the report.
+/// The chapter of the book with a part that is written from the report.
 pub const CHAPTER: &str = "docs/book/src/integrators.md";
 
-/// What is kept of a whole report in the repository at `root`: the part of [`CHAPTER`], and the runs that it is made of, in
-/// [`SUMMARY`].
+/// Updates the files in the repository at `root` that are made from a full report: the part of [`CHAPTER`], and the
+/// runs it is made from, in [`SUMMARY`].
 ///
 /// # Errors
-/// Where there is no such chapter, or it has no such part.
+/// If there is no such chapter, or it has no such part.
 pub fn keep(report: &Report, root: &Path) -> Result<(), BenchError> {
     let path = root.join(CHAPTER);
     let text = fs::read_to_string(&path).map_err(|error| unwritten(&path, &error))?;
@@ -102,7 +102,7 @@ pub fn keep(report: &Report, root: &Path) -> Result<(), BenchError> {
     written(&path, &new)
 }
 
-/// Writes a file, whole or not at all.
+/// Writes a file atomically.
 fn written(path: &Path, text: &str) -> Result<(), BenchError> {
     hamel_files::write(path, text).map_err(|error| BenchError(error.to_string()))
 }

@@ -1,5 +1,4 @@
-//! Other programs on the same cases, each an optional feature or script. What is not there is said in
-//! the report.
+//! Other programs on the same cases, each an optional feature or script. The report names the missing ones.
 
 pub mod mujoco;
 #[cfg(feature = "ode")]
@@ -14,10 +13,10 @@ use hamel_report::entry::Entry;
 use hamel_report::problem::Problem;
 use serde::Deserialize;
 
-/// What other programs gave.
+/// The results of other programs.
 #[derive(Debug, Default)]
 pub struct Peers {
-    /// What is said of them.
+    /// The programs, with version or reason of absence.
     pub list: Vec<Peer>,
     /// Results that were measured by another program.
     pub foreign: Vec<Foreign>,
@@ -28,12 +27,12 @@ pub struct Peers {
 pub struct Foreign {
     /// Name of the case.
     pub case: String,
-    /// Its methods.
+    /// Results of its methods.
     pub methods: Vec<MethodRuns>,
 }
 
 impl Peers {
-    /// Finds out what there is. `python` runs the script of MuJoCo.
+    /// Finds the programs that are available. `python` runs the script for MuJoCo.
     pub fn find(python: &std::path::Path) -> Self {
         let mut peers = Peers::default();
         let with = "cargo run --release --manifest-path lab/Cargo.toml -p hamel-bench --features rapier,ode -- --out docs/report";
@@ -69,7 +68,7 @@ impl Peers {
         peers
     }
 
-    /// Adds what other programs measured to a case; what is missing is named.
+    /// Adds to a case the measurements of other programs; names the missing ones.
     pub fn add(&self, case: &mut Case) {
         for foreign in &self.foreign {
             if foreign.case == case.name {
@@ -95,7 +94,7 @@ fn built(name: &str, available: bool, note: &str, start: &str) -> Peer {
 /// Other programs on a torque-free body.
 ///
 /// # Errors
-/// Where the reference lacks what they need.
+/// If the reference lacks a value that they need.
 pub fn free<'p, Sys, U>(
     runner: &mut Runner,
     problem: &'p Problem<'_, Sys, U>,
@@ -110,7 +109,7 @@ where
 /// Other programs on a top.
 ///
 /// # Errors
-/// Where the reference lacks what they need.
+/// If the reference lacks a value that they need.
 pub fn tops<'p, Sys, U>(
     runner: &mut Runner,
     problem: &'p Problem<'_, Sys, U>,

@@ -12,13 +12,13 @@ const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
 const START: [f64; 3] = [1e-3, 1.0, 0.0];
 const UNTIL: f64 = 100.0;
 const STEP: f64 = 0.01;
-/// Steps between two points.
+/// Number of steps between two points.
 const STRIDE: u32 = 10;
 
-/// Both pictures, with the names of their files.
+/// Draws both pictures, and returns them with the names of their files.
 ///
 /// # Errors
-/// Where the motion or the drawing fails.
+/// If the motion or the drawing fails.
 pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
     let [j1, j2, j3] = MOMENTS;
     let body = PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 })

@@ -1,4 +1,4 @@
-//! What is measured of a case.
+//! Measures a case.
 
 use crate::peers::Peers;
 use hamel_report::data::{Case, Drift, Kind};
@@ -8,21 +8,21 @@ use hamel_report::measure::{Plan, measure};
 use hamel_report::solution::{Solution, SolutionError};
 use std::fmt;
 
-/// A number of steps that is doubled again and again.
+/// The smallest number of steps, which is then doubled repeatedly.
 const COARSEST: u64 = 10;
 const DOUBLINGS: u32 = 14;
-/// Errors that steps may make where they are chosen by it.
+/// Error tolerances of methods that choose their steps.
 const TOLERANCES: [f64; 11] = [
     1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13,
 ];
-/// Every timing takes at least so long, in s.
+/// Shortest duration of a timing, in s.
 const LEAST: f64 = 3e-4;
-/// Errors below this are rounding.
+/// Errors below this are taken for rounding.
 const FLOOR: f64 = 1e-12;
-/// Steps of a long run.
+/// Number of steps of a long run.
 const LONG: u64 = 1_000_000;
 
-/// What went wrong before anything was measured.
+/// A failure before anything was measured.
 #[derive(Debug)]
 pub struct BenchError(pub String);
 
@@ -40,24 +40,24 @@ impl From<SolutionError> for BenchError {
     }
 }
 
-/// How much is measured.
+/// The extent of the measurements.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Timings of each run.
+    /// Number of timings of each run.
     pub repeats: u32,
     /// Whether long runs are made.
     pub long: bool,
 }
 
-/// A case with its reference, and the results as they come.
+/// A case with its reference, and the results so far.
 pub struct Runner<'a> {
     /// The reference solution.
     pub solution: &'a Solution,
-    /// How much is measured.
+    /// The extent of the measurements.
     pub effort: Effort,
     /// Other programs.
     pub peers: &'a Peers,
-    /// Called with what is done and what there is in all.
+    /// Called with the number of finished measurements and with their total.
     pub tick: &'a dyn Fn(u64, u64),
     /// The results.
     pub case: Case,
@@ -66,7 +66,7 @@ pub struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// Measures entries; and, where a step is given, a million of such steps of each of ours.
+    /// Measures entries. If a step is given, also measures long runs with it for all methods but those of peers.
     pub fn entries(&mut self, entries: &[Entry], long: Option<f64>) {
         let plan = Plan {
             steps: Plan::doublings(COARSEST, DOUBLINGS),
@@ -89,34 +89,34 @@ impl Runner<'_> {
         }
     }
 
-    /// N numbers of a parameter.
+    /// Returns the N numbers of a parameter.
     ///
     /// # Errors
-    /// Where the reference does not have them.
+    /// If the reference does not have them.
     pub fn parameter<const N: usize>(&self, name: &str) -> Result<[f64; N], BenchError> {
         take(name, self.solution.parameter(name))
     }
 
-    /// N numbers of the start.
+    /// Returns N numbers of the initial state.
     ///
     /// # Errors
-    /// Where the reference does not have them.
+    /// If the reference does not have them.
     pub fn initial<const N: usize>(&self, name: &str) -> Result<[f64; N], BenchError> {
         take(name, self.solution.initial(name))
     }
 
-    /// N numbers of the end.
+    /// Returns N numbers of the final state.
     ///
     /// # Errors
-    /// Where the reference does not have them.
+    /// If the reference does not have them.
     pub fn end<const N: usize>(&self, name: &str) -> Result<[f64; N], BenchError> {
         take(name, self.solution.sample(self.case.until, name))
     }
 
-    /// g of a gravity that points down.
+    /// Returns g of a gravity that points down.
     ///
     /// # Errors
-    /// Where the reference has none.
+    /// If the reference has none.
     pub fn gravity(&self) -> Result<f64, BenchError> {
         self.parameter::<3>("g").map(|[_, _, z]| -z)
     }
@@ -128,7 +128,7 @@ fn take<const N: usize>(name: &str, values: Option<Vec<f64>>) -> Result<[f64; N]
         .ok_or_else(|| BenchError(format!("the reference has no {N} numbers `{name}`")))
 }
 
-/// Nine entries, row by row, as rows.
+/// Groups nine entries, given row by row, into rows.
 pub fn rows(m: [f64; 9]) -> [[f64; 3]; 3] {
     let [a, b, c, d, e, f, g, h, i] = m;
     [[a, b, c], [d, e, f], [g, h, i]]

@@ -1,5 +1,5 @@
-//! What the book says of speed and error is what was measured: its table is made of `docs/summary.json`, which the
-//! command of the report writes beside it.
+//! The figures of the book on speed and error are measured ones: its table is made from `docs/summary.json`, which the
+//! command of the report writes together with it.
 
 use hamel_bench::cases::ALL;
 use hamel_bench::output::{CHAPTER, SUMMARY};
@@ -32,7 +32,7 @@ fn the_table_of_the_book_is_what_was_measured() {
         "run the command of the report"
     );
     assert!(present.lines().count() > 10, "{present}");
-    // The chapter names the command, with the features that a full report has.
+    // The chapter contains the command, with the features of a full report.
     let (command, folder) = report.command.split_once(" -- ").expect("arguments");
     for part in [command, folder] {
         assert!(chapter.contains(part), "{part}");

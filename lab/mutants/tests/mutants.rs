@@ -1,10 +1,9 @@
-//! Wrong signs in the generator itself, `cases/*.txt`: what `hamel check` does notices each of them and names an
-//! identity that it breaks.
+//! Wrong signs in the generator, `cases/*.txt`: `hamel check` detects each of them and names an identity that it
+//! breaks.
 //!
-//! A mutant is a title, the `file` to change, a `model` to check, what it `breaks`, and lines of code
-//! before (`-`) and after (`+`), compared without their indentation. The sources are copied to a
-//! workspace below `target`, which keeps its build between runs; every mutant is built there, with the
-//! program `check.rs`.
+//! A mutant has a title, the `file` to change, a `model` to check, the identity that it `breaks`, and lines of code
+//! before (`-`) and after (`+`), compared without indentation. The sources are copied to a workspace below `target`,
+//! which keeps its build between runs; every mutant is built there, with the program `check.rs`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +24,7 @@ const CRATES: [&str; 10] = [
     "codegen/tables",
     "codegen/files",
 ];
-/// Where the program that checks a model stands in the copy: Cargo finds it there without a line in a manifest.
+/// Path of the checking program in the copy, where Cargo finds it without an entry in a manifest.
 const CHECK: &str = "codegen/src/bin/check.rs";
 
 fn root() -> PathBuf {
@@ -67,7 +66,7 @@ impl Mutant {
         }
     }
 
-    /// The source with this mutation; its old lines have to stand at exactly one place.
+    /// Applies the mutation to the source, in which the old lines must occur exactly once.
     fn applied(&self, source: &str) -> String {
         assert!(
             !self.old.is_empty() && self.old != self.new,
@@ -95,7 +94,7 @@ impl Mutant {
     }
 }
 
-/// A copy of the workspace, with nothing in it but the generator.
+/// A copy of the workspace that contains only the generator.
 struct Copy {
     folder: PathBuf,
 }
@@ -136,7 +135,7 @@ impl Copy {
         }
     }
 
-    /// Removes what an earlier run has copied and the workspace has no longer.
+    /// Removes copied files that no longer exist in the workspace.
     fn forget(&self, path: &Path) {
         let Ok(known) = fs::read_dir(self.folder.join(path)) else {
             return;
@@ -155,7 +154,7 @@ impl Copy {
         }
     }
 
-    /// Writes what has changed only, so that what has not is not built anew.
+    /// Writes a file only if it has changed, to avoid rebuilding.
     fn write(&self, path: impl AsRef<Path>, text: &str) {
         let path = self.folder.join(path);
         if fs::read_to_string(&path).is_ok_and(|known| known == text) {
@@ -165,8 +164,8 @@ impl Copy {
         fs::write(&path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
 
-    /// Builds the program, quickly rather than well, and checks a model with it. A mutant differs by a line, so that
-    /// what an incremental build keeps is worth its place on the disk.
+    /// Builds the program without optimisation, and checks a model with it. Incremental compilation pays, since mutants
+    /// differ by a line.
     fn check(&self, model: &str) -> Output {
         let target = self.folder.join("target");
         let built = Command::new(env!("CARGO"))
@@ -208,7 +207,7 @@ fn mutants() -> Vec<Mutant> {
 #[test]
 fn every_mutant_is_caught() {
     let mutants = mutants();
-    // What cannot be applied is seen before anything is built.
+    // Finds mutants that cannot be applied before building anything.
     for mutant in &mutants {
         mutant.applied(&read(&root().join(&mutant.file)));
     }
@@ -224,7 +223,7 @@ fn every_mutant_is_caught() {
         copy.write(&mutant.file, &source);
         let said = [output.stdout, output.stderr].concat();
         let said = String::from_utf8_lossy(&said);
-        // Identities that hold are listed too.
+        // The output lists the identities that hold as well.
         let broken: Vec<&str> = said
             .lines()
             .filter(|line| line.contains("FAILED") || line.contains("does not hold"))

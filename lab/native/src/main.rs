@@ -1,5 +1,5 @@
-//! Generated functions by rustc, by machine code that is made at once, and step by step: times by turns in one process,
-//! after all results were compared, to the bit where the machine has a fused multiply-add.
+//! Times generated functions compiled by rustc, as machine code made at run time, and interpreted step by step,
+//! alternately in one process. All results are compared first, bit by bit where the machine has a fused multiply-add.
 //!
 //! Started by `lab/native/run.sh`; rounds and medians are those of `lab/casadi`.
 
@@ -15,10 +15,10 @@ use hamel_lab::measure::INPUTS;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Where rounding differs, relative to the largest result.
+/// Largest accepted difference, relative to the largest result, where rounding differs.
 const CLOSE: f64 = 1e-13;
 
-/// What is allocated now, and was at most.
+/// Counts the current and the largest use of the heap.
 #[global_allocator]
 static HEAP: peak_alloc::PeakAlloc = peak_alloc::PeakAlloc;
 
@@ -31,7 +31,7 @@ mod code {
     include!(concat!(env!("OUT_DIR"), "/talos_reduced.rs"));
 }
 
-/// A description of this build.
+/// The text of a description of this build.
 macro_rules! text {
     ($name:literal) => {
         include_str!(concat!(env!("OUT_DIR"), "/", $name, ".eom"))
@@ -41,7 +41,7 @@ macro_rules! text {
 /// x, ξ and u.
 type State = [Vec<f64>; 3];
 
-/// A program of a description.
+/// Returns the program of a description.
 fn program(text: &str) -> Program {
     match from_text(text) {
         Ok(generated) => generated.program,
@@ -52,7 +52,7 @@ fn program(text: &str) -> Program {
     }
 }
 
-/// The start moved along its manifold, other velocities and loads for every k.
+/// The start displaced along its manifold, with different velocities and loads for every k.
 fn state(program: &Program, k: usize) -> State {
     let fill = |list: &mut [f64], first: usize| {
         for (i, entry) in list.iter_mut().enumerate() {
@@ -76,14 +76,14 @@ fn state(program: &Program, k: usize) -> State {
     [x, xi, u]
 }
 
-/// A function by machine code and step by step.
+/// A function as machine code and interpreted.
 struct Case {
     compiled: Compiled,
     constants: Constants,
     interpreter: Interpreter,
     states: Vec<State>,
     steps: usize,
-    /// ms
+    /// Time of compilation, in ms.
     compiling: f64,
 }
 
@@ -126,7 +126,7 @@ impl Case {
     }
 }
 
-/// Compares two results.
+/// Checks that two results agree.
 fn assert_equal(name: &str, rust: &[f64], native: &[f64]) {
     assert_eq!(rust.len(), native.len(), "{name}");
     let exact = cfg!(target_feature = "fma");
@@ -160,7 +160,7 @@ impl<const N: usize, const M: usize> Flat for [[f64; N]; M] {
     }
 }
 
-/// A row of the table, and its ratio.
+/// Prints a row of the table; evaluates to its ratio.
 macro_rules! row {
     ($label:literal, $file:literal, $system:ty, $function:ident, $length:expr) => {{
         let program = program(text!($file));
@@ -219,7 +219,8 @@ macro_rules! row {
     }};
 }
 
-/// The largest function here, too large for a compiler in a bench: [A B] of Talos. How long it takes, and what memory.
+/// Measures time and memory of compiling the largest function here, [A B] of Talos, which is too large to be compiled
+/// by rustc in a bench.
 fn humanoid() {
     let text = text!("talos_reduced").replace("generate accel;", "generate linearize;");
     let program = program(&text);

@@ -1,20 +1,27 @@
-//! Times generated Rust against Pinocchio's C++ for the same robots, by turns in one process: inverse and forward
+//! Times generated Rust against Pinocchio's C++ for the same robots, alternately in one process: inverse and forward
 //! dynamics, the slopes of forward dynamics, the torque regressor, and the Jacobian of a link.
 //!
+<<<<<<< HEAD:lab/pinocchio/src/main.rs
 //! Started by `lab/pinocchio/run.sh`; inputs, rounds and medians are those of `lab/c` and `lab/casadi`. All values
 //! have to agree before they are timed. Pinocchio is called in several ways, by the functions that its wheel has compiled
 //! and by the same templates compiled for this machine by g++ and clang++, and ABA in the faster of its conventions. Each
 //! way has a column; ratios are those of the fastest.
+=======
+//! Started by `bench/pinocchio/run.sh`; inputs, rounds and medians are those of `bench/c` and `bench/casadi`. All
+//! values are compared before they are timed. Pinocchio is called in several ways: by the functions compiled in its
+//! wheel, by the same templates compiled for this machine by g++ and clang++, and with ABA in the faster of its
+//! conventions. Each way has a column; ratios refer to the fastest.
+>>>>>>> w-textB:bench/pinocchio/src/main.rs
 //!
-//! The functions are not quite the same ones:
-//! - `slopes` are [A B], written to the same place each time with ξ̇ beside them: besides ∂ξ̇/∂h, ∂ξ̇/∂ξ and ∂ξ̇/∂u, which
-//!   `computeABADerivatives` gives as well, the rows of ∂ḣ/∂h and ∂ḣ/∂ξ.
-//! - `regressor` has a column for each base parameter, `computeJointTorqueRegressor` ten for each body. What has to agree
-//!   is therefore the force, Y β and Y π.
+//! The functions differ slightly:
+//! - `slopes` are [A B] together with ξ̇, written to the same memory in each call: in addition to ∂ξ̇/∂h, ∂ξ̇/∂ξ and
+//!   ∂ξ̇/∂u, which `computeABADerivatives` gives as well, they contain the rows of ∂ḣ/∂h and ∂ḣ/∂ξ.
+//! - `regressor` has a column for each base parameter, `computeJointTorqueRegressor` ten for each body. Therefore the
+//!   forces Y β and Y π are compared.
 //! - `computeFrameJacobian` in `LOCAL_WORLD_ALIGNED` includes its forward kinematics, as the emitted Jacobian does.
 //!
-//! A floating base has other coordinates in Pinocchio, a quaternion for the rotation, but the same velocities and the same
-//! displacements, those of the body in its own axes: all values are compared.
+//! A floating base has other coordinates in Pinocchio, a quaternion for the rotation, but the same velocities and the
+//! same displacements, those of the body in body axes. Therefore all values can be compared.
 
 mod peer;
 
@@ -49,16 +56,16 @@ mod solo12 {
     }
 }
 
-/// Largest difference of results, relative to the largest component.
+/// Largest accepted difference of results, relative to the largest component.
 const AGREEMENT: f64 = 1e-9;
 
-/// The reader of URDF files, and the driver in each of the ways that it is compiled.
+/// The reader of URDF files, and the driver compiled in several ways.
 struct Libraries {
     reader: Library,
     drivers: Vec<(String, Library)>,
 }
 
-/// What the functions are called with.
+/// The arguments of the functions.
 struct Point<S: System> {
     x: S::Coordinates,
     xi: S::Velocities,
@@ -66,7 +73,11 @@ struct Point<S: System> {
     xi_dot: S::Velocities,
 }
 
+<<<<<<< HEAD:lab/pinocchio/src/main.rs
 /// The inputs of `lab/c`; accelerations are further velocities.
+=======
+/// The inputs of `bench/c`; further velocities serve as accelerations.
+>>>>>>> w-textB:bench/pinocchio/src/main.rs
 fn points<S: System>(system: &S) -> Vec<Point<S>> {
     let point = |k| {
         let Input { x, xi, u } = input(system, k);
@@ -76,8 +87,8 @@ fn points<S: System>(system: &S) -> Vec<Point<S>> {
     (0..INPUTS).map(point).collect()
 }
 
-/// Pinocchio's configuration: that of a floating base is its position and a quaternion, the real part last. The rotations
-/// of the inputs are less than half a turn, so that the real part is not small.
+/// Pinocchio's configuration. A floating base has its position and a quaternion, the real part last. The rotations of
+/// the inputs are less than half a turn, so the real part is not small.
 fn configuration(x: &[f64], floating: bool) -> Vec<f64> {
     let (base, joints) = x.split_at(if floating { 12 } else { 0 });
     if base.is_empty() {
@@ -89,13 +100,13 @@ fn configuration(x: &[f64], floating: bool) -> Vec<f64> {
     [&base[..3], &[a, b, c, w], joints].concat()
 }
 
-/// ∂ξ̇ by n of the variables of [A B], by rows.
+/// The columns of ∂ξ̇ in [A B] for n variables from `first` on, by rows.
 fn block<S: Tangent<Scalar = f64>>(slopes: &S::Slopes, first: usize, n: usize) -> Vec<f64> {
     let rows = (n..2 * n).map(|i| &slopes.row(i)[first..first + n]);
     rows.flatten().copied().collect()
 }
 
-/// Whether the matrices of both sides agree; none is a failure of ours.
+/// Checks that the matrices of both sides agree. An empty list counts as a failure of ours.
 fn agree(what: &str, ours: &[Vec<f64>], theirs: &[Vec<f64>]) -> Result<(), String> {
     if ours.len() != theirs.len() {
         return Err(format!("{what}: no value of hamel"));
@@ -115,16 +126,16 @@ fn agree(what: &str, ours: &[Vec<f64>], theirs: &[Vec<f64>]) -> Result<(), Strin
 /// Matrices of a function of the driver at a state.
 type Theirs<'a> = &'a dyn Fn(&Peer, &str, usize) -> Result<Vec<Vec<f64>>, Box<dyn Error>>;
 
-/// A robot on both sides.
+/// A robot in hamel and in Pinocchio.
 struct Sides<'a> {
     name: &'a str,
-    /// Those of Pinocchio, with the way that each is compiled.
+    /// Pinocchio's robots, each with the name of the way in which it was compiled.
     peers: Vec<(&'a str, Peer<'a>)>,
 }
 
 impl Sides<'_> {
-    /// Compares a function, times it and prints a row: functions of the driver that give the same, what is compared of
-    /// them and of ours, and ours over all states so many times.
+    /// Compares a function, times it and prints a row. The arguments are the equivalent functions of the driver, the
+    /// values of both sides to compare, and our function over all states.
     fn row(
         &self,
         function: &str,
@@ -154,7 +165,7 @@ impl Sides<'_> {
     }
 }
 
-/// A value with an entry for each velocity.
+/// Returns a value with an entry for each velocity.
 fn vector(peer: &Peer, name: &str, k: usize) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
     Ok(vec![peer.function(name)?.value(k, peer.size("pin_nv")?)])
 }
@@ -171,7 +182,7 @@ fn runs<S, P, T>(system: &S, points: &[P], function: &dyn Fn(&S, &P) -> T) -> im
     }
 }
 
-/// Robots of each library, with the same states.
+/// Returns the robots of each library, with the same states.
 fn peers<'a, S: System<Scalar = f64>>(
     libraries: &'a Libraries,
     folder: &Path,
@@ -190,7 +201,7 @@ fn peers<'a, S: System<Scalar = f64>>(
     libraries.drivers.iter().map(open).collect()
 }
 
-/// The rows of a robot, whose functions have types of their own.
+/// Prints the rows of a robot. A macro, since the functions of each robot have different types.
 macro_rules! robot {
     ($libraries:expr, $folder:expr, $title:literal, $robot:expr, $module:ident::$system:ident, $jacobian:ident) => {{
         type Model = $module::$system<f64>;
@@ -224,7 +235,7 @@ macro_rules! robot {
             &runs(system, points, &forward),
         )?;
         let slopes = |system: &Model, at: &Point<Model>| system.linearize(&at.x, &at.xi, &at.u);
-        // Written to the same place each time, as Pinocchio's are.
+        // Results are written to the same memory in each call, as Pinocchio's are.
         let place = RefCell::new(<Model as Tangent>::Slopes::zero());
         let slopes_in_place = |system: &Model, at: &Point<Model>| {
             let mut place = place.borrow_mut();
@@ -294,7 +305,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [folder, reader, drivers @ ..] = arguments.as_slice() else {
         return Err("the folder of the robots and the reader are missing".into());
     };
-    // SAFETY: constructors are those of Pinocchio and of what it needs, which touch nothing else.
+    // SAFETY: the only constructors are those of Pinocchio and its dependencies, which touch nothing else.
     let open = |path: &PathBuf| unsafe { Library::new(path) };
     let mut libraries = Libraries {
         reader: open(reader)?,

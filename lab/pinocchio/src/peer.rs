@@ -1,4 +1,4 @@
-//! Robots of Pinocchio, by the functions of `reader.cpp` and `driver.cpp`.
+//! Robots of Pinocchio, through the functions of `reader.cpp` and `driver.cpp`.
 
 use crate::measure::INPUTS;
 use crate::robots::Robot;
@@ -18,14 +18,14 @@ type Call = unsafe extern "C" fn(*mut c_void, usize) -> *const f64;
 type Last = unsafe extern "C" fn(*const c_void) -> *const f64;
 type Parameters = unsafe extern "C" fn(*const c_void, *mut f64);
 
-/// A robot as it was read.
+/// A description of a robot as read from its file.
 pub struct Description<'a> {
     library: &'a Library,
     description: *mut c_void,
 }
 
 impl<'a> Description<'a> {
-    /// The robot, of a file below the folder.
+    /// Reads a robot from a file below the folder.
     pub fn read(
         library: &'a Library,
         folder: &Path,
@@ -59,7 +59,7 @@ impl<'a> Description<'a> {
 
 impl Drop for Description<'_> {
     fn drop(&mut self) {
-        // SAFETY: the signature is that of the reader, and nothing uses the description any more.
+        // SAFETY: the signature is that of the reader, and the description is not used afterwards.
         unsafe {
             if let Ok(forget) = self.library.get::<Close>(b"pin_forget") {
                 forget(self.description);
@@ -68,7 +68,7 @@ impl Drop for Description<'_> {
     }
 }
 
-/// A robot with the states that its functions are called at.
+/// A robot with the states at which its functions are called.
 pub struct Peer<'a> {
     library: &'a Library,
     robot: *mut c_void,
@@ -76,9 +76,9 @@ pub struct Peer<'a> {
 }
 
 impl<'a> Peer<'a> {
-    /// The robot of a description.
+    /// Creates the robot of a description.
     pub fn open(library: &'a Library, from: &Description<'_>) -> Result<Self, Box<dyn Error>> {
-        // SAFETY: the signature is that of the driver, which copies what it needs of the description.
+        // SAFETY: the signature is that of the driver, which copies what it needs from the description.
         let robot = unsafe { library.get::<Open>(b"pin_open")?(from.description) };
         if robot.is_null() {
             return Err("Pinocchio does not build the robot".into());
@@ -90,7 +90,7 @@ impl<'a> Peer<'a> {
         })
     }
 
-    /// `pin_nq`, `pin_nv` or `pin_bodies`.
+    /// Returns `pin_nq`, `pin_nv` or `pin_bodies`.
     pub fn size(&self, name: &str) -> Result<usize, Box<dyn Error>> {
         // SAFETY: the signature is that of the driver, and the robot is open.
         let size = unsafe { self.library.get::<Size>(name.as_bytes())?(self.robot) };
@@ -111,12 +111,12 @@ impl<'a> Peer<'a> {
         Ok(())
     }
 
-    /// A function, to be called at the states.
+    /// Returns a function that can be called at the states.
     pub fn function(&self, name: &str) -> Result<Function<'_>, Box<dyn Error>> {
         if self.states != INPUTS {
             return Err(format!("{} states, {INPUTS} wanted", self.states).into());
         }
-        // SAFETY: the signature is that of all functions of the driver which take a state.
+        // SAFETY: the signature is common to all functions of the driver that take a state.
         let call = unsafe { self.library.get::<Call>(name.as_bytes())? };
         Ok(Function {
             robot: self.robot,
@@ -124,9 +124,9 @@ impl<'a> Peer<'a> {
         })
     }
 
-    /// So many numbers of what the last call has left.
+    /// Returns `length` numbers from a matrix that the last call left.
     pub fn last(&self, name: &str, length: usize) -> Result<Vec<f64>, Box<dyn Error>> {
-        // SAFETY: the signature is that of the driver, whose matrix has so many entries.
+        // SAFETY: the signature is that of the driver, whose matrix has `length` entries.
         let values = unsafe {
             let first = self.library.get::<Last>(name.as_bytes())?(self.robot);
             std::slice::from_raw_parts(first, length)
@@ -134,7 +134,7 @@ impl<'a> Peer<'a> {
         Ok(values.to_vec())
     }
 
-    /// Ten parameters of every body.
+    /// Returns the ten inertial parameters of every body.
     pub fn parameters(&self) -> Result<Vec<f64>, Box<dyn Error>> {
         let mut parameters = vec![0.0; 10 * self.size("pin_bodies")?];
         // SAFETY: the signature is that of the driver, and the list is as long as it writes.
@@ -147,7 +147,7 @@ impl<'a> Peer<'a> {
 
 impl Drop for Peer<'_> {
     fn drop(&mut self) {
-        // SAFETY: the signature is that of the driver; nothing uses the robot any more.
+        // SAFETY: the signature is that of the driver, and the robot is not used afterwards.
         unsafe {
             if let Ok(close) = self.library.get::<Close>(b"pin_close") {
                 close(self.robot);
@@ -163,14 +163,14 @@ pub struct Function<'a> {
 }
 
 impl Function<'_> {
-    /// The first so many numbers of its value at state k.
+    /// Returns the first `length` numbers of its value at state k.
     pub fn value(&self, k: usize, length: usize) -> Vec<f64> {
         assert!(k < INPUTS, "{k}: no such state");
-        // SAFETY: the robot is open and has that state; its value has so many numbers.
+        // SAFETY: the robot is open and has that state; its value has at least `length` numbers.
         unsafe { std::slice::from_raw_parts((self.call)(self.robot, k), length) }.to_vec()
     }
 
-    /// Runs over all states so many times.
+    /// Evaluates all states `count` times.
     pub fn run(&self, count: u32) {
         let call = black_box(*self.call);
         for _ in 0..count {

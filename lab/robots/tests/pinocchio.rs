@@ -1,7 +1,9 @@
-//! The semi-implicit step of real robots and its slopes [A_d B_d] against those of Pinocchio (`tests/reference/control`).
+//! Compares the semi-implicit step of real robots and its slopes [A_d B_d] with Pinocchio's
+//! (`tests/reference/control`).
 //!
-//! A floating base is moved there by the exponential of SE(3), x⁺ = (R, p) exp(u) with u = h ξ⁺, and here by those of its
-//! parts, R⁺ = R exp(û_a) and p⁺ = p + R u_l. All but its place agree as they are; of the place what the other map gives.
+//! Pinocchio moves a floating base by the exponential of SE(3), x⁺ = (R, p) exp(u) with u = h ξ⁺; hamel by the
+//! exponentials of its parts, R⁺ = R exp(û_a) and p⁺ = p + R u_l. Everything except the position agrees directly; the
+//! reference position and its slopes are converted to the other map.
 
 use hamel::methods::SemiImplicitEuler;
 use hamel::{State, Table, Tangent, so3, step_slopes};
@@ -18,7 +20,7 @@ struct Sample {
     b: &'static [f64],
 }
 
-/// Of the largest number compared.
+/// Relative to the largest number compared.
 const TOLERANCE: f64 = 1e-10;
 
 fn agree(what: &str, found: &[f64], wanted: &[f64]) {
@@ -33,7 +35,7 @@ fn agree(what: &str, found: &[f64], wanted: &[f64]) {
     }
 }
 
-/// The columns of a step's slopes by rows (h, δξ), each of which is (h, δξ, δu).
+/// Returns the rows (h, δξ) of a step's slopes, each with the columns (h, δξ, δu).
 fn rows(sample: &Sample, n: usize) -> Vec<Vec<f64>> {
     let (a, b) = (sample.a.chunks(2 * n), sample.b.chunks(n));
     a.zip(b).map(|(a, b)| [a, b].concat()).collect()
@@ -55,13 +57,13 @@ fn check<S: Tangent<Scalar = f64> + Default>(floating: bool, samples: &[Sample])
         let mut end_x = sample.end_x.to_vec();
         let mut wanted = rows(sample, n);
         if floating {
-            // The place is the first block of x, the twist the first of ξ.
+            // The position is the first block of x, the twist the first of ξ.
             let moved: [f64; 6] = std::array::from_fn(|k| sample.h * sample.end_xi[k]);
             let [linear, angular] = [0, 3].map(|k| [moved[k], moved[k + 1], moved[k + 2]]);
             let rotation: [f64; 9] = std::array::from_fn(|k| sample.x[3 + k]);
             let way = so3::apply(rotation, linear);
             (0..3).for_each(|k| end_x[k] = sample.x[k] + way[k]);
-            // δp⁺ = R (h_l + h_a × u_l + h δv⁺), read in the axes of R⁺ = R exp(û_a).
+            // δp⁺ = R (h_l + h_a × u_l + h δv⁺), expressed in the axes of R⁺ = R exp(û_a).
             let turn = so3::exp(angular);
             for column in 0..3 * n {
                 let unit = |k: usize| if column == k { 1.0 } else { 0.0 };

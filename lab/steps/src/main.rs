@@ -1,5 +1,5 @@
-//! Steps with slopes [A_d B_d]: their operations, and their time beside that of the emitted linearisation [A B], by turns
-//! in one process.
+//! Compares steps with slopes [A_d B_d] with the emitted linearisation [A B]: operations, and times measured
+//! alternately in one process.
 //!
 //! Started by `lab/steps/run.sh`; inputs, rounds and medians are those of `lab/casadi`.
 
@@ -20,16 +20,16 @@ mod solo12 {
     include!(concat!(env!("OUT_DIR"), "/solo12.rs"));
 }
 
-/// s
+/// Length of a step, in s.
 const STEP: f64 = 1e-3;
 
-/// A state of a system, and inputs.
+/// A state of a system, with inputs.
 fn at<S: System>(system: &S, k: usize) -> (State<S>, S::Inputs) {
     let Input { x, xi, u } = input(system, k);
     (State { t: 0.0, x, xi }, u)
 }
 
-/// Operations of [A B] and of a step with [A_d B_d].
+/// Counts the operations of [A B] and of a step with [A_d B_d].
 fn operations<S, M>(system: &S, method: &M) -> [u64; 2]
 where
     S: Tangent<Scalar = Counted>,
@@ -50,7 +50,7 @@ where
     ]
 }
 
-/// ns of [A B] and of a step with [A_d B_d].
+/// Times [A B] and a step with [A_d B_d], in ns.
 fn times<S, M>(system: &S, method: &M) -> (f64, f64)
 where
     S: Tangent<Scalar = f64>,
@@ -80,7 +80,7 @@ where
     measure::by_turns(&linear, &stepped)
 }
 
-/// A row of the table.
+/// Prints a row of the table.
 macro_rules! row {
     ($name:literal, $system:ty, $counted:ty, $method:expr) => {
         let [linear, step] = operations(&<$counted>::default(), &$method);

@@ -1,4 +1,4 @@
-//! Numbers that count what is done with them.
+//! Numbers that count the operations performed on them.
 
 use hamel::Scalar;
 use std::cell::Cell;
@@ -8,15 +8,15 @@ thread_local! {
     static OPERATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Operations of a run: additions, subtractions, products, quotients, roots and other functions one each, a fused product
-/// two. Signs, comparisons and choices are free.
+/// Counts the operations of a run. Additions, subtractions, products, quotients, roots and other functions count one
+/// each, a fused product two. Signs, comparisons and choices are free.
 pub fn counted(run: impl FnOnce()) -> u64 {
     OPERATIONS.set(0);
     run();
     OPERATIONS.get()
 }
 
-/// An `f64` that counts.
+/// An `f64` that counts its operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counted(f64);
 

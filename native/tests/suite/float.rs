@@ -1,12 +1,12 @@
-//! Mechanisms with a row of constraints more than they need, in `f32` beside `f64`: their systems are singular but for rounding,
-//! and what is added so that they can be solved has to be seen by numbers of either length.
+//! Mechanisms with a redundant row of constraints, in `f32` and `f64`: their systems are singular up to rounding, and
+//! the regularisation that makes them solvable has to suit both precisions.
 
 use hamel::Scalar;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::FunctionId;
 use hamel_native::{Compiled, Tapes, evaluate_in};
 
-/// A platform on three cranks of one length, which stay parallel.
+/// A platform on three parallel cranks of the same length.
 const PLATFORM: &str = "
     pub system Platform {
         gravity [0, -9.81, 0];
@@ -25,20 +25,21 @@ const PLATFORM: &str = "
         generate all, linearize;
     }";
 
-/// Lengths of the cranks and their inertia about the axes with that of the platform, which does not turn.
+/// Lengths of the cranks, and their inertia about the axes together with that of the platform, which does not rotate.
 const LENGTH: f64 = 0.5;
 const INERTIA: f64 = (0.3 + 1.2 * (0.2 * 0.2 + 0.1 * 0.1))
     + (0.1 + 0.7 * 0.3 * 0.3)
     + (0.2 + 0.4 * (0.1 * 0.1 + 0.2 * 0.2) + 0.2)
     + 2.0 * LENGTH * LENGTH;
-/// Moments of mass along the cranks, and across.
+/// First moments of mass along the cranks and across them.
 const MOMENTS: [f64; 2] = [
     1.2 * 0.2 + 0.7 * 0.3 + 0.4 * 0.1 + 2.0 * LENGTH,
     1.2 * 0.1 + 0.4 * 0.2,
 ];
 const STATES: usize = 300;
 
-/// The angular acceleration of the cranks, with one freedom left, and its slopes by the angle and by the rate.
+/// The angular acceleration of the cranks, which have one degree of freedom, and its slopes by the angle and by the
+/// rate.
 fn reference(angle: f64, rate: f64) -> [f64; 3] {
     let ([along, across], (sin, cos)) = (MOMENTS, angle.sin_cos());
     [
@@ -48,7 +49,7 @@ fn reference(angle: f64, rate: f64) -> [f64; 3] {
     ]
 }
 
-/// The largest errors of ξ̇ and of its slopes along the motion, as parts of the largest that there are without damping.
+/// The largest errors of ξ̇ and of its slopes along the motion, relative to the largest undamped acceleration.
 fn errors<S: Scalar>(found: &Generated) -> Result<[f64; 2], String> {
     let program = &found.program;
     let named = |id: FunctionId| program.function(id.name()).ok_or("no such function");
@@ -87,9 +88,10 @@ fn errors<S: Scalar>(found: &Generated) -> Result<[f64; 2], String> {
     Ok(worst.map(|error| error * INERTIA / (9.81 * along.hypot(across))))
 }
 
-/// Beside the loops their rows contradict one another. That is left out before anything is divided by what the diagonal is raised
-/// by, in numbers of either length, so that neither accelerations nor slopes lose digits to it. Slopes lose some where the first
-/// rows nearly depend on one another without the last, as where the cranks are level: elimination begins with these.
+/// For states that violate the loops, their rows contradict one another. The contradiction is removed before the
+/// division by the term that is added to the diagonal, in either precision, so that neither accelerations nor slopes
+/// lose digits to it. Slopes lose some where the first rows are nearly dependent without the last one, as for level
+/// cranks: elimination begins with these.
 #[test]
 fn what_the_diagonal_is_raised_by_costs_no_digits() -> Result<(), String> {
     fn holds<S: Scalar>(found: &Generated) -> Result<(), String> {

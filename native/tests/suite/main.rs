@@ -1,4 +1,5 @@
-//! Machine code against tapes and graphs; a module alone: `cargo test -p hamel-native --test suite random::`.
+//! Machine code compared with tapes and graphs. To run a single module:
+//! `cargo test -p hamel-native --test suite random::`.
 
 mod float;
 mod models;

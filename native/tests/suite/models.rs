@@ -1,5 +1,5 @@
-//! All functions of the models of the tests: by machine code as step by step to the bit, and as the graph itself gives
-//! them, within 10⁻¹³ of scale and what rounding makes of arguments and of statements.
+//! Compares all functions of the test models: machine code with interpreted tapes bit by bit, and with the graph up to
+//! 10⁻¹³ of the scale and the rounding of arguments and statements.
 
 use crate::some::some;
 use hamel_codegen::algebra::rounding::rounded;
@@ -13,15 +13,16 @@ use hamel_native::Compiled;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Of the largest entry of a result.
+/// Largest accepted error, relative to the largest entry of a result.
 const CLOSE: f64 = 1e-13;
-/// A change of the arguments, and the part of what it changes that rounding of them does.
+/// A change of the arguments, and the ratio of their rounding to it.
 const CHANGE: f64 = 1e-8;
 const ROUNDED: f64 = 1e-7;
-/// Of the errors of the interpreter's results, by those in twice the length: products are added in another order.
+/// Accepted error in multiples of the interpreter's error, which is measured in doubled precision: products are added
+/// in another order.
 const ERRORS: f64 = 8.0;
 
-/// π, the parameters and a state, as a graph has them, and the arguments x, ξ with z, u, ξ̇ and p.
+/// π, the parameters and a state as symbols of the graph, and the arguments x, ξ with z, u, ξ̇ and p.
 struct State {
     symbols: Vec<f64>,
     arguments: [Vec<f64>; 5],
@@ -46,7 +47,7 @@ impl State {
     }
 }
 
-/// States on X; of systems with states of first order the start, with what is 0 there.
+/// States on X, and the start, in which everything without an initial value is 0.
 fn known(of: &Generated) -> Vec<State> {
     let program = &of.program;
     let [_, x, xi, u, z, _, _, end] = program.symbols();
@@ -63,14 +64,14 @@ fn known(of: &Generated) -> Vec<State> {
     all
 }
 
-/// The result step by step in the graph.
+/// Evaluates a function step by step in the graph.
 fn interpreted(program: &Program, function: &Function, state: &State) -> Result<Vec<f64>, Cause> {
     let interpreter = Interpreter::new(program, function, &program.defaults);
     let value = interpreter.call_with(state.arguments.each_ref().map(Vec::as_slice));
     value.map_err(|guard| program.cause(function.guards[guard]))
 }
 
-/// What a change of the arguments changes, at most.
+/// The largest change of the result under a change of the arguments.
 fn doubt(program: &Program, function: &Function, state: &State, value: &[f64]) -> f64 {
     let mut most = 0.0_f64;
     for turn in 0..3 {
@@ -150,7 +151,7 @@ fn code_of_models_gives_what_their_graphs_give() {
         let functions: Vec<&Function> = program.functions.iter().collect();
         let code = match Tapes::new(program, &functions) {
             Ok(tapes) => Compiled::verified(tapes),
-            // It has a function in Rust.
+            // The model has a function in Rust.
             Err(foreign) => {
                 assert!(!foreign.name.is_empty(), "{path:?}");
                 return (0, 0);

@@ -1,4 +1,4 @@
-//! Random tapes by machine code, alone and in two lanes, and step by step: the same bits, the same pivots.
+//! Compares machine code of random tapes, alone and in two lanes, with interpretation: the same bits, the same pivots.
 
 use crate::size::size;
 use hamel_codegen::algebra::graph::Function;
@@ -9,7 +9,7 @@ use hamel_native::{Compiled, Constants, Paired, evaluate};
 const PARAMETERS: usize = 3;
 const LENGTHS: [usize; 5] = [7, 5, 2, 5, 4];
 
-/// Numbers by the generator of Knuth's MMIX, of which the upper bits are taken.
+/// The upper bits of the linear congruential generator of Knuth's MMIX.
 struct Random(u64);
 
 impl Random {
@@ -60,7 +60,7 @@ fn operand(random: &mut Random, values: usize, kept: usize) -> Operand {
             let place = random.below(5);
             Source::Argument(ARGUMENTS[place], random.below(LENGTHS[place]))
         }
-        // What was computed lately, or anything.
+        // A recent value, or any one.
         4..8 if values > 0 => Source::Value(values - 1 - random.below(values.min(6))),
         _ if values > 0 => Source::Value(random.below(values)),
         _ => Source::Number(random.number()),
@@ -106,7 +106,7 @@ fn tape(random: &mut Random, name: &str, kept: usize, outputs: usize, checked: b
     }
 }
 
-/// Bits, but those of what is no number: its sign and load are nobody's.
+/// Returns bits, with a canonical NaN: its sign and payload are unspecified.
 fn bits(numbers: &[f64]) -> Vec<u64> {
     let bits = |number: &f64| match number.is_nan() {
         true => f64::NAN.to_bits(),
@@ -115,7 +115,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(bits).collect()
 }
 
-/// Whether all is looked at: code for sines and cosines takes the longest to make.
+/// Whether to test everything: code for sines and cosines takes the longest to compile.
 fn everything() -> bool {
     std::env::var_os("HAMEL_ATTACK").is_some()
 }
@@ -127,7 +127,7 @@ fn code_gives_the_bits_of_tapes() {
         let halves = [42, 43].map(|seed| scope.spawn(move || Met::by(seed, tapes as u64 / 2)));
         halves.map(|half| half.join().expect("every tape gives its bits"))
     });
-    // Each of them was met often enough to say something.
+    // Each case occurred often enough to be meaningful.
     for Met {
         well,
         ended,
@@ -142,9 +142,9 @@ fn code_gives_the_bits_of_tapes() {
     }
 }
 
-/// What random tapes met.
+/// Counts of the cases that random tapes covered.
 struct Met {
-    /// Calls with results, and those of them with a number that is none.
+    /// Calls with results, and how many of them contain NaN.
     well: usize,
     far: usize,
     /// Calls that ended in an error.
@@ -154,7 +154,7 @@ struct Met {
 }
 
 impl Met {
-    /// The code of random tapes beside their steps.
+    /// Compares the code of random tapes with interpretation.
     fn by(seed: u64, count: u64) -> Self {
         let mut random = Random(seed);
         let (mut well, mut ended, mut far, mut pairs) = (0, 0, 0, 0);
@@ -228,10 +228,10 @@ impl Met {
     }
 }
 
-/// Constants, arguments, and the results of all functions, where they have one.
+/// Constants, arguments, and the results of all functions that succeed.
 type Lane = (Constants, [Vec<f64>; 5], Vec<Option<Vec<f64>>>);
 
-/// Calls functions for two lanes; how many had results, each of which is that of its lane alone.
+/// Calls functions for two lanes, and compares each result with that of its lane alone; returns the number of results.
 fn together(paired: &Paired, first: &Lane, second: &Lane) -> usize {
     let pairs = |first: &[f64], second: &[f64]| -> Vec<f64> {
         let both = first.iter().zip(second);
@@ -249,7 +249,7 @@ fn together(paired: &Paired, first: &Lane, second: &Lane) -> usize {
             continue;
         };
         let mut out = vec![1.0; 2 * a.len()];
-        // Where an angle is too large for the code, both lanes are evaluated step by step.
+        // If an angle is too large for the code, both lanes are evaluated step by step.
         if paired.call(place, &constants, arguments, &mut out) {
             assert_eq!(bits(&out), bits(&pairs(a, b)));
             well += 1;
@@ -258,7 +258,7 @@ fn together(paired: &Paired, first: &Lane, second: &Lane) -> usize {
     well
 }
 
-/// By the runtime's own numbers, which know nothing of tapes.
+/// The reference is the runtime's number type, which is independent of tapes.
 #[test]
 fn sine_and_cosine_are_those_of_the_runtime() {
     let tape = Tape {
@@ -290,7 +290,7 @@ fn sine_and_cosine_are_those_of_the_runtime() {
                 "{angle}"
             );
             for (out, exact) in of(true).into_iter().flatten().zip([sine, cosine]) {
-                // Near its zeros a value is as exact as the angle is.
+                // Near its zeros, a value is as accurate as the angle.
                 let close = (out - exact).abs() <= 2.3e-16 * exact.abs() + 1e-26;
                 assert!(
                     close || out.is_nan() && exact.is_nan(),
@@ -301,7 +301,7 @@ fn sine_and_cosine_are_those_of_the_runtime() {
     }
 }
 
-/// A tape that is too long for one function; its numbers stay near 1. It ends well where the first input is positive.
+/// A tape that is too long for one function; its numbers stay near 1. It succeeds if the first input is positive.
 fn long_tape(random: &mut Random, steps: usize) -> Tape {
     let positive = |source| Operand {
         source,
@@ -318,7 +318,7 @@ fn long_tape(random: &mut Random, steps: usize) -> Tape {
         known.extend((0..length).map(|place| Source::Argument(argument, place)));
     }
     while tape.steps.len() < steps {
-        // Something of the last part, or of any before it.
+        // A value of the last part, or of any part before it.
         let mut of = || Operand {
             source: match random.below(3) {
                 0 => known[known.len() - 1 - random.below(20)],
@@ -359,7 +359,7 @@ fn long_tape(random: &mut Random, steps: usize) -> Tape {
 #[test]
 fn long_tapes_are_several_functions_with_the_same_bits() {
     let mut random = Random(5);
-    // Two parts, and three with `HAMEL_ATTACK`.
+    // Two parts, or three with `HAMEL_ATTACK`.
     let steps = if everything() { 20_001 } else { 11_000 };
     let tapes = Tapes {
         parameters: PARAMETERS,
@@ -383,7 +383,7 @@ fn long_tapes_are_several_functions_with_the_same_bits() {
         assert_eq!(steps.call(0, &others, arguments, &mut expected), Ok(()));
         assert!(expected.iter().all(|value| value.abs() < 10.0));
         assert_eq!(bits(&out), bits(&expected));
-        // What fails is in the last part.
+        // The failure is in the last part.
         let failing = [
             arguments[0],
             arguments[1],

@@ -1,9 +1,15 @@
-//! The time of one step of every method for bodies: on the generated top of the benchmark of 150 rad/s, in
-//! steps of 0.075 rad, and on tops written by hand, whose moments may all differ.
+//! Times one step of every method for bodies: on the generated benchmark top at 150 rad/s, with steps of 0.075 rad, and
+//! on hand-written tops, whose moments may all differ.
 //!
+<<<<<<< HEAD:tests/cases/benches/steps.rs
 //! Ratios between rows are what counts; the step of `Rkmk4` stands beside the four accelerations and four
 //! exponentials that no method of its kind can do without. Run with
 //! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-cases --bench steps`.
+=======
+//! Compare the rows by their ratios; a step of `Rkmk4` is listed with the four accelerations and four exponentials that
+//! every method of its kind needs. Run with
+//! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-tests-long --bench steps`.
+>>>>>>> w-textB:tests/long/benches/steps.rs
 
 use divan::{Bencher, black_box};
 use hamel::flows::Flow;
@@ -13,7 +19,7 @@ use hamel_cases::bodies::benchmark_top;
 use hamel_cases::by_hand::{Body, QuaternionTop, Reference, Spin, Top};
 use hamel_report::baselines::{Buss, Slide};
 
-/// Steps of one measurement: the state moves on, so that nothing is computed once for all.
+/// Steps of one measurement: the state advances, so that nothing is hoisted out of the loop.
 const STEPS: usize = 64;
 const SAMPLES: u32 = 500;
 
@@ -21,7 +27,7 @@ fn main() {
     divan::main();
 }
 
-/// A top without symmetry, spinning at 1 rad/s about each axis.
+/// A top without symmetry that spins at 1 rad/s about each axis.
 fn body(moments: [f64; 3]) -> Body<f64> {
     let [a, b, c] = moments;
     Body {
@@ -41,7 +47,7 @@ fn top(moments: [f64; 3]) -> Top<f64> {
     Top(body(moments))
 }
 
-/// Length of steps of the tops written by hand, and of the benchmark.
+/// Step length of the hand-written tops, and of the benchmark.
 const STEP: f64 = 5e-3;
 const BENCHMARK_STEP: f64 = 5e-4;
 
@@ -49,7 +55,7 @@ fn none<X, V>(_: f64, _: &X, _: &V) -> [f64; 0] {
     []
 }
 
-/// Steps of a run.
+/// Times the steps of a run.
 fn steps<Sys: System<Inputs = [f64; 0]>>(
     bencher: Bencher,
     system: &Sys,
@@ -69,7 +75,7 @@ fn steps<Sys: System<Inputs = [f64; 0]>>(
         });
 }
 
-/// What a step of a method of order 4 in the chart cannot do without, four times a step.
+/// Times the work that every method of order 4 in the chart does four times a step.
 fn least<Sys>(bencher: Bencher, system: &Sys, start: &State<Sys>, step: f64)
 where
     Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
@@ -156,7 +162,7 @@ benches! {
     free_one_step: Spin(top(ASYMMETRIC)), |top| Free;
 }
 
-/// The closed form over 100 s.
+/// Evaluates the closed form over 100 s.
 #[divan::bench(sample_count = SAMPLES)]
 fn free_at_100(bencher: Bencher) {
     let spin = Spin(top(ASYMMETRIC));
@@ -164,7 +170,7 @@ fn free_at_100(bencher: Bencher) {
     bencher.bench_local(|| hamel::methods::free::at(&spin, black_box(&start), 100.0).is_ok());
 }
 
-/// Whole runs that end with an error of R below 1e-9; the runtime's tests of bodies assert the errors.
+/// Times whole runs with a final error of R below 1e-9; the runtime's tests of bodies assert the errors.
 fn to_nine_digits(bencher: Bencher, case: &str, until: f64, n: u32) {
     let top = Top(Reference::read(case).body());
     let method = Splitting::new(&top, Scheme::Nystrom6);
@@ -178,19 +184,19 @@ fn to_nine_digits(bencher: Bencher, case: &str, until: f64, n: u32) {
     });
 }
 
-/// 199 evaluations of the torque.
+/// Takes 199 evaluations of the torque.
 #[divan::bench(sample_count = SAMPLES)]
 fn heavy_top_benchmark_to_1e_9(bencher: Bencher) {
     to_nine_digits(bencher, "heavy-top-benchmark-150", 1.0, 18);
 }
 
-/// 1541 evaluations.
+/// Takes 1541 evaluations.
 #[divan::bench(sample_count = SAMPLES)]
 fn fast_top_to_1e_9(bencher: Bencher) {
     to_nine_digits(bencher, "lagrange-fast-top", 5.0, 140);
 }
 
-/// 1321 evaluations.
+/// Takes 1321 evaluations.
 #[divan::bench(sample_count = SAMPLES)]
 fn kovalevskaya_top_to_1e_9(bencher: Bencher) {
     to_nine_digits(bencher, "kovalevskaya-top", 20.0, 120);

@@ -1,4 +1,4 @@
-//! Cases of one rigid body: free, on a fixed point, in flight.
+//! Cases of one rigid body: free, with a fixed point, in flight.
 
 use crate::case::{Case, Field, Measure};
 use crate::models::benchmark_top::{BenchmarkTop, BenchmarkTopParameters};
@@ -43,7 +43,7 @@ where
     }
 }
 
-/// The moments of a diagonal inertia.
+/// Returns the moments of a diagonal inertia.
 fn moments(reference: &Reference) -> [f64; 3] {
     let j = reference.matrix("J");
     [j[0][0], j[1][1], j[2][2]]
@@ -57,12 +57,12 @@ fn free(name: &'static str, until: f64) -> Case<PrincipalAxes<f64>> {
     rotation(name, until, system, Box::new(|_, _, _| []))
 }
 
-/// A flat plate that flips, started 10⁻³ off its middle axis.
+/// A flat plate that flips, started 10⁻³ from rotation about its middle axis.
 pub fn dzhanibekov() -> Case<PrincipalAxes<f64>> {
     free("free-dzhanibekov-1e-3", 100.0)
 }
 
-/// The same, started 10⁻⁸ off: three flips in 300.
+/// The plate started 10⁻⁸ off: three flips in 300.
 pub fn dzhanibekov_near() -> Case<PrincipalAxes<f64>> {
     free("free-dzhanibekov-1e-8", 300.0)
 }
@@ -77,7 +77,7 @@ pub fn elongated() -> Case<PrincipalAxes<f64>> {
     free("free-elongated-1000", 5.0)
 }
 
-/// A body that spins with 1000 rad/s.
+/// A body that spins at 1000 rad/s.
 pub fn fast_spin() -> Case<PrincipalAxes<f64>> {
     free("free-fast-spin-1000", 0.5)
 }
@@ -154,7 +154,7 @@ pub fn vertical_top() -> Case<LagrangeTop<f64>> {
     lagrange("lagrange-top-through-vertical", 10.0)
 }
 
-/// A satellite under gravity gradient; the direction from the planet is an input.
+/// A satellite with gravity gradient; the direction from the planet is an input.
 pub fn gravity_gradient() -> Case<Satellite<f64>> {
     const NAME: &str = "satellite-gravity-gradient";
     let rate = |reference: &Reference| {
@@ -218,18 +218,18 @@ fn flight(name: &'static str) -> Case<FreeBody<f64>> {
     }
 }
 
-/// A thrown body, its frame off the centre of mass.
+/// A thrown body whose frame is not at the centre of mass.
 pub fn offset_body() -> Case<FreeBody<f64>> {
     flight("free-body-offset-gravity")
 }
 
-/// A drone under a constant wrench in its own axes.
+/// A drone under a constant wrench in body axes.
 pub fn constant_wrench() -> Case<FreeBody<f64>> {
     flight("quadrotor-constant-wrench")
 }
 
-/// A spherical pendulum that passes both poles: a bob on a rod that turns with the inertia of a sphere,
-/// ω̇ = n × g / l, ṅ = ω × n (all in world axes).
+/// A spherical pendulum that passes both poles: a bob on a rod with the rotational inertia of a sphere, ω̇ = n × g / l,
+/// ṅ = ω × n (all in world axes).
 pub fn spherical_pendulum() -> Case<SphericalBob<f64>> {
     let reference = Reference::read("spherical-pendulum-through-poles");
     let ([m], [l]) = (reference.parameter("m"), reference.parameter("l"));
@@ -264,7 +264,7 @@ pub fn spherical_pendulum() -> Case<SphericalBob<f64>> {
     }
 }
 
-/// Two lists in a row.
+/// Concatenates two lists.
 pub(crate) fn join<const A: usize, const B: usize, const C: usize>(
     a: [f64; A],
     b: [f64; B],

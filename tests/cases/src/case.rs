@@ -1,4 +1,4 @@
-//! One case: a system that can be run, and how far a state is from the truth.
+//! A case: a system that can be run, and the error of a state.
 
 use crate::reference::{Reference, distance, relative};
 use hamel::methods::{Scheme, Splitting};
@@ -8,15 +8,15 @@ use std::cell::Cell;
 /// A part of the state that the reference lists.
 #[derive(Clone, Debug)]
 pub enum Field {
-    /// Numbers under a name.
+    /// Named numbers.
     Numbers(&'static str, Vec<f64>),
-    /// An angle of which whole turns are not counted (rad).
+    /// A named angle modulo whole turns (rad).
     Angle(&'static str, f64),
-    /// A rotation matrix, nine entries row by row.
+    /// A named rotation matrix, nine entries row by row.
     Rotation(&'static str, [f64; 9]),
 }
 
-/// What one number says of an error.
+/// The measure of an error as one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// The Frobenius norm of R − R_ref, of the first field.
@@ -44,18 +44,18 @@ pub struct Case<Sys: System<Scalar = f64>> {
     pub start: State<Sys>,
     /// The end of the run at which errors are compared.
     pub until: f64,
-    /// u(t, x, ξ).
+    /// u(t, x, ξ)
     pub inputs: Inputs<Sys>,
     /// The parts of a state, named as in the reference.
     pub fields: fn(&Sys, &State<Sys>) -> Vec<Field>,
-    /// How the error is told as one number.
+    /// The measure of the error.
     pub measure: Measure,
     /// States at listed times.
     pub reference: Reference,
 }
 
 impl<Sys: System<Scalar = f64>> Case<Sys> {
-    /// The state at time `until` after `n` equal steps.
+    /// Returns the state at time `until` after `n` equal steps.
     ///
     /// # Errors
     /// Those of [`integrate()`].
@@ -68,7 +68,7 @@ impl<Sys: System<Scalar = f64>> Case<Sys> {
         self.counted(method, until, n).map(|(state, _)| state)
     }
 
-    /// The same, with the number of evaluations: u is asked for once in each.
+    /// Like [`run`](Self::run), with the number of evaluations: each of them evaluates u once.
     ///
     /// # Errors
     /// Those of [`integrate()`].
@@ -97,7 +97,7 @@ impl<Sys: System<Scalar = f64>> Case<Sys> {
         Ok((state, count.get()))
     }
 
-    /// The same by splitting.
+    /// Like [`counted`](Self::counted), by a splitting method.
     ///
     /// # Errors
     /// Those of [`integrate()`].
@@ -108,12 +108,12 @@ impl<Sys: System<Scalar = f64>> Case<Sys> {
         self.counted(Splitting::new(&self.system, scheme), until, n)
     }
 
-    /// The error at the end of the case, [`error_at`](Self::error_at).
+    /// Returns the error at the end of the case; see [`error_at`](Self::error_at).
     pub fn error(&self, state: &State<Sys>) -> f64 {
         self.error_at(self.until, state)
     }
 
-    /// How far `state` is from the reference at a listed time, by the [`measure`](Self::measure).
+    /// Returns the error of `state` at a listed time, by the [`measure`](Self::measure).
     pub fn error_at(&self, t: f64, state: &State<Sys>) -> f64 {
         if self.measure == Measure::Attitude
             && let [Field::Rotation(name, r), ..] = (self.fields)(&self.system, state).as_slice()
@@ -124,7 +124,7 @@ impl<Sys: System<Scalar = f64>> Case<Sys> {
         deviations.map(|(_, error)| error).fold(0.0, f64::max)
     }
 
-    /// The largest difference of every field, over max(1, the largest entry of the field).
+    /// Returns the largest difference of every field over max(1, the largest entry of the field).
     pub fn deviations(&self, t: f64, state: &State<Sys>) -> Vec<(&'static str, f64)> {
         let fields = (self.fields)(&self.system, state).into_iter();
         fields

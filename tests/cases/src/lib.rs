@@ -1,8 +1,7 @@
-//! The hard cases of rigid body motion, ready to run: a generated system, its start, its loads, and
-//! the states at listed times, computed in 240-bit arithmetic by two unrelated methods.
+//! The hard cases of rigid body motion: a generated system, its start, its loads, and reference states at listed times,
+//! computed in 240-bit arithmetic by two independent methods.
 //!
-//! Each function of [`bodies`] and [`mechanisms`] is one case. Tests and the report of speed against
-//! error run the same ones.
+//! Each function of [`bodies`] and [`mechanisms`] is one case, used by tests and by the report of speed against error.
 
 pub mod bodies;
 /// Systems written by hand, which the tests of the runtime share.
@@ -15,7 +14,7 @@ pub mod reference;
 
 pub use case::{Case, Field, Measure};
 
-/// Generated systems, and what the generator says of them.
+/// Generated systems, and the generator's choices for them.
 pub mod models {
     include!(concat!(env!("OUT_DIR"), "/models.rs"));
 }

@@ -1,4 +1,4 @@
-//! Cases of several bodies, and of constraints on velocities.
+//! Cases of several bodies, and of velocity constraints.
 
 use crate::bodies::join;
 use crate::case::{Case, Field, Measure};
@@ -9,7 +9,7 @@ use crate::models::two_bodies::{TwoBodies, TwoBodiesParameters};
 use crate::reference::Reference;
 use hamel::State;
 
-/// A planar double pendulum in its chaotic regime, absolute angles.
+/// A planar double pendulum in its chaotic regime, with absolute angles.
 pub fn double_pendulum() -> Case<DoublePendulum<f64>> {
     let reference = Reference::read("double-pendulum-planar-chaotic");
     let ([m1, m2], [l1, l2]) = (reference.parameter("m"), reference.parameter("l"));
@@ -36,7 +36,7 @@ pub fn double_pendulum() -> Case<DoublePendulum<f64>> {
     }
 }
 
-/// Two bodies in a chain on ball joints.
+/// A chain of two bodies with ball joints.
 pub fn two_bodies() -> Case<TwoBodies<f64>> {
     let reference = Reference::read("two-bodies-ball-joints");
     let [m1, m2] = reference.parameter("m");
@@ -80,7 +80,7 @@ pub fn two_bodies() -> Case<TwoBodies<f64>> {
     }
 }
 
-/// Chaplygin's sleigh; ξ are the speed along the blade and the turning rate.
+/// Chaplygin's sleigh; ξ are the speed along the blade and the rate of turn.
 pub fn sleigh() -> Case<Sleigh<f64>> {
     let reference = Reference::read("chaplygin-sleigh");
     let [[m], [inertia], [a]] = ["m", "I", "a"].map(|name| reference.parameter(name));

@@ -1,4 +1,4 @@
-//! The baselines have the orders and the faults that they are kept to show, and none besides.
+//! The baselines have their documented orders and defects, and no others.
 
 use hamel::methods::Rkmk4;
 use hamel::{Method, State, StepError, System, so3};
@@ -63,7 +63,7 @@ fn quaternions_and_matrices_agree() {
     let reference = Reference::read("kovalevskaya-top");
     for &method in Baseline::ALL {
         if method == Baseline::Rk4Projected {
-            continue; // on the entries: other errors
+            continue; // it integrates the entries: other errors
         }
         let unit = run(&QuaternionTop(reference.body()), method, 2.0, 200).expect("a run");
         let matrix = run(&Top(reference.body()), method, 2.0, 200).expect("a run");
@@ -72,7 +72,7 @@ fn quaternions_and_matrices_agree() {
     }
 }
 
-/// There in `n` steps and back; how far x and ξ end from the start.
+/// Integrates `n` steps forwards and back; returns the distance of x and ξ from the start.
 fn there_and_back(top: &Top<f64>, method: impl Method<Top<f64>>, h: f64, n: u32) -> f64 {
     let start = State::start(top);
     let mut state = start.clone();
@@ -110,14 +110,14 @@ fn a_step_back_undoes_a_step_to_one_order_more_than_the_step() {
     }
 }
 
-/// Steps that are far too long, or none at all: how many are refused.
+/// Takes extremely long, infinite and NaN steps; returns the number of refusals.
 fn overstep(top: &Top<f64>, method: impl Method<Top<f64>>) -> u32 {
     let mut refused = 0;
     for h in [1.0, 1e3, 1e80, 1e160, 1e300, f64::INFINITY, f64::NAN] {
         let mut state = State::start(top);
         for _ in 0..20 {
             let outcome = hamel::step(top, &method, &mut state, h, &|_, _, _| []);
-            // A step is taken whole or not at all.
+            // A failed step leaves the state unchanged.
             assert!(state.is_finite(), "h = {h}");
             match outcome {
                 Ok(()) => assert!(top.constraint_norm(&state.x).is_finite(), "h = {h}"),
@@ -139,7 +139,7 @@ fn steps_far_too_long_end_in_a_state_or_a_typed_error() {
         for stretch in [1.0, 1.3] {
             body.inertia[0] *= stretch;
             let top = Top(body.clone());
-            // Infinite steps and steps of NaN are refused by all of them.
+            // All methods refuse infinite and NaN steps.
             for &method in Baseline::ALL {
                 assert!(overstep(&top, method) >= 2, "{method:?}");
             }
@@ -166,7 +166,7 @@ fn rotations_stay_orthonormal_at_six_radians_a_step() {
         }
     }
     for &method in Baseline::ALL {
-        // That on the entries is not on the manifold within a step: useless at such steps.
+        // Within a step, this method leaves the manifold: it is useless for such steps.
         if method != Baseline::Rk4Projected {
             stays(&top, &format!("{method:?}"), method);
         }
@@ -177,7 +177,7 @@ fn rotations_stay_orthonormal_at_six_radians_a_step() {
     }
 }
 
-/// At rest and without torque nothing moves, for any symmetry.
+/// At rest without torque, a body of any symmetry stays at rest.
 #[test]
 fn bodies_at_rest_or_hardly_moving_stay() {
     let double = Reference::read("free-dzhanibekov-1e-3").body();
@@ -224,7 +224,7 @@ fn a_state_of_nan_is_an_error() {
     );
 }
 
-/// Runs of 50 steps: the force at the end of a step is that at the start of the next, to the bit.
+/// In runs of 50 steps, the force at the end of a step is reused at the start of the next, bit by bit.
 #[test]
 fn a_run_by_buss_evaluates_the_force_between_two_steps_once() -> Result<(), StepError> {
     const STEPS: u32 = 50;

@@ -1,6 +1,6 @@
-//! A quarter of a million steps, and a million with `HAMEL_ATTACK`: no drift of energy, momentum or orthonormality.
+//! A quarter of a million steps, or a million with `HAMEL_ATTACK`: energy, momentum and orthonormality do not drift.
 //!
-//! Bars are those of measurements of independent prototypes, with some room.
+//! The bounds come from measurements of independent prototypes, with some margin.
 
 #[path = "../../../codegen/tests/suite/common/size.rs"]
 mod size;
@@ -11,35 +11,34 @@ use hamel::{Method, State, System, so3};
 use hamel_cases::by_hand::{Body, QuaternionTop, Reference, Spin, Top};
 use size::size;
 
-/// The steps of a run.
+/// Returns the number of steps of a run.
 fn steps() -> u32 {
     size(250_000, 1_000_000) as u32
 }
 
-/// Largest energy error of the last quarter over that of the first; an error that does not grow.
+/// Bound of the largest energy error of the last quarter relative to that of the first.
 const GROWTH: f64 = 1.05;
-/// Energy errors below are rounding, which may grow: a random walk of a million steps of ten
-/// operations each.
+/// Smaller energy errors are rounding, which may grow: a random walk of a million steps of ten operations each.
 const ENERGY_ROUNDING: f64 = 1e-11;
-/// Vertical or total momentum, relative.
+/// Bound of the relative error of the vertical or total momentum.
 const MOMENTUM: f64 = 1e-10;
-/// |RᵀR − I| after every step.
+/// Bound of |RᵀR − I| after every step.
 const ORTHONORMAL: f64 = 1e-14;
 
-/// Largest energy error over that of the prototypes, which are known to two digits.
+/// Bound of the largest energy error relative to that of the prototypes, which are known to two digits.
 const SEEN: f64 = 1.1;
 
-/// What a run strays by; energies relative to T₀ + m |g| |s|, the most that a top's kinetic and potential
-/// energies are at its start.
+/// The errors of a run. Energies are relative to T₀ + m |g| |s|, an upper bound of a top's kinetic and potential
+/// energies at its start.
 #[derive(Debug)]
 struct Drift {
-    /// Largest energy error by quarters of the run.
+    /// Largest energy error in each quarter of the run.
     energy: [f64; 4],
     momentum: f64,
     orthonormality: f64,
 }
 
-/// What differs between bodies.
+/// The quantities that differ between bodies.
 trait Watched: System<Scalar = f64> {
     fn body(&self) -> &Body<f64>;
     fn rotation(x: &Self::Coordinates) -> so3::Matrix<f64>;
@@ -125,7 +124,7 @@ fn run<Sys: Watched, M: Method<Sys>>(system: &Sys, method: M, h: f64, steps: u32
     drift
 }
 
-/// No growth, and the energy error about the expected one, where one is.
+/// Asserts that the energy error does not grow, and that it is close to the expected one, if given.
 fn assert_steady(what: &str, drift: &Drift, expected: Option<f64>) {
     println!("{what}: {drift:?}");
     let [first, .., last] = drift.energy;
@@ -161,7 +160,7 @@ fn splitting_by_the_exact_flow() {
     }
     let spin = Spin(top(DZ));
     let method = Splitting::with_flow(&spin, Scheme::Strang, Flow::Exact);
-    // Rounding, magnified at every flip.
+    // Rounding errors, amplified at every flip.
     let drift = run(&spin, method, 0.1, steps());
     println!("{drift:?}");
     assert!(drift.energy.iter().all(|error| *error < 1e-10), "{drift:?}");
@@ -213,7 +212,8 @@ fn the_variational_integrator() {
 
 #[test]
 fn collocation() {
-    // p is not R P: what Gauss' methods keep exactly is quadratic, and vertical momentum is not.
+    // p is not R P: Gauss methods conserve quadratic invariants exactly, but the vertical momentum is not quadratic in
+    // it.
     for (case, h, steps, momentum) in [(BC, 5e-4, 200_000, 1e-6), (KOV, 0.02, steps(), 4e-9)] {
         let drift = run(&top(case), Gauss4, h, steps);
         let [first, .., last] = drift.energy;

@@ -1,19 +1,19 @@
-//! The hard cases by explicit methods: errors of the size that independent implementations of the
-//! same methods have, with the same steps.
+//! The hard cases by explicit methods: errors agree in size with those of independent implementations of the same
+//! methods with the same steps.
 
 use hamel::System;
 use hamel::methods::{Cf4, Method, Rkmk4, Rkmk8, Rkmk54};
 use hamel_cases::{Case, bodies, mechanisms};
 
-/// How far a measured error may be from the expected one.
+/// Relative tolerance of a measured error.
 const SIZE: f64 = 0.10;
-/// Errors below [`SMALL`] carry rounding that another order of operations changes: the factor allowed.
+/// Factor for errors below [`SMALL`], whose rounding depends on the order of operations.
 const ROUNDED: f64 = 3.0;
 const SMALL: f64 = 1e-9;
-/// Rounding alone, over a run of thousands of steps: expected errors below are bounds.
+/// Rounding over a run of thousands of steps: smaller expected errors are bounds.
 const FLOOR: f64 = 1e-11;
 
-/// Expected errors after some numbers of steps.
+/// Expected errors for some numbers of steps.
 type Sizes<'a> = &'a [(u32, f64)];
 
 fn check<Sys, M>(case: &Case<Sys>, method: M, sizes: Sizes)
@@ -39,7 +39,7 @@ where
     }
 }
 
-/// All three methods of a case.
+/// Checks all three methods of a case.
 fn all<Sys: System<Scalar = f64>>(case: &Case<Sys>, four: Sizes, five: Sizes, eight: Sizes) {
     check(case, Rkmk4, four);
     check(case, Rkmk54, five);
@@ -76,7 +76,7 @@ fn several_bodies() {
         &[(2000, 7.1e-2)],
         &[(1000, 7.4e-5)],
     );
-    // Beyond, rounding that chaos amplifies decides: a bound for one more halving and another.
+    // With more steps, rounding amplified by chaos dominates; one more halving has only a bound.
     let chaotic = mechanisms::double_pendulum();
     let end = chaotic.run(Rkmk8, chaotic.until, 4000).expect("a run");
     assert!(chaotic.error(&end) <= 1e-6, "{:e}", chaotic.error(&end));
@@ -166,8 +166,8 @@ fn free_bodies() {
     check(&spin, Cf4, &[(16000, 2.40e-7)]);
 }
 
-/// Near the separatrix a stepping method loses the phase by rounding: this is the best that order 8
-/// reaches, and the bar for one that steps.
+/// Near the separatrix, stepping loses the phase by rounding: this is the best error of order 8, and a bound for
+/// stepping methods.
 #[test]
 fn stepping_near_the_separatrix() {
     let near = bodies::dzhanibekov_near();

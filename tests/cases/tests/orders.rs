@@ -1,7 +1,7 @@
-//! Errors and orders of the methods for bodies in potentials, and of Gauss' methods.
+//! Errors and orders of the methods for bodies in potentials, and of the Gauss methods.
 //!
-//! Expected sizes are measurements of an independent prototype of the same method with the same steps;
-//! a correct implementation gives them to about 5 %.
+//! Expected errors are measurements of an independent prototype of the same method with the same steps; a correct
+//! implementation reproduces them to about 5 %.
 
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, Lgvi, Scheme, Splitting, free};
@@ -9,9 +9,9 @@ use hamel::{Method, State, StepError};
 use hamel_cases::by_hand::{Reference, Spin, Top, distance, run, slopes};
 use hamel_report::baselines::{Buss, Slide};
 
-/// How far a measured error may be from the expected one.
+/// Relative tolerance of a measured error.
 const SIZE: f64 = 0.10;
-/// The same factor where the expected error is below 1e-9, near rounding.
+/// Tolerance as a factor if the expected error is below 1e-9, near rounding.
 const SMALL: f64 = 3.0;
 
 const TOPS: [(&str, f64, u32); 3] = [
@@ -49,7 +49,7 @@ fn spin_error<M: Method<Spin<Top<f64>>>>(
     distance(state.x, reference.sample(until, "R"))
 }
 
-/// Errors of R as expected, in the order of [`TOPS`] and [`SPINS`]; zero where rounding hides them.
+/// Asserts the expected errors of R, in the order of [`TOPS`] and [`SPINS`]; zero where rounding hides them.
 macro_rules! assert_sizes {
     ($what:expr, $method:expr, $tops:expr, $spins:expr) => {
         let tops: [f64; 3] = $tops;
@@ -148,10 +148,10 @@ fn sizes_of_baselines() {
     );
 }
 
-/// Below, rounding shows in the slopes.
+/// Smaller errors show rounding in the slopes.
 const CLEAN: f64 = 5e-13;
 
-/// Slopes of errors between halvings, as far as they are above rounding.
+/// Asserts the slopes of errors between halvings, as far as they exceed rounding.
 fn assert_order(what: &str, errors: &[f64], order: f64, tolerance: f64) {
     let clean: Vec<f64> = errors.iter().copied().filter(|e| *e > CLEAN).collect();
     assert!(clean.len() >= 3, "{what}: {errors:?}");
@@ -165,7 +165,7 @@ fn assert_order(what: &str, errors: &[f64], order: f64, tolerance: f64) {
     }
 }
 
-/// Errors on halved steps, from `coarsest` on; four of them, three slopes.
+/// Returns four errors with halved steps, from `coarsest` on, which give three slopes.
 fn errors<M: Method<Top<f64>>>(
     case: (&str, f64),
     coarsest: u32,
@@ -204,7 +204,7 @@ fn a_flow_of_order_two_limits_nystrom_schemes() {
     assert_eq!(Method::<Top<f64>>::order(&limited), 2);
     let errors = errors(KOV, 250, |_| limited);
     assert_order("Nystrom 4 by axes", &errors, 2.0, 0.03);
-    // A symmetric rotor has an exact flow by turns.
+    // Symmetric rotors have an exact flow by composed rotations.
     let exact = Splitting::with_flow(&top, Scheme::Nystrom4, Flow::Turns);
     assert_eq!(Method::<Top<f64>>::order(&exact), 4);
 }
@@ -221,7 +221,7 @@ fn orders_of_the_variational_integrator_and_of_collocation() {
 #[test]
 fn orders_of_baselines() -> Result<(), StepError> {
     assert_order("slide", &errors(KOV, 4000, |_| Slide), 1.0, 0.1);
-    // Free rotation, against its closed form.
+    // Compares free rotation with its closed form.
     let mut body = Reference::read("free-dzhanibekov-1e-3").body();
     body.w0 = [0.4, -0.7, 1.1];
     let top = Spin(Top(body));
@@ -243,7 +243,7 @@ fn orders_of_baselines() -> Result<(), StepError> {
 
 #[test]
 fn stepped_splitting_passes_the_flips() {
-    // The separatrix at a distance of 1e-6 magnifies the rounding of every step: 1e-7 is asked.
+    // The separatrix at a distance of 1e-6 amplifies the rounding of every step, so the bound is 1e-7.
     let (case, until, n) = SPINS[0];
     for (scheme, flow) in [
         (Scheme::KahanLi6, Flow::Axes),

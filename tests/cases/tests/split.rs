@@ -1,4 +1,4 @@
-//! The hard cases by methods for bodies in potentials: closed forms, few evaluations, no drift of tilt.
+//! The hard cases by methods for bodies in potentials: closed forms, few evaluations, no drift of the tilt.
 
 use hamel::methods::{Rkmk8, Scheme, free};
 use hamel::so3;
@@ -6,13 +6,13 @@ use hamel_cases::models::lagrange_top::LagrangeTop;
 use hamel_cases::models::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_cases::{Case, bodies};
 
-/// ω of the closed form, relative to max(1, |ω|): some ten roundings, through Jacobi's functions near
-/// modulus one.
+/// Bound of ω of the closed form, relative to max(1, |ω|): about ten roundings, through Jacobi's functions near modulus
+/// one.
 const SPIN: f64 = 1e-13;
-/// R of the closed form: the angle about the momentum grows with time, and its rounding with it.
+/// Bound of R of the closed form: the angle about the momentum grows with time, and its rounding too.
 const ATTITUDE: f64 = 1e-11;
 
-/// All listed times of all free bodies, each from the start in one evaluation.
+/// Checks all listed times of all free bodies, each in one evaluation from the start.
 #[test]
 fn free_bodies_have_a_closed_form() {
     for case in [
@@ -36,13 +36,13 @@ fn free_bodies_have_a_closed_form() {
     }
 }
 
-/// From flip to flip it takes half the period of the elliptic functions.
+/// Consecutive flips are half the period of the elliptic functions apart.
 #[test]
 fn flips_are_spaced_by_the_half_period() {
     for case in [bodies::dzhanibekov(), bodies::dzhanibekov_near()] {
         let half = case.reference.extra("half_period_between_flips");
         let middle = |t: f64| free::at(&case.system, &case.start, t).expect("free").xi[1];
-        // ω₂ passes zero in the middle of each flip; bisection down to rounding of t.
+        // ω₂ has a zero in the middle of each flip, found by bisection down to the rounding of t.
         let flip = |mut a: f64, mut b: f64| {
             let rising = middle(b) > middle(a);
             while b - a > 4.0 * f64::EPSILON * b {
@@ -62,8 +62,7 @@ fn flips_are_spaced_by_the_half_period() {
     }
 }
 
-/// Inertias without three different moments, and spins about principal axes, have their limits as
-/// values: uniform turns.
+/// For inertias with equal moments, and spins about principal axes, the closed form takes its limit: uniform rotation.
 #[test]
 fn symmetric_bodies_and_principal_axes_are_limits() {
     for (moments, spin) in [
@@ -93,7 +92,7 @@ fn symmetric_bodies_and_principal_axes_are_limits() {
     }
 }
 
-/// Smallest number of evaluations after which the error of R is at most 1e-9.
+/// Returns the smallest number of evaluations for which the error of R is at most 1e-9.
 fn evaluations(runs: impl Iterator<Item = (f64, u64)>) -> u64 {
     let good = runs.filter(|(error, _)| *error <= 1e-9);
     good.map(|(_, count)| count).min().unwrap_or(u64::MAX)
@@ -168,7 +167,7 @@ fn the_vertical_top_passes_upright() {
     assert!(case.error(&end) <= 1e-12, "{:e}", case.error(&end));
 }
 
-/// Forces that depend on positions, time and constant inputs split, too.
+/// Forces that depend on positions, time and constant inputs can be split, too.
 #[test]
 fn loads_that_are_no_potentials_are_kicks() {
     let satellite = bodies::gravity_gradient();

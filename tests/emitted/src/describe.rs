@@ -1,10 +1,10 @@
-//! Random descriptions: names that Rust or the generated code may want for themselves, parameters, inputs
-//! and outputs of all shapes, lists that end in an index, joints of all kinds.
+//! Random descriptions: names that Rust or the generated code may use, parameters, inputs and outputs of all shapes,
+//! lists that end in an index, and all kinds of joints.
 
 use super::common::Random;
 use std::fmt::Write;
 
-/// Names that are legal in a description, and that generated Rust has to get out of the way of.
+/// Names that are legal in a description, and that generated Rust has to escape or avoid.
 const NAMES: &str = "
     bool char str u8 i64 usize f16 f32 f64 f128 isize u128 Some None Ok Err Option Result Vec Box
     String Clone Copy Debug Default Drop Iterator From Into Send Sized Fn drop panic println vec
@@ -19,24 +19,24 @@ const NAMES: &str = "
     a_name_that_is_so_long_that_every_list_with_it_has_to_be_broken_by_the_printer_wherever_it_stands
 ";
 
-/// All of these names.
+/// Returns all of these names.
 pub fn names() -> impl Iterator<Item = &'static str> {
     NAMES.split_whitespace()
 }
 
-/// A description in the making.
+/// A description under construction.
 struct Draft<'a> {
     random: &'a mut Random,
     text: String,
     names: Vec<&'static str>,
     taken: Vec<&'static str>,
-    /// Scalars that expressions may mention: constant, of coordinates, of anything.
+    /// Scalars for expressions: constants, functions of coordinates, any.
     constants: Vec<String>,
     positions: Vec<String>,
     all: Vec<String>,
 }
 
-/// A description; `system` is the name of its type, a random one by default.
+/// Returns a description; `system` is the name of its type, random by default.
 pub fn description(random: &mut Random, system: Option<&str>) -> String {
     let mut draft = Draft {
         random,
@@ -76,7 +76,7 @@ impl Draft<'_> {
         self.random.below(2) == 0
     }
 
-    /// A name that the description has not used.
+    /// Returns a name that the description has not used.
     fn name(&mut self) -> String {
         loop {
             let name = self.names[self.random.below(self.names.len())];
@@ -87,7 +87,7 @@ impl Draft<'_> {
         }
     }
 
-    /// A positive number, round or not.
+    /// Returns a positive number, round or not.
     fn positive(&mut self) -> String {
         let sizes = ["1", "2", "0.5", "1/3", "1.2345678901234567", "3e1"];
         self.pick(&sizes).into()
@@ -131,7 +131,7 @@ impl Draft<'_> {
         self.all.extend(self.constants.clone());
     }
 
-    /// Coordinates with rates, and a kinetic energy in which velocities of real ones are coupled.
+    /// Adds coordinates with rates, and a kinetic energy that couples the velocities of real ones.
     fn coordinates(&mut self) {
         let (mut kinetic, mut plain) = (Vec::new(), Vec::new());
         for _ in 0..1 + self.random.below(3) {
@@ -187,7 +187,7 @@ impl Draft<'_> {
         }
     }
 
-    /// A tree or a chain of joints with a body on each.
+    /// Adds a tree or a chain of joints with a body on each.
     fn joints(&mut self) {
         let mut frames: Vec<String> = Vec::new();
         for _ in 0..1 + self.random.below(3) {
@@ -266,7 +266,7 @@ impl Draft<'_> {
         }
     }
 
-    /// A new input, or an entry of one; or a state of first order.
+    /// Returns a new input, or an entry of one; or a first-order state.
     fn input(&mut self) -> String {
         let name = self.name();
         match self.random.below(4) {
@@ -293,7 +293,7 @@ impl Draft<'_> {
         }
     }
 
-    /// Inputs that nothing reads.
+    /// Adds inputs that nothing reads.
     fn inputs(&mut self) {
         for _ in 0..self.random.below(2) {
             self.input();
@@ -309,7 +309,7 @@ impl Draft<'_> {
         self.one_of(&list)
     }
 
-    /// A coordinate, or a constant where there is none by itself.
+    /// Returns a coordinate, or a constant if there is none.
     fn position(&mut self) -> String {
         let list = self.positions.clone();
         match list.is_empty() {
@@ -318,7 +318,7 @@ impl Draft<'_> {
         }
     }
 
-    /// An expression that has a value everywhere.
+    /// Returns an expression that is defined everywhere.
     fn expression(&mut self, depth: usize) -> String {
         if depth == 0 || self.random.below(4) == 0 {
             let list = self.all.clone();
@@ -351,7 +351,7 @@ impl Draft<'_> {
         }
     }
 
-    /// Lists whose last entry is often a kept constant: `k[15]` at the end of a row.
+    /// Returns a list whose last entry is often a hoisted constant: `k[15]` at the end of a row.
     fn row(&mut self, length: usize) -> String {
         let entries: Vec<String> = (0..length)
             .map(|index| match (index + 1 == length, self.random.below(3)) {
@@ -378,7 +378,7 @@ impl Draft<'_> {
                     format!("[{}]", rows.join(", "))
                 }
             };
-            // With a branch that is continuous, so that numbers of half the length take the same one, or one next to it.
+            // The select is continuous, so that a different branch in single precision gives a close value.
             let value = match self.random.below(3) {
                 0 => {
                     let (a, b, c) = (self.expression(1), self.expression(1), self.expression(1));

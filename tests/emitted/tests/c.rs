@@ -1,7 +1,8 @@
-//! Generated C against the interpreter: every third model, awkward names in every third place, and random descriptions, compiled
-//! by gcc as C99 without a warning; `double` within 1e-13 of scale, `float` within what its rounding makes. With
-//! `HAMEL_ATTACK=more`, as in `cargo xtask ci`, there are all models and places and 20 random descriptions instead of 5, gcc
-//! optimises, and g++ reads all as C++17 and clang as both, where they are installed; `HAMEL_ATTACK=full` has 300.
+//! Compares generated C with the interpreter, for every third model, awkward names in every third position, and random
+//! descriptions, compiled by gcc as C99 without warnings: `double` within 1e-13 of the scale, `float` within its
+//! rounding. With `HAMEL_ATTACK=more`, as in `cargo xtask ci`, there are all models and positions and 20 random
+//! descriptions instead of 5, gcc optimises, and all code also compiles by g++ as C++17 and by clang as both, if
+//! installed; `HAMEL_ATTACK=full` has 300.
 
 #[path = "c/case.rs"]
 mod case;
@@ -32,15 +33,15 @@ use rayon::prelude::*;
 use some::some;
 use std::path::{Path, PathBuf};
 
-/// Descriptions in one source of C.
+/// Descriptions per C source.
 const TOGETHER: usize = 12;
 
-/// All descriptions below a folder.
+/// Lists all descriptions below a folder.
 fn descriptions(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_path_buf()];
     while let Some(path) = open.pop() {
-        // Parts of others, and functions in Rust, which have no C.
+        // Without parts of others, and without functions in Rust, which C does not support.
         if path.ends_with("parts") || path.ends_with("external") {
             continue;
         } else if path.is_dir() {
@@ -62,7 +63,7 @@ fn read(path: &Path) -> Generated {
     from_file(&text, open).unwrap_or_else(|errors| panic!("{}", said(errors)))
 }
 
-/// Compiles cases by the dozen, and compares all that they print.
+/// Compiles cases in groups, and compares all that they print.
 fn attack(what: &str, cases: Vec<Case>) {
     let faults: Vec<String> = cases
         .par_chunks(TOGETHER)
@@ -93,7 +94,7 @@ fn models_give_what_the_interpreter_gives() {
     attack("models", cases);
 }
 
-/// A function that is cut in parts.
+/// A function that is split into parts.
 #[test]
 fn a_quadruped_gives_what_the_interpreter_gives() {
     let generated = from_text(&quadruped::quadruped()).expect("it is right");
@@ -102,7 +103,7 @@ fn a_quadruped_gives_what_the_interpreter_gives() {
     attack("quadruped", vec![Case::new(generated, None, 1.0)]);
 }
 
-/// Functions that models have only where they are asked for.
+/// Functions that models have only on request.
 #[test]
 fn what_is_asked_for_gives_what_the_interpreter_gives() {
     const MODELS: [&str; 8] = [
@@ -136,7 +137,7 @@ fn what_is_asked_for_gives_what_the_interpreter_gives() {
     let cases: Vec<Case> = asked
         .par_iter()
         .filter_map(|(path, k)| {
-            // What a model has none of is the business of other tests.
+            // Functions that a model does not support are covered by other tests.
             let generated = models::asked_for(path, ASKED[*k]).ok()?;
             let stem = path.file_stem()?.to_string_lossy();
             Some(Case::new(generated, Some(&format!("{stem}_{k}")), 1.0))
@@ -148,9 +149,9 @@ fn what_is_asked_for_gives_what_the_interpreter_gives() {
 
 #[test]
 fn names_of_c_and_of_the_generated_text_are_names_in_descriptions() {
-    // Each name has eight places: a third of the descriptions has it in two or three of them.
+    // Each name has eight positions: two or three of them are in a third of the descriptions.
     let texts = some(names::descriptions());
-    // Some names are words of the language in some places.
+    // Some names are keywords in some positions.
     let made = texts.iter().filter_map(|text| from_text(text).ok());
     let cases: Vec<Case> = made
         .map(|generated| Case::new(generated, None, 1.5))
@@ -171,7 +172,7 @@ fn random_descriptions_give_what_the_interpreter_gives() {
         .into_par_iter()
         .filter_map(|seed| {
             let text = describe::description(&mut Random::new(70_000 + seed), None);
-            // What is refused is the business of other tests.
+            // Refused descriptions are covered by other tests.
             let generated = from_text(&text).ok()?;
             Some(Case::new(generated, Some(&format!("random_{seed}")), 1.5))
         })
@@ -184,7 +185,7 @@ fn random_descriptions_give_what_the_interpreter_gives() {
     attack("random", cases);
 }
 
-/// The lines of C that the book shows compile between the declarations that they need, and give a status.
+/// The C code in the book compiles between the necessary declarations, and returns a status.
 #[test]
 fn the_lines_of_the_book_are_c() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -214,7 +215,7 @@ fn the_lines_of_the_book_are_c() {
     }
 }
 
-/// By the door of build scripts, without a warning; the program ends with 0 where the pole stands.
+/// The example, made through the front end for build scripts without a warning; it ends with 0 if the pole stands.
 #[test]
 fn the_example_holds_its_pole_upright() {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/c");
@@ -229,7 +230,7 @@ fn the_example_holds_its_pole_upright() {
         built.unwrap_or_else(|error| panic!("{error}"));
         let line = format!("gcc -std=c99 -O2 {STRICT} -c cart_pole.c");
         run(&folder, &line).unwrap_or_else(|error| panic!("{error}"));
-        // The program itself is written with `double`.
+        // The program is written with `double`.
         if precision == Precision::Float {
             continue;
         }

@@ -1,6 +1,6 @@
-//! What was generated for random descriptions, compiled, against their interpreter: f64, f32 and SIMD lanes
-//! of both. And more descriptions whose code is parsed alone. `HAMEL_ATTACK=more` compiles and parses four
-//! times as many; `HAMEL_ATTACK=full` compiles 500, or a fifth of them by `HAMEL_PART`, and parses 2,000.
+//! Compares compiled functions of random descriptions with the interpreter, in f64, f32 and SIMD lanes of both, and
+//! parses the code of more descriptions. `HAMEL_ATTACK=more` compiles and parses four times as many;
+//! `HAMEL_ATTACK=full` compiles 500, or a fifth of them with `HAMEL_PART`, and parses 2,000.
 
 use common::{Random, size};
 use hamel::Lanes;
@@ -16,15 +16,15 @@ mod common;
 #[path = "../src/describe.rs"]
 mod describe;
 
-/// As many states as the widest lanes hold.
+/// As many states as the widest lanes.
 const STATES: usize = 8;
-/// Descriptions that are parsed alone in the default run.
+/// Number of descriptions in the default run that are only parsed.
 const PARSED: u64 = 40;
 
 /// The arguments x, ξ, ξ̇, p, u.
 type State = [Vec<f64>; 5];
 
-/// What a function gives, and how much of that the rounding of its arguments to f32 changes.
+/// The value of a function, and its change due to rounding the arguments to f32.
 struct Expected {
     value: Option<Vec<f64>>,
     doubt: f64,
@@ -50,7 +50,7 @@ fn interpreted(generated: &Generated, function: &Function, state: &State) -> Exp
     };
     let value = call(state.each_ref().map(Vec::as_slice));
     let mut doubt = 0.0_f64;
-    // Several directions, as one may change nothing.
+    // Several directions, since one may have no effect.
     for turn in 0..3 {
         let near = state.each_ref().map(|list| -> Vec<f64> {
             let nudge = |i: usize| {
@@ -77,7 +77,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b);
     pairs.fold(0.0, |most: f64, (a, b)| {
         let apart = (a - b).abs();
-        // NaN is far from all numbers but itself.
+        // NaN differs infinitely from all other numbers.
         match apart.is_nan() {
             true if a.is_nan() && b.is_nan() => most,
             true => f64::INFINITY,
@@ -86,7 +86,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     })
 }
 
-/// Compares what lanes gave; the largest error over what is allowed.
+/// Compares the results of lanes; panics if an error exceeds its bound.
 fn compare<L: Lanes<Element: Into<f64>>>(
     what: &str,
     values: Values<L>,
@@ -101,7 +101,7 @@ fn compare<L: Lanes<Element: Into<f64>>>(
         assert_eq!(name, wanted);
         let expected = &expected[first..first + L::COUNT];
         let Some(value) = value else {
-            // A pivot that is not positive in one lane ends the call for all.
+            // A pivot that is not positive in one lane fails the call for all.
             let some = expected
                 .iter()
                 .any(|expected| expected.value.is_none() || expected.doubt > 1.0);
@@ -181,7 +181,7 @@ fn every_text_is_rust() {
             Ok(code) => {
                 let file = syn::parse_file(&code)
                     .unwrap_or_else(|error| panic!("{error}\n{text}\n{code}"));
-                // The short way of laying lines out leaves what the printer leaves.
+                // The fast layout of lines agrees with the pretty printer.
                 let (_, items) = code.split_once("\n\n").expect("a header");
                 assert!(prettyplease::unparse(&file) == items, "{text}\n{code}");
                 true

@@ -1,4 +1,4 @@
-//! Generated systems without the standard library: this crate has to pass `cargo check` on any target.
+//! Generated systems without the standard library: this crate must pass `cargo check` on any target.
 
 #![no_std]
 #![deny(warnings)]
@@ -39,10 +39,10 @@ hamel::rigid_eom! {
     }
 }
 
-/// Spins a top for a while, in single precision.
+/// Integrates a spinning top, in single precision.
 ///
 /// # Errors
-/// Those of the integrator.
+/// If the integrator fails.
 pub fn spin(until: f64) -> Result<State<Top<f32>>, StepError> {
     let top = Top::<f32>::default();
     let mut state = State::start(&top);
@@ -58,10 +58,10 @@ pub fn spin(until: f64) -> Result<State<Top<f32>>, StepError> {
     Ok(state)
 }
 
-/// One step of the cart with a controller in its inputs.
+/// Takes one step of the cart with a controller as its inputs.
 ///
 /// # Errors
-/// Those of the integrator.
+/// If the integrator fails.
 pub fn balance(cart: &Cart<f64>, state: &mut State<Cart<f64>>) -> Result<(), StepError> {
     hamel::step(cart, Rkmk4, state, 1e-3, &|_, x: &[f64; 3], xi: &[f64; 2]| {
         [20.0 * x[2] + 3.0 * xi[1]]

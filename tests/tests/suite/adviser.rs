@@ -1,4 +1,4 @@
-//! The descriptions that the adviser counts have the motion of the one it was given.
+//! The descriptions that the adviser proposes have the same motion as the given one.
 
 use hamel_codegen::algebra::fp::Fp;
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
@@ -29,7 +29,7 @@ fn symbols(graph: &Graph, edges: &[Edge]) -> Vec<usize> {
         .collect()
 }
 
-/// ẋ and ẍ at a point where ξ has these values.
+/// Returns ẋ and ẍ at a point with these values of ξ.
 fn motion(model: &Model, lane: &Lane, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     let (chosen, _) = accel(model, &Care::default()).expect("M is regular");
     let graph = &model.graph;
@@ -70,7 +70,7 @@ fn every_choice_has_the_same_motion() {
         assert!(weights.is_sorted(), "{name}: {weights:?}");
         let lane = model.points.lane(0xadf1).expect("a point");
         for choice in &choices {
-            // ξ' from ẋ = A' ξ' by the normal equations.
+            // Computes ξ' from ẋ = A' ξ' by the normal equations.
             let given = symbols(&model.graph, &model.xi);
             let xi: Vec<Fp> = given.iter().map(|&place| lane.symbol(place)).collect();
             let (rate, acceleration) = motion(&model, &lane, &xi);
@@ -101,7 +101,7 @@ fn every_choice_has_the_same_motion() {
     }
 }
 
-/// The statements are those of a description, with the counts that were promised.
+/// The proposed statements form a valid description with the promised counts.
 #[test]
 fn statements_give_what_was_counted() {
     let (text, model) = model("heavy_top_quaternion");

@@ -1,4 +1,4 @@
-//! A wrong sign in any one entry of a symbol breaks an identity, which is named.
+//! A wrong sign in any entry of a symbol breaks an identity, which is named.
 
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::generate::{Generated, from_text};
@@ -6,7 +6,7 @@ use hamel_codegen::proof::check::failures;
 use hamel_codegen::proof::forms::Symbols;
 use std::path::Path;
 
-/// Constant and varying γ, constant and varying M, bodies, particles, a given T, every kind of load.
+/// Constant and varying γ, constant and varying M, bodies, particles, a given T, and all kinds of loads.
 const MODELS: [&str; 6] = [
     "free_body",
     "heavy_top_world",
@@ -22,11 +22,10 @@ fn model(name: &str) -> Generated {
     from_text(&text).unwrap_or_else(|errors| panic!("{name}: {errors:?}"))
 }
 
-/// An entry of some symbol of three indices or fewer.
+/// Selects an entry of a symbol with at most three indices.
 type Entry = for<'a> fn(&'a mut Symbols, usize, usize, usize) -> &'a mut Edge;
 
-/// Flips every entry that is not zero in turn; each flip has to break all of `broken`. Returns their
-/// number.
+/// Flips the sign of every nonzero entry in turn; each flip must break all of `broken`. Returns the number of flips.
 fn flips(name: &str, symbol: &str, rank: u32, entry: Entry, broken: &[&str]) -> usize {
     let Generated { model, program, .. } = model(name);
     let symbols = Symbols::new(&model).expect("Y");

@@ -1,4 +1,4 @@
-//! Every identity of the formalism holds for every model, and a broken symbol is noticed.
+//! Every identity of the formalism holds for every model, and a broken symbol is detected.
 
 use crate::derived::{self, model};
 use hamel_codegen::algebra::graph::Node;
@@ -14,11 +14,11 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(path).expect("the model is in the repository")
 }
 
-/// Every identity holds for every model, and is proved where it was proved before: a proof that is given up, or
-/// an identity that is left out, moves the model's name in the snapshot.
+/// Every identity holds for every model, and is proved where it was proved before: a lost proof or a missing identity
+/// moves the model's name in the snapshot.
 #[test]
 fn all_identities_hold() {
-    // The models of each identity, those first for which it is proved; identities in the order in which they come up.
+    // The models of each identity, first those for which it is proved; identities in order of first occurrence.
     let mut verdicts: Vec<(String, [Vec<String>; 2])> = Vec::new();
     let all = derived::all().into_par_iter().map(|model| {
         let generated = model.generated();
@@ -54,7 +54,7 @@ fn all_identities_hold() {
     insta::assert_snapshot!("verdicts", text);
 }
 
-/// Names behind a word, in lines of at most 120 characters; nothing where there is none.
+/// Formats names after a word, in lines of at most 120 characters; an empty text if there are none.
 fn paragraph(word: &str, names: &[String]) -> String {
     let (mut text, mut line) = (String::new(), String::new());
     for name in names {
@@ -96,7 +96,7 @@ fn lie_group_identities_are_proved() {
     }
 }
 
-/// A function of parameters in a constraint stays what it is, in every form of the equations.
+/// Constraints may contain functions of parameters, in every form of the equations.
 #[test]
 fn constraints_may_have_functions_of_parameters() {
     for (length, value) in [
@@ -121,8 +121,8 @@ fn constraints_may_have_functions_of_parameters() {
     }
 }
 
-/// A loop written twice, or as rows that say the same, is one loop: the motion is that of the loop
-/// written once, and every identity holds.
+/// A loop written twice, or as linearly dependent rows, counts as one loop: the motion is that of the loop written
+/// once, and every identity holds.
 #[test]
 fn rows_of_loops_that_say_the_same_are_one() {
     const WRITTEN: &str = "loop l1 * sin(q1) + l2 * sin(q2) = l3 * sin(q3);";
@@ -141,7 +141,7 @@ fn rows_of_loops_that_say_the_same_are_one() {
     }
 }
 
-/// A wrong acceleration is caught: by the equation of motion and by the power balance.
+/// A wrong acceleration is detected by the equation of motion and by the power balance.
 #[test]
 fn a_wrong_sign_is_noticed() {
     let generated = model("heavy_top").generated();
@@ -160,7 +160,7 @@ fn a_wrong_sign_is_noticed() {
     assert_eq!(failed, ["(30c)", "power"]);
 }
 
-/// A stabilising term of the wrong sign, or of another Ψ, is never emitted.
+/// A stabilising term with a wrong sign is never emitted.
 #[test]
 fn a_wrong_correction_is_refused() {
     for name in ["heavy_top_columns", "four_bar", "free_body"] {
@@ -181,8 +181,8 @@ fn a_wrong_correction_is_refused() {
     }
 }
 
-/// A and Y of the body frame follow from Y and φ, KR18 (36) to (39): A = R ω̂ without a division, M
-/// constant, 18 nonzero γ.
+/// A and Y of the body frame follow from Y and φ, KR18 (36) to (39): A = R ω̂ without division, M constant, 18 nonzero
+/// γ.
 #[test]
 fn rows_of_a_free_body_give_the_tables_of_the_paper() {
     let generated = model("free_body_rows").generated();
@@ -214,8 +214,8 @@ fn rows_of_a_free_body_give_the_tables_of_the_paper() {
     assert!(generated.model.completion.pivots.is_empty());
 }
 
-/// γ of the body and world frames of SE(3) differ in sign: structure constants of left- and
-/// right-invariant fields.
+/// γ of the body and world frames of SE(3) have opposite signs: structure constants of left- and right-invariant
+/// fields.
 #[test]
 fn world_frame_has_opposite_structure_constants() {
     let body = Geometry::new(&model("heavy_top").generated().model).expect("Y");

@@ -1,13 +1,13 @@
-//! Files that import one another in a circle can only be understood together: no circle has more than three.
+//! Files that import one another in a cycle can only be understood together: no cycle has more than three.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The most files of a circle.
+/// Largest number of files in a cycle.
 const MOST: usize = 3;
 
-/// The modules of a crate by their paths, each with its file.
+/// Returns the modules of a crate by their paths, each with its file.
 fn modules(source: &Path) -> BTreeMap<Vec<String>, PathBuf> {
     let mut found = BTreeMap::new();
     let mut open = vec![(source.to_path_buf(), Vec::new())];
@@ -19,7 +19,7 @@ fn modules(source: &Path) -> BTreeMap<Vec<String>, PathBuf> {
             if file.is_dir() {
                 open.push((file.clone(), below()));
             } else if matches!(&*name, "lib" | "main" | "tests") {
-                // The root names everything; tests may use all that they test.
+                // The root uses all modules; tests may use everything that they test.
             } else if name == "mod" {
                 found.insert(path.clone(), file);
             } else {
@@ -31,7 +31,7 @@ fn modules(source: &Path) -> BTreeMap<Vec<String>, PathBuf> {
     found
 }
 
-/// The paths that a tree of `use` ends in.
+/// Collects the paths at the leaves of a `use` tree.
 fn leaves(tree: &syn::UseTree, before: Vec<String>, all: &mut Vec<Vec<String>>) {
     let with = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect();
     match tree {
@@ -46,7 +46,7 @@ fn leaves(tree: &syn::UseTree, before: Vec<String>, all: &mut Vec<Vec<String>>) 
     }
 }
 
-/// The modules that a file imports something from.
+/// Returns the modules from which a file imports.
 fn imports(
     own: &[String],
     text: &str,
@@ -58,7 +58,7 @@ fn imports(
         if let syn::Item::Use(item) = item {
             let before = all.len();
             leaves(&item.tree, Vec::new(), &mut all);
-            // What a folder shows of its own files to others is not what it needs of them.
+            // A folder's reexports of its modules do not count as imports.
             if !matches!(item.vis, syn::Visibility::Inherited) {
                 let child = |path: &Vec<String>| modules.contains_key(&[own, &path[..1]].concat());
                 let shown = all.split_off(before);
@@ -84,7 +84,7 @@ fn imports(
     found
 }
 
-/// What can be reached from a module.
+/// Returns the modules that can be reached from a module.
 fn reached<'a>(
     from: &'a Vec<String>,
     imports: &'a BTreeMap<Vec<String>, BTreeSet<Vec<String>>>,
@@ -101,7 +101,7 @@ fn reached<'a>(
     reached
 }
 
-/// The files that import one another, in circles.
+/// Returns the cycles of files that import one another.
 fn circles(source: &Path) -> BTreeSet<Vec<String>> {
     let modules = modules(source);
     assert!(!modules.is_empty(), "{} has no modules", source.display());
@@ -147,7 +147,7 @@ fn circles_of_imports_are_small() {
     }
 }
 
-/// The test sees circles: one of four files in a folder that it makes.
+/// Detects a cycle of four files in a temporary folder.
 #[test]
 fn a_larger_circle_is_found() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("circle");

@@ -1,4 +1,4 @@
-//! The models of `models/` and `models/multibody/`, each derived once for all tests that look at it.
+//! The models of `models/` and `models/multibody/`, each derived once for all tests that use it.
 
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
@@ -6,7 +6,7 @@ use hamel_codegen::tables::{Table, Tables};
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
 
-/// A model and, once a test has asked for it, what is derived from it.
+/// A model and, once a test has requested it, its derivation.
 pub struct Derived {
     pub name: String,
     pub text: String,
@@ -23,14 +23,14 @@ impl Derived {
         })
     }
 
-    /// All of its tables.
+    /// Returns all of its tables.
     pub fn tables(&self) -> &Tables {
         self.tables
             .get_or_init(|| self.generated().tables(&every_table()).expect("derivable"))
     }
 }
 
-/// All tables that there are.
+/// Returns every kind of table.
 fn every_table() -> Vec<Table> {
     let names = Table::names().into_iter();
     names
@@ -60,20 +60,20 @@ fn read(folder: &str) -> Vec<Derived> {
 static MODELS: LazyLock<Vec<Derived>> = LazyLock::new(|| read("models"));
 static MULTIBODY: LazyLock<Vec<Derived>> = LazyLock::new(|| read("models/multibody"));
 
-/// The models of `models/`, in the order of their names.
+/// Returns the models of `models/`, in the order of their names.
 pub fn models() -> &'static [Derived] {
     assert!(MODELS.len() >= 60, "the models have gone");
     &MODELS
 }
 
-/// Those and the models of `models/multibody/`, in the order of their names.
+/// Returns the models of `models/` and `models/multibody/`, in the order of their names.
 pub fn all() -> Vec<&'static Derived> {
     let mut all: Vec<&Derived> = models().iter().chain(MULTIBODY.iter()).collect();
     all.sort_by(|a, b| a.name.cmp(&b.name));
     all
 }
 
-/// One of `models/`.
+/// Returns a model of `models/`.
 pub fn model(name: &str) -> &'static Derived {
     let found = models().iter().find(|model| model.name == name);
     found.unwrap_or_else(|| panic!("no model `{name}`"))

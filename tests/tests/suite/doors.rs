@@ -25,7 +25,7 @@ fn models() -> Vec<(String, String)> {
     all
 }
 
-/// The items of a file without its header comment.
+/// Returns the items of a file without its header comment.
 fn items(code: &str) -> &str {
     code.split_once("\n\n").map_or(code, |(_, items)| items)
 }
@@ -56,8 +56,8 @@ fn the_build_script_wrote_the_same() {
     );
 }
 
-/// Calls a builder in a program of its own, which is this one once more, as a build script that writes to a folder; what
-/// it says to Cargo, and to people. Nothing within that program.
+/// Runs this test program again as a build script that calls a builder and writes to a folder; returns its messages to
+/// Cargo and to people, or `None` within that process.
 fn script(test: &str, folder: &Path, builder: impl FnOnce() -> Builder) -> Option<[String; 2]> {
     let own = "HAMEL_TESTS_SCRIPT";
     if std::env::var_os(own).is_some() {
@@ -70,7 +70,7 @@ fn script(test: &str, folder: &Path, builder: impl FnOnce() -> Builder) -> Optio
     let script = std::process::Command::new(this)
         .args(["--exact", "--nocapture", &format!("doors::{test}")])
         .env(own, "1")
-        // What the main thread has on Windows.
+        // The stack size of the main thread on Windows.
         .env("RUST_MIN_STACK", (1 << 20).to_string())
         .env("OUT_DIR", folder)
         .output()
@@ -80,7 +80,7 @@ fn script(test: &str, folder: &Path, builder: impl FnOnce() -> Builder) -> Optio
     Some(said)
 }
 
-/// An empty folder for a test, with files.
+/// Creates a folder for a test, with these files.
 fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     if std::env::var_os("HAMEL_TESTS_SCRIPT").is_some() {
@@ -96,7 +96,7 @@ fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// Whether a line of what a script says has Cargo watch a file.
+/// Returns whether a line of the script's output makes Cargo watch a file.
 fn watches(said: &str, file: &Path) -> bool {
     let line = format!("cargo:rerun-if-changed={}", file.display());
     said.lines().any(|said| said.ends_with(&line))
@@ -104,8 +104,8 @@ fn watches(said: &str, file: &Path) -> bool {
 
 const BLOCK: &str = "pub system Block { coord x; velocity v; rate x = v; kinetic v^2; }";
 
-/// What a build script writes below `OUT_DIR` is newer than its start: watched, it would have the script run in every
-/// build. What it includes from elsewhere is watched.
+/// Files that a build script writes below `OUT_DIR` are newer than its start: if Cargo watched them, the script would
+/// run in every build. Included files from elsewhere are watched.
 #[test]
 fn descriptions_that_a_script_writes_are_not_watched() {
     let including = BLOCK.replace("coord", "include \"../part.eom\"; coord");
@@ -130,7 +130,7 @@ fn descriptions_that_a_script_writes_are_not_watched() {
     }
 }
 
-/// A sum of as many operands as are allowed, and brackets as deep, need more stack than some threads have.
+/// A sum with as many operands as allowed, and brackets of the greatest depth, need more stack than some threads have.
 #[test]
 fn deep_descriptions_need_no_stack_of_the_script() {
     let sum: Vec<String> = (1..500).map(|k| format!("sin({k} * x)")).collect();
@@ -146,8 +146,8 @@ fn deep_descriptions_need_no_stack_of_the_script() {
     }
 }
 
-/// What a description includes is shown by its own path, and is watched however deep it stands; warnings are said to any
-/// Cargo: with two colons, packages with an old `rust-version` would not be built.
+/// Included files are shown by their paths and are watched at any depth. Warnings have a form for all versions of
+/// Cargo: with two colons, packages with an old `rust-version` would not build.
 #[test]
 fn what_a_script_says_is_for_every_cargo() {
     // A name with a line break would be an instruction to Cargo.
@@ -195,7 +195,7 @@ fn what_a_script_says_is_for_every_cargo() {
     assert_eq!(wrong.matches("error: ").count(), 2, "{wrong}");
 }
 
-/// The command in a header is one that a shell reads as it is meant.
+/// File names in the command of a header are quoted for the shell.
 #[test]
 fn names_of_files_are_quoted_in_commands() {
     for (name, command) in [
@@ -208,7 +208,7 @@ fn names_of_files_are_quoted_in_commands() {
     }
 }
 
-/// All files that cannot be read, or would be written to one place, are told at once, each with what to do.
+/// All files that cannot be read, or would be written to the same path, are reported at once, each with a remedy.
 #[test]
 fn wrong_files_are_told_at_once() {
     let files = [
@@ -256,7 +256,7 @@ fn wrong_files_are_told_at_once() {
     assert!(!said.contains("=break"), "{said}");
 }
 
-/// A description is not lost to what is made from it, nor is what it includes.
+/// Output never overwrites a description or a file that it includes.
 #[test]
 fn nothing_that_is_read_is_written_over() {
     let including = BLOCK.replace("kinetic", "include \"b.h\"; kinetic");
@@ -285,7 +285,8 @@ fn nothing_that_is_read_is_written_over() {
     assert_eq!(told.count(), 2, "{wrong}");
 }
 
-/// In C, where no module keeps names apart, no two files have functions of one name, and all of them can be included.
+/// In C, which has no modules, functions of different files have different names, and all headers can be included
+/// together.
 #[test]
 fn names_in_c_are_of_one_file() {
     let files = [
@@ -337,8 +338,8 @@ fn a_large_model_is_refused_by_the_macro_with_the_way_out() {
     }
 }
 
-/// A table in a file stands where the description says, for every front end: the macro starts at the folder of the
-/// package, and notes the file for the compiler.
+/// The path of a table is relative to the description for every front end; the macro starts at the folder of the
+/// package, and registers the file with the compiler.
 #[test]
 fn a_table_in_a_file_is_the_same_through_every_front_end() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/tabled");
@@ -357,17 +358,17 @@ fn a_table_in_a_file_is_the_same_through_every_front_end() {
     let noted = file.items.pop().expect("items");
     assert!(matches!(noted, syn::Item::Const(_)));
     assert_eq!(prettyplease::unparse(&file).trim(), items(&built).trim());
-    // What is in the file is part of the hash.
+    // The hash includes the contents of the file.
     let more = &mut |name: &str| Ok(std::fs::read_to_string(folder.join(name))? + "0.9, 0.1\n");
     let other = hamel_codegen::generate::from_file(&text, more).expect("correct");
     assert_ne!(other.hash, generated.hash);
-    // Without a folder there is no file.
+    // Without a folder there are no files.
     let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
     assert!(errors[0].message.contains("in which folder"));
 }
 
-/// What a description includes is the same through every front end: its path starts at the description, from the macro
-/// at the package, and the compiler knows of the file.
+/// An included file is the same through every front end: its path is relative to the description, or to the package for
+/// the macro, and the file is registered with the compiler.
 #[test]
 fn an_included_file_is_the_same_through_every_front_end() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/reuse");
@@ -394,7 +395,7 @@ fn an_included_file_is_the_same_through_every_front_end() {
     let noted = file.items.pop().expect("items");
     assert!(matches!(noted, syn::Item::Const(_)));
     assert_eq!(prettyplease::unparse(&file).trim(), items(&built).trim());
-    // Without a folder there is no file.
+    // Without a folder there are no files.
     let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
     assert!(errors[0].message.contains("in which folder"));
 }

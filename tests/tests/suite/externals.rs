@@ -1,12 +1,12 @@
-//! Functions in Rust: a glider whose coefficients are one, against Newton's equations by hand; its slopes against
-//! differences; on numbers of both lengths and on lanes.
+//! Functions in Rust: a glider whose coefficients are such a function, compared with Newton's equations by hand, and
+//! its slopes with differences, in both precisions and on lanes.
 
 use hamel::methods::Rkmk8;
 use hamel::wide::f64x4;
 use hamel::{Scalar, State, integrate};
 use hamel_tests::glider::{Glider, GliderFunctions, GliderParameters, GliderState};
 
-/// Coefficients that hold at all angles, with their slopes.
+/// Coefficients valid for all angles, with their slopes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Wing;
 
@@ -38,7 +38,7 @@ const STATES: [[f64; 4]; 3] = [
     [2.5, -4.0, -6.0, 0.6],
 ];
 
-/// m (z̈ + g) and m ẍ from lift and drag in the axes of the wing, J ω̇ from their moment; all numbers those of the
+/// m (z̈ + g) and m ẍ from lift and drag in the axes of the wing, and J ω̇ from their moment, with the numbers of the
 /// description.
 fn by_hand([pitch, dz, dx, w]: [f64; 4]) -> [f64; 3] {
     let (m, g, j, area, rho, chord) = (1.2, 9.81, 0.04, 0.35, 1.2, 0.2);
@@ -75,7 +75,7 @@ fn forces_are_those_of_the_function() {
     }
 }
 
-/// By Runge and Kutta's classical method with short steps for the equations by hand.
+/// Integrates the equations by hand with the classical Runge-Kutta method and short steps.
 #[test]
 fn it_flies_as_by_hand() {
     let glider = glider();
@@ -119,7 +119,7 @@ fn it_flies_as_by_hand() {
     }
 }
 
-/// Rows of d/dt of (displacement, ξ); the displacements are those of x, which is plain.
+/// Rows of d/dt of (displacement, ξ); displacements are differences of x, since the coordinates are plain.
 #[test]
 fn slopes_are_those_of_the_matrix() {
     let glider = glider();
@@ -184,7 +184,7 @@ fn numbers_of_all_kinds() {
     }
 }
 
-/// The macro, a function of one number that gives one, and a description without parameters.
+/// The macro, with a function of one number that returns one, and a description without parameters.
 #[test]
 fn a_spring_from_elsewhere() {
     hamel::rigid_eom! {
@@ -210,7 +210,7 @@ fn a_spring_from_elsewhere() {
     assert_eq!(spring.accel(&[0.5], &[0.0], &[]), Ok([-7.0 * 0.125 / 2.0]));
     let rows = spring.linearize(&[0.5], &[0.0], &[]);
     assert_eq!(rows, Ok([[0.0, 1.0], [-3.0 * 7.0 * 0.25 / 2.0, 0.0]]));
-    // ½ m v² + k x⁴/4 is kept.
+    // ½ m v² + k x⁴/4 is conserved.
     let mut state = State::start(&spring);
     state.x = [0.8];
     integrate(&spring, Rkmk8, &mut state, 1e-2, 3.0, |_, _, _| [], |_| {}).expect("a swing");

@@ -1,5 +1,5 @@
-//! Functions with branches: random expressions against another evaluator, their slopes against differences, and
-//! what must not be found equal.
+//! Functions with branches: random expressions compared with another evaluator, their slopes with differences, and
+//! expressions that must not be identified.
 
 use crate::size::size;
 use hamel_codegen::algebra::fp;
@@ -20,7 +20,7 @@ impl Random {
     }
 }
 
-/// An expression with its text and its value.
+/// An expression that can be printed and evaluated.
 enum Tree {
     Number(i32),
     Name(usize),
@@ -141,7 +141,7 @@ impl Tree {
     }
 }
 
-/// The table `line`: held beyond its points.
+/// The table `line`, constant beyond its points.
 fn line(a: f64) -> f64 {
     let place = KNOTS.windows(2).find(|pair| a < pair[1].0);
     match place {
@@ -179,7 +179,7 @@ fn call(generated: &Generated, name: &str, at: &[f64; 5]) -> Vec<f64> {
         .expect("regular")
 }
 
-/// How far it goes: number of systems of five expressions each.
+/// Returns the number of random systems, with five expressions each.
 fn systems() -> u64 {
     size(100, 4_000)
 }
@@ -192,7 +192,7 @@ fn random_expressions_have_their_values_and_slopes() {
     assert!(values as u64 > 19 * systems() && slopes as u64 > 10 * systems());
 }
 
-/// The numbers of values and slopes of one system that were compared.
+/// Returns the numbers of compared values and slopes of one system.
 fn attack(seed: u64) -> [usize; 2] {
     let mut random = Random(fp::Random::new(seed));
     let trees: Vec<Tree> = (0..5).map(|_| Tree::random(&mut random, 4)).collect();
@@ -204,7 +204,7 @@ fn attack(seed: u64) -> [usize; 2] {
         let mut compare = |found: f64, tree: &Tree| {
             let expected = tree.value(&at);
             let near = (found - expected).abs() <= 1e-9 * (1.0 + expected.abs());
-            // At a jump rounding decides.
+            // At a jump, rounding decides.
             let by = 1e-9;
             let jumps = || {
                 (0..5).any(|k| {
@@ -251,7 +251,7 @@ fn attack(seed: u64) -> [usize; 2] {
     [values, slopes]
 }
 
-/// Whether two expressions of x, y, p are one.
+/// Returns whether two expressions of x, y, p are identified.
 fn equal(left: &str, right: &str) -> bool {
     let text = format!(
         "system S {{ param p = 2; coord x, y; velocity v, w; rate x = v; rate y = w; kinetic p * v^2 + w^2; \

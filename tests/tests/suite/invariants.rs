@@ -1,5 +1,5 @@
-//! Claims of constancy: proved where they are true, refused at every front end where they are not, and
-//! watched by generated functions.
+//! Claims of invariance: proved if they are true, refused by every front end if they are not, and monitored by
+//! generated functions.
 
 use hamel::methods::Rkmk4;
 use hamel::{State, System, integrate};
@@ -17,8 +17,8 @@ use hamel_tests::satellite_arm::SatelliteArm;
 use hamel_tests::spherical_pendulum::SphericalPendulum;
 use std::path::Path;
 
-/// What a run of 2 s in steps of 0.5 ms may lose of an invariant, relative: h⁴ times the fifth power
-/// of rates of up to 20 / s.
+/// Relative drift of an invariant in a run of 2 s with steps of 0.5 ms: h⁴ times the fifth power of rates of up to 20 /
+/// s.
 const DRIFT: f64 = 1e-7;
 
 fn text(name: &str) -> String {
@@ -50,7 +50,7 @@ fn textbook_invariants_are_proved_over_the_rationals() {
     }
 }
 
-/// A system of one bead, with more statements.
+/// Returns a system of one bead, with more statements.
 fn bead(statements: &str) -> String {
     format!(
         "system S {{ param m = 1, k = 2, d = 0.1; coord x; velocity v; rate x = v; input F;
@@ -65,10 +65,10 @@ fn conditions_set_inputs_and_parameters() {
         "invariant energy when F = 0, d = 0;",
         "invariant e = m * v^2 + k * x^2 when F = 0, d = 0;",
         "invariant p = linear_momentum along [1, 0, 0] when F = 0, d = 0, k = 0;",
-        // A root that no polynomial has, and a divisor.
+        // A root that is not a polynomial, and a division.
         "invariant a = sqrt(m * v^2 + k * x^2) when F = 0, d = 0;",
         "invariant r = 1 / (m * v^2 + k * x^2) when F = 0, d = 0;",
-        // The force that holds against friction is a value, too.
+        // The force that balances friction is a value, too.
         "invariant level = linear_momentum along [0, 1, 0];",
     ] {
         let claims = claims(&bead(claim));
@@ -110,7 +110,7 @@ fn false_claims_are_refused_at_every_door() {
     assert!(from_text(&text).is_err());
 }
 
-/// The largest relative change of what some functions watch in a run from a start.
+/// Checks the relative change of monitored functions in a run from the start.
 fn drift<Sys>(system: &Sys, watched: impl Fn(&Sys, &Sys::Coordinates, &Sys::Velocities) -> Vec<f64>)
 where
     Sys: System<Scalar = f64>,
@@ -118,7 +118,7 @@ where
     driven(system, system.zero_inputs(), watched);
 }
 
-/// The same under inputs that stay as they are.
+/// Checks the relative change under constant inputs.
 fn driven<Sys>(
     system: &Sys,
     inputs: Sys::Inputs,
@@ -191,7 +191,7 @@ fn generated_functions_watch_the_invariants() {
     });
 }
 
-/// What acts between links changes neither momentum nor angular momentum of all.
+/// Loads between links change neither momentum nor angular momentum of the whole.
 #[test]
 fn an_arm_at_work_keeps_the_momenta_of_its_satellite() {
     let torques = [2.0, -1.5, 1.0, 0.8, -0.3, 0.05, 0.01];

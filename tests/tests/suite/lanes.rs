@@ -1,4 +1,4 @@
-//! Generated code on SIMD lanes and in ensembles against the same code on one number.
+//! Compares generated code on SIMD lanes and in ensembles with the same code on one number.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -16,13 +16,13 @@ use hamel_tests::pendulum::Pendulum;
 use hamel_tests::torque_curve::TorqueCurve;
 use hamel_tests::two_bodies::TwoBodies;
 
-/// Rounding of sin and cos, which differ by a unit in the last place, carried through 100 steps: of
-/// motions that are not chaotic within them.
+/// Rounding of sin and cos, which differ by a unit in the last place, over 100 steps of motions that are not chaotic on
+/// this time scale.
 const ROUNDING: f64 = 1e-12;
 const H: f64 = 0.01;
 const UNTIL: f64 = 1.0;
 
-/// States around the start of the description: velocities that differ from member to member.
+/// Returns states around the start of the description, with different velocities.
 fn members<Single: System<Scalar = f64>>(system: &Single, count: usize) -> Vec<State<Single>> {
     let state = |member: usize| {
         let mut state = State::start(system);
@@ -54,7 +54,7 @@ fn distance<A: System<Scalar = f64>>(a: &State<A>, b: &State<A>) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Runs of whole groups, of one with lanes left over, of one alone and of nobody.
+/// Runs full groups, a group with unused lanes, a single member, and none.
 fn agrees<Single, Wide>(single: &Single, wide: &Wide)
 where
     Single: System<Scalar = f64>,
@@ -112,7 +112,7 @@ fn lanes_of_f32_agree_with_single_runs() -> Result<(), StepError> {
     for (found, expected) in states.iter().zip(&mut expected) {
         integrate(&single, Rkmk4, expected, H, UNTIL, |_, _, _| [0.0], |_| {})?;
         for (a, b) in found.x.iter().zip(expected.x) {
-            // A hundred steps of rounding of a motion that leaves the upright like exp(4 t).
+            // A hundred steps of rounding, in a motion that departs from the upright like exp(4 t).
             assert!((a - b).abs() < 2e-4 * b.abs().max(1.0), "{a} {b}");
         }
     }
@@ -144,8 +144,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
     assert_eq!(run(5), one);
 }
 
-/// Three of fifteen members fail: one has no finite start, one becomes infinite on its way, one has a
-/// length for which the mass matrix is singular. Their neighbours end as if they had never been there.
+/// Three of fifteen members fail: one has no finite start, one becomes infinite on its way, one has a length for which
+/// the mass matrix is singular. The other members are not affected.
 #[test]
 fn failures_do_not_spread() {
     let single = CartPole::<f64>::default();
@@ -159,7 +159,7 @@ fn failures_do_not_spread() {
             g: same(9.81),
         })
     };
-    // A push of one member from t = 0.5 on, without end.
+    // A permanent push of one member from t = 0.5 on.
     let push = |group: &Group, t: f64, _: &_, _: &_| {
         [group.gather(|member| {
             if member == 6 && t > 0.5 {
@@ -199,7 +199,7 @@ fn failures_do_not_spread() {
     let (StepError::NonFinite { time } | StepError::Singular { time, .. }) = late else {
         panic!("{late:?}");
     };
-    // The last valid state: at the start of the first step with a part beyond 0.5.
+    // The last valid state: the start of the first step that extends beyond 0.5.
     assert_eq!(states[6].t, time);
     assert!(
         (0.48..=0.51).contains(&time) && states[6].is_finite(),
@@ -277,7 +277,7 @@ fn progress_ends_at_the_total_and_may_cancel() {
     );
 }
 
-/// Branches are selected lane by lane, as one number takes them: to the bit, on both sides at once.
+/// Branches are selected lane by lane with the bits of a single number, on both sides at once.
 #[test]
 fn branches_are_selected_in_every_lane() {
     let (one, four) = (
@@ -308,7 +308,7 @@ fn branches_are_selected_in_every_lane() {
     }
 }
 
-/// What is compared decides where it is a number; where it is none, neither is the choice.
+/// A choice depends on a finite or infinite condition; if it is NaN, so is the result.
 #[test]
 fn choices_of_numbers_and_lanes() {
     let cases = [
@@ -343,7 +343,7 @@ fn choices_of_numbers_and_lanes() {
     );
     assert_eq!(0.0f32 * Scalar::inverse_of_length(0.0f32), 0.0);
     assert!(Scalar::inverse_of_length(f64::NAN).is_nan());
-    // What is added is seen by numbers of either length, and is the same in every lane.
+    // The increment is significant in either precision, and the same in every lane.
     assert_eq!(Scalar::raised(1.0f64) - 1.0, 2f64.powi(-26));
     assert_eq!(Scalar::raised(1.0f32) - 1.0, 2f32.powi(-15));
     let lanes = f64x4::from_f64(-3.0).raised();

@@ -1,5 +1,5 @@
-//! The linearisation of every model against differences of its own motion, taken along the manifold;
-//! what costs nothing in it; and that a wrong sign in any derived function is never emitted.
+//! Compares the linearisation of every model with differences of its motion along the manifold; checks that trivial
+//! parts cost nothing, and that a wrong sign in any derived function is never emitted.
 
 use crate::some::some;
 use hamel::{Block, manifold};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Step of central differences, extrapolated once: truncation like h⁴/480 times fifth derivatives
 /// (rates reach 150 / s), rounding 1e-16 / h.
 const STEP: f64 = 1e-4;
-/// What they may be off by, relative to the largest entry.
+/// Bound of their errors, relative to the largest entry.
 const DIFFERENCE: f64 = 1e-7;
 
 fn models() -> Vec<PathBuf> {
@@ -42,7 +42,7 @@ fn model(name: &str) -> Generated {
     linearized(&path)
 }
 
-/// A model at a state, its functions interpreted.
+/// The interpreted functions of a model.
 struct At {
     blocks: Vec<Block>,
     rate: Interpreter,
@@ -75,7 +75,7 @@ impl At {
         }
     }
 
-    /// x moved by the motion with velocities ξ for a short time.
+    /// Moves x by the motion with velocities ξ for a short time.
     fn moved(&self, x: &[f64], xi: &[f64], time: f64) -> Vec<f64> {
         let mut chart = self.chart_rate.call(x, xi, &[], &[]).expect("a value");
         chart.iter_mut().for_each(|entry| *entry *= time);
@@ -84,7 +84,7 @@ impl At {
         moved
     }
 
-    /// x moved along A alone: with the time among the coordinates rates have terms without ξ.
+    /// Moves x along A only: if time is a coordinate, rates have terms without ξ.
     fn displaced(&self, x: &[f64], h: &[f64], time: f64) -> Vec<f64> {
         let chart = |xi: &[f64]| self.chart_rate.call(x, xi, &[], &[]).expect("a value");
         let mut chart = along(&chart(h), &chart(&vec![0.0; self.n]), -1.0);
@@ -94,7 +94,7 @@ impl At {
         moved
     }
 
-    /// A h.
+    /// Returns A h.
     fn linear(&self, x: &[f64], h: &[f64]) -> Vec<f64> {
         along(&self.rate(x, h), &self.rate(x, &vec![0.0; self.n]), -1.0)
     }
@@ -131,7 +131,7 @@ fn along(a: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
 fn linearize_is_the_difference_of_neighbouring_motions() {
     some(models()).par_iter().for_each(|path| {
         let generated = linearized(path);
-        // Where constraints hold velocities back, the build compares with dual numbers.
+        // For models with velocity constraints, the build compares with dual numbers.
         if !generated.model.constraints.is_empty() {
             return;
         }
@@ -143,12 +143,12 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
                 |random: &mut Random| (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
             (0..count).map(|_| one(&mut random)).collect()
         };
-        // States of first order stand behind the velocities.
+        // First-order states follow the velocities.
         let (n, m, n_z) = (program.n, program.m, program.n_z);
         let moving = n + n_z;
         let at = At::new(&generated, numbers(m));
         let mut x = program.start_x.clone();
-        // Off the start, where that is a matter of charts alone.
+        // Away from the start, if this only takes the charts.
         if generated.model.points.constraints.is_empty() {
             let there = numbers(n);
             x = at.moved(&x, &there, 0.4);
@@ -178,7 +178,7 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
             let (slope, moved) = if j < n {
                 let unit = at.unit(j);
                 let slope = difference(|h| at.accel(&at.displaced(&x, &unit, h), &xi, &at.u));
-                // D(A ξ)[A h] − Ȧ h.
+                // D(A ξ)[A h] − Ȧ h
                 let ahead = difference(|h| at.rate(&at.displaced(&x, &unit, h), &xi));
                 let swept = difference(|h| at.linear(&at.moved(&x, &xi, h), &unit));
                 (slope, along(&ahead, &swept, -1.0))
@@ -201,7 +201,7 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
     });
 }
 
-/// The bar: the best count that a peer reaches for the same matrices is 3185.
+/// The best count that another program reaches for the same matrices is 3185.
 #[test]
 fn the_free_body_is_linearised_in_at_most_300_operations() {
     let program = model("free_body").program;
@@ -226,12 +226,12 @@ fn linearize_is_generated_where_it_is_asked_for() {
     let asked = text.replace("gravity", "generate rate, linearize;\n    gravity");
     let code = hamel_codegen::builder::source(&asked, "cart_pole.eom").expect("correct");
     assert!(code.contains("pub fn linearize("), "{code}");
-    // What is linearised can be simulated; nothing else comes along.
+    // The linearised system can be simulated; no other functions are generated.
     assert!(code.contains("hamel::System for"), "{code}");
     assert!(!code.contains("pub fn mass_matrix("), "{code}");
 }
 
-/// Validation notices one wrong sign in every function that is a derivative or an inverse.
+/// Validation detects one wrong sign in every function that is a derivative or an inverse.
 #[test]
 fn wrong_signs_are_never_emitted() {
     let generated = model("free_body_momenta");
@@ -255,7 +255,7 @@ fn wrong_signs_are_never_emitted() {
             if *output == program.graph.zero() {
                 continue;
             }
-            // One sign in every function is enough for large ones.
+            // For large models, one sign in every function is enough.
             varied += 1;
             if varied > 12 {
                 break;

@@ -1,4 +1,4 @@
-//! The linearisation against published eigenvalues: the Whipple bicycle and the rolling disk.
+//! Compares the linearisation with published eigenvalues, for the Whipple bicycle and the rolling disk.
 //!
 //! J. P. Meijaard, J. M. Papadopoulos, A. Ruina, A. L. Schwab, *Linearized dynamics equations for the
 //! balance and steer of a bicycle: a benchmark and review*, Proc. R. Soc. A 463 (2007), table 2.
@@ -15,7 +15,7 @@ fn linearized(name: &str) -> Generated {
     Generated::all(generated.model, 0).expect("derived")
 }
 
-/// A of a linearisation at the start, with other active velocities.
+/// Returns A of a linearisation at the start, with other active velocities.
 fn matrix(generated: &Generated, xi: &[f64]) -> Vec<Vec<f64>> {
     let program = &generated.program;
     let function = program.function("linearize").expect("generated");
@@ -42,7 +42,7 @@ fn divide(a: Complex, b: Complex) -> Complex {
     (re / square, im / square)
 }
 
-/// One solution of (A − λ I) v = b by elimination with pivots.
+/// Returns a solution of (A − λ I) v = b by elimination with pivoting.
 fn solve(a: &[Vec<f64>], shift: Complex, b: &[Complex]) -> Vec<Complex> {
     let n = a.len();
     let mut rows: Vec<Vec<Complex>> = (0..n)
@@ -79,7 +79,7 @@ fn solve(a: &[Vec<f64>], shift: Complex, b: &[Complex]) -> Vec<Complex> {
     v
 }
 
-/// The eigenvalue of A nearest to a guess, by inverse iteration: an independent way to it.
+/// Returns the eigenvalue of A nearest to a guess, by inverse iteration, as an independent computation.
 fn eigenvalue_near(a: &[Vec<f64>], guess: Complex) -> Complex {
     let n = a.len();
     let mut shift = (guess.0 + 1e-3, guess.1 + 2e-3);
@@ -90,7 +90,7 @@ fn eigenvalue_near(a: &[Vec<f64>], guess: Complex) -> Complex {
             let size = z.0.hypot(z.1);
             if size > best.1 { (i, size) } else { best }
         });
-        // (A − s) w = v: the eigenvalue is s + v / w in the largest entry.
+        // (A − s) w = v: the eigenvalue is s + v / w, taken at the largest entry.
         let ratio = divide(v[largest], w[largest]);
         let next = (shift.0 + ratio.0, shift.1 + ratio.1);
         let scale = w[largest];
@@ -143,7 +143,7 @@ fn bicycle_has_the_published_eigenvalues() {
         ),
     ];
     for (speed, expected) in published {
-        // Active: angular velocity of the rear frame, steer, rear wheel, front wheel.
+        // Active velocities: the rear frame's angular velocity, steer, rear wheel, front wheel.
         let xi = [0.0, 0.0, 0.0, 0.0, -speed / rr, -speed / rf];
         let a = matrix(&generated, &xi);
         for &value in expected {
@@ -155,8 +155,8 @@ fn bicycle_has_the_published_eigenvalues() {
     }
 }
 
-/// M, the forcing and the solution for ξ̇ together cost less than the 2,367 operations that M and the
-/// forcing alone take in the best published symbolic derivation.
+/// M, the forcing and the solution for ξ̇ together cost less than the 2,367 operations of M and the forcing in the best
+/// published symbolic derivation.
 #[test]
 fn bicycle_is_cheap() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/bicycle.eom");
@@ -203,7 +203,7 @@ fn critical_disk_has_eight_zero_eigenvalues() {
             .collect();
     }
     assert!(power.iter().flatten().all(|entry| entry.abs() < 1e-14));
-    // A little faster or slower they are not.
+    // At a slightly higher or lower spin they are not zero.
     let mut xi = generated.program.start_xi.clone();
     *xi.last_mut().expect("three velocities") *= 0.9;
     let slower = matrix(&generated, &xi);

@@ -1,4 +1,4 @@
-//! Loads are proved: a wrong sign in any of them is noticed. Frames may be given in any order.
+//! Loads are proved: a wrong sign in any of them is detected. Frames may be given in any order.
 
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::generate::{Generated, from_text};
@@ -31,7 +31,7 @@ const LOSS: &str = "2 D = −fᵢ ξⁱ of dampers";
 const LENGTH: &str = "ℓ² = d·d of springs and forces along lines";
 const MOTION: &str = "ṙ and r̈ of points from ∂ᵢr and ∂ᵢ∂ⱼr";
 
-/// One sign of an emitted function.
+/// Flips one sign of an emitted function.
 #[test]
 fn a_wrong_sign_in_an_emitted_force_is_noticed() {
     for (name, function, entry, equation) in [
@@ -57,7 +57,7 @@ fn a_wrong_sign_in_an_emitted_force_is_noticed() {
     }
 }
 
-/// A load, spring or damper of the model that is not what was described: no program is assembled.
+/// If a load, spring or damper of the model differs from the description, no program is assembled.
 #[test]
 fn a_wrong_sign_in_the_derivation_of_a_load_is_noticed() {
     type Change = fn(&mut Model);
@@ -98,7 +98,7 @@ fn a_wrong_sign_in_the_derivation_of_a_load_is_noticed() {
             errors[0].message.contains("internal check failed"),
             "{name}"
         );
-        // The identity is about the loads as given: the right program satisfies it still.
+        // The identity concerns the loads of the changed model, so the correct program still satisfies it.
         assert!(
             !failures(&model, &program)
                 .iter()
@@ -140,7 +140,7 @@ fn a_wrong_length_or_motion_is_noticed() {
     assert!(failures(&model, &program).is_empty());
 }
 
-/// The numbers of a function at a state, by the names of coordinates.
+/// Returns the numbers of a function at a state given by names of coordinates.
 fn numbers(generated: &Generated, function: &str) -> Vec<f64> {
     let program = &generated.program;
     let function = program.function(function).expect("the function");
@@ -152,7 +152,7 @@ fn numbers(generated: &Generated, function: &str) -> Vec<f64> {
         .expect("a value")
 }
 
-/// Frames forwards in the order of their tree, and in any order, are one mechanism.
+/// Frames in the order of their tree and in any other order describe the same mechanism.
 #[test]
 fn the_order_and_direction_of_frames_does_not_matter() {
     let scattered = text("frame_graph");

@@ -1,4 +1,5 @@
-//! Generated systems against physics, and the generator against its own laws; a module alone: `cargo test -p hamel-tests --test suite checks::`.
+//! Compares generated systems with physics, and checks the generator. To run a single module:
+//! `cargo test -p hamel-tests --test suite checks::`.
 
 mod adviser;
 mod broken_symbols;

@@ -1,4 +1,4 @@
-//! Methods on generated systems, by the traits that the generator implements for those they fit.
+//! Runs methods on generated systems, by the traits that the generator implements for them.
 
 use hamel::methods::{Gauss6, Rkmk4, Rkmk8, Scheme, Splitting};
 use hamel::rotor::{Rotor, Symmetry};
@@ -17,7 +17,7 @@ use hamel_tests::rod_particles::RodParticles;
 use hamel_tests::spherical_bob::SphericalBob;
 use hamel_tests::two_bodies::TwoBodies;
 
-/// Two methods of high order with steps at which both err by rounding.
+/// Bound of the difference of two high-order methods, with steps at which rounding dominates both.
 const SAME: f64 = 1e-10;
 
 fn end<Sys, M>(system: &Sys, method: M, steps: u32, until: f64, u: &Sys::Inputs) -> State<Sys>
@@ -40,7 +40,7 @@ where
     state
 }
 
-/// Splitting, Gauss and RKMK come to the same end, in whatever coordinates the system is written.
+/// Splitting, Gauss and RKMK methods reach the same final state, in any coordinates of the system.
 fn agree<Sys>(system: &Sys, u: &Sys::Inputs)
 where
     Sys: Split<Scalar = f64> + Canonical,
@@ -72,7 +72,7 @@ fn bodies_off_their_centres_in_all_coordinates() {
     agree(&PlanarWorld::default(), &[1.0, -0.5]);
 }
 
-/// Symmetries that follow from the description are known to the types, whatever the parameters.
+/// Symmetries that follow from the description are constants of the types, for all parameters.
 #[test]
 fn symmetries_of_rotors_are_known() {
     let symmetry = |rotors: &[Rotor<f64>]| rotors.first().map(|rotor| rotor.symmetry);
@@ -84,7 +84,7 @@ fn symmetries_of_rotors_are_known() {
     const { assert!(!<FreeBody<f64> as Split>::FREE) };
 }
 
-/// A chain of bodies has momenta, but nothing to split: its inertia depends on the configuration.
+/// A chain of bodies has momenta but cannot be split: its inertia depends on the configuration.
 #[test]
 fn chains_of_bodies_run_by_gauss() {
     let system = TwoBodies::default();
@@ -93,8 +93,8 @@ fn chains_of_bodies_run_by_gauss() {
     assert!(relative(&found.x, &expected.x) <= SAME);
 }
 
-/// Constraints of coordinates that no chart keeps hold to rounding over long runs, and leading x back to them leaves
-/// the order as it is.
+/// Coordinate constraints that are not built into a chart hold up to rounding in long runs, and the projection does not
+/// reduce the order.
 fn is_led_back<Sys: System<Scalar = f64>>(system: &Sys) {
     let u = system.zero_inputs();
     let long = end(system, Rkmk4, 20_000, 100.0, &u);

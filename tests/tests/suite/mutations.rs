@@ -1,8 +1,8 @@
-//! No text makes the generator panic, overflow or hang: mutations of all fixtures.
+//! Mutations of all fixtures: no text makes the generator panic, overflow or hang.
 //!
-//! Every case has its own seed, `HAMEL_FUZZ_SEED` plus its number, and can be had again alone.
-//! `HAMEL_FUZZ_CASES` is the number of cases that go through the whole pipeline instead of the
-//! parser alone; what was found wrong is printed in its smallest form.
+//! Every case has a separate seed, `HAMEL_FUZZ_SEED` plus its number, and can be reproduced alone. `HAMEL_FUZZ_CASES`
+//! is the number of cases that pass through the whole pipeline instead of only the parser; a failing text is printed in
+//! its smallest form.
 
 mod mutator;
 
@@ -18,13 +18,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Cases that go through the parser, and at full size.
+/// Number of cases for the parser, by default and at full size.
 const PARSED: [u64; 2] = [10_000, 1_000_000];
-/// Cases that go through all stages, and at full size, unless `HAMEL_FUZZ_CASES` says otherwise.
+/// Number of cases for all stages, by default and at full size, unless `HAMEL_FUZZ_CASES` is set.
 const GENERATED: [u64; 2] = [500, 100_000];
-/// Time for one case, generous: the machine may be busy with other tests.
+/// Generous time limit of one case: the machine may be busy with other tests.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Threads need as much stack as a program's main thread has.
+/// Stack size of threads, as that of a program's main thread.
 const STACK: usize = 8 << 20;
 
 fn number(variable: &str, otherwise: usize) -> usize {
@@ -32,10 +32,10 @@ fn number(variable: &str, otherwise: usize) -> usize {
     text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
-/// What a worker does now: the text, and since when.
+/// The current text of a worker, and its start time.
 type Work = Mutex<Option<(String, Instant)>>;
 
-/// Runs all cases; the text of the first that panics. Prints the slowest.
+/// Runs all cases; returns the smallest text for the first panic. Prints the slowest case.
 fn run(
     count: usize,
     make: impl Fn(usize) -> String + Sync,
@@ -82,7 +82,7 @@ fn run(
                     && since.elapsed() > PATIENCE
                     && failure.lock().expect("unpoisoned").is_none()
                 {
-                    // The thread cannot be stopped, so the process is.
+                    // The thread cannot be stopped, so the process ends.
                     eprintln!("more than {PATIENCE:?} for:\n{text}");
                     std::process::exit(1);
                 }
@@ -98,7 +98,7 @@ fn panics(text: &str, check: &(impl Fn(&str) + Sync)) -> bool {
     catch_unwind(AssertUnwindSafe(|| check(text))).is_err()
 }
 
-/// A text from which nothing more can be left out.
+/// Minimises a failing text by leaving out tokens.
 fn smallest(text: &str, fails: impl Fn(&str) -> bool) -> String {
     let mut tokens = mutator::tokens(text);
     if !fails(&tokens.join(" ")) {
@@ -121,10 +121,10 @@ fn smallest(text: &str, fails: impl Fn(&str) -> bool) -> String {
     tokens.join(" ")
 }
 
-/// Joints and coordinates of a description that takes its time by right.
+/// Number of joints and coordinates above which a description is expected to be slow.
 const LONG: usize = 24;
 
-/// Whether a description repeats so much that its equations of motion are long, not its derivation.
+/// Returns whether a description repeats so much that its equations of motion are long.
 fn is_long(text: &str) -> bool {
     let Ok(system) = parse_text(text) else {
         return false;
@@ -133,7 +133,7 @@ fn is_long(text: &str) -> bool {
     expand(&system).is_ok_and(|written| written.system.items.iter().filter(moves).count() > LONG)
 }
 
-/// All stages, and the text of the errors; whether the text is right.
+/// Runs all stages and renders the errors; returns whether the text is correct.
 fn generate(text: &str) -> bool {
     if is_long(text) {
         return true;

@@ -1,4 +1,4 @@
-//! Motions with closed forms of textbooks.
+//! Motions with closed forms from textbooks.
 
 use hamel::methods::Rkmk4;
 use hamel::{State, System, integrate, s1, so3};
@@ -15,7 +15,7 @@ use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::reference::run;
 use std::f64::consts::{PI, TAU};
 
-/// Steps of about 1/4000 of the motion's period: RKMK4 errs by less than 1e-11 of it.
+/// Steps of about 1/4000 of the motion's period, with which the error of RKMK4 is below 1e-11.
 const STEPS: u32 = 4000;
 /// Method error of such runs, with margin.
 const EXACT: f64 = 1e-10;
@@ -76,7 +76,7 @@ fn pendulum_period() {
             assert_near("series", period / series, 1.0, 1e-11);
         }
         let x0 = s1::exp(angle);
-        // A quarter: the lowest point, at the speed that the energy gives.
+        // After a quarter of the period, the pendulum is at the lowest point, with the speed given by the energy.
         let speed = 2.0 * (g / l).sqrt() * (angle / 2.0).sin();
         for (part, theta, rate) in [(0.25, 0.0, -speed), (0.5, -angle, 0.0), (1.0, angle, 0.0)] {
             let by_raw = end(&raw, x0, [0.0], part * period);
@@ -94,7 +94,7 @@ fn pendulum_period() {
 fn particle_on_a_kepler_orbit() {
     let (m, k) = (0.7_f64, 2.0);
     let system = PolarParticle::new(PolarParticleParameters { m, k }).expect("a particle");
-    // Start at the pericentre: ρ = 0.8 and more than the speed of the circle, √(k / (m ρ)).
+    // The start is the pericentre: ρ = 0.8 and more than the circular speed √(k / (m ρ)).
     let (rho, v) = (0.8, 2.2);
     let energy = 0.5 * m * v * v - k / rho;
     let a = -k / (2.0 * energy);
@@ -128,8 +128,8 @@ fn particle_on_a_kepler_orbit() {
     }
 }
 
-/// Upright, to first order: θ̈ = λ² θ with λ² = (m_c + m_p) g / (m_c l), p̈ = −(m_p / m_c) g θ, and
-/// a push F gives p̈ = F / m_c, θ̈ = −F / (m_c l).
+/// Near the upright, to first order: θ̈ = λ² θ with λ² = (m_c + m_p) g / (m_c l), p̈ = −(m_p / m_c) g θ, and a push F
+/// gives p̈ = F / m_c, θ̈ = −F / (m_c l).
 #[test]
 fn cart_pole_near_the_upright() {
     /// Nonlinear terms are of the third order in the angle: 1e-12 relative.
@@ -151,7 +151,7 @@ fn cart_pole_near_the_upright() {
     assert_near("growth", state.x[1] / SMALL, 2.0_f64.cosh(), 1e-9);
 }
 
-/// The centre of mass of a free planar body falls on a parabola, and the body turns evenly.
+/// The centre of mass of a free planar body falls on a parabola, and the body rotates uniformly.
 #[test]
 fn planar_body_in_free_fall() {
     let (m, j, a, b, g) = (2.0, 0.4, 0.3, 0.1, 9.81);
@@ -189,7 +189,7 @@ fn planar_body_in_free_fall() {
 /// Ω (J₃ ω₃ − J₁ Ω cos θ) = m g l, with ω₃ the spin about the axis.
 #[test]
 fn symmetric_top_in_steady_precession() {
-    /// h |ω| is at most 0.02, and RKMK4 errs by 6e-3 (h |ω|)⁴ per radian, of which there are 70.
+    /// h |ω| is at most 0.02, and the error of RKMK4 is 6e-3 (h |ω|)⁴ per radian, over 70 radians.
     const PRECESSION: f64 = 1e-7;
     let (m, g, l, j1, j3) = (1.0, 9.81, 0.5, 0.3, 0.05);
     let theta = [[j1, 0.0, 0.0], [0.0, j1, 0.0], [0.0, 0.0, j3]];
@@ -213,13 +213,13 @@ fn symmetric_top_in_steady_precession() {
         let spin = (m * g * l / precession + j1 * precession * tilt.cos()) / j3;
         let until = 0.4 * TAU / precession.abs();
 
-        // World z in body axes when the axis e₃ is turned by the tilt about x.
+        // World z in body axes, with the axis e₃ tilted about x.
         let r0 = so3::exp([tilt, 0.0, 0.0]);
         let up = so3::apply_transpose(r0, [0.0, 0.0, 1.0]);
         let w0 = up.map(|u| precession * u);
         let end3 = end(&third, r0, [w0[0], w0[1], spin], until);
 
-        // The same top lying along e₂ of its frame.
+        // The same top with its axis along e₂ of its frame.
         let swap = so3::exp([PI / 2.0, 0.0, 0.0]);
         let r2 = so3::product(r0, swap);
         let up = so3::apply_transpose(r2, [0.0, 0.0, 1.0]);
@@ -239,7 +239,7 @@ fn symmetric_top_in_steady_precession() {
     }
 }
 
-/// A free symmetric body: in body axes ω turns about the axis at the rate (J₃ − J₁) ω₃ / J₁.
+/// A free symmetric body: in body axes, ω rotates about the symmetry axis at the rate (J₃ − J₁) ω₃ / J₁.
 #[test]
 fn free_symmetric_body_precesses_evenly() {
     let (j1, j3) = (1.0, 1.8);
@@ -281,7 +281,7 @@ fn hovering_body_under_a_torque() {
     }
 }
 
-/// The bead rests on the hoop at cos θ = g / (a W²).
+/// The bead is in equilibrium on the hoop at cos θ = g / (a W²).
 #[test]
 fn bead_on_a_turning_hoop() {
     let (m, a, j, g) = (0.2, 0.4, 0.05, 9.81);
@@ -296,7 +296,7 @@ fn bead_on_a_turning_hoop() {
     let [hoop, bead] = accel(rest);
     assert_near("hoop", hoop, 0.0, 1e-12);
     assert_near("bead", bead, 0.0, 1e-12);
-    // Driven back from both sides: θ̈ ≈ −W² sin²θ δ.
+    // It is stable: θ̈ ≈ −W² sin²θ δ.
     for side in [-1e-5, 1e-5] {
         let stiffness = -accel(rest + side)[1] / side;
         assert_near(
@@ -314,7 +314,7 @@ fn bead_on_a_turning_hoop() {
     assert_near("sin ψ", state.x[1], s, EXACT);
 }
 
-/// (28): what does the power of the applied loads, at velocities in the directions of the loads.
+/// (28): f is the power of the applied loads per unit velocity.
 #[test]
 fn applied_loads_are_generalised_forces() {
     let plate: PlanarBody<f64> = PlanarBody::default();
@@ -345,7 +345,7 @@ fn applied_loads_are_generalised_forces() {
     let [force] = circle.generalized_force(&s1::exp(0.4), &[2.0], &[]);
     assert_near("damping", force, -0.5, 1e-15);
 
-    // A wrench in body axes at the origin of the frame is dual to (v, ω) there, wherever the centre is.
+    // A wrench in body axes at the origin of the frame is dual to (v, ω) there, wherever the centre of mass is.
     let body: FreeBody<f64> = FreeBody::default();
     let mut state = State::start(&body);
     let turned = so3::exp([0.4, -1.0, 0.3]);

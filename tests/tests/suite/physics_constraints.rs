@@ -1,5 +1,4 @@
-//! Systems with constraints on their velocities, against reference solutions, published states and
-//! conservation laws.
+//! Systems with velocity constraints, compared with reference solutions, published states and conservation laws.
 
 use hamel::methods::Rkmk4;
 use hamel::{Singular, State, StepError, System, integrate};
@@ -18,7 +17,7 @@ fn energy<Sys: System<Scalar = f64>>(system: &Sys, state: &State<Sys>) -> f64 {
     system.kinetic_energy(&state.x, &state.xi) + system.potential_energy(&state.x)
 }
 
-/// Largest relative change of energy, largest |φ|, and the last state.
+/// Returns the largest relative change of energy, the largest |φ|, and the last state.
 fn drift<Sys: System<Scalar = f64>>(
     system: &Sys,
     until: f64,
@@ -35,7 +34,7 @@ fn drift<Sys: System<Scalar = f64>>(
     Ok((change, open, state))
 }
 
-/// Without poles: R e₃ circles through both of them.
+/// The coordinates have no poles: the path of R e₃ passes through both.
 #[test]
 fn spherical_pendulum_passes_both_poles() {
     let reference = Reference::read("spherical-pendulum-through-poles");
@@ -48,7 +47,7 @@ fn spherical_pendulum_passes_both_poles() {
             a[j] * b[k] - a[k] * b[j]
         })
     };
-    // Columns: any pair across, then the rod.
+    // Columns: any two orthogonal directions, then the rod.
     let spin = cross(x, v);
     let length = spin.iter().map(|s| s * s).sum::<f64>().sqrt();
     let first = spin.map(|s| s / length);
@@ -66,7 +65,7 @@ fn spherical_pendulum_passes_both_poles() {
     assert!(error < 1e-9, "{error:e}");
 }
 
-/// The state that the IVP test set publishes for t = 0.03.
+/// The state published by the IVP test set for t = 0.03.
 #[test]
 fn squeezer_reaches_the_published_state() {
     let published: [f64; 7] = [
@@ -86,18 +85,18 @@ fn squeezer_reaches_the_published_state() {
     assert!(system.constraint_norm(&end.x) < 1e-14);
 }
 
-/// All rods horizontal is a singular position, passed eight times in ten seconds.
+/// With all rods horizontal the position is singular, and the motion passes it eight times in ten seconds.
 #[test]
 fn double_four_bar_passes_its_singular_position() {
     let system = DoubleFourBar::default();
     let (change, open, end) = drift(&system, 10.0, 2e-3).expect("a run");
     assert!(change < 1e-9, "{change:e}");
     assert!(open < 1e-13, "{open:e}");
-    // It stays on the branch it came on, the couplers level, through more than four turns.
+    // The motion stays on its branch, with level couplers, through more than four turns.
     assert!(end.x[0] < -25.0 && end.x[3].abs() < 1e-9, "{:?}", end.x);
 }
 
-/// Exactly there the rows of the loops depend on one another.
+/// Exactly there, the rows of the loops are linearly dependent.
 #[test]
 fn singular_position_is_a_typed_error() {
     let system = DoubleFourBar::default();
@@ -109,7 +108,7 @@ fn singular_position_is_a_typed_error() {
     );
 }
 
-/// Five rods, one degree of freedom, one row of the loops redundant everywhere.
+/// Five rods with one degree of freedom, and one row of the loops redundant everywhere.
 #[test]
 fn bricard_keeps_its_energy() {
     let system = Bricard::default();
@@ -129,14 +128,14 @@ fn four_bar_keeps_its_energy_and_its_loop() {
         assert!(open < 1e-12, "{open:e}");
         changes.push(change);
     }
-    // Energy is kept to the order of the method.
+    // Energy is conserved to the order of the method.
     assert!(
         slopes(&changes).iter().all(|order| *order > 3.7),
         "{changes:?}"
     );
 }
 
-/// Without slip the ball's contact rests, and ideal constraints do no work.
+/// Without slip, the ball's contact point is at rest, and ideal constraints do no work.
 #[test]
 fn ball_with_general_inertia_keeps_its_energy() {
     let (change, _, end) = drift(&RollingBall::default(), 5.0, 1e-3).expect("a run");
@@ -148,8 +147,8 @@ fn ball_with_general_inertia_keeps_its_energy() {
     );
 }
 
-/// What the multipliers do: the force on a wheel's contact is the mass times its acceleration less
-/// weight; here for the sleigh on the closed form m (v̇ + u ω) of its blade.
+/// The multipliers are constraint forces: the force on a wheel's contact is the mass times its acceleration, less the
+/// weight; here compared with the closed form m (v̇ + u ω) for the sleigh's blade.
 #[test]
 fn sleigh_blade_bears_the_centrifugal_force() {
     let (m, inertia, a) = (2.0, 0.6, 0.5_f64);
@@ -171,7 +170,7 @@ fn snakeboard_moves_by_turning_its_rotor() {
     assert!(state.x[0].hypot(state.x[1]) > 0.05, "{:?}", state.x);
 }
 
-/// Between 4.3 and 6.0 m/s the bicycle rights itself without a rider's hands.
+/// Between 4.3 and 6.0 m/s the riderless bicycle is stable.
 #[test]
 fn bicycle_is_stable_at_five_metres_a_second() {
     let lean = |speed: f64| {
@@ -179,17 +178,17 @@ fn bicycle_is_stable_at_five_metres_a_second() {
         let mut state = State::start(&system);
         let (rr, rf) = (0.3, 0.35);
         let mut xi = state.xi;
-        // Active: the rear frame's angular velocity, steer, rear wheel, front wheel.
+        // Active velocities: the rear frame's angular velocity, steer, rear wheel, front wheel.
         xi = [0.05, xi[1], xi[2], xi[3], -speed / rr, -speed / rf];
         state.xi = system.project_velocity(&state.x, &xi).expect("regular");
         let none = |_, _: &_, _: &_| system.zero_inputs();
         integrate(&system, Rkmk4, &mut state, 2e-3, 6.0, none, |_| {}).map(|()| {
-            // Sine of the lean angle: how far the frame's y axis points down.
+            // The sine of the lean angle: the vertical component of the frame's y axis.
             state.x[3 + 7].abs()
         })
     };
     let stable = lean(5.0).expect("a run");
     assert!(stable < 5e-3, "{stable:e}");
-    // Too slow it falls.
+    // At a low speed it falls.
     assert!(lean(2.0).is_err() || lean(2.0).is_ok_and(|fallen| fallen > 0.3));
 }

@@ -1,4 +1,4 @@
-//! What cannot be: singular mass, by parameters and by configuration, is a typed error and never NaN.
+//! Singular mass, by parameters or by configuration, is a typed error and never gives NaN.
 
 use hamel::methods::Rkmk4;
 use hamel::{Singular, State, StepError, integrate};
@@ -9,7 +9,7 @@ use hamel_tests::hoop_bead::{HoopBead, HoopBeadParameters};
 use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::two_bodies::TwoBodies;
 
-/// Numbers that are no mass and no moment of inertia.
+/// Numbers that are neither a mass nor a moment of inertia.
 const REFUSED: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 #[test]
@@ -27,7 +27,7 @@ fn a_refused_mass_leaves_everything_unchanged() {
             "{refused}"
         );
         assert_eq!(system.m(), 1.3);
-        // Bit by bit: the constants kept from the parameters are those of before, too.
+        // Bit by bit: the constants derived from the parameters are unchanged, too.
         assert_eq!(system.accel(&state.x, &state.xi, &inputs), before);
     }
     system.set_m(1.4).expect("a mass");
@@ -62,8 +62,8 @@ fn a_refused_inertia_names_its_velocity() {
     assert_eq!(system.j2(), 2.0);
 }
 
-/// An inertia about the origin that leaves nothing about the centre of mass belongs to no body, though
-/// its own diagonal is positive.
+/// An inertia about the origin that leaves nothing about the centre of mass belongs to no body, even with a positive
+/// diagonal.
 #[test]
 fn an_inertia_smaller_than_its_offset_is_refused() {
     let mut system: FreeBody<f64> = FreeBody::default();
@@ -118,7 +118,7 @@ fn an_indefinite_inertia_with_a_positive_diagonal_is_refused() {
     );
 }
 
-/// Without an inertia of its own the hoop has none while the bead is on its axis.
+/// Without a separate inertia, the hoop has none while the bead is on its axis.
 #[test]
 fn a_mass_matrix_singular_in_places_is_an_error_there() {
     let system = HoopBead::new(HoopBeadParameters {
@@ -136,7 +136,7 @@ fn a_mass_matrix_singular_in_places_is_an_error_there() {
     let regular = system.accel(&beside, &xi, &[0.5]).expect("M is regular");
     assert!(regular.into_iter().all(f64::is_finite));
 
-    // A run ends there with the time and keeps its last valid state.
+    // A run ends there with the time, and keeps its last valid state.
     let mut state = State {
         t: 2.0,
         x: on_axis,
@@ -155,7 +155,7 @@ fn a_mass_matrix_singular_in_places_is_an_error_there() {
 
 #[test]
 fn a_cart_without_mass_is_an_error_where_the_pole_stands() {
-    // M is regular while the pole is inclined: what m_c = 0 leaves at θ = 0 is singular.
+    // M is regular while the pole is inclined: with m_c = 0 it is singular at θ = 0.
     match CartPole::new(CartPoleParameters {
         mc: 0.0,
         mp: 0.3,
@@ -172,14 +172,14 @@ fn a_cart_without_mass_is_an_error_where_the_pole_stands() {
     }
 }
 
-/// A body of points on a line through the joint cannot be turned about it.
+/// A body of points on a line through the joint has no inertia about the line.
 #[test]
 fn a_chain_with_a_thin_rod_is_an_error() {
     let default: TwoBodies<f64> = TwoBodies::default();
     let mut system = default.clone();
     let rod = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
     let state = State::start(&default);
-    // Refused at once or, where the generator's pivots depend on x, at the state.
+    // Refused at once or, if the generator's pivots depend on x, at the state.
     match system.set_theta2(rod) {
         Err(_) => assert_eq!(system.theta2(), default.theta2()),
         Ok(()) => assert!(system.accel(&state.x, &state.xi, &[]).is_err()),
@@ -199,7 +199,7 @@ fn states_that_are_not_numbers_are_errors() {
     assert_eq!(accel, Err(Singular::Inertia { velocity: "W" }));
 }
 
-/// Constants kept from parameters follow every setter: the system is the one that `new` makes.
+/// Setters update the constants derived from parameters: the system equals the one made by `new`.
 #[test]
 fn setters_keep_the_constants_in_step() {
     let theta = [[3.0, 0.2, -0.1], [0.2, 2.5, 0.3], [-0.1, 0.3, 2.2]];
@@ -223,7 +223,7 @@ fn setters_keep_the_constants_in_step() {
     assert_eq!(set.energy(&x, &xi), fresh.energy(&x, &xi));
 }
 
-/// Symmetric parameters are read above the diagonal, and given back symmetric.
+/// Symmetric parameters are read from the upper triangle, and returned symmetric.
 #[test]
 fn symmetric_parameters_stay_symmetric() {
     let mut system: HeavyTop<f64> = HeavyTop::default();

@@ -1,4 +1,4 @@
-//! A light aircraft against the textbook: Newton's and Euler's equations in Euler angles, its trim, and the linear
+//! Compares a light aircraft with a textbook: the Newton-Euler equations in Euler angles, the trim, and the linear
 //! equations about it.
 //!
 //! R. C. Nelson, *Flight Stability and Automatic Control*, 2nd ed., McGraw-Hill 1998: the derivatives of chapter 3, the
@@ -31,7 +31,7 @@ fn by_hand(
     let area = 0.5 * of.rho * speed * speed * of.s;
     let lift = area * (of.lift + of.lift_alpha * alpha + of.lift_elevator * u[0]);
     let drag = area * (of.drag + of.drag_alpha * alpha);
-    // Drag is along the flow in the plane of symmetry, lift is at right angles to it.
+    // Drag is along the flow in the plane of symmetry, lift is perpendicular to it.
     let flow = Vector3::new(alpha.cos(), 0.0, alpha.sin());
     let up = Vector3::new(alpha.sin(), 0.0, -alpha.cos());
     let side = area * (of.side_beta * beta + of.side_rudder * u[3]);
@@ -85,7 +85,7 @@ fn arrays(s: &SVector<f64, 12>) -> ([f64; 6], [f64; 6]) {
     )
 }
 
-/// [A B] as generated.
+/// Returns the generated [A B].
 fn linear(
     aircraft: &Navion<f64>,
     s: &SVector<f64, 12>,
@@ -103,8 +103,8 @@ fn rates(aircraft: &Navion<f64>, s: &SVector<f64, 12>, u: &SVector<f64, 4>) -> S
     SVector::from_iterator(x_dot.into_iter().chain(xi_dot))
 }
 
-/// Level flight at a speed, by Newton's method with the generated slopes: the angle of attack with the pitch that belongs
-/// to it, elevator and throttle for which v₁, v₃ and ω₂ stay.
+/// Finds level flight at a speed by Newton's method with the generated slopes: the angle of attack with the
+/// corresponding pitch, elevator and throttle for which v₁, v₃ and ω₂ are constant.
 fn trimmed(aircraft: &Navion<f64>, speed: f64) -> (SVector<f64, 12>, SVector<f64, 4>) {
     let mut alpha = 0.02_f64;
     let mut u = SVector::<f64, 4>::zeros();
@@ -148,7 +148,7 @@ fn trimmed(aircraft: &Navion<f64>, speed: f64) -> (SVector<f64, 12>, SVector<f64
     }
 }
 
-/// The speed at which the lift of the reference carries the weight, by the book 176 ft/s.
+/// The speed at which the lift of the reference balances the weight; 176 ft/s in the book.
 fn reference_speed(of: &NavionParameters<f64>) -> f64 {
     (2.0 * of.m * of.g / (of.rho * of.s * of.lift)).sqrt()
 }
@@ -177,7 +177,7 @@ fn flight_obeys_newton_and_euler_at_any_attitude() {
     }
 }
 
-/// About the flight that the coefficients are of nothing is deflected, and thrust equals drag.
+/// At the reference flight of the coefficients nothing is deflected, and thrust equals drag.
 #[test]
 fn the_trim_of_the_reference_is_that_of_the_book() {
     let (aircraft, of) = (Navion::default(), NavionParameters::default());
@@ -188,7 +188,7 @@ fn the_trim_of_the_reference_is_that_of_the_book() {
     assert!((s[4] - of.trim_angle).abs() < 1e-12, "{}", s[4]);
     assert!(u[0].abs() < 1e-12, "{}", u[0]);
     assert!((u[1] - drag).abs() < 1e-9 * drag, "{} {drag}", u[1]);
-    // Faster than that the nose is lower and the elevator down, and all is still in balance by the equations by hand.
+    // At a higher speed the nose is lower and the elevator down, and the equations by hand are still in balance.
     let (s, u) = trimmed(&aircraft, 220.0);
     assert!(s[4] < of.trim_angle && u[0] > 0.0, "{} {}", s[4], u[0]);
     let expected = by_hand(&of, &s, &u);
@@ -196,7 +196,7 @@ fn the_trim_of_the_reference_is_that_of_the_book() {
     assert!(expected[2].abs() < 1e-10, "level: {expected}");
 }
 
-/// δs = T δ of displacements along the columns of A and of velocities, by hand: rates are linear in (v, ω).
+/// T of δs = T δ, for displacements along the columns of A and of velocities, by hand: rates are linear in (v, ω).
 fn displacements(of: &NavionParameters<f64>, s: &SVector<f64, 12>) -> SMatrix<f64, 12, 12> {
     SMatrix::from_fn(|i, j| {
         let mut unit = *s;
@@ -209,7 +209,7 @@ fn displacements(of: &NavionParameters<f64>, s: &SVector<f64, 12>) -> SMatrix<f6
     })
 }
 
-/// Fourth-order difference.
+/// Fourth-order difference
 fn derivative<const N: usize, const M: usize>(
     at: impl Fn(f64) -> SMatrix<f64, N, M>,
     h: f64,
@@ -218,8 +218,8 @@ fn derivative<const N: usize, const M: usize>(
     (4.0 * centred(h / 2.0) - centred(h)) / 3.0
 }
 
-/// [A B] against differences of the equations by hand, level and in a banked turn: of δṡ = J δs + L δu with δs = T δ
-/// is δ̇ = T⁻¹ ((J T − Ṫ) δ + L δu).
+/// Compares [A B] with differences of the equations by hand, in level flight and in a banked turn: δṡ = J δs + L δu
+/// with δs = T δ gives δ̇ = T⁻¹ ((J T − Ṫ) δ + L δu).
 #[test]
 fn slopes_are_those_of_the_equations_by_hand() {
     let (aircraft, of) = (Navion::default(), NavionParameters::default());
@@ -267,7 +267,7 @@ fn slopes_are_those_of_the_equations_by_hand() {
     }
 }
 
-/// Nelson's derivatives at the reference in stability axes, and what his matrices are made of.
+/// Compares Nelson's derivatives at the reference in stability axes, and the matrices formed from them.
 #[test]
 fn linear_equations_are_those_of_the_book() {
     let (aircraft, of) = (Navion::default(), NavionParameters::default());
@@ -369,7 +369,7 @@ fn linear_equations_are_those_of_the_book() {
         }
     }
 
-    // The modes as printed; the coefficients have two or three digits.
+    // The published modes; the coefficients have two or three digits.
     let modes =
         |m: Matrix4<f64>| DMatrix::from_iterator(4, 4, m.iter().copied()).complex_eigenvalues();
     for (matrix, published) in [
@@ -385,7 +385,7 @@ fn linear_equations_are_those_of_the_book() {
     }
 }
 
-/// After a small gust the aircraft moves as exp(A t) says, through two periods of its phugoid.
+/// After a small gust the aircraft follows exp(A t), through two periods of its phugoid.
 #[test]
 fn a_small_gust_is_answered_by_the_linear_equations() {
     let (aircraft, of) = (Navion::default(), NavionParameters::default());

@@ -1,4 +1,4 @@
-//! One body, many descriptions: the motion does not depend on coordinates, velocities or frames.
+//! One body in many descriptions: the motion is independent of coordinates, velocities and frames.
 
 use hamel::methods::Rkmk4;
 use hamel::{State, System, s1, s3, so3};
@@ -17,9 +17,9 @@ use hamel_tests::pendulum_circle::{CirclePendulum, CirclePendulumParameters};
 use hamel_tests::reference::{relative, run};
 use hamel_tests::six_particles::SixParticles;
 
-/// The motions compared last 1 s.
+/// Duration of the compared motions, in s.
 const UNTIL: f64 = 1.0;
-/// Steps: h |ω| below 4e-3, where RKMK4 errs by less than 1e-11.
+/// Number of steps: h |ω| is below 4e-3, where the error of RKMK4 is below 1e-11.
 const STEPS: u32 = 2000;
 /// Method error of both motions, with margin; a wrong term gives 1e-3 and more.
 const SAME: f64 = 1e-10;
@@ -51,7 +51,7 @@ fn pose() -> (Vector, Matrix) {
 const SPEED: Vector = [1.0, -2.0, 3.0];
 const SPIN: Vector = [2.0, 3.0, -1.5];
 
-/// The motion of the free body whose velocities are both in body axes, as (x, v and ω in world axes).
+/// Returns the motion of the free body with velocities in body axes, as (x, v and ω in world axes).
 fn free_body(system: &FreeBody<f64>) -> ([f64; 12], Vector, Vector) {
     let (r, rotation) = pose();
     let body = |v| so3::apply_transpose(rotation, v);
@@ -152,7 +152,7 @@ fn heavy_top_in_three_descriptions() {
     assert_same("quaternion, ω", &quaternion.xi, &body.xi);
 }
 
-/// Specialised to principal axes and a centre of mass on one of them, and general with such numbers.
+/// The top specialised to principal axes and a centre of mass on one of them, and the general one with these numbers.
 #[test]
 fn top_on_its_axis_is_a_top() {
     let (r0, w0) = (so3::exp([0.4, -0.9, 0.3]), [0.5, 3.0, -2.0]);
@@ -178,7 +178,7 @@ fn top_on_its_axis_is_a_top() {
     assert_same("ω", &axis.xi, &general.xi);
 }
 
-/// A free body whose frame sits in its centre of mass moves as one whose frame sits elsewhere.
+/// The motion of a free body is independent of whether its frame is at the centre of mass.
 #[test]
 fn free_body_does_not_depend_on_the_place_of_its_frame() {
     let body = FreeBody::default();

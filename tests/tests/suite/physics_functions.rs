@@ -1,4 +1,4 @@
-//! Systems with branches, lengths and tables against equations written by hand.
+//! Compares systems with branches, lengths and tables with equations by hand.
 
 use hamel::methods::Rkmk4;
 use hamel::{State, System};
@@ -21,8 +21,8 @@ fn near(what: &str, value: f64, expected: f64, bound: f64) {
     );
 }
 
-/// The equations of the cart-pole in the form of Barto, Sutton and Anderson, rod without mass: with the force on the
-/// cart, cut at ±10 N and less the friction.
+/// The equations of the cart-pole in the form of Barto, Sutton and Anderson, with a massless rod; the force on the cart
+/// is clamped to ±10 N, less the friction.
 #[test]
 fn a_cart_with_a_largest_force_and_friction() {
     let system = FrictionCartPole::<f64>::default();
@@ -51,8 +51,8 @@ fn a_cart_with_a_largest_force_and_friction() {
     }
 }
 
-/// Without damping a ball that falls from h is on the ground for 2 (π − arctan(ω v/g))/ω, v² = 2 g h, and is at h
-/// again after 2 √(2h/g) and that.
+/// Without damping, a ball that falls from h is in contact with the ground for 2 (π − arctan(ω v/g))/ω, v² = 2 g h, and
+/// returns to h after 2 √(2h/g) plus this time.
 #[test]
 fn a_ball_bounces_as_long_as_it_should() {
     let system = BouncingBall::<f64>::new(BouncingBallParameters {
@@ -75,7 +75,7 @@ fn a_ball_bounces_as_long_as_it_should() {
     near("x", end.x[0], 0.3 * period, 1e-9);
     near("height", end.x[1], h, 1e-7);
     near("speed", end.xi[1], 0.0, 1e-5);
-    // The force is none above the ground, and none that pulls.
+    // The force is zero above the ground, and never pulls.
     let force = |z: f64| system.generalized_force(&[0.0, z], &[0.0, 1.0], &[])[1];
     assert_eq!([force(0.1), force(0.0), force(-0.01)], [0.0, 0.0, 20.0]);
 }
@@ -99,7 +99,7 @@ fn a_ball_falls_through_air() {
     near("height", end.x[2], -fallen, 1e-11);
 }
 
-/// ∂(|v| v)/∂v = |v| I + v vᵀ/|v|, and 0 at rest; in a wind, at the speed of the air.
+/// ∂(|v| v)/∂v = |v| I + v vᵀ/|v|, and 0 at rest; in wind, v is the air speed.
 #[test]
 fn drag_linearises_at_rest() {
     let system = DragBall::<f64>::default();
@@ -128,7 +128,7 @@ fn drag_linearises_at_rest() {
     }
 }
 
-/// f(|v|) v however f is written: ∂/∂v is f I + f′ v vᵀ/|v|, and f(0) I at rest.
+/// f(|v|) v for several forms of f: ∂/∂v is f I + f′ v vᵀ/|v|, and f(0) I at rest.
 #[test]
 fn drag_of_any_law_linearises_at_rest() {
     type Law = fn(f64) -> (f64, f64);
@@ -170,8 +170,8 @@ fn drag_of_any_law_linearises_at_rest() {
     }
 }
 
-/// Values and slopes of SciPy 1.17.1, `PchipInterpolator(x, y)(a)` and `.derivative()(a)`: slopes of Fritsch and
-/// Butland, d = (w₁ + w₂)/(w₁/δ₁ + w₂/δ₂) with w₁ = 2 h₂ + h₁, w₂ = h₂ + 2 h₁.
+/// Values and slopes of SciPy 1.17.1, `PchipInterpolator(x, y)(a)` and `.derivative()(a)`: Fritsch-Butland slopes d =
+/// (w₁ + w₂)/(w₁/δ₁ + w₂/δ₂) with w₁ = 2 h₂ + h₁, w₂ = h₂ + 2 h₁.
 const MOTOR: [[f64; 3]; 6] = [
     [0.25, 1.66171875, 2.515625],
     [0.5, 2.24375, 2.1125],
@@ -198,7 +198,7 @@ fn tables_are_those_of_scipy() {
     let system = TorqueCurve::<f64>::default();
     let force = |w: f64, u: f64| system.generalized_force(&[0.0], &[w], &[u])[0];
     for [w, value, slope] in MOTOR {
-        // The fan takes the same with and without voltage.
+        // The torque of the fan does not depend on the voltage.
         near("motor", force(w, 1.0) - force(w, 0.0), value, 1e-13);
         let rows = [1.0, 0.0].map(|u| system.linearize(&[0.0], &[w], &[u]).expect("regular"));
         let by_w = rows.map(|rows| rows[1][1]);
@@ -208,11 +208,11 @@ fn tables_are_those_of_scipy() {
         near("energy", system.potential_energy(&[q]), 2.0 * value, 1e-13);
         near("force", system.potential_force(&[q])[0], 2.0 * slope, 1e-11);
     }
-    // At the points, to the bit, whether from the left or from the right.
+    // At the points, bit by bit, from both sides.
     for (w, value) in [(0.0, 1.0), (1.0, 3.0), (2.0, 3.5), (3.0, 2.0), (4.0, 0.0)] {
         assert_eq!(force(w, 1.0) - force(w, 0.0), value, "{w}");
     }
-    // Held beyond its points, and with a line.
+    // Extrapolated as a constant, and as a line.
     assert_eq!(force(-3.0, 1.0) - force(-3.0, 0.0), 1.0);
     assert_eq!(force(9.0, 1.0) - force(9.0, 0.0), 0.0);
     near(
@@ -221,7 +221,7 @@ fn tables_are_those_of_scipy() {
         2.0 * (2.0 + 2.0 * 3.7142857142857144),
         1e-12,
     );
-    // Lines between points, and beyond.
+    // Linear between points and beyond them.
     for (w, fan) in [
         (-2.0, 0.4),
         (-0.5, 0.1),
@@ -231,14 +231,14 @@ fn tables_are_those_of_scipy() {
     ] {
         near("fan", -force(w, 0.0), fan, 1e-14);
     }
-    // Nothing beyond the points of a table that does not extrapolate.
+    // NaN beyond the points of a table without extrapolation.
     let power = |w: f64| system.power(&[w]);
     near("power", power(1.0), 3.0 / 0.55, 1e-14);
     near("power", power(4.0), 0.0, 1e-14);
     assert!(power(4.0001).is_nan() && power(-0.0001).is_nan());
 }
 
-/// A table of a file: at its points, by the rate that `Builder` reads, and beyond.
+/// A table from a file: at its points, with the rate that `Builder` reads, and beyond.
 #[test]
 fn a_table_of_a_file() {
     let system = Wing::<f64>::default();

@@ -1,5 +1,5 @@
-//! Frames and groups beyond the plain ones: the same motion in frames with constant and with varying γ,
-//! bodies known by their particles, rotors, Heisenberg's group.
+//! Frames and groups beyond the standard ones: the same motion in frames with constant and with varying γ, bodies given
+//! by their particles, rotors, the Heisenberg group.
 
 use hamel::methods::Rkmk4;
 use hamel::{State, System, so3};
@@ -14,9 +14,9 @@ use hamel_tests::spherical_angles::{SphericalAngles, SphericalAnglesParameters};
 use hamel_tests::spherical_orthonormal::{SphericalOrthonormal, SphericalOrthonormalParameters};
 use hamel_tests::spinning_particles::SpinningParticles;
 
-/// The motions compared last 1 s.
+/// Duration of the compared motions, in s.
 const UNTIL: f64 = 1.0;
-/// Steps of the methods of order four: they err by less than 1e-11 at the speeds here.
+/// Number of steps of methods of order four, whose errors are below 1e-11 at these speeds.
 const STEPS: u32 = 4000;
 /// Method error of both motions, with margin; a wrong term gives 1e-3 and more.
 const SAME: f64 = 1e-10;
@@ -35,7 +35,7 @@ fn assert_near(what: &str, value: f64, expected: f64) {
     );
 }
 
-/// Christoffel symbols of q̇ and the γ of orthonormal velocities describe one motion.
+/// The Christoffel symbols of q̇ and the γ of orthonormal velocities describe the same motion.
 #[test]
 fn spherical_frames_agree() {
     let (m, k) = (1.3, 2.1);
@@ -57,8 +57,8 @@ fn spherical_frames_agree() {
     assert_near("momentum", about_axis(a.x, a.xi), about_axis(x, rates));
 }
 
-/// The left- and the right-invariant frame of SE(2): the velocity of the body's frame in body axes,
-/// and that of the body's point at the world's origin.
+/// The left- and right-invariant frames of SE(2): the velocity of the body's frame in body axes, and the velocity of
+/// the body's point at the world's origin.
 #[test]
 fn planar_frames_agree() {
     let (m, j, a, b) = (2.0, 0.4, 0.3, 0.1);
@@ -66,7 +66,7 @@ fn planar_frames_agree() {
     let world = PlanarWorld::new(PlanarWorldParameters { m, j, a, b }).expect("a body");
     let angle = 0.7_f64;
     let x = [0.5, -0.2, angle.cos(), angle.sin()];
-    // ṙ and θ̇.
+    // ṙ and θ̇
     let (u, v, w) = (0.6, -0.3, 1.4);
     let into_body = |x: [f64; 4], u: f64, v: f64| [x[2] * u + x[3] * v, x[2] * v - x[3] * u];
     let local = into_body(x, u, v);
@@ -82,7 +82,7 @@ fn planar_frames_agree() {
     }
 }
 
-/// A body known by its particles moves as the top with their inertia.
+/// A body given by its particles moves as the top with their inertia.
 #[test]
 fn particles_make_a_top() {
     let system = SpinningParticles::default();
@@ -121,7 +121,7 @@ fn particles_make_a_top() {
     }
 }
 
-/// Without torque a gyrostat keeps its angular momentum in the world, and every wheel its own.
+/// Without torque, a gyrostat conserves its angular momentum in the world, and each wheel its momentum.
 #[test]
 fn gyrostat_keeps_its_momenta() {
     let system = Gyrostat::default();
@@ -136,12 +136,12 @@ fn gyrostat_keeps_its_momenta() {
         assert_near("angular momentum", second[i], first[i]);
         assert_near("wheel", after[3 + i], before[3 + i]);
     }
-    // It did turn.
+    // It did rotate.
     assert!((0..3).any(|i| (last.xi[i] - xi[i]).abs() > 0.01));
 }
 
-/// A motor's torque is the rate of the rotor's momentum Ja (spin + w₃), and turns nothing else about
-/// the axis: the momentum of the whole about it changes by what acts from outside alone.
+/// A motor's torque is the rate of the rotor's momentum Ja (spin + w₃) and an internal torque: only external loads
+/// change the total momentum about the axis.
 #[test]
 fn rotors_follow_their_motor() {
     let system = BodyWithRotor::default();
@@ -154,15 +154,15 @@ fn rotors_follow_their_motor() {
         system.ja() * (rates[6] + rates[5]),
         torque,
     );
-    // (30a) has no input in the other rows.
+    // The input does not appear in the other rows of (30a).
     let needed = system.inverse_dynamics(&x, &xi, &rates);
     for (i, force) in needed.iter().enumerate() {
         assert_near("force", *force, if i == 6 { torque } else { 0.0 });
     }
 }
 
-/// On Heisenberg's group w is constant and turns (x, y): with z = x + i y, z̈ = i w ż − ω² z, so that
-/// z = a exp(iλ₁t) + b exp(iλ₂t), λ = (w ± √(w² + 4ω²))/2.
+/// On the Heisenberg group w is constant and rotates (x, y): with z = x + i y, z̈ = i w ż − ω² z, so that z = a
+/// exp(iλ₁t) + b exp(iλ₂t), λ = (w ± √(w² + 4ω²))/2.
 #[test]
 fn heisenberg_motion() {
     let (m, k) = (1.5, 2.0);
@@ -172,7 +172,7 @@ fn heisenberg_motion() {
     assert_near("w", last.xi[2], w);
     let root = f64::sqrt(w * w + 4.0 * k / m);
     let (first, second) = ((w + root) / 2.0, (w - root) / 2.0);
-    // a + b = z, i (λ₁ a + λ₂ b) = ż.
+    // a + b = z and i (λ₁ a + λ₂ b) = ż
     let a = (
         (v0 - second * x0) / (first - second),
         (-u0 - second * y0) / (first - second),

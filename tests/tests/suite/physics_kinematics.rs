@@ -1,5 +1,5 @@
-//! A from definitions of velocities and from constraints, [A Ψ] = [Y; Φ]⁻¹: the motions are those of
-//! descriptions that give A, linkages move as their trigonometry says, and lock with a typed error.
+//! A from definitions of velocities and from constraints, [A Ψ] = [Y; Φ]⁻¹: the motions equal those of descriptions
+//! with a given A, linkages follow their trigonometry, and a locked one is a typed error.
 
 use hamel::methods::{Rk4, Rkmk4};
 use hamel::{Monitor, Singular, State, StepError, System, integrate, s3, so3};
@@ -16,7 +16,7 @@ use hamel_tests::rod_particles::RodParticles;
 use hamel_tests::rod_particles_rows::RodParticlesRows;
 use hamel_tests::slider_crank::SliderCrank;
 
-/// Rounding of some hundred operations, relative.
+/// Rounding of several hundred operations, relative.
 const ROUNDING: f64 = 1e-12;
 
 #[track_caller]
@@ -28,7 +28,7 @@ fn assert_close(what: &str, a: &[f64], b: &[f64], bound: f64) {
     }
 }
 
-/// Y alone gives what A alone gives, for the same x, ξ and u.
+/// Y alone gives the same functions as A alone, for the same x, ξ and u.
 #[test]
 fn definitions_give_the_same_functions_as_rates() {
     let (rows, rates) = (FreeBodyRows::<f64>::default(), FreeBody::<f64>::default());
@@ -66,7 +66,7 @@ fn definitions_give_the_same_functions_as_rates() {
     assert_close("rods", &rows.rate(&x, &xi), &rates.rate(&x, &xi), ROUNDING);
 }
 
-/// Nine reals with RᵀR = I and det R = 1 written out are a rotation matrix: A = R ω̂.
+/// Nine reals with RᵀR = I and det R = 1 written out are equivalent to a rotation matrix: A = R ω̂.
 #[test]
 fn columns_of_reals_turn_as_a_rotation_does() {
     let columns = ColumnTop::<f64>::default();
@@ -92,8 +92,8 @@ fn columns_of_reals_turn_as_a_rotation_does() {
     );
 }
 
-/// Both given: the body of a quaternion moves as that of a rotation matrix, world velocity of its
-/// origin against body velocity.
+/// With both given, the body of a quaternion moves as that of a rotation matrix; one has the world velocity of its
+/// origin, the other the body velocity.
 #[test]
 fn a_body_with_both_moves_as_one_with_rates() {
     let (both, rates) = (FreeBodyBoth::<f64>::default(), FreeBody::<f64>::default());
@@ -122,12 +122,12 @@ fn a_pendulum_of_points_swings_as_one_of_angles() {
     assert_close("θ̈", &a, &[-9.81 / l * theta.sin()], ROUNDING);
 }
 
-/// The other angles of the four-bar from that of its crank, for the assembly of the start.
+/// Returns the other angles of the four-bar for a crank angle, in the assembly of the start.
 fn assembly(a: f64) -> [f64; 6] {
     let (l1, l2, l3, d) = (1.0_f64, 2.5, 2.0, 3.0);
     let (px, py) = (l1 * a.cos() - d, l1 * a.sin());
     let distance = px.hypot(py);
-    // Law of cosines at the rocker's base.
+    // Law of cosines at the base of the rocker.
     let inner = ((l3 * l3 + distance * distance - l2 * l2) / (2.0 * l3 * distance)).acos();
     let c = py.atan2(px) - inner;
     let (bx, by) = (d + l3 * c.cos() - l1 * a.cos(), l3 * c.sin() - l1 * a.sin());
@@ -151,7 +151,7 @@ fn a_four_bar_moves_as_its_trigonometry_says() {
     }
 }
 
-/// The crank turns over and over; energy is kept, and x stays where the trigonometry has it.
+/// The crank makes full turns; energy is conserved, and x satisfies the trigonometry.
 #[test]
 fn a_four_bar_keeps_its_energy() {
     let system = FourBar::<f64>::default();
@@ -177,8 +177,7 @@ fn a_four_bar_keeps_its_energy() {
     assert_close("x", &state.x, &assembly(angle), 1e-8);
 }
 
-/// l1 = 2, l2 = l3 = 1, d = 3: the crank cannot turn beyond cos a = 3/4, where coupler and rocker are
-/// in line.
+/// With l1 = 2, l2 = l3 = 1, d = 3, the crank cannot turn beyond cos a = 3/4, where coupler and rocker are aligned.
 #[test]
 fn a_locked_four_bar_is_a_typed_error() {
     let (m, g, j) = ([1.0, 2.0, 1.5], 0.0, [0.1, 1.1, 0.5]);
@@ -200,12 +199,12 @@ fn a_locked_four_bar_is_a_typed_error() {
     let start = [1.0, 0.0, 0.5, half, -0.5, half];
     assert!(system.accel(&start, &[1.0], &[0.0]).is_ok());
     let (c, s) = (0.75, (1.0_f64 - 0.5625).sqrt());
-    // From (2 c, 2 s) to (3, 0), twice the rod's unit vector; the rocker points back.
+    // From (2 c, 2 s) to (3, 0) is twice the rod's unit vector; the rocker points in the opposite direction.
     let (ex, ey) = ((3.0 - 2.0 * c) / 2.0, -s);
     let locked = [c, s, ex, ey, -ex, -ey];
     let error = system.accel(&locked, &[1.0], &[0.0]).expect_err("locked");
     assert_eq!(error, Singular::Kinematics { pivot: 0 });
-    // The other assembly, as in a mirror: the pivot has the other sign.
+    // The mirrored assembly, in which the pivot has the other sign.
     let mirrored = [1.0, 0.0, 0.5, -half, -0.5, -half];
     let error = system
         .accel(&mirrored, &[1.0], &[0.0])
@@ -238,7 +237,7 @@ fn a_locked_four_bar_is_a_typed_error() {
     );
 }
 
-/// x = l1 cos a + √(l2² − l1² sin² a), and the energy of a whole run.
+/// x = l1 cos a + √(l2² − l1² sin² a), and the energy over a whole run.
 #[test]
 fn a_slider_crank_moves_as_its_trigonometry_says() {
     let system = SliderCrank::<f64>::default();
@@ -255,8 +254,8 @@ fn a_slider_crank_moves_as_its_trigonometry_says() {
     assert_close("x", &state.x[4..], &[x], 1e-8);
 }
 
-/// (8): φ decays like exp(−λ t) with the Ψ of the description, every row of a redundant φ. At rest:
-/// Φ A = 0 on X alone, so that off it a motion adds terms of ξ φ.
+/// (8): φ decays like exp(−λ t) with the Ψ of the description, for every row of a redundant φ. The start is at rest: Φ
+/// A = 0 holds only on X, so that a motion off X adds terms of order ξ φ.
 #[test]
 fn disturbed_linkages_decay_exponentially() {
     const LAMBDA: f64 = 10.0;
@@ -295,14 +294,14 @@ fn disturbed_linkages_decay_exponentially() {
     decay(&columns, |x| columns.constraint(x).to_vec());
 }
 
-/// A parameter that a definition divides by is refused when it is set to zero.
+/// A zero value is refused for a parameter that is a divisor in a definition.
 #[test]
 fn a_lever_without_length_is_refused() {
     let mut system = FourBar::<f64>::default();
     let kept = system.l2();
     let before = system.accel(&System::start(&system).0, &[3.0], &[0.0]);
     let outcome = system.set_l2(0.0);
-    // l2 stands in the pivot l2 l3 sin(b − c), which is checked when ξ̇ is computed.
+    // l2 is a factor of the pivot l2 l3 sin(b − c), which is checked when ξ̇ is computed.
     if outcome.is_ok() {
         let error = system.accel(&System::start(&system).0, &[3.0], &[0.0]);
         assert_eq!(error, Err(Singular::Kinematics { pivot: 0 }));

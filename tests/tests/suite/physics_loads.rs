@@ -1,4 +1,4 @@
-//! Loads and sensors against closed forms, finite differences and the balance of energy.
+//! Compares loads and sensors with closed forms, finite differences and the energy balance.
 
 use hamel::methods::Rkmk4;
 use hamel::{State, System, so3};
@@ -9,9 +9,9 @@ use hamel_tests::reference::{relative, run};
 use hamel_tests::spring_chain::SpringChain;
 use hamel_tests::suspended_body::SuspendedBody;
 
-/// Sums of a few dozen products of numbers of order 100 in another order.
+/// Rounding of sums of a few dozen products of numbers of order 100, in another order.
 const ROUNDING: f64 = 1e-12;
-/// Step of central differences (s): errors of order h² against roundings of order 1e-16/h².
+/// Step of central differences (s): errors of order h², rounding of order 1e-16/h².
 const STEP: f64 = 1e-4;
 /// Errors of first and second central differences, with margin: a wrong term gives 1e-2 and more.
 const DIFFERENCE: f64 = 1e-6;
@@ -23,7 +23,7 @@ fn assert_near(what: &str, a: &[f64], b: &[f64], bound: f64) {
     assert!(difference <= bound, "{what}: {a:?} against {b:?}");
 }
 
-/// Newton's law of every cart, with the forces of springs and dampers written by hand.
+/// Newton's law for every cart, with the forces of springs and dampers by hand.
 #[test]
 fn chain_of_springs_and_dampers_obeys_newton() {
     let chain = SpringChain::<f64>::default();
@@ -43,7 +43,7 @@ fn chain_of_springs_and_dampers_obeys_newton() {
     assert_near("D", &[chain.dissipation(&x, &v)], &[dissipation], ROUNDING);
 }
 
-/// A body on springs and dampers loses energy at the rate 2 D, over a run and at every time.
+/// A body on springs and dampers loses energy at the rate 2 D, over a run and at each instant.
 #[test]
 fn energy_of_a_suspended_body_goes_into_its_dampers() {
     let body = SuspendedBody::<f64>::default();
@@ -61,11 +61,11 @@ fn energy_of_a_suspended_body_goes_into_its_dampers() {
     }
     let after = body.energy(&state.x, &state.xi);
     assert!(lost > 0.1 * before.abs(), "{lost} of {before}");
-    // Simpson and RKMK4 err by h⁴ times derivatives of at most ω⁴, ω h = 0.04.
+    // The errors of Simpson's rule and RKMK4 are h⁴ times derivatives of at most ω⁴, with ω h = 0.04.
     assert_near("energy", &[after + lost], &[before], 1e-7);
 }
 
-/// Springs pull along the lines between their points: force and torque written by hand.
+/// Springs pull along the lines between their points: force and torque by hand.
 #[test]
 fn springs_in_space_pull_along_their_lines() {
     let body = SuspendedBody::<f64>::default();
@@ -98,8 +98,8 @@ fn springs_in_space_pull_along_their_lines() {
     assert_near("−∂V", &slope, &expected, ROUNDING);
 }
 
-/// In relative angles a motor's torque acts on its joint alone, and a force at a point of the lower
-/// link with its reaction on the upper one turns the joint by its lever.
+/// In relative angles, a motor's torque acts on its joint only, and a force at a point of the lower link, with its
+/// reaction on the upper one, has a moment about the joint.
 #[test]
 fn reactions_of_motors_act_on_the_other_link() {
     let arm = ActuatedPendulum::<f64>::default();
@@ -161,7 +161,7 @@ fn energy_of_an_actuated_pendulum_balances() {
     assert_near("Ė", &[rate], &[gain - loss], DIFFERENCE);
 }
 
-/// Three states of a run, a step apart.
+/// Returns three states of a run, one step apart.
 fn three<Sys>(system: &Sys, start: State<Sys>) -> [State<Sys>; 3]
 where
     Sys: System<Scalar = f64>,
@@ -178,7 +178,7 @@ fn difference<const N: usize>(a: [f64; N], b: [f64; N], h: f64) -> [f64; N] {
     std::array::from_fn(|i| (a[i] - b[i]) / h)
 }
 
-/// Speed and accelerometer of a swinging mass are differences of its place.
+/// The readings of a swinging mass's speed sensor and accelerometer equal differences of its position.
 #[test]
 fn sensors_of_a_pendulum_see_its_motion() {
     let bob = ElasticPendulum::<f64>::default();
@@ -207,7 +207,7 @@ fn sensors_of_a_pendulum_see_its_motion() {
     assert_near("sliding", &bob.sliding(xi), &[xi[0], 0.0, 0.0], ROUNDING);
 }
 
-/// Hanging at rest, an accelerometer shows g upwards, and the spring carries the weight.
+/// At rest, an accelerometer measures g upwards, and the spring carries the weight.
 #[test]
 fn at_rest_an_accelerometer_shows_gravity() {
     let bob = ElasticPendulum::<f64>::default();
@@ -219,8 +219,8 @@ fn at_rest_an_accelerometer_shows_gravity() {
     assert_near("felt", &felt, &[-bob.g(), 0.0, 0.0], ROUNDING);
 }
 
-/// Sensors of a body in space: differences of place and speed, turned into its axes; the sensor sits
-/// beside the centre of mass, so that ω̇ and ω × (ω × p) matter.
+/// The readings of a body's sensors in space equal differences of position and speed in its axes; the sensors are not
+/// at the centre of mass, so that ω̇ and ω × (ω × p) matter.
 #[test]
 fn sensors_of_a_drone_see_its_motion() {
     let drone = Drone::<f64>::default();
@@ -240,7 +240,7 @@ fn sensors_of_a_drone_see_its_motion() {
     assert_near("accelerometer", &felt, &expected, DIFFERENCE);
     let turning = drone.turning(&xi_dot);
     assert_near("ω̇", &turning, &xi_dot[3..], ROUNDING);
-    // The speed of the centre of mass, where the drag acts.
+    // The speed of the centre of mass, on which the drag acts.
     let w = [xi[3], xi[4], xi[5]];
     let lever = so3::cross(w, drone.s());
     let local: [f64; 3] = std::array::from_fn(|i| xi[i] + lever[i]);

@@ -1,4 +1,4 @@
-//! Long runs: drift of what is conserved, decay of what is disturbed, orders, and work done.
+//! Long runs: drift of conserved quantities, decay of disturbances, orders, and work.
 
 use hamel::methods::{General, Rk4, Rkmk4};
 use hamel::{Monitor, State, System, integrate, so3};
@@ -9,9 +9,9 @@ use hamel_tests::reference::{distance, run, slopes};
 use hamel_tests::rod_particles::RodParticles;
 use hamel_tests::two_bodies::TwoBodies;
 
-/// An invariant drifts like h⁴ where step errors add up, like h⁵ where they average out.
+/// An invariant drifts like h⁴ if step errors accumulate, like h⁵ if they average out.
 const DRIFT_ORDER: f64 = 3.9;
-/// How far a slope may be from the order of a convergent run.
+/// Tolerance between a slope and the order of a convergent run.
 const SLOPE: f64 = 0.1;
 
 #[test]
@@ -68,7 +68,7 @@ fn two_bodies_keep_energy_and_vertical_momentum() {
     }
 }
 
-/// Disturbs x, runs to t = 0.5 with λ = 10 in RK4 and compares φ with exp(−λ t), entry by entry.
+/// Disturbs x, runs to t = 0.5 with λ = 10 by RK4, and compares φ with exp(−λ t), entry by entry.
 fn assert_decay<Sys, F>(system: &Sys, phi: F, disturb: impl Fn(usize) -> f64)
 where
     Sys: System<Scalar = f64>,
@@ -128,7 +128,7 @@ fn rods_are_integrated_with_order_four() {
 /// E(t) − E(0) = ∫ τ W dt, and the vertical momentum is the impulse: p_W(t) − p_W(0) = ∫ τ dt.
 #[test]
 fn hoop_takes_up_the_work_of_its_torque() {
-    /// Steps of 1 ms: Simpson's rule and RKMK4 both err by 1e-11, with margin for rounding.
+    /// Steps of 1 ms: the errors of Simpson's rule and RKMK4 are 1e-11, with margin for rounding.
     const WORK: f64 = 1e-9;
     let system: HoopBead<f64> = HoopBead::default();
     let torque = |t: f64| 0.3 * (3.0 * t).cos() + 0.1;

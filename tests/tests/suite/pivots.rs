@@ -1,5 +1,6 @@
-//! What a guard is said to belong to: the pivot of a velocity lies between what inertia it has with all others held,
-//! Mᵢᵢ, and with all others free to follow, 1/(M⁻¹)ᵢᵢ, in whatever order M was factored; on every model of the tests.
+//! The attribution of guards to velocities: the pivot of a velocity is between its inertia with all others fixed, Mᵢᵢ,
+//! and its inertia with all others free, 1/(M⁻¹)ᵢᵢ, for any order of the factorisation of M; for every model of the
+//! tests.
 
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate;
@@ -10,10 +11,10 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Roundings of M and of its inverse.
+/// Relative rounding of M and of its inverse.
 const CLOSE: f64 = 1e-9;
 
-/// Guards of velocities, with their values at the start.
+/// Returns the guards of velocities, with their values at the start.
 fn pivots(program: &Program, params: &[f64]) -> Vec<(usize, f64)> {
     let functions = program.functions.iter();
     let guards = functions.flat_map(|function| &function.guards);
@@ -50,7 +51,7 @@ fn pivots_lie_between_the_inertias_of_their_velocities() {
     let (of, all) = (all.len(), crate::some::some(all));
     let compared = all.par_iter().filter_map(|path| {
         let asked = "accel, mass_matrix, linearize, velocity_from_momentum";
-        // M of systems with constraints is not asked for everywhere.
+        // M is not available for all systems with constraints.
         let generated = crate::models::asked_for(path, asked).ok()?;
         let program = &generated.program;
         let mass = mass(&generated);

@@ -1,7 +1,7 @@
-//! Locks the public interface of the crates that users name as text, so that a change of it is seen in review.
-//! The interfaces between the stages of the generator are not locked.
+//! Locks the public interface of the crates for users as text, so that a review shows every change. The interfaces
+//! between the stages of the generator are not locked.
 //!
-//! The sources are read by `syn`; what a macro of the crate itself writes is listed as its invocation.
+//! The sources are parsed by `syn`; the output of a macro of the crate is listed as its invocation.
 
 mod crates;
 mod signature;
@@ -9,7 +9,7 @@ mod signature;
 use crates::Crate;
 use std::path::Path;
 
-/// The lines of one crate, whose folder has this name.
+/// Returns the lines of the crate in this folder.
 fn public(folder: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let lines = Crate::read(&root.join(folder).join("src")).public();

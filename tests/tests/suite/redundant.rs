@@ -1,5 +1,5 @@
-//! Steps of a mechanism with a row of constraints more than it needs: their slopes along the loops against differences of the
-//! steps themselves.
+//! Steps of a mechanism with a redundant row of constraints: compares their slopes along the loops with differences of
+//! the steps.
 
 use hamel::methods::{InChart, Rkmk4, Rkmk8, SemiImplicitEuler};
 use hamel::{Method, State, Table, TangentSystem, step, step_slopes};
@@ -24,13 +24,13 @@ hamel::rigid_eom! {
     }
 }
 
-/// Differences over steps of 2⁻⁴ … 2⁻⁹, extrapolated.
+/// Error of extrapolated differences with steps of 2⁻⁴ … 2⁻⁹.
 const DIFFERENCE: f64 = 1e-11;
 
-/// How all joints move with the first crank.
+/// The motion of all joints, relative to the first crank.
 const ALONG: [f64; 4] = [1.0, 1.0, 1.0, -1.0];
 
-/// The state at an angle and a rate of the cranks.
+/// Returns the state at an angle and a rate of the cranks.
 fn at(angle: f64, rate: f64) -> State<Platform<f64>> {
     State {
         t: 0.0,
@@ -39,7 +39,7 @@ fn at(angle: f64, rate: f64) -> State<Platform<f64>> {
     }
 }
 
-/// d/ds of a function of s at 0, by Richardson's extrapolation of central differences.
+/// d/ds of a function of s at 0, by Richardson extrapolation of central differences
 fn slope(of: impl Fn(f64) -> [f64; 8]) -> [f64; 8] {
     let mut table: Vec<[f64; 8]> = Vec::new();
     for level in 0..6 {

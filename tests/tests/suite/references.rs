@@ -1,8 +1,7 @@
-//! Generated systems against reference solutions computed in 240-bit arithmetic.
+//! Compares generated systems with reference solutions computed in 240-bit arithmetic.
 //!
-//! Expected sizes are errors of an independent implementation of the same method with the same steps,
-//! of systems written by hand; a correct one gives them to about 5 %. A wrong term gives errors of
-//! order 1.
+//! Expected errors are those of an independent implementation of the same method with the same steps, for hand-written
+//! systems; a correct one reproduces them to about 5 %. A wrong term gives errors of order 1.
 
 use hamel::methods::Rkmk4;
 use hamel::{State, System, integrate};
@@ -13,7 +12,7 @@ use hamel_tests::heavy_top_quaternion::{QuaternionTop, QuaternionTopParameters};
 use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::reference::{Reference, distance, relative, run};
 
-/// How far a measured error may be from the expected one.
+/// Relative tolerance of a measured error.
 const SIZE: f64 = 0.10;
 
 fn assert_size(what: &str, error: f64, expected: f64) {
@@ -24,7 +23,7 @@ fn assert_size(what: &str, error: f64, expected: f64) {
     );
 }
 
-/// Steps of one method over the whole of a case.
+/// Returns the final state of a case after `n` steps of RKMK4.
 fn ends<Sys: System>(
     system: &Sys,
     x: Sys::Coordinates,
@@ -53,7 +52,7 @@ fn principal_axes(reference: &Reference) -> PrincipalAxes<f64> {
     PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 }).expect("a body")
 }
 
-/// Error of R (Frobenius) of a body with x = R, ξ = ω.
+/// Returns the error of R (Frobenius) of a body with x = R, ξ = ω.
 fn rotation_error<Sys>(system: &Sys, case: &str, until: f64, n: u32) -> f64
 where
     Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3]>,
@@ -78,7 +77,7 @@ fn tops_in_body_axes() {
 
 #[test]
 fn benchmark_top_with_its_own_start() {
-    // The model carries the parameters and the start of the benchmark.
+    // The model has the parameters and the start of the benchmark.
     let case = "heavy-top-benchmark-150";
     let system = AxisTop::default();
     let end = run(&system, Rkmk4, State::start(&system), 1.0, 2000).expect(case);
@@ -113,14 +112,14 @@ fn tops_on_quaternions() {
     }
 }
 
-/// Two lists in a row.
+/// Concatenates two lists.
 fn join<const A: usize, const B: usize, const C: usize>(a: [f64; A], b: [f64; B]) -> [f64; C] {
     assert_eq!(A + B, C);
     std::array::from_fn(|k| if k < A { a[k] } else { b[k - A] })
 }
 
-/// Errors of the chaotic double pendulum: the coarse run has lost the motion, the fine one nearly so,
-/// and both do it in the same way as the independent implementation.
+/// Errors of the chaotic double pendulum: the coarse run has lost the motion, the fine one almost, both in the same way
+/// as the independent implementation.
 const CHAOTIC: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
 
 #[test]
@@ -139,7 +138,7 @@ fn chaotic_double_pendulum_on_circles() {
     let (x, xi) = (join(a, b), reference.initial("thetadot"));
     for (n, expected) in CHAOTIC {
         let mut end = State { t: 0.0, x, xi };
-        // The circle forgets the turns that the reference counts: unwind them step by step.
+        // Circles do not count turns as the reference does: unwind them step by step.
         let mut theta = reference.initial::<2>("theta");
         let step = 10.0 / f64::from(n);
         let inputs = |_, _: &_, _: &_| [];
@@ -159,14 +158,14 @@ fn chaotic_double_pendulum_on_circles() {
     }
 }
 
-/// Largest error over the state of the planar double pendulum at t = 10.
+/// Returns the largest error of the state of the planar double pendulum at t = 10.
 fn planar_error(reference: &Reference, theta: &[f64], rates: &[f64]) -> f64 {
     let theta = relative(theta, &reference.sample::<2>(10.0, "theta"));
     theta.max(relative(rates, &reference.sample::<2>(10.0, "thetadot")))
 }
 
-/// A body that turns about its middle axis flips over at the half period of the closed form, and comes
-/// back after the whole one.
+/// A body that spins about its middle axis flips at half the period of the closed form, and returns after the whole
+/// period.
 #[test]
 fn flips_come_when_the_closed_form_says() {
     /// Error of the method at these steps, 1e-9, with margin.

@@ -1,8 +1,8 @@
-//! Reviewed snapshots of what every model gives: its tables and its operation counts, and of a few the code.
+//! Reviewed snapshots of every model: its tables and its operation counts, and the code of a few.
 //!
-//! What they lock has been proved before: generation validates every function, and `checks.rs`
-//! checks every identity. The code of every model is compiled by `build.rs`, is the same through every front end
-//! (`doors.rs`), and repeats to the byte.
+//! The locked results have been proved: generation validates every function, and `checks.rs` checks every identity. The
+//! code of every model is compiled by `build.rs`, is the same through every front end (`doors.rs`), and is reproduced
+//! byte by byte.
 
 use crate::derived::{model, models};
 use crate::some::some;
@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// The functions with what each takes; those that compute nothing in one line.
+/// Formats the functions with their operations; those without operations share one line.
 fn operations(generated: &Generated) -> String {
     let mut text = String::new();
     let mut nothing = Vec::new();
@@ -59,22 +59,22 @@ fn operation_counts() {
     insta::assert_snapshot!(text);
 }
 
-/// Models whose code is locked as text, each for what it shows and the others do not. That of a robot is
-/// locked in `cli/tests/suite/emitted.rs`.
+/// Models whose code is locked as text, each for a feature that the others lack. The code of a robot is locked in
+/// `cli/tests/suite/emitted.rs`.
 const CODE: [&str; 7] = [
-    // A wrench, a matrix of inertia, everything a body can have.
+    // A wrench, an inertia matrix, all properties of a body.
     "free_body",
     // A rotation without a position.
     "heavy_top",
-    // Plain coordinates, M that varies.
+    // Plain coordinates, varying M.
     "cart_pole",
-    // Velocities that are solved away.
+    // Dependent velocities, which are eliminated.
     "sleigh",
     // Nonholonomic rows, roots and divisions.
     "rolling_disk",
     // Loops with multipliers and a projection.
     "four_bar_loop",
-    // Several rotors, a circle each.
+    // Several rotors, each on a circle.
     "gyrostat",
 ];
 
@@ -86,8 +86,8 @@ fn generated_code() {
     }
 }
 
-/// All tables, and what the geometry is: integrable velocities, Lie algebras, patterns of M, symmetries. One that is to
-/// the letter that of a model before it is the name of that model.
+/// All tables, and the geometry: integrable velocities, Lie algebras, patterns of M, symmetries. A part identical to
+/// that of an earlier model is replaced by the name of that model.
 #[test]
 fn coefficient_tables() {
     let mut known = BTreeMap::new();
@@ -133,7 +133,7 @@ fn table_formats() {
     insta::assert_snapshot!("tables_json", laid_out(&json(&tables, false), 0));
 }
 
-/// JSON in lines of at most 100 characters, where its parts have room in them.
+/// Formats JSON in lines of at most 100 characters where its parts fit.
 fn laid_out(value: &Value, indent: usize) -> String {
     let short = value.to_string();
     if short.len() + indent <= 100 {
@@ -161,7 +161,7 @@ fn laid_out(value: &Value, indent: usize) -> String {
     format!("{open}\n{inner}{parts}\n{outer}{close}")
 }
 
-/// The bars of operation counts, each with the best peer measured.
+/// The limits of operation counts, each with the best measured count of other programs.
 #[test]
 fn accel_costs_no_more_than_its_bar() {
     let bars = [
@@ -191,8 +191,7 @@ fn accel_costs_no_more_than_its_bar() {
     }
 }
 
-/// γ of a Lie group is constant: it costs nothing, and no function of M's inverse is left either
-/// where M is constant.
+/// γ of a Lie group is constant and costs nothing, and where M is constant, no function contains its inverse.
 #[test]
 fn constant_mass_costs_nothing() {
     for name in [

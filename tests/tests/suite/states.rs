@@ -1,5 +1,5 @@
-//! States of first order against closed forms, against Newton and Euler by hand, and against the same mechanism with
-//! inputs in the place of its states.
+//! Compares first-order states with closed forms, with the Newton-Euler equations by hand, and with the same mechanism
+//! with inputs instead of states.
 
 use crate::described::{CLOSE, assert_near, generated, states, text, value};
 use hamel::adaptive::Adaptive;
@@ -15,8 +15,8 @@ use hamel_tests::lagging_drone::{LaggingDrone, LaggingDroneParameters};
 use hamel_tests::reference::run;
 use hamel_tests::wheel_motors::{WheelMotors, WheelMotorsParameters};
 
-/// (m l² + J n²) ẇ = n k i − m g l sin q − d w, L di/dt = V − R i − n k w; and what the supply gives is in the coil,
-/// in heat and in the motion.
+/// (m l² + J n²) ẇ = n k i − m g l sin q − d w, L di/dt = V − R i − n k w; and the supplied energy is in the coil, in
+/// heat and in the motion.
 #[test]
 fn a_motor_turns_a_pendulum() {
     let (m, l, g, j, n, k, r, coil, d) = (0.5, 0.3, 9.81, 2e-5, 20.0, 0.03, 1.2, 1e-3, 0.002);
@@ -126,12 +126,13 @@ fn rotors_lag_behind_their_commands() {
     assert_near("thrust at the start", xi[6..].iter().sum(), m * g, CLOSE);
 }
 
-/// A diagonal matrix by rows.
+/// Returns a diagonal matrix by rows.
 fn theta_of(diagonal: [f64; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }))
 }
 
-/// Where the currents are inputs, the platform moves alike, and its slopes along them are those along the states.
+/// With currents as inputs, the platform has the same motion, and its slopes along the inputs equal those along the
+/// states.
 #[test]
 fn states_act_as_inputs_do() {
     let states_text = text("wheel_motors");
@@ -198,13 +199,13 @@ fn states_act_as_inputs_do() {
         for (found, expected) in found.iter().zip(&all) {
             assert_near("ξ̇, ż", *found, *expected, 1e-9);
         }
-        // The compiled function is the interpreted one.
+        // The compiled function equals the interpreted one.
         let xi: [f64; 8] = xi.try_into().expect("eight");
         let compiled = system.accel(&x, &xi, &u).expect("a value");
         for (compiled, found) in compiled.iter().zip(&found) {
             assert_near("compiled", *compiled, *found, 1e-12);
         }
-        // Slopes: rows of h and δξ by (h, δξ, δi) are those by (h, δξ, δu) of inputs.
+        // Slopes: the rows of h and δξ by (h, δξ, δi) equal those by (h, δξ, δu) of inputs.
         let linear = system.linearize(&x, &xi, &u).expect("a value");
         let plain_linear = value(&without, "linearize", plain);
         let (n, width) = (5, linear[0].len());
@@ -232,7 +233,7 @@ fn states_act_as_inputs_do() {
                 assert_near("∂/∂z", linear[row][n + na + state], 0.0, 1e-12);
             }
         }
-        // Rows of δz by central differences of ż, along ξ, z and u; their errors are those of the third derivative.
+        // Rows of δz by central differences of ż along ξ, z and u; their errors are those of the third derivative.
         let step = 1e-5;
         for column in 0..na + 6 + 2 {
             let moved = |sign: f64| {
@@ -252,7 +253,7 @@ fn states_act_as_inputs_do() {
     }
 }
 
-/// A state adds its own expression to ξ̇, and nothing else.
+/// A state adds only its expression to ξ̇.
 #[test]
 fn a_state_costs_its_expression() {
     let flops = |of: &Generated, places: std::ops::Range<usize>| {
@@ -286,10 +287,10 @@ fn a_state_costs_its_expression() {
     }
 }
 
-/// i(t) = V/R + (i₀ − V/R) exp(−R t/L) where the motor does not turn, by every general method with its order.
+/// i(t) = V/R + (i₀ − V/R) exp(−R t/L) while the motor does not turn, by every general method with its order.
 #[test]
 fn methods_keep_their_orders() {
-    // No gear: the current does not feel the pendulum.
+    // Without a gear, the current does not depend on the pendulum.
     let system = DcPendulum::<f64>::new(DcPendulumParameters {
         n: 0.0,
         l_upper: 0.8,
@@ -349,7 +350,7 @@ fn error_control_sees_states() {
     assert_near("controlled", controlled.xi[1], exact, 1e-7);
 }
 
-/// An error in ż, or in the slopes of one, is noticed.
+/// An error in ż, or in one of its slopes, is detected.
 #[test]
 fn a_wrong_rate_of_a_state_is_noticed() {
     for name in ["dc_pendulum", "wheel_motors"] {

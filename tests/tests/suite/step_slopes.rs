@@ -1,5 +1,5 @@
-//! Slopes of steps against differences of the steps themselves along the manifold, extrapolated; composition, the
-//! limit of short steps, and the symplectic form.
+//! Slopes of steps: compared with extrapolated differences of the steps along the manifold; composition, the limit of
+//! short steps, and the symplectic form.
 
 use hamel::methods::{
     BackwardEuler, Cf4, InChart, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Splitting,
@@ -43,18 +43,19 @@ hamel::rigid_eom! {
     }
 }
 
-/// Differences over steps of 2⁻⁴ … 2⁻⁹, extrapolated: truncation like 2⁻³⁶ of derivatives of order 13, rounding 1e-13.
+/// Error of extrapolated differences with steps of 2⁻⁴ … 2⁻⁹: truncation like 2⁻³⁶ of derivatives of order 13, rounding
+/// 1e-13.
 const DIFFERENCE: f64 = 2e-10;
-/// States by the same sums in another order.
+/// Error of states computed by the same sums in another order.
 const STATE: f64 = 1e-14;
-/// States of steps that iterate.
+/// Error of states of iterative steps.
 const CONVERGED: f64 = 1e-10;
-/// Differences of such.
+/// Error of differences of iterative steps.
 const ITERATED: f64 = 1e-7;
-/// Sums of products of slopes.
+/// Error of sums of products of slopes.
 const ROUNDING: f64 = 1e-12;
 
-/// Rows of numbers.
+/// A matrix by rows.
 type Rows = Vec<Vec<f64>>;
 
 fn rows<T: Table<f64>>(table: &T) -> Rows {
@@ -76,7 +77,7 @@ fn transposed(a: &Rows) -> Rows {
         .collect()
 }
 
-/// The chart vector of a tangent vector δx at x.
+/// Returns the chart vector of a tangent vector δx at x.
 fn chart(blocks: &[Block], mut x: &[f64], mut dx: &[f64]) -> Vec<f64> {
     let mut all = Vec::new();
     for block in blocks {
@@ -108,25 +109,25 @@ fn chart(blocks: &[Block], mut x: &[f64], mut dx: &[f64]) -> Vec<f64> {
     all
 }
 
-/// A step of a method, at inputs.
+/// A step of a method, with inputs.
 type Step<'a, Sys> = dyn Fn(&mut State<Sys>, &<Sys as System>::Inputs) + 'a;
 
-/// A step from the start with its slopes, at inputs.
+/// A step from the start with its slopes, with inputs.
 type Slopes<'a, Sys> = dyn Fn(&<Sys as System>::Inputs) -> Sloped<Sys> + 'a;
 type Sloped<Sys> = (State<Sys>, <Sys as Tangent>::Slopes);
 
-/// The same, with the slopes in a table of the caller's.
+/// A step that writes the slopes to a table of the caller.
 type SlopesInto<'a, Sys> =
     dyn Fn(&<Sys as System>::Inputs, &mut <Sys as Tangent>::Slopes) -> State<Sys> + 'a;
 
-/// A method of one system: what does not depend on the method is compiled once a system.
+/// A method for one system, as trait objects, so that the comparison is compiled once per system.
 struct Steps<'a, Sys: Tangent<Scalar = f64>> {
     step: &'a Step<'a, Sys>,
     slopes: &'a Slopes<'a, Sys>,
     slopes_into: &'a SlopesInto<'a, Sys>,
 }
 
-/// (x⁺, ξ⁺) of a step from a state moved along A η and by δξ, at inputs moved by δu.
+/// Returns (x⁺, ξ⁺) of a step from a state displaced along A η and by δξ, with inputs displaced by δu.
 fn moved<Sys: Tangent<Scalar = f64>>(
     step: &Step<Sys>,
     system: &Sys,
@@ -162,7 +163,7 @@ fn moved<Sys: Tangent<Scalar = f64>>(
         .collect()
 }
 
-/// d/ds of a function of s at 0, by Richardson's extrapolation of central differences.
+/// d/ds of a function of s at 0, by Richardson extrapolation of central differences
 fn slope(of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let mut table: Vec<Vec<f64>> = Vec::new();
     for level in 0..6 {
@@ -187,7 +188,7 @@ fn slope(of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     table.pop().expect("six levels")
 }
 
-/// The slopes of a step against differences.
+/// Compares the slopes of a step with differences.
 fn agree<Sys, M>(name: &str, method: &M, system: &Sys, start: &State<Sys>, u: &[f64], h: f64)
 where
     Sys: Tangent<Scalar = f64>,
@@ -215,7 +216,7 @@ where
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
     let (end, slopes) = (steps.slopes)(&inputs);
-    // A table of the caller's is written all over, whatever was in it.
+    // A table of the caller is overwritten completely.
     let mut table = slopes.clone();
     (0..table.rows()).for_each(|i| table.row_mut(i).fill(f64::NAN));
     let again = (steps.slopes_into)(&inputs, &mut table);
@@ -223,7 +224,7 @@ where
     assert_eq!(again.xi.as_ref(), end.xi.as_ref(), "{name}");
     let mut alone = start.clone();
     (steps.step)(&mut alone, &inputs);
-    // Explicit methods add up in another order; implicit ones go on until slopes have converged, too.
+    // Explicit methods add in another order; implicit ones iterate until the slopes have converged, too.
     let numbers = |state: &State<Sys>| [state.x.as_ref(), state.xi.as_ref()].concat();
     for (found, expected) in numbers(&end).iter().zip(numbers(&alone)) {
         let close = if exact { STATE } else { CONVERGED };
@@ -264,7 +265,7 @@ where
     }
 }
 
-/// A state some steps into the motion of the description, kept by its constraints.
+/// Returns a state a few steps after the start, so that it satisfies the constraints.
 fn under_way<Sys: System<Scalar = f64>>(system: &Sys, u: &[f64]) -> State<Sys> {
     let (x, xi) = system.start();
     let mut state = State { t: 0.0, x, xi };
@@ -276,7 +277,7 @@ fn under_way<Sys: System<Scalar = f64>>(system: &Sys, u: &[f64]) -> State<Sys> {
     state
 }
 
-/// All methods for any system.
+/// Checks all methods for arbitrary systems.
 fn all_methods<Sys>(name: &str, system: &Sys, u: &[f64])
 where
     Sys: Tangent<Scalar = f64>,
@@ -313,7 +314,8 @@ where
     solve_the_same_equations(name, system, &start, u);
 }
 
-/// Euler's implicit step without derivatives and with them, forwards and backwards: the same end, and the same slopes.
+/// Implicit Euler steps without and with derivatives, forwards and backwards, agree in the final state and in the
+/// slopes.
 fn solve_the_same_equations<Sys>(name: &str, system: &Sys, start: &State<Sys>, u: &[f64])
 where
     Sys: Tangent<Scalar = f64>,
@@ -321,13 +323,13 @@ where
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
     for h in [0.02, -0.02, 0.1, 0.2] {
-        // Two solutions, and each method ends at another.
+        // There are two solutions, and each method finds another.
         if h > 0.1 && name == "five_bar" {
             continue;
         }
         let one = step_slopes(&BackwardEuler, system, start, &inputs, h);
         let other = step_slopes(&StiffEuler, system, start, &inputs, h);
-        // Some motions have no solution then.
+        // Some motions have no solution for such steps.
         if h > 0.1 && one.is_err() {
             continue;
         }
@@ -379,10 +381,10 @@ fn a_floating_base_with_a_leg_and_a_slider() {
     all_methods("a legged robot", &Legged::<f64>::default(), &[0.7, -0.4]);
 }
 
-/// Matrices in the place of dual numbers, with a state of first order behind the velocity.
+/// Matrices instead of dual numbers, with a first-order state after the velocity.
 #[test]
 fn a_motor_with_a_current() {
-    // A coil that is slower than the steps.
+    // A coil whose time constant exceeds the steps.
     let system = DcPendulum::new(DcPendulumParameters {
         l_upper: 0.5,
         ..Default::default()
@@ -390,14 +392,14 @@ fn a_motor_with_a_current() {
     all_methods("dc_pendulum", &system.expect("a motor"), &[3.0]);
 }
 
-/// ẋ = ξ of plain coordinates alone.
+/// Only for plain coordinates with ẋ = ξ.
 #[test]
 fn where_matrices_are_taken() {
     const {
         assert!(linear::spring_chain::SpringChain::<f64>::PLAIN);
         assert!(linear::cart_pole::CartPole::<f64>::PLAIN);
         assert!(DcPendulum::<f64>::PLAIN);
-        // A circle, rates that are none, time, multipliers, rotations.
+        // A circle, quasi-velocities, time, multipliers, rotations.
         assert!(!linear::pendulum_circle::CirclePendulum::<f64>::PLAIN);
         assert!(!linear::sleigh::Sleigh::<f64>::PLAIN);
         assert!(!linear::kapitza::Kapitza::<f64>::PLAIN);
@@ -415,7 +417,7 @@ const SCHEMES: [Scheme; 5] = [
     Scheme::Nystrom6,
 ];
 
-/// Methods that split a motion, of bodies with a fixed point.
+/// Splitting methods, for bodies with a fixed point.
 #[test]
 fn splittings() {
     let top = linear::heavy_top::HeavyTop::<f64>::default();
@@ -439,8 +441,8 @@ fn splittings() {
     agree("quaternion, lgvi", &Lgvi, &top, &start, &[], 0.02);
 }
 
-/// With p = M ξ for constant M, ω = dp ∧ η + p·[η, η] at the end is that at the start: of (η, δp) and (η′, δp′)
-/// δp′·η − δp·η′ + p·(η × η′) for body axes (J. Marsden, T. Ratiu, *Introduction to Mechanics and Symmetry*, 14.6).
+/// With p = M ξ for constant M, the steps preserve ω = dp ∧ η + p·[η, η]: for (η, δp) and (η′, δp′) in body axes it is
+/// δp′·η − δp·η′ + p·(η × η′) (J. Marsden, T. Ratiu, *Introduction to Mechanics and Symmetry*, 14.6).
 #[test]
 fn methods_for_long_runs_keep_the_symplectic_form() {
     let top = linear::heavy_top::HeavyTop::<f64>::default();
@@ -475,12 +477,12 @@ fn methods_for_long_runs_keep_the_symplectic_form() {
     }
     let (end, slopes) = step_slopes(&Lgvi, &top, &start, &[], 0.05).expect("a step");
     check("lgvi", true, rows(&slopes), &end);
-    // And others do not.
+    // Other methods do not.
     let (end, slopes) = step_slopes(&SemiImplicitEuler, &top, &start, &[], 0.05).expect("a step");
     check("semi-implicit Euler", false, rows(&slopes), &end);
 }
 
-/// A_d of two steps is that of the second times that of the first.
+/// A_d of two steps is the product of that of the second with that of the first.
 #[test]
 fn slopes_of_two_steps_are_a_product() {
     let drone = linear::drone::Drone::<f64>::default();
@@ -510,7 +512,7 @@ fn slopes_of_two_steps_are_a_product() {
             state.xi.copy_from_slice(&once[frame.len()..]);
             moved(&by_step, &drone, &state, &u, &vec![0.0; states + u.len()])
         });
-        // Of the velocities alone: displacements are read elsewhere.
+        // Only the velocities: displacements are in another frame.
         for (row, expected) in differences[frame.len()..].iter().enumerate() {
             let found = chained[states / 2 + row][column];
             assert!(
@@ -521,7 +523,7 @@ fn slopes_of_two_steps_are_a_product() {
     }
 }
 
-/// A_d = 1 + h A + O(h²) and B_d = h B + O(h²) with the emitted linearisation, of every method.
+/// A_d = 1 + h A + O(h²) and B_d = h B + O(h²) with the emitted linearisation, for every method.
 #[test]
 fn short_steps_have_the_slopes_of_the_motion() {
     let drone = linear::lagging_drone::LaggingDrone::<f64>::default();
@@ -557,7 +559,7 @@ fn short_steps_have_the_slopes_of_the_motion() {
     }
 }
 
-/// Where ξ̇ has a value and its slope has none there is no slope of the step: by matrices and by dual numbers.
+/// If ξ̇ has a value but its slope has none, the slope of the step is an error, by matrices and by dual numbers.
 #[test]
 fn slopes_without_a_value_are_errors() {
     let system = Turbulent::<f64>::default();
@@ -585,7 +587,7 @@ fn slopes_without_a_value_are_errors() {
     assert!(step_slopes(&Rkmk4, &system, &state(0.3), &[], 0.1).is_ok());
 }
 
-/// What cannot be stepped is no slope.
+/// If a step fails, its slopes fail, too.
 #[test]
 fn errors_are_those_of_the_step() {
     let drone = linear::drone::Drone::<f64>::default();

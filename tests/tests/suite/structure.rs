@@ -1,8 +1,7 @@
-//! The verdict on the structure of every model, against laws that know nothing of how it was found.
+//! The verdict on the structure of every model, checked by laws that are independent of the analysis.
 //!
-//! For a system that splits: T = ½ Σ P·J⁻¹P + ½ pᵀ D p with D the same everywhere, and the motion of
-//! its momenta along ξ̇ of `accel` is that of free rotors and kicks. For one that does not, what is named
-//! as standing in the way is there.
+//! For a system that splits: T = ½ Σ P·J⁻¹P + ½ pᵀ D p with constant D, and the momenta change along ξ̇ of `accel` as
+//! those of free rotors with kicks. For one that does not, each stated reason holds.
 
 mod case;
 
@@ -16,15 +15,15 @@ use nalgebra::{DMatrix, DVector};
 use std::fmt::Write;
 use std::ops::Range;
 
-/// Laws that hold but for rounding, relative to the largest term.
+/// Rounding of exact laws, relative to the largest term.
 const ROUNDING: f64 = 1e-10;
-/// Central differences of step [`STEP`]: rounding 1e-16 / 1e-5 times the terms, truncation 1e-10 times
-/// third derivatives.
+/// Error of central differences of step [`STEP`]: rounding 1e-16 / 1e-5 times the terms, truncation 1e-10 times third
+/// derivatives.
 const DIFFERENCE: f64 = 2e-7;
 const STEP: f64 = 1e-5;
-/// Numbers further apart than this, relative to their size, are different.
+/// Relative difference above which numbers count as different.
 const APART: f64 = 1e-4;
-/// States tried for each law.
+/// Number of states for each law.
 const STATES: u64 = 5;
 
 fn close(a: &DVector<f64>, b: &DVector<f64>, tolerance: f64, what: &str) {
@@ -40,7 +39,7 @@ fn differ(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
     (a - b).amax() > APART * a.amax().max(b.amax())
 }
 
-/// T of momenta is ½ Σ P·J⁻¹P + ½ pᵀ D p, D being read off at another state.
+/// T as a function of momenta is ½ Σ P·J⁻¹P + ½ pᵀ D p, with D determined at another state.
 fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
     let n = case.generated.program.n;
     let energy = |case: &Case, x: &[f64], p: &[f64]| {
@@ -88,7 +87,7 @@ fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
     }
 }
 
-/// `centre` and `uncentre`, `split_momenta` and `split_velocities` undo one another.
+/// `centre` and `uncentre` are inverse, and so are `split_momenta` and `split_velocities`.
 fn inverses(case: &mut Case) {
     let n = case.generated.program.n;
     for _ in 0..STATES {
@@ -109,7 +108,7 @@ fn inverses(case: &mut Case) {
     }
 }
 
-/// Along ξ̇ of `accel`, ẏ = p, and ṗ is P × J⁻¹P of rotors, 0 of all else, and the kick.
+/// Along ξ̇ of `accel`, ẏ = p, and ṗ is the kick, plus P × J⁻¹P for rotors.
 fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
     let (n, m) = (case.generated.program.n, case.generated.program.m);
     let rotors = case.rotors(splitting);
@@ -160,7 +159,7 @@ fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
     }
 }
 
-/// What the forms of inertias say holds at the default parameters.
+/// The stated forms of inertias hold at the default parameters.
 fn symmetries_hold(case: &Case, splitting: &Splitting) {
     for (form, j) in splitting.rotors.iter().zip(case.rotors(splitting)) {
         let equal = |a: usize, b: usize| (j[(a, a)] - j[(b, b)]).abs() <= ROUNDING * j[(a, a)];
@@ -201,7 +200,7 @@ fn what_splits_is_free_motion_and_kicks() {
     assert!(found >= 15, "{found} models split");
 }
 
-/// Forces at two velocities differ.
+/// Returns whether forces at two velocities differ.
 fn forces_change(case: &mut Case) -> bool {
     let (n, m) = (case.generated.program.n, case.generated.program.m);
     let model = &case.generated.model;
@@ -220,8 +219,8 @@ fn forces_change(case: &mut Case) -> bool {
     })
 }
 
-/// M in the rates of the coordinates changes with each one that is named, and no shift of plain
-/// coordinates by a function of turning ones could undo that: it would keep det M.
+/// Returns whether M in the rates of the coordinates changes with each named coordinate, and whether det M changes,
+/// which no shift of plain coordinates by a function of rotating ones could undo.
 fn inertia_changes(case: &mut Case, on: &[String]) -> bool {
     let x = case.x();
     let here = case.inertia(&x);
@@ -244,7 +243,8 @@ fn inertia_changes(case: &mut Case, on: &[String]) -> bool {
     all && (plain || (there / here.determinant() - 1.0).abs() > APART)
 }
 
-/// The rates of a rotor and of another coordinate are coupled when plain coordinates are eliminated.
+/// Returns whether the rates of a rotor and of another coordinate remain coupled after elimination of plain
+/// coordinates.
 fn coupled(case: &mut Case, rotor: &str, other: &str) -> bool {
     let x = case.x();
     let inertia = case.inertia(&x);
@@ -308,7 +308,7 @@ fn what_stands_in_the_way_is_there() {
     assert!(kinds.iter().all(|&count| count > 0), "{kinds:?}");
 }
 
-/// The coordinates that M is said to depend on are those with which it changes.
+/// M depends on exactly the coordinates that are named.
 #[test]
 fn the_mass_matrix_depends_on_what_is_named() {
     for mut case in cases() {
@@ -330,7 +330,7 @@ fn the_mass_matrix_depends_on_what_is_named() {
     }
 }
 
-/// The verdicts on all models at a glance, and the method that each of them gets.
+/// The verdicts on all models, and the method chosen for each of them.
 #[test]
 fn verdicts() {
     let mut text = String::new();
@@ -353,7 +353,7 @@ fn verdicts() {
     insta::assert_snapshot!(text);
 }
 
-/// No function of a system that splits leaves with a wrong sign.
+/// Validation detects a wrong sign in every function of a system that splits.
 #[test]
 fn wrong_signs_are_noticed_before_emission() {
     for name in ["free_body", "free_body_both", "planar_body"] {

@@ -1,5 +1,5 @@
-//! Time, prescribed motion and moving frames against closed forms, against the same mechanism described otherwise, and
-//! against inverse dynamics.
+//! Compares time, prescribed motion and moving frames with closed forms, with equivalent descriptions of the same
+//! mechanism, and with inverse dynamics.
 
 use crate::described::{CLOSE, assert_near, generated, states, text, value};
 use hamel::methods::{General, Rkmk4, Rkmk8};
@@ -40,7 +40,7 @@ fn kapitzas_pendulum() {
     }
 }
 
-/// Upside down it is stable where a² Ω² > 2 g l (Kapitza 1951, to first order in a/l), and falls where it is not.
+/// The inverted position is stable if a² Ω² > 2 g l (Kapitza 1951, to first order in a/l), and unstable otherwise.
 #[test]
 fn kapitzas_pendulum_stands_on_its_head() {
     let (l, g, a) = (1.0, 9.81_f64, 0.05);
@@ -74,7 +74,7 @@ fn a_bead_on_a_driven_hoop() {
     let (m, r, j, g, w, b) = (0.5, 1.2, 0.3, 9.81, 3.0, 0.2);
     let system = DrivenHoop::new(DrivenHoopParameters { m, r, j, g, w, b }).expect("a hoop");
     for [t, q, rate] in states() {
-        // The hoop is where it is prescribed to be, whatever x says.
+        // The prescribed position of the hoop is used, whatever x contains.
         let (x, xi) = ([t, 17.0, q], [rate]);
         let spin = w + 2.0 * b * (2.0 * t).cos();
         let spin_rate = -4.0 * b * (2.0 * t).sin();
@@ -91,14 +91,14 @@ fn a_bead_on_a_driven_hoop() {
     }
 }
 
-/// Nothing moves by itself: with the slider at x = l₁ cos φ + √(l₂² − l₁² sin² φ) the drive does the work of
-/// d/dt (T + V) and what goes into the gas.
+/// The engine has no degree of freedom: with the slider at x = l₁ cos φ + √(l₂² − l₁² sin² φ), the drive's power is
+/// d/dt (T + V) plus the power into the gas.
 #[test]
 fn an_engine_at_constant_speed() {
     let of = DrivenCrankParameters::<f64>::default();
     let system = DrivenCrank::new(of).expect("an engine");
     let gas = 25.0;
-    // Angle of the rod, slider, their rates by the crank's, and T + V of all three.
+    // The angle of the rod, the slider, and their rates relative to the crank's.
     let motion = |angle: f64| {
         let (s, c) = angle.sin_cos();
         let along = (of.l2 * of.l2 - of.l1 * of.l1 * s * s).sqrt();
@@ -139,7 +139,7 @@ fn an_engine_at_constant_speed() {
             1e-7 * slope.abs().max(1.0),
         );
     }
-    // A turn of the crank later the engine is where it was.
+    // After a turn of the crank the engine returns to its state.
     let start = State::start(&system);
     let end = run(&system, Rkmk8, start.clone(), TAU / of.speed, 200).expect("a run");
     for (end, start) in end.x[1..].iter().zip(&start.x[1..]) {
@@ -147,7 +147,7 @@ fn an_engine_at_constant_speed() {
     }
 }
 
-/// A homogeneous ball goes round at 2/7 Ω: its acceleration is 2/7 Ω e₃ × v (Milne 1948).
+/// A homogeneous ball moves on a circle at 2/7 Ω: its acceleration is 2/7 Ω e₃ × v (Milne 1948).
 #[test]
 fn a_ball_on_a_turntable() {
     let omega = 2.0;
@@ -172,8 +172,8 @@ fn a_ball_on_a_turntable() {
     assert_near("y after a turn", end.x[2], x[2], 1e-10);
 }
 
-/// As the belt sees it, the belt's acceleration c is a uniform field −c: v̇ = a w² − c cos θ,
-/// (J + m a²) ẇ = −m a v w + m a c sin θ.
+/// In the belt's frame, the belt's acceleration c is a uniform field −c: v̇ = a w² − c cos θ, (J + m a²) ẇ = −m a v w +
+/// m a c sin θ.
 #[test]
 fn a_sleigh_on_a_belt() {
     let (m, j, a, c) = (2.0, 0.5, 0.2, 0.3);
@@ -223,7 +223,7 @@ fn energies_with_terms_of_all_degrees() {
     }
 }
 
-/// A frame that depends on time, and joints that are prescribed to move alike.
+/// A frame that depends on time is equivalent to joints with the same prescribed motion.
 #[test]
 fn a_moving_frame_is_a_prescribed_joint() {
     let (frame, joints) = (
@@ -232,7 +232,7 @@ fn a_moving_frame_is_a_prescribed_joint() {
     );
     for [t, pan, lift, v, w, a] in states() {
         let (xi, u) = ([v, w], [a, 2.0 * a]);
-        // Where the joints of the ship stand in x is of no matter: they are prescribed.
+        // The ship's joints in x do not matter: they are prescribed.
         let on_frame: [&[f64]; 3] = [&[t, pan, lift], &xi, &u];
         let on_joints: [&[f64]; 3] = [&[t, 5.0, 6.0, 7.0, pan, lift], &xi, &u];
         for name in ["accel", "mass_matrix", "bias", "energy", "momentum"] {
@@ -248,7 +248,7 @@ fn a_moving_frame_is_a_prescribed_joint() {
     }
 }
 
-/// φ(x, t) = 0 with a velocity by rates, and the same by an angle.
+/// φ(x, t) = 0 with a velocity given by rates, and the same mechanism with an angle.
 #[test]
 fn a_moving_constraint() {
     let (rows, angle) = (
@@ -281,8 +281,8 @@ fn a_moving_constraint() {
     }
 }
 
-/// An error of ξ̇ that does no work leaves the power balance as it is; it has to break the equations of motion. It is
-/// δξ̇ = (p₂, −p₁) here, for δξ̇ · p = 0.
+/// An error of ξ̇ that does no work leaves the power balance satisfied, but has to break the equations of motion. Here
+/// it is δξ̇ = (p₂, −p₁), so that δξ̇ · p = 0.
 #[test]
 fn a_workless_error_is_noticed() {
     for name in [
@@ -320,7 +320,7 @@ fn a_workless_error_is_noticed() {
     }
 }
 
-/// What a drive is prescribed to do is what its force does to the mechanism without the drive.
+/// Prescribed motion equals the motion under the drive's force without prescription.
 #[test]
 fn prescribed_motion_is_that_of_the_force_of_the_drive() {
     for (name, statement, velocity) in [
@@ -365,7 +365,7 @@ fn prescribed_motion_is_that_of_the_force_of_the_drive() {
         let u = vec![0.4; driven.program.m];
         let force = value(&driven, "constraint_force", [x, &xi, &u])[place];
         let expected = value(&driven, "accel", [x, &xi, &u]);
-        // The velocity of the drive stands among the others now.
+        // The velocity of the drive is among the others now.
         let rate = value(&driven, "rate", [x, &xi, &u]);
         let group = |of: &Generated, name: &str| {
             let mut groups = of.active.velocities.iter();
@@ -383,7 +383,7 @@ fn prescribed_motion_is_that_of_the_force_of_the_drive() {
                 .expect("it has one");
             all.insert(place, rate[coordinate.offset]);
         }
-        // The inputs of the driven description keep their values by their names.
+        // Inputs of the driven description keep their values by name.
         let before = |name: &str| driven.model.inputs.iter().find(|group| group.name == name);
         let mut inputs = Vec::new();
         for group in &undriven.model.inputs {
@@ -403,7 +403,7 @@ fn prescribed_motion_is_that_of_the_force_of_the_drive() {
     }
 }
 
-/// Every general method keeps its order where the right-hand side depends on time: stages are at their own times.
+/// Every general method keeps its order if the right-hand side depends on time: stages are evaluated at their times.
 #[test]
 fn methods_keep_their_orders() {
     let system = Kapitza::<f64>::new(KapitzaParameters {
@@ -452,7 +452,7 @@ fn methods_keep_their_orders() {
     }
 }
 
-/// Generated code says where its clock is: it is the time of the run, and no sum of ten thousand steps.
+/// Generated code exposes its clock: it equals the time of the run, not a sum of ten thousand steps.
 #[test]
 fn a_clock_does_not_drift() {
     let system = Kapitza::new(KapitzaParameters {

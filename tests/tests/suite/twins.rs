@@ -1,11 +1,10 @@
-//! Broken twins: a model with one deliberate mistake is refused, and the message names the identity
-//! that fails.
+//! A model with one deliberate mistake is refused, and the message names the identity that fails.
 
 use hamel_codegen::generate::from_text;
 use hamel_codegen::proof::check::{Verdict, check};
 use std::path::Path;
 
-/// A model, what stands there, what the twin has instead, and what its message says.
+/// A model, the original text, its replacement, and the expected part of the message.
 type Twin = (&'static str, &'static str, &'static str, &'static str);
 
 const TWINS: &[Twin] = &[
@@ -192,7 +191,7 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(path).expect("the model is in the repository")
 }
 
-/// The twin of a model: a replacement, or a statement more where nothing is replaced.
+/// Returns the twin of a model: with a replacement, or with a further statement if nothing is replaced.
 fn twin(&(name, old, new, _): &Twin) -> String {
     let text = text(name);
     if old.is_empty() {
@@ -229,7 +228,7 @@ fn every_twin_is_refused_by_the_identity_that_it_breaks() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What follows from the other rows is no mistake: it is left out, and said.
+/// A row that follows from the others is not an error: it is left out with a warning.
 #[test]
 fn what_is_said_twice_is_left_out_with_a_warning() {
     for (name, old, new) in [

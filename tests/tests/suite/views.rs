@@ -1,11 +1,11 @@
-//! Parameters, states and inputs by name: the views of generated types, as a program uses them.
+//! Parameters, states and inputs by name: the views of generated types, as used in a program.
 
 use hamel::methods::Rkmk8;
 use hamel::{Sampled, State, System, integrate};
 use hamel_tests::free_body::{FreeBody, FreeBodyInputs, FreeBodyParameters, FreeBodyState};
 use hamel_tests::wheel_motors::{WheelMotors, WheelMotorsState};
 
-/// What the book shows: a body under a constant force along its third axis falls as its centre of mass does.
+/// The example of the book: a body under a constant force along its third axis, whose centre of mass falls accordingly.
 #[test]
 fn a_program_needs_no_index() {
     let body = FreeBody::<f64>::new(FreeBodyParameters {
@@ -31,7 +31,7 @@ fn a_program_needs_no_index() {
     for (found, expected) in end.r.into_iter().zip([3.0, 0.0, height]) {
         assert!((found - expected).abs() < 1e-11, "{:?}", end.r);
     }
-    // A controller that brakes the rotation: d/dt of the energy of rotation is −0.5 |w|² between its periods.
+    // A controller that brakes the rotation: within a period, d/dt of the rotational energy is −0.5 |w|².
     let mut state = State::from(FreeBodyState {
         w: [0.3, 1.0, -0.4],
         ..Default::default()
@@ -54,7 +54,7 @@ fn a_program_needs_no_index() {
     assert_eq!(asked, 3000);
 }
 
-/// There and back is the same, ranges are the places, and `default` is the start.
+/// Conversions are inverse, ranges match the positions, and `default` is the start.
 #[test]
 fn views_are_the_arrays() {
     let x: [f64; 12] = std::array::from_fn(|i| 0.1 + i as f64);
@@ -68,7 +68,7 @@ fn views_are_the_arrays() {
     assert_eq!(FreeBodyInputs::<f32>::default().to_array(), [0.0; 6]);
     let body = FreeBody::<f64>::default();
     assert_eq!(FreeBodyState::default().to_arrays(), body.start());
-    // States of first order stand behind the velocities; the time is a coordinate.
+    // First-order states follow the velocities; the time is a coordinate.
     let motors = WheelMotors::<f64>::default();
     let start = WheelMotorsState::default();
     assert_eq!(start.to_arrays(), motors.start());

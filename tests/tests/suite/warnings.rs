@@ -1,4 +1,4 @@
-//! Correct descriptions give no warnings: those of the models, the examples, and what imports write.
+//! Correct descriptions give no warnings: those of the models, of the examples, and of imports.
 
 use hamel_codegen::derive::reduction::{reduce, warnings as redundant};
 use hamel_codegen::lower::build;
@@ -15,7 +15,7 @@ fn read(text: &str, folder: &Path) -> Model {
     build(&system).expect("a correct description")
 }
 
-/// All files below a folder with an ending, but those that others include, in folders `parts`.
+/// Lists all files below a folder with an extension, except for included ones, in folders `parts`.
 fn below(folder: &str, ending: &str) -> Vec<PathBuf> {
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
     let mut found = Vec::new();
@@ -84,7 +84,7 @@ fn warnings_are_underlined() {
     ");
 }
 
-/// A cart on a rail with an arm on it, and more statements.
+/// Returns the warnings for a cart on a rail with an arm, with further statements.
 fn said(statements: &str) -> Vec<String> {
     let text = format!(
         "system A {{
@@ -103,7 +103,7 @@ fn said(statements: &str) -> Vec<String> {
     .collect()
 }
 
-/// Each beside a statement that differs in a detail, and cannot be complained of.
+/// Each statement with a warning has a counterpart that differs in a detail and has none.
 #[test]
 fn what_cannot_be_meant_is_said() {
     let body =
@@ -165,7 +165,7 @@ fn what_cannot_be_meant_is_said() {
     }
 }
 
-/// The macro has no warnings of its own; what it expands to makes the compiler say them.
+/// The macro cannot emit warnings directly; its expansion makes the compiler emit them.
 #[test]
 fn the_macro_hands_warnings_to_the_compiler() {
     let text = |more: &str| {

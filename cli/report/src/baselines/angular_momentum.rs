@@ -1,7 +1,7 @@
-//! Methods that keep the angular momentum in world axes: slide and Buss' methods.
+//! Methods that conserve the angular momentum in world axes: slide and Buss' methods.
 //!
-//! They turn R by exp(θ) and P back with it, so that L = R P changes by torques alone. None is
-//! symplectic: energy drifts. Source: S. R. Buss, J. Comput. Phys. 164 (2000) 377.
+//! They rotate R by exp(θ) and P inversely, so that only torques change L = R P. None is symplectic: the energy drifts.
+//! Source: S. R. Buss, J. Comput. Phys. 164 (2000) 377.
 
 use super::phase::{Phase, strang};
 use hamel::flows::Attitude;
@@ -17,20 +17,20 @@ use std::array::from_fn;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Slide;
 
-/// Buss' methods. With forces the turn is taken between two half kicks, which limits the order to 2.
+/// Buss' methods. With forces, the rotation is between two half kicks, which limits the order to 2.
 ///
-/// In world derivatives at the start of the turn, θ is the sum of h ω (first), h²/2 ω̇ (second),
-/// h³/12 ω̇ × ω (augmented second), and h³/6 ω̈ + h⁴/24 (ω⃛ + ω̈ × ω) (fourth), up to the method's own.
+/// In world derivatives at the start of the rotation, θ is the sum of h ω (first), h²/2 ω̇ (second), h³/12 ω̇ × ω
+/// (augmented second), and h³/6 ω̈ + h⁴/24 (ω⃛ + ω̈ × ω) (fourth), up to the term of the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Buss {
-    /// θ to h: order 1.
+    /// θ up to h: order 1.
     First,
-    /// θ to h²: order 2.
+    /// θ up to h²: order 2.
     Second,
-    /// θ to h² and the commutator: order 2 with a smaller error.
+    /// θ up to h² with the commutator: order 2 with a smaller error.
     AugmentedSecond,
-    /// θ to h⁴: order 4 for free bodies.
+    /// θ up to h⁴: order 4 for free bodies.
     Fourth,
 }
 
@@ -98,7 +98,7 @@ impl<Sys: Split + ?Sized> Method<Sys> for Buss {
 }
 
 impl Buss {
-    /// The attitude after `h`, P changed with it.
+    /// Returns the attitude after `h`, and P transformed with it.
     #[inline]
     pub(super) fn turn<S: Scalar, A: Attitude<S>>(
         self,
@@ -112,7 +112,7 @@ impl Buss {
         attitude.turned(theta)
     }
 
-    /// θ in body axes.
+    /// Returns θ in body axes.
     ///
     /// Derivatives in the body: P' = P × ω, P'' = P' × ω + P × ω', P''' = P'' × ω + 2 P' × ω' + P × ω'';
     /// in the world: ω̇ = ω', ω̈ = ω'' + ω × ω', ω⃛ = ω''' + 2 ω × ω'' + ω × (ω × ω').

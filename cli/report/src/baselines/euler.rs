@@ -7,7 +7,7 @@ use hamel::{Method, Scalar, State, StepError, System, manifold};
 
 /// x₁ = x ⊕ h w(x, ξ), ξ₁ = ξ + h f(x, ξ): order 1, one evaluation of ξ̇ a step.
 ///
-/// Gains energy at every oscillation; it is here to be seen failing.
+/// Gains energy in every oscillation, to demonstrate this failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ForwardEuler;
 

@@ -1,13 +1,13 @@
-//! Baselines: methods that are measured to show what they lose, and are not for use.
+//! Baselines: methods that are measured to show their defects, not meant for use.
 //!
-//! | method | order | what it shows |
+//! | method | order | choice |
 //! |---|---|---|
 //! | [`ForwardEuler`] | 1 | Euler's explicit steps |
-//! | [`Rk4Projected`] | 4 | the coordinates x as if they were free, projected after each step |
+//! | [`Rk4Projected`] | 4 | coordinates x treated as free, projected after each step |
 //! | [`Rk4Added`] | 2 | rotations without dexpinv |
-//! | [`Slide`], [`Buss`] | 1, 2, 4 | rotations that keep R P, but not the energy |
+//! | [`Slide`], [`Buss`] | 1, 2, 4 | rotations that conserve R P, but not the energy |
 //!
-//! They implement [`Method`] as those of the runtime do, by its public interface alone.
+//! They implement [`Method`] like the methods of the runtime, through its public interface only.
 
 mod angular_momentum;
 mod euler;
@@ -23,7 +23,7 @@ pub use rk4_projected::Rk4Projected;
 
 use hamel::{Method, State, StepError, System};
 
-/// The baselines that need nothing but [`System`], as one type.
+/// The baselines that require [`System`] only, as one type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Baseline {
@@ -36,7 +36,7 @@ pub enum Baseline {
 }
 
 impl Baseline {
-    /// All of them.
+    /// All baselines of this type.
     pub const ALL: &[Self] = &[Self::ForwardEuler, Self::Rk4Projected, Self::Rk4Added];
 }
 
@@ -49,7 +49,7 @@ impl<Sys: System + ?Sized> Method<Sys> for Baseline {
         }
     }
 
-    /// They are here to show what is not led back, or is in other ways.
+    /// Returns true, so that no run stabilises them: baselines show their drift, or project by themselves.
     #[inline]
     fn stays_near(&self) -> bool {
         true

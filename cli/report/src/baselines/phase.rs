@@ -1,10 +1,10 @@
-//! Positions and momenta of a system that splits, on the way through a step of Buss' methods.
+//! Positions and momenta of a split system during a step of Buss' methods.
 
 use super::angular_momentum::Buss;
 use super::step::add_scaled;
 use hamel::{Block, Scalar, Split, State, StepError, manifold, s1};
 
-/// Centred coordinates y and momenta p of [`Split`], on the way through one step.
+/// Centred coordinates y and momenta p of [`Split`] during one step.
 pub(super) struct Phase<'s, Sys: Split + ?Sized> {
     system: &'s Sys,
     rotors: Sys::Rotors,
@@ -30,7 +30,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         })
     }
 
-    /// ṗ by the forces, with the inputs of this moment.
+    /// Returns ṗ from the forces, with the inputs at this time.
     #[inline(always)]
     pub(super) fn force<U>(&self, inputs: &U) -> Sys::Chart
     where
@@ -52,13 +52,13 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         self.push(h, &force);
     }
 
-    /// p ← p + h ṗ for a force that is known.
+    /// p ← p + h ṗ for a known force.
     #[inline(always)]
     pub(super) fn push(&mut self, h: f64, force: &Sys::Chart) {
         add_scaled(self.p.as_mut(), Sys::Scalar::from_f64(h), force.as_ref());
     }
 
-    /// Motion without forces for the time `h`, rotors by a method of Buss.
+    /// Moves without forces for the time `h`, rotors by a method of Buss.
     #[inline(always)]
     pub(super) fn drift(&mut self, h: f64, method: Buss) {
         let time = Sys::Scalar::from_f64(h);
@@ -102,13 +102,13 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         self.elapsed += h;
     }
 
-    /// Back on the manifold from what rounding did, where the step ends.
+    /// Removes rounding errors at the end of a step by normalising the coordinates.
     #[inline(always)]
     pub(super) fn arrive(&mut self) {
         manifold::normalise(self.system.blocks(), self.y.as_mut());
     }
 
-    /// The state after a step of length `h`, which has arrived.
+    /// Returns the normalised state after a step of length `h`.
     #[inline(always)]
     pub(super) fn state(&self, h: f64) -> Result<State<Sys>, StepError> {
         let x = self.system.uncentre(&self.y);
@@ -123,7 +123,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 }
 
-/// A kick of h/2, motion without forces, a kick of h/2: order 2. `force` is that of
+/// A kick of h/2, motion without forces, a kick of h/2: order 2. `force` has the meaning of
 /// [`Method::follow`](hamel::Method::follow).
 #[inline(always)]
 pub(super) fn strang<Sys, U>(

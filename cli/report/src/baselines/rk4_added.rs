@@ -1,13 +1,13 @@
 //! The classical Runge-Kutta method with angular velocities added as if they were vectors of one space.
 //!
-//! As engines do it: (w₁ + 2 w₂ + 2 w₃ + w₄) h/6 is one rotation vector. Each wᵢ is in body axes of
-//! another orientation; what [`Rkmk4`](hamel::methods::Rkmk4) corrects by dexpinv is left out here,
-//! and the order of rotations falls to 2.
+//! As in game engines, (w₁ + 2 w₂ + 2 w₃ + w₄) h/6 is one rotation vector. Each wᵢ is in the body axes of another
+//! orientation; the correction by dexpinv of [`Rkmk4`](hamel::methods::Rkmk4) is omitted, and the order of rotations
+//! falls to 2.
 
 use super::step::{acceleration, add_scaled, arrive, scale};
 use hamel::{Method, Scalar, State, StepError, System, manifold};
 
-/// Order 2 where x has rotations, 4 elsewhere; four evaluations of ξ̇ a step.
+/// Order 2 if x has rotations, otherwise 4; four evaluations of ξ̇ a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rk4Added;
 

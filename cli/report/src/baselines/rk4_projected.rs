@@ -1,4 +1,4 @@
-//! The classical Runge-Kutta method on the coordinates x as if they were free, projected after each step.
+//! The classical Runge-Kutta method on coordinates x treated as free, projected after each step.
 
 use hamel::methods::Rk4;
 use hamel::{Method, State, StepError, System, manifold};

@@ -1,4 +1,4 @@
-//! What every step of a baseline is put together from.
+//! Building blocks of the steps of baselines.
 
 use hamel::{Scalar, State, StepError, System, manifold};
 
@@ -18,9 +18,9 @@ pub(super) fn scale<S: Scalar>(y: &mut [S], a: S) {
     }
 }
 
-/// ξ̇ at a point of the step that starts at `time`, with the inputs of `time + offset`.
+/// Evaluates ξ̇ at a point of the step that starts at `time`, with the inputs at `time + offset`.
 ///
-/// A pivot that is NaN because the state is NaN is reported as such.
+/// A pivot that is NaN because the state is NaN is reported as a NaN state.
 #[inline]
 pub(super) fn acceleration<Sys, U>(
     system: &Sys,
@@ -45,8 +45,8 @@ where
     })
 }
 
-/// The end of a step of length `h` from `state`: (x, ξ), with x brought back onto its manifold from
-/// what rounding did.
+/// Returns the state (x, ξ) after a step of length `h` from `state`, with rounding errors of x removed by projection
+/// onto its manifold.
 #[inline]
 pub(super) fn arrive<Sys: System + ?Sized>(
     system: &Sys,

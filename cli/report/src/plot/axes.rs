@@ -9,7 +9,7 @@ use plotters::chart::ChartBuilder;
 use plotters::coord::combinators::IntoLogRange;
 use plotters::style::TRANSPARENT;
 
-/// Where is drawn, in pixels.
+/// The area of a diagram, in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// Left edge.
@@ -28,12 +28,12 @@ pub struct Axis {
     low: f64,
     high: f64,
     logarithmic: bool,
-    /// Labels show values over 10 to this power.
+    /// Labels show values divided by 10 to this power.
     exponent: i32,
 }
 
 impl Axis {
-    /// Exactly a range.
+    /// Creates an axis for exactly this range.
     pub fn exact(low: f64, high: f64) -> Self {
         let size = low.abs().max(high.abs());
         let power = (size.log10().floor() as i32).clamp(-300, 300);
@@ -45,7 +45,7 @@ impl Axis {
         }
     }
 
-    /// All finite values with a margin; a constant is in the middle of one.
+    /// Creates an axis for all finite values, with a margin; a constant is in the middle.
     pub fn around(values: impl Iterator<Item = f64>) -> Self {
         let (low, high) = extent(values).unwrap_or((0.0, 0.0));
         let size = low.abs().max(high.abs());
@@ -57,10 +57,10 @@ impl Axis {
         Axis::exact(low - margin, high + margin)
     }
 
-    /// All positive finite values on a logarithmic scale, with a margin.
+    /// Creates a logarithmic axis for all positive finite values, with a margin.
     pub fn logarithmic(values: impl Iterator<Item = f64>) -> Self {
         let (low, high) = extent(values.filter(|&value| value > 0.0)).unwrap_or((0.1, 1.0));
-        // A range that is no number would have no end of ticks.
+        // An infinite range would have infinitely many ticks.
         let (low, high) = (low.max(1e-100), high.min(1e100));
         let margin = (high / low).powf(0.04).max(1.5);
         Axis {
@@ -71,12 +71,12 @@ impl Axis {
         }
     }
 
-    /// The least value shown.
+    /// Returns the least value shown.
     pub fn low(&self) -> f64 {
         self.low
     }
 
-    /// Where a value stands in the range, from 0 to 1.
+    /// Returns the position of a value in the range, from 0 to 1.
     pub fn part(&self, value: f64) -> f64 {
         if self.logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
@@ -85,7 +85,7 @@ impl Axis {
         }
     }
 
-    /// The text of a tick.
+    /// Returns the text of a tick.
     fn label(&self, value: f64) -> String {
         if self.logarithmic {
             let power = value.log10().round() as i32;
@@ -101,7 +101,7 @@ impl Axis {
         digits(value / 10_f64.powi(self.exponent), 4).replace('-', "−")
     }
 
-    /// ` ×10⁻¹³`, or nothing.
+    /// Returns the common factor of the labels, such as ` ×10⁻¹³`, or nothing.
     pub fn factor(&self) -> String {
         match self.exponent {
             0 => String::new(),
@@ -110,7 +110,7 @@ impl Axis {
     }
 }
 
-/// Least and largest finite value.
+/// Returns the least and the greatest finite value.
 fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values
         .filter(|value| value.is_finite())
@@ -120,7 +120,7 @@ fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
         })
 }
 
-/// An exponent in raised digits.
+/// Formats an exponent in superscript digits.
 fn raised(power: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let raise = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
@@ -142,7 +142,7 @@ pub struct Axes {
 const LABELS: (f64, f64) = (54.0, 26.0);
 
 impl Axes {
-    /// Where a point of the range stands in the drawing.
+    /// Returns the position of a point in the drawing.
     pub fn place(&self, x: f64, y: f64) -> Point {
         let Frame {
             x: left,
@@ -156,10 +156,10 @@ impl Axes {
         )
     }
 
-    /// Draws grid and labels; those of the lower edge where they are wanted.
+    /// Draws grid and labels; those of the lower edge only if requested.
     ///
     /// # Errors
-    /// Those of the library that draws.
+    /// If the drawing library fails.
     pub fn draw(&self, area: &Area, labels_below: bool) -> Drawn {
         let Frame {
             x,
@@ -211,17 +211,17 @@ impl Axes {
     /// Writes a name above the frame.
     ///
     /// # Errors
-    /// Those of the library that draws.
+    /// If the drawing library fails.
     pub fn name(&self, area: &Area, name: &str) -> Drawn {
         let style = letters(12.0, theme::INK.0, Anchor::Start, true);
         let name = fitted(name, 12.0, true, self.frame.width);
         write(area, &name, (self.frame.x, self.frame.y - 13.0), &style)
     }
 
-    /// Writes what the lower edge is, below it.
+    /// Writes the name of the lower edge below it.
     ///
     /// # Errors
-    /// Those of the library that draws.
+    /// If the drawing library fails.
     pub fn below(&self, area: &Area, name: &str) -> Drawn {
         let style = letters(12.0, theme::SOFT.0, Anchor::Middle, false);
         let at = (

@@ -6,14 +6,14 @@ use super::line::{Point, by_column, simplify};
 use super::width::width;
 use super::{Panel, theme};
 
-/// Distance of two labels.
+/// Distance between two labels.
 const LABEL: f64 = 15.0;
-/// Size of labels, where they begin beside a frame, and what stays free behind them.
+/// Size of labels, their distance from a frame, and the margin after them.
 const SIZE: f64 = 12.0;
 const BEGIN: f64 = 14.0;
 const MARGIN: f64 = 10.0;
 
-/// The room beside a frame that names of lines take.
+/// Returns the width that names of lines need next to a frame.
 pub fn room<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
     let widest = names
         .map(|name| width(name, SIZE, true))
@@ -21,12 +21,12 @@ pub fn room<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
     BEGIN + widest + MARGIN
 }
 
-/// The least height of a frame with so many lines.
+/// Returns the least height of a frame with this number of lines.
 pub fn height(lines: usize) -> f64 {
     LABEL * lines.saturating_sub(1) as f64
 }
 
-/// A panel; the last one carries the labels of the time axis.
+/// Draws a panel; the last one has the labels of the time axis.
 pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool) -> Drawn {
     let (from, to) = match time {
         [first, .., last] if last > first => (*first, *last),
@@ -67,8 +67,7 @@ pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool)
     names(area, &ends, frame)
 }
 
-/// Names beside the ends of lines, moved apart; each with the index of its colour and the height of
-/// its end.
+/// Writes names next to the ends of lines, moved apart; each has the index of its colour and the height of its end.
 pub fn names(area: &Area, ends: &[(usize, &str, f64)], frame: Frame) -> Drawn {
     let right = frame.x + frame.width;
     let mut order: Vec<&(usize, &str, f64)> = ends.iter().collect();

@@ -13,10 +13,10 @@ use plotters::style::{Color, FontStyle, IntoFont, RGBAColor, RGBColor, ShapeStyl
 use std::error::Error;
 use std::fmt;
 
-/// `plotters` knows whole pixels only: drawings are this many times as large.
+/// Scale of drawings, since `plotters` supports only whole pixels.
 pub const FINE: f64 = 10.0;
 
-/// Where is drawn.
+/// The area to draw on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// A picture that could not be drawn.
@@ -34,7 +34,7 @@ impl Error for PlotError {}
 /// The result of drawing.
 pub type Drawn = Result<(), PlotError>;
 
-/// Turns an error of `plotters` into one of ours.
+/// Converts an error of `plotters`.
 pub fn failed(error: impl fmt::Display) -> PlotError {
     PlotError(error.to_string())
 }
@@ -49,10 +49,10 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// A drawing of this size in pixels; the title is for those who cannot see it.
+    /// Creates a drawing of this size in pixels; the title is its text alternative.
     ///
     /// # Errors
-    /// Those of `draw`.
+    /// If `draw` fails.
     pub fn draw(
         width: f64,
         height: f64,
@@ -66,7 +66,7 @@ impl Figure {
             draw(&root)?;
             root.present().map_err(failed)?;
         }
-        // The frame is ours.
+        // Replaces the outer element.
         let elements = text.split_once(">\n").map_or("", |(_, rest)| rest);
         let elements = compact(elements.trim_end().trim_end_matches("</svg>"));
         Ok(Figure {
@@ -77,7 +77,7 @@ impl Figure {
         })
     }
 
-    /// A drawing of this size by its elements, in units of the drawing.
+    /// Creates a drawing of this size from its elements, in units of the drawing.
     pub fn of(width: f64, height: f64, title: &str, elements: String) -> Self {
         Figure {
             width,
@@ -87,12 +87,12 @@ impl Figure {
         }
     }
 
-    /// The text of a file of its own.
+    /// Returns the text of a separate file.
     pub fn standalone(&self) -> String {
         self.text(&format!("<style>\n{}</style>\n", theme::sheet()))
     }
 
-    /// The text within a page that has the [style sheet](theme::sheet).
+    /// Returns the text for a page that has the [style sheet](theme::sheet).
     pub fn inline(&self) -> String {
         self.text("")
     }
@@ -114,8 +114,8 @@ impl Figure {
     }
 }
 
-/// The same drawing in less text: without what repeats a default or stands in the style sheet, and with
-/// disks of one kind that follow each other as one path of dots.
+/// Shortens the text of a drawing: leaves out attributes that repeat a default or the style sheet, and merges
+/// consecutive disks of one kind into one path of dots.
 fn compact(elements: &str) -> String {
     let text = elements
         .replace(" opacity=\"1\"", "")
@@ -153,7 +153,7 @@ fn compact(elements: &str) -> String {
     short
 }
 
-/// Place, radius and colour of a disk.
+/// Parses position, radius and colour of a disk.
 fn disk(line: &str) -> Option<(String, u32, &str)> {
     let rest = line.strip_prefix("<circle cx=\"")?;
     let (x, rest) = rest.split_once("\" cy=\"")?;
@@ -167,7 +167,7 @@ fn disk(line: &str) -> Option<(String, u32, &str)> {
     ))
 }
 
-/// Text within XML, attributes included.
+/// Escapes a text for XML, attributes included.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
@@ -175,17 +175,17 @@ pub fn escape(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-/// A length or place in units of the drawing.
+/// Converts a length or coordinate to units of the drawing.
 pub fn unit(pixels: f64) -> i32 {
     (pixels * FINE).round() as i32
 }
 
-/// A point in units of the drawing.
+/// Converts a point to units of the drawing.
 pub fn place((x, y): Point) -> (i32, i32) {
     (unit(x), unit(y))
 }
 
-/// A stroke of this width in pixels.
+/// Returns a stroke of this width in pixels.
 pub fn stroke(colour: impl Color, width: f64) -> ShapeStyle {
     ShapeStyle {
         color: colour.to_rgba(),
@@ -194,18 +194,18 @@ pub fn stroke(colour: impl Color, width: f64) -> ShapeStyle {
     }
 }
 
-/// How texts stand at their place.
+/// The alignment of a text at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// To the right of it.
+    /// To the right of the position.
     Start,
-    /// Around it.
+    /// Centred on the position.
     Middle,
-    /// To the left of it.
+    /// To the left of the position.
     End,
 }
 
-/// A style of text, of this size in pixels, centred vertically.
+/// Returns a style of text of this size in pixels, centred vertically.
 pub fn letters(size: f64, colour: RGBColor, anchor: Anchor, bold: bool) -> TextStyle<'static> {
     let weight = if bold {
         FontStyle::Bold
@@ -217,7 +217,7 @@ pub fn letters(size: f64, colour: RGBColor, anchor: Anchor, bold: bool) -> TextS
         Anchor::Middle => HPos::Center,
         Anchor::End => HPos::Right,
     };
-    // `plotters` writes sizes over 1.24.
+    // `plotters` writes sizes divided by 1.24.
     let size = size * FINE * 1.24;
     let mut style = TextStyle::from(("sans-serif", size, weight).into_font());
     style.color = colour.to_backend_color();
@@ -249,7 +249,7 @@ pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> Drawn {
     area.draw(&Polygon::new(points, colour)).map_err(failed)
 }
 
-/// Fills all and writes a heading and a sentence below it, as far as there is room.
+/// Fills the background, and writes a heading and a sentence below it, cut to the width.
 pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
     const LEFT: f64 = 24.0;
     const RIGHT: f64 = 10.0;

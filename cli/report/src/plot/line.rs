@@ -1,4 +1,4 @@
-//! Polylines with no more points than can be seen.
+//! Simplifies polylines to the points that can be distinguished.
 
 /// A point of the drawing.
 pub type Point = (f64, f64);
@@ -18,7 +18,8 @@ pub fn by_column(points: &[Point]) -> Vec<Point> {
     kept
 }
 
-/// Douglas and Peucker: leaves out points that lie within a tolerance of the line without them.
+/// Simplifies by the algorithm of Douglas and Peucker: omits points that lie within a tolerance of the line without
+/// them.
 pub fn simplify(points: &[Point], tolerance: f64) -> Vec<Point> {
     if points.len() < 3 {
         return points.to_vec();
@@ -47,7 +48,7 @@ pub fn simplify(points: &[Point], tolerance: f64) -> Vec<Point> {
         .collect()
 }
 
-/// Distance of a point from a segment.
+/// Returns the distance of a point from a segment.
 fn distance(point: Point, a: Point, b: Point) -> f64 {
     let (ux, uy) = (b.0 - a.0, b.1 - a.1);
     let (px, py) = (point.0 - a.0, point.1 - a.1);

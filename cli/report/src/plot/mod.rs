@@ -29,14 +29,14 @@ use figure::headed;
 /// Lines over time that share a vertical axis.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What is drawn.
+    /// Name of the quantity.
     pub title: String,
-    /// Names and values, one value for every time of the picture.
+    /// Names and values, with one value for every time of the picture.
     pub lines: Vec<(String, Vec<f64>)>,
 }
 
 impl Panel {
-    /// A panel without lines.
+    /// Creates a panel without lines.
     pub fn new(title: &str) -> Self {
         Panel {
             title: title.to_string(),
@@ -48,13 +48,13 @@ impl Panel {
 /// A curve of unit vectors over the times of the picture.
 #[derive(Clone, Debug)]
 pub struct Path {
-    /// What is drawn.
+    /// Name of the curve.
     pub title: String,
     /// Unit vectors in world axes.
     pub points: Vec<[f64; 3]>,
 }
 
-/// All that is drawn of a run.
+/// The contents of the picture of a run.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// Heading.
@@ -65,7 +65,7 @@ pub struct Picture {
     pub time: Vec<f64>,
     /// Panels from top to bottom; the last one is lower.
     pub panels: Vec<Panel>,
-    /// The sphere beside them, if there is one.
+    /// The sphere next to them, if there is one.
     pub path: Option<Path>,
     /// Poinsot's construction, if there is one.
     pub poinsot: Option<Poinsot>,
@@ -76,16 +76,16 @@ const TITLE: f64 = 26.0;
 const GAP: f64 = 22.0;
 const FOOT: f64 = 50.0;
 const LEFT: f64 = 66.0;
-/// Least room for the names of lines.
+/// Least width for the names of lines.
 const LABELS: f64 = 78.0;
-/// Width and height of a sphere with its names.
+/// Width and height of a sphere with its labels.
 const SPHERE: (f64, f64) = (380.0, 410.0);
 const RADIUS: f64 = 140.0;
 
-/// A picture of a run.
+/// Draws the picture of a run.
 ///
 /// # Errors
-/// Those of the library that draws; none are known.
+/// If the drawing library fails; no case is known.
 pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
     let spheres = usize::from(picture.path.is_some()) + usize::from(picture.poinsot.is_some());
     let across = if spheres > 0 { 446.0 } else { 656.0 };
@@ -97,7 +97,7 @@ pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
     } else {
         200.0
     };
-    // The names of all lines have room below each other.
+    // The names of all lines fit below each other.
     let height_of = |index: usize| {
         let last = index + 1 == picture.panels.len();
         let lines = picture.panels[index].lines.len();
@@ -138,10 +138,10 @@ pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
     })
 }
 
-/// Poinsot's construction alone.
+/// Draws only Poinsot's construction.
 ///
 /// # Errors
-/// Those of the library that draws; none are known.
+/// If the drawing library fails; no case is known.
 pub fn construction(
     title: &str,
     subtitle: &str,

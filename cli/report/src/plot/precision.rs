@@ -36,7 +36,7 @@ impl Precision {
 
     fn point(self, run: &MethodRun) -> Option<(f64, f64)> {
         let (work, error) = (self.work(run)?, run.error?);
-        // Errors of order 1 say that a run failed, those of zero cannot be drawn.
+        // An error of order 1 means that a run failed; zero has no place on a logarithmic scale.
         (work > 0.0 && error > 0.0 && error < LARGEST).then_some((work, error))
     }
 }
@@ -47,14 +47,14 @@ const WIDE: f64 = 350.0;
 const HIGH: f64 = 330.0;
 /// Height of a line of the legend.
 const ROW: f64 = 17.0;
-/// Where names stand in a line of the legend, and the least room for them.
+/// Position of names in a line of the legend, and their least width.
 const NAME: f64 = 29.0;
 const LEAST: f64 = 105.0;
 
-/// Error against evaluations, and error against time where it was measured.
+/// Draws error against evaluations, and error against time where it was measured.
 ///
 /// # Errors
-/// Those of the library that draws; none are known.
+/// If the drawing library fails; no case is known.
 pub fn precision(case: &Case) -> Result<Figure, PlotError> {
     let measured = |precision: Precision| {
         let mut runs = case.methods.iter().flat_map(|method| &method.runs);
@@ -126,7 +126,7 @@ fn diagram(area: &Area, case: &Case, panel: Precision, frame: Frame) -> Drawn {
     Ok(())
 }
 
-/// Baselines and peers are thin.
+/// Returns the style of a line, which is thin for baselines and peers.
 fn style(index: usize, method: &MethodRuns) -> ShapeStyle {
     let width = if method.kind == Kind::Method {
         1.8
@@ -136,7 +136,7 @@ fn style(index: usize, method: &MethodRuns) -> ShapeStyle {
     stroke(theme::series(index), width)
 }
 
-/// A disk, smaller for baselines and peers.
+/// Draws a disk, smaller for baselines and peers.
 fn mark(area: &Area, at: Point, index: usize, method: &MethodRuns) -> Drawn {
     let radius = if method.kind == Kind::Method {
         2.7

@@ -1,20 +1,21 @@
-//! Points of many runs: each of some results over each of some causes.
+//! Scatter diagrams of many runs: each result against each cause.
 
 use super::axes::{Axes, Axis, Frame};
 use super::figure::{Area, Drawn, Figure, PlotError, circle, headed, stroke};
 use super::theme;
 use plotters::style::ShapeStyle;
 
-/// Numbers of many runs, by their names; in each list a run has the same place. What is not finite is not drawn.
+/// Numbers of many runs, by their names; in every list a run has the same index. Values that are not finite are not
+/// drawn.
 #[derive(Clone, Debug)]
 pub struct Scatter {
     /// Heading.
     pub title: String,
     /// A sentence below it.
     pub subtitle: String,
-    /// What each column of diagrams has along its lower edge.
+    /// The quantity on the lower edge of each column of diagrams.
     pub across: Vec<(String, Vec<f64>)>,
-    /// What each row of diagrams has along its left edge.
+    /// The quantity on the left edge of each row of diagrams.
     pub up: Vec<(String, Vec<f64>)>,
 }
 
@@ -22,14 +23,14 @@ const TOP: f64 = 96.0;
 const LEFT: f64 = 76.0;
 const WIDE: f64 = 230.0;
 const HIGH: f64 = 150.0;
-/// Between frames; the name of the one below, or the labels of the one beside, stand there.
+/// Gaps between frames, with room for the name of the frame below or the labels of the frame to the right.
 const GAP: (f64, f64) = (86.0, 40.0);
 const BOTTOM: f64 = 62.0;
 
-/// A diagram for each pair.
+/// Draws a diagram for each pair.
 ///
 /// # Errors
-/// Those of the library that draws; none are known.
+/// If the drawing library fails; no case is known.
 pub fn scatter(of: &Scatter) -> Result<Figure, PlotError> {
     let (columns, rows) = (of.across.len().max(1) as f64, of.up.len().max(1) as f64);
     let width = LEFT + columns * (WIDE + GAP.0) - GAP.0 + 30.0;
@@ -91,7 +92,7 @@ mod tests {
         let text = scatter(&picture).expect("a drawing").standalone();
         assert_eq!(text.matches("h0").count(), 4 * 10);
         assert!(text.contains("a &lt;sweep&gt;"));
-        // A member that has no result is no point.
+        // A member without a result gives no point.
         picture.up[1].1[3] = f64::NAN;
         let text = scatter(&picture).expect("a drawing").standalone();
         assert_eq!(text.matches("h0").count(), 4 * 10 - 2);

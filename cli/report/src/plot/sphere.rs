@@ -1,8 +1,6 @@
-//! Curves on a sphere, seen from afar, with time as colour: the path of a body axis, and Poinsot's
-//! construction.
-//!
-//! A torque-free body keeps |P| and 2T = P·J⁻¹P, with its angular momentum P in body axes: P moves on
-//! the curves, polhodes, in which a sphere and an ellipsoid meet.
+//! Curves on a sphere, in parallel projection with time as colour: the path of a body axis, and Poinsot's construction.
+//! A torque-free body conserves |P| and 2T = P·J⁻¹P, with its angular momentum P in body axes: P moves on the polhodes,
+//! the curves in which a sphere and an ellipsoid intersect.
 
 use super::Path;
 use super::figure::{Anchor, Area, Drawn, circle, fill, letters, line, stroke, write};
@@ -13,18 +11,18 @@ use plotters::style::{Color, ShapeStyle};
 
 /// Azimuth and elevation of the eye (rad).
 const EYE: (f64, f64) = (0.6, 0.36);
-/// Pieces of one colour.
+/// Number of single-coloured pieces.
 const PIECES: usize = 60;
-/// Points of a circle of the mesh.
+/// Number of points of a circle of the mesh.
 const CIRCLE: u32 = 72;
-/// Where the names of axes stand, over the radius of the sphere.
+/// Distance of the names of axes, relative to the radius of the sphere.
 const NAMES: f64 = 0.22;
-/// The ellipsoid with its names reaches no farther, over the radius of the place.
+/// Largest extent of the ellipsoid with its names, relative to the available radius.
 const REACH: f64 = 1.27;
 
 type Vector = [f64; 3];
 
-/// What Poinsot's construction shows.
+/// The data of Poinsot's construction.
 #[derive(Clone, Debug)]
 pub struct Poinsot {
     /// Angular momenta in body axes over the times of the picture.
@@ -41,7 +39,7 @@ struct View {
 }
 
 impl View {
-    /// Place in the drawing, and distance in front of the sphere's centre.
+    /// Returns the position in the drawing, and the distance in front of the sphere's centre.
     fn project(&self, p: Vector) -> (Point, f64) {
         let ((sa, ca), (se, ce)) = (EYE.0.sin_cos(), EYE.1.sin_cos());
         let right = ca * p[1] - sa * p[0];
@@ -51,7 +49,7 @@ impl View {
         (place, depth)
     }
 
-    /// The parts of a curve that are seen and those that are not; pieces join where they meet.
+    /// Splits a curve into visible and hidden parts, which join where they meet.
     fn split(&self, curve: &[Vector], seen: impl Fn(Vector, f64) -> bool) -> [Vec<Vec<Point>>; 2] {
         let mut parts: [Vec<Vec<Point>>; 2] = [Vec::new(), Vec::new()];
         let mut side = None;
@@ -82,7 +80,7 @@ fn lines(area: &Area, parts: &[Vec<Point>], style: ShapeStyle) -> Drawn {
         .try_for_each(|part| line(area, &simplify(part, 0.1), style))
 }
 
-/// The sphere with the path of a body axis in the world, and the scale of time.
+/// Draws the sphere with the path of a body axis in the world, and the scale of time.
 pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> Drawn {
     let view = View {
         x: at.0,
@@ -96,7 +94,7 @@ pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> Drawn
     scale(area, end, (at.0, at.1 + radius + 42.0))
 }
 
-/// Poinsot's construction, and the scale of time.
+/// Draws Poinsot's construction, and the scale of time.
 pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64) -> Drawn {
     heading(area, "Poinsot: P in body axes", at, radius)?;
     let size = |p: &Vector| p.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -160,8 +158,8 @@ fn unit(axis: usize) -> Vector {
     std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 })
 }
 
-/// A ball with its mesh and a curve on it; `between` draws what stands before the parts of the curve that
-/// are behind, and behind those that are in front.
+/// Draws a ball with its mesh and a curve on it; `between` draws everything between the hidden and the visible parts of
+/// the curve.
 fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> Drawn) -> Drawn {
     let middle = (view.x, view.y);
     let ball = ShapeStyle::from(theme::BALL.0).filled();
@@ -198,7 +196,7 @@ fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> 
     Ok(())
 }
 
-/// Circles of longitude and latitude every 30 degrees.
+/// Returns circles of longitude and latitude every 30 degrees.
 fn circles() -> Vec<Vec<Vector>> {
     let turns = || (0..=CIRCLE).map(|i| (f64::from(i) * 360.0 / f64::from(CIRCLE)).to_radians());
     let mut circles: Vec<Vec<Vector>> = Vec::new();
@@ -221,7 +219,7 @@ fn circles() -> Vec<Vec<Vector>> {
     circles
 }
 
-/// Three axes from where they leave the sphere or the shell, those in front or those behind.
+/// Draws three axes from their exit points from the sphere or the shell, either those in front or those behind.
 fn axes(
     area: &Area,
     view: &View,
@@ -242,7 +240,7 @@ fn axes(
     Ok(())
 }
 
-/// A curve in pieces of one colour, in front and behind.
+/// Splits a curve into single-coloured pieces, in front and behind.
 fn pieces(view: &View, points: &[Vector]) -> Vec<(f64, [Vec<Vec<Point>>; 2])> {
     let steps = points.len().saturating_sub(1);
     let count = PIECES.min(steps);
@@ -256,7 +254,7 @@ fn pieces(view: &View, points: &[Vector]) -> Vec<(f64, [Vec<Vec<Point>>; 2])> {
         .collect()
 }
 
-/// The first or the last point, named above or below, towards the middle.
+/// Draws the first or the last point, with its name above or below, towards the middle.
 fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bool) -> Drawn {
     let ((x, y), depth) = view.project(point);
     let colour = ramp(time).mix(if depth < 0.0 { 0.55 } else { 1.0 });
@@ -271,7 +269,7 @@ fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bo
     write(area, name, (x + side, y + up), &style)
 }
 
-/// Colours and the times that they stand for.
+/// Draws the colours and the times that they represent.
 fn scale(area: &Area, end: f64, at: Point) -> Drawn {
     const WIDTH: f64 = 140.0;
     const PARTS: usize = 28;
@@ -290,7 +288,7 @@ fn scale(area: &Area, end: f64, at: Point) -> Drawn {
     write(area, &short(end), (left + WIDTH + 9.0, at.1), &after)
 }
 
-/// J⁻¹ by adjugates; `None` where J is singular.
+/// Returns J⁻¹ by the adjugate; `None` if J is singular.
 fn inverse(j: &[Vector; 3]) -> Option<[Vector; 3]> {
     let minor = |r: usize, c: usize| {
         let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);

@@ -1,11 +1,11 @@
 //! Colours, on light ground and on dark.
 //!
-//! A picture is drawn in its light colours, as attributes; on a dark page a style sheet replaces each
-//! of them by its partner.
+//! A picture is drawn in its light colours, as attributes; on a dark page, a style sheet replaces each of them by its
+//! counterpart.
 
 use plotters::style::RGBColor;
 
-/// A colour on light ground, and its partner on dark.
+/// A colour on light ground, and its counterpart on dark.
 pub type Pair = (RGBColor, RGBColor);
 
 const fn rgb(code: u32) -> RGBColor {
@@ -16,7 +16,7 @@ const fn pair(light: u32, dark: u32) -> Pair {
     (rgb(light), rgb(dark))
 }
 
-/// Below everything.
+/// The background.
 pub const GROUND: Pair = pair(0xffffff, 0x11161d);
 /// Headings.
 pub const INK: Pair = pair(0x1c2128, 0xe8edf3);
@@ -29,7 +29,7 @@ pub const BALL: Pair = pair(0xf4f6f9, 0x1a212a);
 /// An ellipsoid.
 pub const SHELL: Pair = pair(0x138a5c, 0x56d49c);
 
-/// Lines in turn.
+/// Colours of lines, in order.
 pub const SERIES: [Pair; 10] = [
     pair(0x1f6feb, 0x6cb0ff),
     pair(0xd1660b, 0xffab5e),
@@ -43,7 +43,7 @@ pub const SERIES: [Pair; 10] = [
     pair(0x3f4bb5, 0x9fa8ff),
 ];
 
-/// Colours from the first to the last time, to be seen on either ground.
+/// Colours from the first to the last time, visible on both grounds.
 const RAMP: [[f64; 3]; 4] = [
     [43.0, 124.0, 238.0],
     [139.0, 92.0, 230.0],
@@ -51,12 +51,12 @@ const RAMP: [[f64; 3]; 4] = [
     [240.0, 140.0, 20.0],
 ];
 
-/// The colour of the line with this index.
+/// Returns the colour of the line with this index.
 pub fn series(index: usize) -> RGBColor {
     SERIES[index % SERIES.len()].0
 }
 
-/// The colour of a time from 0 to 1.
+/// Returns the colour of a time from 0 to 1.
 pub fn ramp(time: f64) -> RGBColor {
     let place = time.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let index = (place as usize).min(RAMP.len() - 2);
@@ -67,12 +67,12 @@ pub fn ramp(time: f64) -> RGBColor {
     RGBColor(r, g, b)
 }
 
-/// A colour as SVG has it.
+/// Formats a colour for SVG.
 pub fn code(RGBColor(r, g, b): RGBColor) -> String {
     format!("#{r:02X}{g:02X}{b:02X}")
 }
 
-/// The style sheet of all pictures: fonts, and the partners on dark ground.
+/// Returns the style sheet of all pictures: fonts, and the counterparts on dark ground.
 pub fn sheet() -> String {
     let mut text = String::from(
         "svg text{font-family:system-ui,-apple-system,\"Segoe UI\",\"DejaVu Sans\",sans-serif}\n\

@@ -1,13 +1,13 @@
-//! How wide texts are, estimated: which font a reader's machine has is not known, so the widest of the fonts
-//! that the style sheet names is taken.
+//! Estimates the width of texts: the font on a reader's machine is unknown, so the widest of the fonts in the style
+//! sheet is assumed.
 
-/// The width of a text of this size, in whole pixels.
+/// Returns the width of a text of this size, in whole pixels.
 pub fn width(text: &str, size: f64, bold: bool) -> f64 {
     let em: f64 = text.chars().map(letter).sum();
     (size * em * if bold { 1.0 } else { REGULAR }).ceil()
 }
 
-/// The text, or its beginning with `…` where it is wider than that.
+/// Returns the text, or a beginning of it with `…` if it is wider than `widest`.
 pub fn fitted(text: &str, size: f64, bold: bool, widest: f64) -> String {
     if width(text, size, bold) <= widest {
         return text.to_string();
@@ -19,13 +19,13 @@ pub fn fitted(text: &str, size: f64, bold: bool, widest: f64) -> String {
     format!("{}…", kept.trim_end())
 }
 
-/// Letters that are not bold, over those that are.
+/// Width of a letter that is not bold, relative to a bold one.
 const REGULAR: f64 = 0.9;
 
-/// The width of a bold letter, over the size of the font.
+/// Returns the width of a bold letter, relative to the size of the font.
 fn letter(letter: char) -> f64 {
     match letter {
-        // Marks above and below other letters.
+        // Combining marks.
         '\u{300}'..='\u{36f}' => 0.0,
         'i' | 'j' | 'l' | 'I' | ' ' | '.' | ',' | ':' | ';' | '\'' | '|' => 0.38,
         'f' | 'r' | 't' | '(' | ')' | '[' | ']' | '-' | '/' | '!' | '·' => 0.5,
@@ -34,7 +34,7 @@ fn letter(letter: char) -> f64 {
         'a'..='z' | '0'..='9' | '_' => 0.72,
         'A'..='Z' => 0.84,
         '\u{20}'..='\u{7e}' => 0.84,
-        // Letters of scripts that are written in squares among them.
+        // Letters of scripts in square form are among these.
         '\u{2e80}'..='\u{ffff}' => 1.1,
         _ => 0.88,
     }

@@ -7,13 +7,13 @@ use super::line::Point;
 use super::theme;
 use crate::data::Drift;
 
-/// Deviations above are a blow-up, however large, and are drawn at the upper edge.
+/// Larger deviations are a blow-up, and are drawn at the upper edge.
 const LARGEST: f64 = 1e3;
 
-/// Long runs of one case, on a logarithmic scale.
+/// Draws long runs of one case on a logarithmic scale.
 ///
 /// # Errors
-/// Those of the library that draws; none are known.
+/// If the drawing library fails; no case is known.
 pub fn drifts(title: &str, subtitle: &str, runs: &[&Drift]) -> Result<Figure, PlotError> {
     const RIGHT: f64 = 640.0;
     let beside = room(runs.iter().map(|run| run.method.as_str()));

@@ -1,4 +1,4 @@
-//! Logarithms and angles between bounds: their values, and that they invert what they should.
+//! Interval logarithms and angles: their values, and that they are inverse functions.
 
 use hamel_algebra::function::Function;
 use hamel_algebra::interval::Interval;
@@ -15,7 +15,7 @@ fn logarithm(a: &Interval) -> Option<Interval> {
     a.apply(Function::Log)
 }
 
-/// That the bounds are narrower than 2^−281.
+/// Returns whether the bounds are within 2^−281.
 fn is_narrow(a: &Interval) -> bool {
     let [lo, hi] = a.bounds();
     hi - lo < BigRational::new(BigInt::one(), BigInt::one() << 281)
@@ -54,8 +54,7 @@ fn they_have_the_values_of_floating_arithmetic() {
     }
 }
 
-/// Laws that do not know the series: exp log a = a, log a + log b = log a b, tangents of angles,
-/// Machin's formula.
+/// Laws independent of the series: exp log a = a, log a + log b = log a b, tangents of angles, Machin's formula.
 #[test]
 fn they_invert_what_they_should() {
     let one = number(1, 1);

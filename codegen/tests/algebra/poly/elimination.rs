@@ -1,4 +1,4 @@
-//! Minimal polynomials: algebraic and free variables are told apart.
+//! Minimal polynomials distinguish algebraic and free variables.
 
 use hamel_algebra::fp::Fp;
 use hamel_algebra::poly::buchberger::{Limits, groebner};
@@ -12,7 +12,7 @@ fn n(value: i64) -> Poly<Fp> {
 
 #[test]
 fn algebraic_and_free_variables_are_told_apart() {
-    // z² = x y, x y = 2, so z² = 2; x and y stay free.
+    // z² = x y and x y = 2, so z² = 2; x and y are free.
     let (x, y, z) = (Poly::var(0), Poly::var(1), Poly::var(2));
     let generators = [z.mul(&z).sub(&x.mul(&y)), x.mul(&y).sub(&n(2))];
     let Ok(basis) = groebner(&generators, Order::Grevlex, Limits::default()) else {

@@ -5,7 +5,7 @@ use hamel_algebra::poly::factor::{Coefficient, Operand, Step, Term, Value, facto
 use hamel_algebra::poly::monomial::{Monomial, Var};
 use proptest::prelude::*;
 
-/// Terms ±id x_v x_w …; a negative id is a negated coefficient.
+/// Returns terms ±id x_v x_w …; a negative id means a negated coefficient.
 fn terms(list: &[(i64, &[Var])]) -> Vec<Term> {
     let term = |&(id, variables): &(i64, &[Var])| Term {
         coefficient: Coefficient {
@@ -17,7 +17,7 @@ fn terms(list: &[(i64, &[Var])]) -> Vec<Term> {
     list.iter().map(term).collect()
 }
 
-/// Checks the program at a random point; returns its number of operations.
+/// Checks the program at a random point, and returns its number of operations.
 fn checked(polynomials: &[Vec<Term>], seed: u64) -> usize {
     let program = factor(polynomials);
     let mixed = Random::new(seed).bits();
@@ -137,7 +137,7 @@ fn degenerate_polynomials() {
     assert_eq!(checked(&both, 1), 3);
 }
 
-/// Rows of pseudo-random terms.
+/// Returns rows of pseudo-random terms.
 fn random_rows(rows: usize, terms: usize, variables: u64, ids: u64) -> Vec<Vec<Term>> {
     let mut random = Random::new(7);
     let mut below = |n: u64| random.bits() % n;

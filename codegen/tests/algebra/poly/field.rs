@@ -1,4 +1,4 @@
-//! Laws of the fields of coefficients, and rational numbers against big integers.
+//! Laws of the coefficient fields, and rational numbers compared with big integers.
 
 use hamel_algebra::fp::Fp;
 use hamel_algebra::poly::field::Field;
@@ -18,7 +18,7 @@ fn laws<F: Field>() {
     assert!(F::zero().is_zero() && F::one().is_one() && !b.is_zero());
 }
 
-/// Against the operators of `num_rational`, to the last digit and in lowest terms.
+/// Compares with the operators of `num_rational`, exactly and in lowest terms.
 #[test]
 fn rationals_of_any_size_are_those_of_big_integers() {
     let ends = [0, 1, -1, 6, -35, 1 << 31, i64::MAX, i64::MIN, i64::MIN + 1];

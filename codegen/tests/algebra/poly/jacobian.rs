@@ -1,4 +1,4 @@
-//! Free variables of a system: constraints take freedom.
+//! Free variables of a system: constraints reduce their number.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::poly::jacobian::free_variables;

@@ -1,4 +1,4 @@
-//! Arithmetic of monomials: that of their exponents.
+//! Arithmetic of monomials agrees with that of their exponents.
 
 use hamel_algebra::poly::monomial::{Monomial, Var};
 

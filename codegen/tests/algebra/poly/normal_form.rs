@@ -1,6 +1,6 @@
-//! Sums of sorted lists of terms: both ways of adding give the same.
+//! Sums of sorted lists of terms: both algorithms give the same result.
 
-// What the sums are made of, by the names that the included file has for it.
+// The field of the sums, under the name that the included file uses.
 use field::Field;
 use hamel_algebra::poly::{field, monomial, order};
 use monomial::Monomial;
@@ -8,11 +8,16 @@ use num_rational::BigRational as Rational;
 use order::Order;
 use sums::{merged, placed};
 
+<<<<<<< HEAD:codegen/tests/algebra/poly/normal_form.rs
 // Only divisions take these sums, and never show the two ways apart.
 #[path = "../../../algebra/src/poly/sums.rs"]
+=======
+// Included, since these sums are used only by divisions, which do not distinguish the two algorithms.
+#[path = "../../../src/poly/sums.rs"]
+>>>>>>> w-textB:codegen/algebra/tests/suite/poly/normal_form.rs
 mod sums;
 
-/// Terms of many sizes, some of which cancel, put into their places and merged.
+/// Inserting terms of various sizes, some of which cancel, agrees with merging them.
 #[test]
 fn terms_in_their_places_are_terms_merged() {
     let order = Order::Grevlex;

@@ -1,4 +1,4 @@
-//! Tests of bases and normal forms: against an independent implementation, and by their laws.
+//! Bases and normal forms, compared with an independent implementation and checked by their laws.
 
 use super::polynomials;
 use groebner as independent;
@@ -28,12 +28,12 @@ fn n<F: Field>(value: i64) -> Poly<F> {
     Poly::constant(F::integer(value))
 }
 
-/// Σ of the parts minus a constant.
+/// Returns the sum of the parts minus a constant.
 fn equation<F: Field>(parts: &[Poly<F>], value: i64) -> Poly<F> {
     parts.iter().fold(n(-value), |sum, part| sum.add(part))
 }
 
-/// A four-bar with absolute angles (c, s) of three rods of lengths 2, 5, 4 and base 6.
+/// Returns a four-bar with absolute angles (c, s), three rods of lengths 2, 5, 4 and base 6.
 fn four_bar<F: Field>() -> Vec<Poly<F>> {
     let loops = |k: u32, length| {
         let sum = [n(2).mul(&x(k)), n(5).mul(&x(2 + k)), n(-4).mul(&x(4 + k))];
@@ -172,7 +172,7 @@ fn structure_coefficients_of_rotations_are_constant() {
             _ => 0,
         };
         assert_eq!(so3.normal_form(&gamma), n(sign));
-        // A cubic factor that is 1 on the variety changes nothing.
+        // A cubic factor that is 1 on the variety has no effect.
         assert_eq!(so3.normal_form(&gamma.mul(&determinant())), n(sign));
     }
 }
@@ -193,7 +193,7 @@ fn limits_stop_the_search() {
     assert_eq!(result.map(|_| ()), Err(LimitExceeded));
 }
 
-/// A random point of SO(3), from a quaternion that need not be a unit.
+/// Returns a random point of SO(3), from a quaternion of any length.
 fn rotation_point(random: &mut Random) -> Vec<Fp> {
     loop {
         let q: Vec<Fp> = (0..4).map(|_| random.element()).collect();

@@ -1,4 +1,4 @@
-//! Monomial orders: those of the textbooks.
+//! Monomial orders agree with those of textbooks.
 
 use hamel_algebra::poly::monomial::Monomial;
 use hamel_algebra::poly::order::Order;

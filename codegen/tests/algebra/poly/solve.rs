@@ -1,4 +1,4 @@
-//! Points of catalogue ideals, of rods and frameworks, of loops; and systems without points.
+//! Points of catalogue ideals, of rods and frameworks, and of loops; and systems without points.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::poly::ideals::{circle, quaternion, rotation};
@@ -17,13 +17,13 @@ fn x(v: Var) -> Poly<Fp> {
     Poly::var(v)
 }
 
-/// |p − q|² − l² for points given by their coordinates.
+/// Returns |p − q|² − l² for points given by their coordinates.
 fn distance(p: &[Poly<Fp>], q: &[Poly<Fp>], square: i64) -> Poly<Fp> {
     let squares = p.iter().zip(q).map(|(a, b)| a.sub(b).pow(2));
     squares.fold(n(-square), |sum, square| sum.add(&square))
 }
 
-/// The i-th of points with the given dimension.
+/// Returns the coordinates of point i in the given dimension.
 fn at(i: u32, dimension: u32) -> Vec<Poly<Fp>> {
     (0..dimension).map(|k| x(dimension * i + k)).collect()
 }
@@ -46,7 +46,7 @@ fn four_bar() -> Vec<Poly<Fp>> {
     [circles, vec![side(0, 6), side(1, 0)]].concat()
 }
 
-/// Points for many seeds, all on the variety, and not all the same.
+/// Asserts that points are found for many seeds, that all are on the variety, and that they differ.
 fn assert_points(name: &str, generators: &[Poly<Fp>], variables: u32) {
     let variables: Vec<Var> = (0..variables).collect();
     let start = std::time::Instant::now();
@@ -93,7 +93,7 @@ fn rods_and_triangles_have_points() {
 #[test]
 fn loops_have_points() {
     assert_points("four-bar", &four_bar(), 6);
-    // The same loop with the angles of the rods relative to each other.
+    // The same loop with relative angles of the rods.
     let (c, s) = (
         x(0).mul(&x(2)).sub(&x(1).mul(&x(3))),
         x(1).mul(&x(2)).add(&x(0).mul(&x(3))),
@@ -111,7 +111,7 @@ fn loops_have_points() {
         closed.push(if k == 0 { sum.sub(&n(6)) } else { sum });
     }
     assert_points("relative four-bar", &closed, 6);
-    // A body (r, R) with a point on a sphere and a point in a plane.
+    // A body (r, R) with one point on a sphere and another in a plane.
     let mut body = rotation([0, 1, 2, 3, 4, 5, 6, 7, 8]);
     let corner = |k: u32, a: i64, b: i64| {
         let column = x(3 * k).scale(&Fp::from_i64(a));
@@ -153,11 +153,11 @@ fn without_a_point_the_search_ends() {
     };
     none(&[n(1)], 1);
     none(&[x(0).sub(&n(1)), x(0).sub(&n(2))], 1);
-    // −1 is no square; and x² + y² = 0 has only the point that no random choice meets.
+    // −1 is not a square; and x² + y² = 0 has only one point, which no random choice meets.
     none(&[x(0).mul(&x(0)).add(&n(1))], 1);
     none(&[x(0).pow(2).add(&x(1).pow(2))], 2);
     none(&[x(0).mul(&x(1)).sub(&n(1)), x(0)], 2);
-    // Rods that cannot meet, and a variable that is not to be solved for.
+    // Rods that cannot meet, and a variable that must not be solved for.
     let apart = [n(0), n(0)];
     none(
         &[

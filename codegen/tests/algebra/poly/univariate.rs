@@ -1,4 +1,4 @@
-//! Roots of univariate polynomials: all of them are found, in the prime field and beyond it.
+//! All roots of univariate polynomials are found, in the prime field and in its extension.
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::poly::univariate::roots;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 type Fp = Residue<1>;
 
-/// The coefficients Σ f_i g_{k−i} of a product.
+/// Returns the coefficients Σ f_i g_{k−i} of a product.
 fn multiply(f: &[Fp], g: &[Fp]) -> Vec<Fp> {
     let mut product = vec![Fp::ZERO; f.len() + g.len() - 1];
     for (i, &a) in f.iter().enumerate() {
@@ -21,7 +21,7 @@ fn multiply(f: &[Fp], g: &[Fp]) -> Vec<Fp> {
 proptest! {
     #[test]
     fn all_roots_are_found(list in prop::collection::btree_set(-50i64..50, 0..12), seed: u64) {
-        // (x² + 1) Π (x − r), the first root twice; x² + 1 has no root.
+        // (x² + 1) Π (x − r), with a double first root; x² + 1 has no root.
         let mut random = Random::new(seed);
         let mut f = vec![Fp::ONE, Fp::ZERO, random.residue()];
         f[0] = f[2];
@@ -34,7 +34,7 @@ proptest! {
     }
 }
 
-/// x² − z for z outside of F_p, and (x − a)(x − b)(x − c) for such a, b, c.
+/// x² − z for z outside of F_p, and (x − a)(x − b)(x − c) for such a, b, c
 #[test]
 fn roots_beyond_the_prime_field_are_found() {
     let mut random = Random::new(3);

@@ -1,4 +1,4 @@
-//! What is accepted, and what it becomes.
+//! Accepted texts and their parsed form.
 
 use proc_macro2::TokenStream;
 
@@ -113,7 +113,7 @@ fn invariants() {
             "invariant l = angular_momentum about r along R * e when tau = 0;",
             "invariant l L of None about r along (R * e) when tau = 0",
         ),
-        // An expression may start with a name that is no word of the language elsewhere.
+        // An expression may start with a name that is a keyword elsewhere.
         (
             "invariant l = energy * 2;",
             "invariant l (energy * 2) when ",
@@ -260,7 +260,7 @@ fn invisible_groups_are_parentheses() {
         "let x: Vector(3) = (2 * (a + b))"
     );
 
-    // What groups nothing is as if it were not there: a visibility that is empty, a doc comment, a path, a block.
+    // Groups without content have no effect: an empty visibility, a doc comment, a path, a block.
     let (none, docs) = (hidden(""), hidden("doc = \" A.\""));
     let (path, block) = (hidden("left.hip"), hidden("{ 1 - 2 }"));
     let tokens = quote::quote!(#[#docs] #none system S {

@@ -1,4 +1,4 @@
-//! Springs, dampers and forces between frames that are refused.
+//! Refused springs, dampers and forces between frames.
 
 use super::refused::line;
 

@@ -1,4 +1,4 @@
-//! Inputs made to break the parser: none may panic, overflow the stack or take long.
+//! Hostile inputs: none may panic, overflow the stack or take long.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -9,7 +9,7 @@ use hamel_language::render::{render, to_compile_errors};
 use hamel_language::syntax::Places;
 use hamel_language::syntax::{canonical, parse_text};
 
-/// The first message about an expression.
+/// Returns the first message about an expression.
 fn message(expression: &str) -> String {
     let text = format!("system S {{ let x = {expression}; }}");
     match parse_text(&text) {
@@ -21,7 +21,7 @@ fn message(expression: &str) -> String {
     }
 }
 
-/// With the stack that build scripts and the command line have.
+/// Uses the stack size of build scripts and of the command line.
 #[test]
 fn deep_nesting_is_refused() {
     let deep = std::thread::Builder::new().stack_size(8 << 20);
@@ -189,7 +189,7 @@ fn garbage_is_refused() {
     texts.push(format!("system S {{ {} }}", "é'(∂".repeat(size / 8)));
     texts.push(format!("system S {{ {} }}", "let a = ; ".repeat(size / 10)));
     for text in texts {
-        // Some of it is blank.
+        // Some of these texts are blank.
         let Err(errors) = parse_text(&text) else {
             continue;
         };
@@ -208,7 +208,7 @@ fn at_most_a_hundred_errors() {
     assert_eq!(parse_text(&text).expect_err("faults").len(), 100);
 }
 
-/// Tokens that are put where they do not belong.
+/// Tokens to insert at wrong places.
 const ODD: [&str; 36] = [
     "(", ")", "[", "]", "{", "}", ";", ",", ".", ":", "=", "+", "-", "*", "/", "^", "'", "\"", "#",
     "!", "at", "on", "in", "about", "param", "rate", "body", "system", "1e-3", "0x1", "\\", "∂",

@@ -1,4 +1,4 @@
-//! Joints: accepted in all their forms, refused with the form that is missing.
+//! Joints: accepted in all forms, refused with a message about the missing form.
 
 use super::refused::line;
 use super::{statement, told};

@@ -1,8 +1,8 @@
-//! What is refused, and how it is said.
+//! Refused texts and their messages.
 
 use hamel_language::syntax::parse_text;
 
-/// The errors of a text, as `line:column message`, the region, and the help.
+/// Formats the errors of a text as `line:column message`, with the region and the help.
 fn errors(text: &str) -> String {
     let Err(errors) = parse_text(text) else {
         return "accepted".to_owned();
@@ -22,7 +22,7 @@ fn errors(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The errors of one line in a system.
+/// Formats the errors of one line in a system.
 pub(super) fn line(text: &str) -> String {
     errors(&format!("system S {{\n{text}\n}}"))
 }

@@ -1,4 +1,4 @@
-//! Expressions that are refused.
+//! Refused expressions.
 
 use super::refused::line;
 

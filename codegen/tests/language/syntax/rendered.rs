@@ -1,4 +1,4 @@
-//! How errors look: underlined in a text, and as errors of the compiler.
+//! The rendering of errors: underlined in a text, and as errors of the compiler.
 
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::render::{render, to_compile_errors};

@@ -1,4 +1,4 @@
-//! Repetition, components and parts, and names with indices, as they are read.
+//! The parsed form of repetition, components, parts, and names with indices.
 
 use super::{statement, told};
 use hamel_language::syntax::path::{plain, spelling};
@@ -13,7 +13,7 @@ fn repetition() {
         says("for i in 1..n - 1 { param m[i] = i; start q[i]_dot = 2 * i; }"),
         "for i from 1 to (n - 1): param m[i]: Scalar = i | start q[i]_dot = (2 * i)"
     );
-    // A dot between numbers is not the end of one.
+    // A dot between numbers does not end a number.
     assert_eq!(says("for i in 1..2 { }"), "for i from 1 to 2: ");
     assert_eq!(says("for i in a.b..2.5 { };"), "for i from a.b to 5/2: ");
 }
@@ -46,7 +46,7 @@ fn names_with_indices() {
         says("output y = a[1]_dot[2] + b.c[i, 2]_r.p;"),
         "output y = (a[1]_dot[2] + b.c[i,2]_r.p)"
     );
-    // Not behind anything but a name.
+    // Brackets are indices of a name only directly after it.
     assert_eq!(spelling("link[ (i - 1) * 2 ].x"), "link[(i-1)*2].x");
     assert_eq!(plain("leg[3].node[1, 2]_dot"), "leg_3_node_1_2_dot");
 }

@@ -1,4 +1,5 @@
-//! Random mechanisms with claims that are true by construction: some joints carry all others, and nothing but gravity acts on them.
+//! Random mechanisms with claims that are true by construction: some joints carry all others, and only gravity acts on
+//! them.
 
 use super::pieces::{Piece, Rate, kinetic, moment, momentum, potential};
 use super::{Claim, Form, REGULAR};
@@ -9,22 +10,22 @@ use crate::jointed::{Joint, Law, Load, Loop, Motion, Name, System, short};
 pub struct Kept {
     /// The mechanism.
     pub system: System,
-    /// The number of joints that carry the others and that nothing but gravity acts on.
+    /// The number of joints that carry the others, and on which only gravity acts.
     roots: usize,
-    /// Whether they leave what they carry free.
+    /// Whether they give the rest of the mechanism all six degrees of freedom.
     free: bool,
-    /// Whether nothing depends on time.
+    /// Whether the mechanism is independent of time.
     lasting: bool,
 }
 
-/// A slider along an axis of the world.
+/// Returns axis and kind of a slider along an axis of the world.
 fn prismatic(k: usize) -> ([f64; 3], &'static str) {
     let mut axis = [0.0; 3];
     axis[k] = 1.0;
     (axis, "prismatic")
 }
 
-/// A joint that carries those behind it, without a spring.
+/// Returns a joint that carries the following ones, without a spring.
 fn root((axis, kind): ([f64; 3], &'static str), i: usize, random: &mut Random) -> Joint {
     Joint {
         kind,
@@ -99,7 +100,7 @@ impl Kept {
         }
     }
 
-    /// Claims that are true.
+    /// Returns claims that are true.
     pub fn truths(&self, random: &mut Random) -> Vec<Claim> {
         let mut all = Vec::new();
         if self.lasting {
@@ -130,7 +131,7 @@ impl Kept {
         all
     }
 
-    /// The claim under the condition that neither input nor damper act.
+    /// Adds the condition that neither input nor damper acts.
     fn where_unforced(&self, mut claim: Claim) -> Claim {
         if self.system.acted.is_some() {
             claim.when = [Some(0.0); 2];
@@ -138,8 +139,8 @@ impl Kept {
         claim
     }
 
-    /// The momentum along or about the axis of a root, named and written; that of a free base about a point anywhere, or along all
-    /// axes.
+    /// Returns claims about the momentum along or about the axis of a root, as a keyword and written out; for a free
+    /// base, about any point, or along all axes.
     fn momenta(&self, random: &mut Random, i: usize) -> Vec<Claim> {
         let system = &self.system;
         let (mut axis, mut about) = (system.joints[i].axis, [0.0, 0.0, short(random)]);
@@ -162,7 +163,7 @@ impl Kept {
         if !self.free || system.gravity != [0.0; 3] || random.below(2) == 0 {
             name += &format!(" along {axis:?}");
         }
-        // Without the time nothing can be said of what gravity does along the axis.
+        // Without the time, the contribution of gravity along the axis cannot be expressed.
         let falls = linear && falls(axis);
         let written = (!falls || system.timed).then(|| Claim::new(terms.clone()));
         let named = (!falls).then(|| Claim::named(name, terms));
@@ -200,7 +201,7 @@ impl Kept {
         if self.system.gravity == [0.0; 3] || self.system.timed {
             let name = format!("linear_momentum along {tilted:?}");
             let terms = momentum(&self.system, tilted);
-            // With what gravity gives to it, which the name does not say.
+            // Includes the contribution of gravity, which the keyword does not.
             let falls = self.system.gravity != [0.0; 3];
             all.push(match falls {
                 true => Claim::new(terms),
@@ -210,7 +211,7 @@ impl Kept {
         all
     }
 
-    /// Terms whose sum is 0 where the constraints hold, times something.
+    /// Returns terms whose sum vanishes on the constraints, times a common factor.
     fn vanishing(&self, random: &mut Random) -> Vec<Piece> {
         let joints = &self.system.joints;
         let own = self.system.own();
@@ -235,22 +236,22 @@ impl Kept {
     }
 }
 
-/// Whether the coordinate of a joint is an angle without a value.
+/// Returns whether the coordinate of a joint is a circle, so that the angle has no value.
 fn is_circle(joint: &Joint) -> bool {
     joint.kind == "continuous" && joint.has_coordinate()
 }
 
-/// The value of a joint.
+/// Returns the value of a joint.
 pub fn value(i: usize) -> Piece {
     Piece::new(&[], format!("j{i}"), move |at| at.joint(i))
 }
 
-/// Its rate.
+/// Returns the rate of a joint.
 fn rate(i: usize) -> Piece {
     Piece::new(&[], format!("j{i}_dot"), move |at| at.joint_rate(i))
 }
 
-/// A law, times a number.
+/// Returns a law times a number.
 pub fn of_law(law: &Law, factor: f64) -> Piece {
     let own = law.clone();
     Piece::new(&[factor], format!("({})", law.text()), move |at| {
@@ -258,14 +259,14 @@ pub fn of_law(law: &Law, factor: f64) -> Piece {
     })
 }
 
-/// The names of the inner joints with a plain value, and the time where it is declared.
+/// Returns the names of the inner joints with a plain value, and the time if it is declared.
 fn names(joints: &[Joint], roots: usize, timed: bool) -> Vec<Name> {
     let plain = (roots..joints.len()).filter(|&i| !is_circle(&joints[i]));
     let time = timed.then_some(Name::Time);
     plain.map(Name::Joint).chain(time).collect()
 }
 
-/// A joint that knows nothing of the roots.
+/// Returns a joint that is independent of the roots.
 fn inner(random: &mut Random, before: &[Joint], roots: usize, i: usize, timed: bool) -> Joint {
     const AXES: [[f64; 3]; 4] = [
         [1.0, 0.0, 0.0],
@@ -306,7 +307,7 @@ fn inner(random: &mut Random, before: &[Joint], roots: usize, i: usize, timed: b
     }
 }
 
-/// Inner joints that are free.
+/// Returns the inner joints that are free.
 fn free(system: &System, roots: usize) -> Vec<usize> {
     let inner = roots..system.joints.len();
     inner
@@ -314,7 +315,7 @@ fn free(system: &System, roots: usize) -> Vec<usize> {
         .collect()
 }
 
-/// A loop between inner joints, one time in two.
+/// Adds a loop between inner joints, in half of all cases.
 fn tie(system: &mut System, random: &mut Random, roots: usize) {
     let own = free(system, roots);
     let own: Vec<usize> = own
@@ -326,7 +327,7 @@ fn tie(system: &mut System, random: &mut Random, roots: usize) {
     }
     let own = own[random.below(own.len())];
     let mut names = names(&system.joints, roots, system.timed);
-    // Those that follow this one would tie it to itself.
+    // Joints that follow this one would relate it to itself.
     names.retain(|name| match *name {
         Name::Joint(i) => i != own && system.joints[i].has_coordinate(),
         Name::Time => true,
@@ -338,7 +339,7 @@ fn tie(system: &mut System, random: &mut Random, roots: usize) {
     }
 }
 
-/// A constraint on the velocities of two inner joints, one time in two.
+/// Adds a constraint on the velocities of two inner joints, in half of all cases.
 fn constrain(system: &mut System, random: &mut Random, roots: usize) {
     let own = free(system, roots);
     let names = names(&system.joints, roots, false);
@@ -347,14 +348,14 @@ fn constrain(system: &mut System, random: &mut Random, roots: usize) {
     }
     let mut first = Law::random(random, &names);
     if random.below(2) == 0 {
-        // Constant: the velocity is solved for.
+        // With a constant factor, the velocity is eliminated.
         first = Law::constant(2.0);
     }
     let second = Law::random(random, &names);
     system.rows.push(vec![(own[0], first), (own[1], second)]);
 }
 
-/// An input and a damper on a joint, one time in three.
+/// Adds an input and a damper to a joint, in a third of all cases.
 fn act(system: &mut System, random: &mut Random) {
     let free = free(system, 0);
     if !free.is_empty() && random.below(3) == 0 {
@@ -362,7 +363,7 @@ fn act(system: &mut System, random: &mut Random) {
     }
 }
 
-/// Whether the energy may change with time.
+/// Returns whether the energy may change with time.
 fn depends_on_time(system: &System) -> bool {
     let joints = system.joints.iter().any(|joint| match &joint.motion {
         Motion::Free => false,
@@ -376,7 +377,7 @@ fn depends_on_time(system: &System) -> bool {
     joints || loops
 }
 
-/// A system that moves, each spring with it.
+/// Draws a system that moves, and in which every spring moves.
 pub fn drawn(random: &mut Random) -> Kept {
     loop {
         let kept = Kept::random(random);

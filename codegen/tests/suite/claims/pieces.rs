@@ -1,4 +1,4 @@
-//! Terms of claims: their texts, and their rates of change along the motion of the reference.
+//! Terms of claims: their texts, and their rates along the motion of the reference.
 
 use crate::jet::Jet;
 use crate::jointed::{Load, Placed, System};
@@ -13,12 +13,12 @@ pub struct View<'a> {
     at: Placed<'a>,
     v: Vec<f64>,
     a: Vec<f64>,
-    /// Points that were asked for: their positions and velocities.
+    /// Positions and velocities of points that were evaluated before.
     known: RefCell<Vec<(Point, [[Rate; 3]; 2])>>,
 }
 
 impl<'a> View<'a> {
-    /// The motion of a system at coordinates and velocities, those of the time behind the others.
+    /// Returns the motion of a system at coordinates and velocities, followed by those of the time.
     pub fn new(system: &'a System, q: &[f64], v: &[f64]) -> Self {
         let mut a = system.acceleration(q, v);
         a.push(0.0);
@@ -30,7 +30,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// A function of coordinates, and its rate.
+    /// Returns a function of coordinates and its derivative, each with its rate.
     fn moved(&self, jet: &Jet) -> [Rate; 2] {
         let rate = jet.along(&self.v);
         let change = jet.along(&self.a) + jet.curvature(&self.v);
@@ -41,7 +41,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// The position of a point and its velocity.
+    /// Returns the position of a point and its velocity.
     fn point(&self, point: Point) -> [[Rate; 3]; 2] {
         let known = self
             .known
@@ -58,22 +58,22 @@ impl<'a> View<'a> {
         })
     }
 
-    /// The value of a joint.
+    /// Returns the value of a joint.
     pub fn joint(&self, i: usize) -> Rate {
         self.moved(&self.at.values[i])[0]
     }
 
-    /// Its rate.
+    /// Returns the rate of a joint.
     pub fn joint_rate(&self, i: usize) -> Rate {
         self.moved(&self.at.values[i])[1]
     }
 
-    /// The time.
+    /// Returns the time.
     pub fn time(&self) -> Rate {
         self.moved(&self.at.time)[0]
     }
 
-    /// What the system says of a function of coordinates.
+    /// Evaluates a function of coordinates.
     pub fn of(&self, function: impl Fn(&Placed) -> Jet) -> Rate {
         self.moved(&function(&self.at))[0]
     }
@@ -86,7 +86,7 @@ impl<'a> View<'a> {
         self.point(point)[1]
     }
 
-    /// The angular velocity of a frame in its own axes, from the rates of these.
+    /// Returns the angular velocity of a frame in its axes, from the rates of the axes.
     fn spin(&self, frame: usize) -> [Rate; 3] {
         let axis = |k: usize| {
             let mut end = [0.0; 3];
@@ -102,24 +102,24 @@ impl<'a> View<'a> {
     }
 }
 
-/// A frame, and a place in it.
+/// A frame and a point in it.
 pub type Point = (usize, [f64; 3]);
 
 fn dot(a: [Rate; 3], b: [Rate; 3]) -> Rate {
     (0..3).fold(Rate::number(0.0), |total, i| total + a[i] * b[i])
 }
 
-/// A product of numbers and something that changes.
+/// A product of numbers and a variable quantity.
 #[derive(Clone)]
 pub struct Piece {
-    /// The numbers, each of them a short decimal.
+    /// The numbers, all of them short decimals.
     pub factors: Vec<f64>,
     text: String,
     of: Rc<dyn Fn(&View) -> Rate>,
 }
 
 impl Piece {
-    /// A piece by its text and what it is.
+    /// Creates a piece from its text and its value.
     pub fn new(factors: &[f64], text: String, of: impl Fn(&View) -> Rate + 'static) -> Self {
         Piece {
             factors: factors.to_vec(),
@@ -128,30 +128,30 @@ impl Piece {
         }
     }
 
-    /// A number, given by its text and with its size.
+    /// Creates a number from its text and its value.
     pub fn constant(factor: f64, text: String, size: f64) -> Self {
         Piece::new(&[factor], text, move |_| Rate::number(size))
     }
 
-    /// A component of the velocity of a point.
+    /// Creates a component of the velocity of a point.
     pub fn speed(point: Point, axis: usize) -> Self {
         let text = format!("velocity({})[{}]", written(point), axis + 1);
         Piece::new(&[], text, move |at| at.velocity(point)[axis])
     }
 
-    /// How it is written.
+    /// Returns the text of the piece.
     pub fn text(&self) -> String {
         let factors = self.factors.iter().map(f64::to_string);
         let all: Vec<String> = factors.chain([self.text.clone()]).collect();
         all.join(" * ")
     }
 
-    /// Its rate of change.
+    /// Returns the rate of change.
     pub fn rate(&self, at: &View) -> f64 {
         self.factors.iter().product::<f64>() * (self.of)(at).slopes[0]
     }
 
-    /// The same times something else.
+    /// Returns the product with another piece.
     pub fn times(&self, other: &Piece) -> Self {
         let (first, second) = (self.of.clone(), other.of.clone());
         Piece {
@@ -162,12 +162,12 @@ impl Piece {
     }
 }
 
-/// A decimal of two digits without what rounding has added.
+/// Rounds to two decimals.
 fn tidy(place: [f64; 3]) -> [f64; 3] {
     place.map(|entry| (entry * 100.0).round() / 100.0)
 }
 
-/// All masses with their places.
+/// Returns all masses with their positions.
 pub fn masses(system: &System) -> Vec<(f64, Point)> {
     let mut all = Vec::new();
     for (i, joint) in system.joints.iter().enumerate() {
@@ -181,7 +181,7 @@ fn written((frame, place): Point) -> String {
     format!("f{frame}, {place:?}")
 }
 
-/// The kinetic energies of all masses; those of bodies by their inertia, or by their points.
+/// Returns the kinetic energies of all masses; those of bodies by their inertia, or by their points.
 pub fn kinetic(system: &System, by_points: bool) -> Vec<Piece> {
     let mut all = Vec::new();
     for (i, joint) in system.joints.iter().enumerate() {
@@ -217,7 +217,7 @@ pub fn kinetic(system: &System, by_points: bool) -> Vec<Piece> {
     all
 }
 
-/// ½ m v².
+/// ½ m v²
 fn square(mass: f64, point: Point) -> Piece {
     let at = written(point);
     let text = format!("dot(velocity({at}), velocity({at}))");
@@ -225,7 +225,7 @@ fn square(mass: f64, point: Point) -> Piece {
     Piece::new(&[0.5, mass], text, of)
 }
 
-/// The potentials of gravity and springs.
+/// Returns the potentials of gravity and springs.
 pub fn potential(system: &System) -> Vec<Piece> {
     let mut all = Vec::new();
     for (mass, point) in masses(system) {
@@ -244,7 +244,7 @@ pub fn potential(system: &System) -> Vec<Piece> {
     all
 }
 
-/// The momentum along an axis; with the time, also what gravity gives to it.
+/// Returns the momentum along an axis; with the time, also the contribution of gravity.
 pub fn momentum(system: &System, along: [f64; 3]) -> Vec<Piece> {
     let mut all = Vec::new();
     for (mass, point) in masses(system) {
@@ -262,7 +262,7 @@ pub fn momentum(system: &System, along: [f64; 3]) -> Vec<Piece> {
     all
 }
 
-/// The angular momentum about a point along an axis.
+/// Returns the angular momentum about a point along an axis.
 pub fn moment(system: &System, about: [f64; 3], along: [f64; 3]) -> Vec<Piece> {
     let one = |(mass, point): (f64, Point)| {
         let at = written(point);

@@ -1,4 +1,4 @@
-//! Claims about a particle on a surface, with what vanishes on the surface added to them; rates that stay on it; velocities that are
+//! Claims about a particle on a surface, with added terms that vanish on it; rates tangent to the surface; velocities
 //! given twice, by rates and by their definition. Each with false twins.
 
 use super::mechanisms::{of_law, value};
@@ -9,7 +9,8 @@ use crate::jet::Jet;
 use crate::jointed::{Joint, Law, Load, Loop, Motion, Name, System, short};
 use hamel_codegen::generate::from_text;
 
-/// A particle on z + a (x² + y²) + b z² + c x z = constant, in a potential; c = 0 where it may turn freely about the vertical.
+/// A particle on z + a (x² + y²) + b z² + c x z = constant, in a potential; c = 0 if the system is symmetric about the
+/// vertical.
 struct Surface {
     system: System,
     law: Law,
@@ -66,7 +67,7 @@ impl Surface {
         Surface { system, law, round }
     }
 
-    /// The function of the surface at the start, in exact decimals.
+    /// Returns the value of the function of the surface at the start, in exact decimals.
     fn constant(&self) -> String {
         let mut text = format!("(j2 + {})", self.law.text());
         for (i, guess) in self.system.guess.iter().enumerate() {
@@ -75,7 +76,7 @@ impl Surface {
         text
     }
 
-    /// The gradient, where the factor of an entry is another one.
+    /// Returns the gradient, optionally with a changed factor in one entry.
     fn slopes(&self, changed: Option<(usize, f64)>) -> [String; 3] {
         let products = &self.law.products;
         let [across, z] = [products[0].0, products[2].0];
@@ -91,7 +92,7 @@ impl Surface {
         ]
     }
 
-    /// The description: the rates are u₁ e₁ × ∇φ + u₂ e₂ × ∇φ.
+    /// Returns the description, with the rates u₁ e₁ × ∇φ + u₂ e₂ × ∇φ.
     fn text(&self, slopes: [String; 3], claims: &[String]) -> String {
         let [x, y, z] = slopes;
         let mut lines = vec![
@@ -111,7 +112,7 @@ impl Surface {
         format!("system S {{\n    {}\n}}\n", lines.join("\n    "))
     }
 
-    /// φ by terms, times a velocity or a coordinate.
+    /// Returns the terms of φ, times a velocity or a coordinate.
     fn vanishing(&self, random: &mut Random) -> Vec<Piece> {
         let one = |law: Law| of_law(&law, 1.0);
         let mut terms = vec![value(2)];
@@ -181,7 +182,7 @@ fn faults(seed: u64) -> Vec<String> {
     faults
 }
 
-/// A fault unless all errors of a description say something about its statement.
+/// Returns a fault unless a description is refused, and all of its errors contain `why` and are at `statement`.
 fn unless_refused(text: &str, why: &str, statement: &str) -> Option<String> {
     let errors = from_text(text).err().unwrap_or_default();
     let placed = errors.iter().all(|error| {
@@ -194,8 +195,8 @@ fn unless_refused(text: &str, why: &str, statement: &str) -> Option<String> {
     (!refused).then(|| format!("{why} is not said of `{statement}`: {errors:?}\n{text}"))
 }
 
-/// Rates q̇ = A w with A in echelon form, and w by their definition, solved from the last one; in a false twin one entry of A has
-/// another sign in the definition alone.
+/// Checks rates q̇ = A w with A in echelon form, and w by their definition, solved from the last one. In the false
+/// twin, one entry of A has the other sign in the definition only.
 fn frames(seed: u64) -> Vec<String> {
     let random = &mut Random::new(seed ^ 0xf4a);
     let n = 2 + random.below(3);
@@ -237,7 +238,7 @@ fn frames(seed: u64) -> Vec<String> {
     if let Err(errors) = from_text(&text) {
         faults.push(format!("seed {seed}: {errors:?}\n{text}"));
     }
-    // The sign of what is 0 everywhere says nothing.
+    // The sign matters only if the entry is not zero.
     let places = random.numbers(n);
     let value = laws[0][changed.1].value(|name| match name {
         Name::Joint(i) => Jet::number(places[i]),
@@ -250,7 +251,7 @@ fn frames(seed: u64) -> Vec<String> {
     faults
 }
 
-/// A velocity by the rates of its coordinate and those behind it.
+/// Solves for a velocity in terms of the rates of its coordinate and of the following ones.
 fn solved(pivots: &[String], entries: &[Vec<String>], i: usize) -> String {
     let mut text = format!("rate(j{i})");
     for (k, factor) in entries[i].iter().enumerate() {

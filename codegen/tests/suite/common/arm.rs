@@ -1,7 +1,7 @@
-//! Arms with awkward axes, and their dynamics from the definitions in numbers of twice the length.
+//! Arms with ill-conditioned axes, and their dynamics from the definitions in doubled precision.
 //!
-//! M = Σ m Jᵀ J + J_ωᵀ Θ J_ω over the bodies, in world axes; forces by Newton's and Euler's laws for
-//! every body. It shares nothing with the generator but the numbers.
+//! M = Σ m Jᵀ J + J_ωᵀ Θ J_ω over the bodies, in world axes; forces by the Newton-Euler equations for every body. It
+//! shares only the number type with the generator.
 
 use super::Random;
 use hamel_codegen::algebra::double::Double;
@@ -24,13 +24,13 @@ impl Decimal {
         if self.1 < 0 { whole / ten } else { whole * ten }
     }
 
-    /// Three digits of a random number of about this power of ten, of either sign.
+    /// Returns a random number of three digits with about this power of ten, of either sign.
     pub fn random(random: &mut Random, power: i32) -> Self {
         Decimal((random.number() * 1000.0) as i64, power - 3)
     }
 }
 
-/// Quarter turns and what is added to them (rad).
+/// Quarter turns plus an angle (rad).
 #[derive(Clone, Copy, Debug)]
 pub struct Angle(pub i64, pub Decimal);
 
@@ -47,13 +47,13 @@ impl Angle {
     }
 }
 
-/// A joint with its place on the link before, and the body that it moves.
+/// A joint with its pose on the previous link, and the body that it moves.
 #[derive(Clone, Debug)]
 pub struct Joint {
     pub slides: bool,
-    /// Which axis of its frame.
+    /// Index of its axis in its frame.
     pub axis: usize,
-    /// Turns about the axes 1, 2, 3, in this order of factors from the right, as URDF has them.
+    /// Rotations about the axes 1, 2, 3 in URDF's order.
     pub rpy: [Angle; 3],
     pub place: [Decimal; 3],
     pub mass: Decimal,
@@ -62,15 +62,16 @@ pub struct Joint {
     pub moments: [Decimal; 3],
 }
 
-/// Joints in a row.
+/// A chain of joints.
 #[derive(Clone, Debug)]
 pub struct Arm(pub Vec<Joint>);
 
-/// How the axes of neighbours stand.
+/// Number of cases for the relative position of neighbouring axes.
 const PLACES: usize = 5;
 
 impl Arm {
-    /// Axes 10^-1 … 10^-16 rad from parallel or perpendicular, and as many metres from intersecting.
+    /// Returns an arm with axes 10^-1 … 10^-16 rad from parallel or perpendicular, and as many metres from
+    /// intersecting.
     pub fn awkward(random: &mut Random) -> Arm {
         let count = 2 + random.below(5);
         Arm((0..count).map(|i| Joint::awkward(random, i)).collect())
@@ -105,7 +106,7 @@ impl Arm {
         text + "}\n"
     }
 
-    /// M, the bias and the slope of the potential at (x, ξ).
+    /// Returns M, the bias and the slope of the potential at (x, ξ).
     pub fn dynamics(&self, x: &[f64], xi: &[f64]) -> Dynamics {
         let n = self.0.len();
         let zero3 = [Double::ZERO; 3];
@@ -115,7 +116,7 @@ impl Arm {
             slope: vec![Double::ZERO; n],
         };
         let (mut turn, mut origin) = (identity(), zero3);
-        // Motion of the frame at ξ̇ = 0: ω, its rate, velocity and acceleration of the origin.
+        // The motion of the frame at ξ̇ = 0: ω, its rate, velocity and acceleration of the origin.
         let (mut w, mut alpha, mut v, mut a) = (zero3, zero3, zero3, zero3);
         let mut columns: Vec<(bool, V3, V3)> = Vec::new();
         for (i, joint) in self.0.iter().enumerate() {
@@ -181,7 +182,7 @@ impl Joint {
         let (a, b, c) = (small(random), small(random), small(random));
         let any = Angle(0, Decimal::random(random, 0));
         let rpy = match random.below(PLACES) {
-            // Almost parallel, turned by anything about the axis.
+            // Almost parallel, with any rotation about the axis.
             0 => [Angle(0, a), Angle(0, b), any],
             // Almost antiparallel.
             1 => [Angle(2, a), Angle(0, b), Angle(random.below(4) as i64, c)],
@@ -213,7 +214,7 @@ impl Joint {
         }
     }
 
-    /// Axes of its place in those of the link before.
+    /// Returns the axes of its mounting in those of the previous link.
     fn turn(&self) -> M3 {
         let [r, p, y] = self.rpy.map(Angle::value);
         times(&times(&about(2, y), &about(1, p)), &about(0, r))
@@ -230,7 +231,7 @@ impl Joint {
     }
 }
 
-/// What the equations of motion are made of.
+/// The terms of the equations of motion.
 pub struct Dynamics {
     pub mass: Vec<Vec<Double>>,
     pub bias: Vec<Double>,
@@ -238,7 +239,7 @@ pub struct Dynamics {
 }
 
 impl Dynamics {
-    /// M⁻¹ b by Gauss's elimination; M is positive definite.
+    /// Returns M⁻¹ b by Gaussian elimination; M is positive definite.
     pub fn solve(&self, b: &[Double]) -> Vec<Double> {
         let n = b.len();
         let (mut m, mut b) = (self.mass.clone(), b.to_vec());
@@ -260,7 +261,7 @@ impl Dynamics {
         b
     }
 
-    /// ‖M‖ ‖M⁻¹‖, greatest sums of rows.
+    /// Returns ‖M‖ ‖M⁻¹‖ in the row-sum norm.
     pub fn condition(&self) -> f64 {
         let n = self.mass.len();
         let unit = |k: usize| -> Vec<Double> {

@@ -1,6 +1,6 @@
-//! Small dense systems of linear equations, by elimination with the largest pivots.
+//! Small dense linear systems, by elimination with the largest pivots.
 
-/// The least pivot of a matrix on some directions, relative to the diagonal; 1 where there are none.
+/// Returns the least pivot of a matrix restricted to some directions, relative to the diagonal; 1 if there are none.
 pub fn least_pivot(mass: &[Vec<f64>], columns: &[Vec<f64>]) -> f64 {
     let n = mass.len();
     let product = |a: &[f64], b: &[f64]| -> f64 {
@@ -15,7 +15,7 @@ pub fn least_pivot(mass: &[Vec<f64>], columns: &[Vec<f64>]) -> f64 {
     let mut rest = whole.clone();
     let mut least: f64 = 1.0;
     for c in 0..k {
-        // NaN where a direction has no inertia at all.
+        // NaN if a direction has no inertia.
         let ratio = rest[c][c] / whole[c][c];
         if ratio.is_nan() || ratio < 1e-12 {
             return 0.0;
@@ -30,7 +30,7 @@ pub fn least_pivot(mass: &[Vec<f64>], columns: &[Vec<f64>]) -> f64 {
     least
 }
 
-/// ξ̇ of M ξ̇ − Bᵀ λ = f, B ξ̇ = b.
+/// Returns ξ̇ of M ξ̇ − Bᵀ λ = f, B ξ̇ = b.
 pub fn solution(
     (mass, force): (Vec<Vec<f64>>, Vec<f64>),
     (rows, right): (Vec<Vec<f64>>, Vec<f64>),
@@ -61,7 +61,7 @@ pub fn solution(
     (0..n).map(|i| a[i][size] / a[i][i]).collect()
 }
 
-/// The shortest vector of n entries with given products with some independent rows.
+/// Returns the shortest vector of n entries that satisfies some independent rows.
 pub fn shortest(rows: &[Vec<f64>], right: &[f64], n: usize) -> Vec<f64> {
     let unit = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect());
     solution(
@@ -70,7 +70,7 @@ pub fn shortest(rows: &[Vec<f64>], right: &[f64], n: usize) -> Vec<f64> {
     )
 }
 
-/// A basis of the kernel of some rows of a length, by elimination with the largest pivots, and the least of these pivots.
+/// Returns a basis of the kernel of some rows, by elimination with the largest pivots, and the least of these pivots.
 pub fn kernel(rows: &[Vec<f64>], n: usize) -> (Vec<Vec<f64>>, f64) {
     let mut rows = rows.to_vec();
     let mut pivots: Vec<usize> = Vec::new();

@@ -1,8 +1,8 @@
-//! Numbers with their first and second derivatives, for references that know no rule of mechanics beyond m r̈ = f.
+//! Numbers with first and second derivatives, for references that use no law of mechanics except m r̈ = f.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// Variables at most, the time among them.
+/// Largest number of variables, including the time.
 pub const VARIABLES: usize = 8;
 
 /// A value, its gradient and its Hessian.
@@ -17,7 +17,7 @@ pub struct Jet<const N: usize = VARIABLES> {
 }
 
 impl<const N: usize> Jet<N> {
-    /// A number that depends on nothing.
+    /// Returns a constant.
     pub fn number(value: f64) -> Self {
         Jet {
             value,
@@ -26,14 +26,14 @@ impl<const N: usize> Jet<N> {
         }
     }
 
-    /// The variable at a place.
+    /// Returns the variable with this index.
     pub fn variable(place: usize, value: f64) -> Self {
         let mut jet = Jet::number(value);
         jet.slopes[place] = 1.0;
         jet
     }
 
-    /// f(self), given f, f′ and f″ at the value.
+    /// Returns f(self), given f, f′ and f″ at the value.
     fn of(self, [value, first, second]: [f64; 3]) -> Self {
         let bend = |i: usize, j: usize| {
             second * self.slopes[i] * self.slopes[j] + first * self.bends[i][j]
@@ -45,7 +45,7 @@ impl<const N: usize> Jet<N> {
         }
     }
 
-    /// The product, by Leibniz's rule.
+    /// Returns the product, by Leibniz's rule.
     fn product(&self, other: &Self) -> Self {
         let (a, b) = (self, other);
         let bend = |i: usize, j: usize| {
@@ -61,25 +61,25 @@ impl<const N: usize> Jet<N> {
         }
     }
 
-    /// The sine.
+    /// Returns the sine.
     pub fn sin(self) -> Self {
         let (s, c) = self.value.sin_cos();
         self.of([s, c, -s])
     }
 
-    /// The cosine.
+    /// Returns the cosine.
     pub fn cos(self) -> Self {
         let (s, c) = self.value.sin_cos();
         self.of([c, -s, -c])
     }
 
-    /// The first derivative along a direction.
+    /// Returns the first derivative along a direction.
     pub fn along(&self, direction: &[f64]) -> f64 {
         let pairs = self.slopes.iter().zip(direction);
         pairs.map(|(slope, v)| slope * v).sum()
     }
 
-    /// The second derivative along a direction.
+    /// Returns the second derivative along a direction.
     pub fn curvature(&self, direction: &[f64]) -> f64 {
         let rows = self.bends.iter().zip(direction);
         rows.map(|(row, a)| {
@@ -131,17 +131,17 @@ impl<const N: usize> Mul<f64> for Jet<N> {
     }
 }
 
-/// The sum of two vectors.
+/// Returns the sum of two vectors.
 pub fn sum(a: [Jet; 3], b: [Jet; 3]) -> [Jet; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// A constant vector.
+/// Returns a constant vector.
 pub fn constant(v: [f64; 3]) -> [Jet; 3] {
     v.map(Jet::number)
 }
 
-/// A vector turned about a unit axis, by Rodrigues' formula.
+/// Rotates a vector about a unit axis, by Rodrigues' formula.
 pub fn turned(v: [Jet; 3], axis: [f64; 3], angle: Jet) -> [Jet; 3] {
     let (s, c) = (angle.sin(), angle.cos());
     let along = (0..3).fold(Jet::number(0.0), |total, i| total + v[i] * axis[i]);

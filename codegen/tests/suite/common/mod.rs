@@ -1,4 +1,4 @@
-//! Generated systems evaluated at random states, for tests of descriptions.
+//! Evaluates generated systems at random states.
 #![allow(dead_code, unused_imports)] // each test file uses a part
 
 use hamel_codegen::algebra::fp;
@@ -7,37 +7,37 @@ use hamel_codegen::model::layout::Block;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 
-/// The same numbers on every machine.
+/// A random generator with the same numbers on every machine.
 #[derive(Clone)]
 pub struct Random(fp::Random);
 
 impl Random {
-    /// The stream of a seed.
+    /// Creates the generator for a seed.
     pub fn new(seed: u64) -> Self {
         Random(fp::Random::new(seed))
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0.bits()
     }
 
-    /// A number in ±1.
+    /// Returns a number in ±1.
     pub fn number(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Numbers in ±1.
+    /// Returns numbers in ±1.
     pub fn numbers(&mut self, count: usize) -> Vec<f64> {
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// One of the first few whole numbers.
+    /// Returns a whole number below a bound.
     pub fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    /// A point of every block of x.
+    /// Returns a random point of every block of x.
     pub fn configuration(&mut self, blocks: &[Block]) -> Vec<f64> {
         let mut x = Vec::new();
         for block in blocks {
@@ -74,12 +74,12 @@ impl Random {
     }
 }
 
-/// A description that is known to be right.
+/// Generates a correct description.
 pub fn generated(text: &str) -> Generated {
     from_text(text).unwrap_or_else(|errors| panic!("{}", render(&errors, "test", text, false)))
 }
 
-/// The value of a function at (x, ξ, u, ξ̇), parameters at their defaults.
+/// Evaluates a function at (x, ξ, u, ξ̇), with default parameters.
 pub fn value(of: &Generated, name: &str, [x, xi, u, dot]: [&[f64]; 4]) -> Vec<f64> {
     let function = of.program.function(name).expect("it was asked for");
     let compiled = Interpreter::new(&of.program, function, &of.program.defaults);
@@ -88,7 +88,7 @@ pub fn value(of: &Generated, name: &str, [x, xi, u, dot]: [&[f64]; 4]) -> Vec<f6
         .unwrap_or_else(|guard| panic!("{name}: pivot {guard} is not positive"))
 }
 
-/// The largest difference of two lists, over the largest entry of the first (1 where that is less).
+/// Returns the largest difference of two lists, relative to the largest entry of the first, if that exceeds 1.
 pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let scale = a.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
@@ -101,7 +101,7 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
 mod size;
 pub use size::size;
 
-/// What is wrong with any of some seeds, on all cores; there are as many as `size` says.
+/// Asserts that no seed has faults, on all cores; `size` determines the number of seeds.
 pub fn attack(few: u64, many: u64, faults: impl Fn(u64) -> Vec<String> + Sync) {
     let count = size(few, many);
     let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);

@@ -1,10 +1,10 @@
-//! The models of the tests, each asked for what a test wants.
+//! The models of the tests, with the functions that a test requests.
 
 use hamel_codegen::generate::{Generated, from_file};
 use hamel_codegen::render::render;
 use std::path::{Path, PathBuf};
 
-/// All models of a folder, with their folder for files that they name.
+/// Lists all models of a folder.
 pub fn models(folder: &Path) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("a folder")
@@ -15,7 +15,7 @@ pub fn models(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// A model that is asked for these functions alone; what is said where they are refused.
+/// Generates only these functions of a model; returns the errors if it is refused.
 pub fn asked_for(path: &Path, asked: &str) -> Result<Generated, String> {
     let text = std::fs::read_to_string(path).expect("a text");
     let kept = text

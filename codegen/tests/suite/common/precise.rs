@@ -1,10 +1,10 @@
-//! Real numbers of 200 bits for derivations that share nothing with the generator.
+//! Real numbers of 200 bits, for derivations that are independent of the generator.
 
 use astro_float_num::{BigFloat, Consts, RoundingMode};
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Bits of a number.
+/// Bits of the mantissa.
 const BITS: usize = 200;
 const ROUND: RoundingMode = RoundingMode::ToEven;
 
@@ -17,7 +17,7 @@ thread_local! {
 pub struct Precise(BigFloat);
 
 impl Precise {
-    /// What a decimal number says, not its neighbour in f64.
+    /// Parses a decimal number, without rounding to f64.
     pub fn parse(text: &str) -> Self {
         let parsed = CONSTANTS.with_borrow_mut(|constants| {
             BigFloat::parse(text, astro_float_num::Radix::Dec, BITS, ROUND, constants)
@@ -26,12 +26,12 @@ impl Precise {
         Precise(parsed)
     }
 
-    /// An f64, exactly.
+    /// Converts an f64 exactly.
     pub fn of(value: f64) -> Self {
         Precise(BigFloat::from_f64(value, BITS))
     }
 
-    /// 2^exponent.
+    /// 2^exponent
     pub fn power_of_two(exponent: i32) -> Self {
         let mut power = Precise::of(1.0);
         let step = Precise::of(if exponent < 0 { 0.5 } else { 2.0 });
@@ -41,7 +41,7 @@ impl Precise {
         power
     }
 
-    /// π.
+    /// π
     pub fn pi() -> Self {
         Precise(CONSTANTS.with_borrow_mut(|constants| constants.pi(BITS, ROUND)))
     }
@@ -86,22 +86,22 @@ impl Precise {
         Precise(self.0.sqrt(BITS, ROUND))
     }
 
-    /// |a|.
+    /// |a|
     pub fn abs(&self) -> Self {
         Precise(self.0.abs())
     }
 
-    /// Whether it is a number, and not the root of a negative one or a quotient by 0.
+    /// Returns whether it is finite, not the root of a negative number or a quotient by 0.
     pub fn is_finite(&self) -> bool {
         !self.0.is_nan() && !self.0.is_inf()
     }
 
-    /// Whether a < 0.
+    /// Returns whether a < 0.
     pub fn is_negative(&self) -> bool {
         self.0.is_negative() && !self.0.is_zero()
     }
 
-    /// The nearest f64, or nearly so.
+    /// Returns an f64 within about one rounding.
     pub fn to_f64(&self) -> f64 {
         if self.0.is_zero() {
             return 0.0;
@@ -133,57 +133,57 @@ impl Neg for &Precise {
     }
 }
 
-/// Three numbers.
+/// A vector of three numbers.
 pub type Three = [Precise; 3];
 
 /// A matrix by rows.
 pub type Matrix = [Three; 3];
 
-/// a · b.
+/// a · b
 pub fn dot(a: &Three, b: &Three) -> Precise {
     (0..3).fold(Precise::of(0.0), |sum, i| &sum + &(&a[i] * &b[i]))
 }
 
-/// a × b.
+/// a × b
 pub fn cross(a: &Three, b: &Three) -> Three {
     let entry = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
     [entry(1, 2), entry(2, 0), entry(0, 1)]
 }
 
-/// a + b.
+/// a + b
 pub fn plus(a: &Three, b: &Three) -> Three {
     std::array::from_fn(|i| &a[i] + &b[i])
 }
 
-/// a − b.
+/// a − b
 pub fn minus(a: &Three, b: &Three) -> Three {
     std::array::from_fn(|i| &a[i] - &b[i])
 }
 
-/// s a.
+/// s a
 pub fn scaled(s: &Precise, a: &Three) -> Three {
     std::array::from_fn(|i| s * &a[i])
 }
 
-/// a over its length.
+/// a divided by its length
 pub fn normed(a: &Three) -> Three {
     let length = dot(a, a).sqrt();
     std::array::from_fn(|i| &a[i] / &length)
 }
 
-/// R a.
+/// R a
 pub fn apply(r: &Matrix, a: &Three) -> Three {
     std::array::from_fn(|i| dot(&r[i], a))
 }
 
-/// A B.
+/// A B
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let column = |j: usize| -> Three { std::array::from_fn(|i| b[i][j].clone()) };
     let columns = [column(0), column(1), column(2)];
     std::array::from_fn(|i| std::array::from_fn(|j| dot(&a[i], &columns[j])))
 }
 
-/// The turn about a unit axis, I c + s n̂ + (1 − c) n nᵀ.
+/// The rotation about a unit axis, I c + s n̂ + (1 − c) n nᵀ
 pub fn about(n: &Three, c: &Precise, s: &Precise) -> Matrix {
     let one = Precise::of(1.0);
     let rest = &one - c;
@@ -204,7 +204,7 @@ pub fn about(n: &Three, c: &Precise, s: &Precise) -> Matrix {
     })
 }
 
-/// I.
+/// I
 pub fn identity() -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| Precise::of(f64::from(u8::from(i == j)))))
 }

@@ -1,7 +1,7 @@
-//! Which of many models a slow comparison looks at.
+//! Selects models for a slow comparison.
 
-/// Every third of a list, and all of it with `HAMEL_ATTACK`, as in `cargo xtask ci`: for models whose identities, physics and
-/// tables other tests look at one by one.
+/// Returns every third entry of a list, or all of them with `HAMEL_ATTACK`, as in `cargo xtask ci`: for models whose
+/// identities, physics and tables are checked by other tests.
 pub fn some<T>(all: Vec<T>) -> Vec<T> {
     let apart = match std::env::var_os("HAMEL_ATTACK") {
         Some(_) => 1,

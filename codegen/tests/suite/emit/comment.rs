@@ -1,16 +1,16 @@
-//! Comments of C, whatever stands in them.
+//! Comments in C, for any content.
 
 use super::sample::pendulum;
 use hamel_codegen::emit::c;
 
-/// The header of a program whose first function has this documentation.
+/// Returns the header of a program whose first function has this documentation.
 fn header(docs: &[&str]) -> String {
     let mut program = pendulum();
     program.functions[0].docs = docs.iter().map(|&line| line.into()).collect();
     c::files(&program, &c::Options::default()).header
 }
 
-/// A line of documentation as it stands in a comment.
+/// Returns a line of documentation in the form of a comment.
 fn tame(line: &str) -> String {
     let header = header(&["This is the line:", line]);
     let (_, rest) = header.split_once(" * This is the line:\n").expect("it");
@@ -25,7 +25,7 @@ fn nothing_leaves_a_comment() {
     assert_eq!(tame("a\u{0}b\u{202e}"), "ab\\u{202e}");
     let header = header(&["a\nb", ""]);
     assert!(header.contains("\n/**\n * a\n * b\n *\n"), "{header}");
-    // Set in, each line of it.
+    // Every line is indented.
     let (_, rest) = header.split_once("\n    /**\n").expect("one");
     let (lines, _) = rest.split_once("\n     */\n").expect("its end");
     for line in lines.lines() {

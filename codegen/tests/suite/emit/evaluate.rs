@@ -1,9 +1,9 @@
-//! The value of generated text, read as it stands: of a function in parts these one behind the other.
+//! Evaluates generated text directly; the parts of a split function are run in order.
 
 use std::collections::HashMap;
 use syn::{BinOp, Expr, Lit, Pat, Stmt, UnOp};
 
-/// Names and entries of arrays with their values; an entry that nothing was written to has none.
+/// Names and array entries with their values; an entry that was not written has none.
 #[derive(Debug, Default)]
 pub struct Values {
     names: HashMap<String, f64>,
@@ -11,14 +11,14 @@ pub struct Values {
 }
 
 impl Values {
-    /// Gives the entries of an array their values.
+    /// Sets the entries of an array.
     pub fn array(&mut self, name: &str, values: &[f64]) {
         for (index, &value) in values.iter().enumerate() {
             self.entries.insert(format!("{name}[{index}]"), value);
         }
     }
 
-    /// The values of a vector, or of a matrix by rows, in which functions find zeros.
+    /// Returns the values of a vector, or of a matrix by rows; entries that were not written are zero.
     pub fn of(&self, name: &str, rows: usize, columns: usize) -> Vec<f64> {
         let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
         let names = places.map(|(row, column)| match rows {
@@ -30,7 +30,7 @@ impl Values {
             .collect()
     }
 
-    /// Runs the methods of a function: its parts in their order, then itself.
+    /// Runs the methods of a function: its parts in order, then the function.
     pub fn run(&mut self, methods: &[&syn::ImplItemFn], name: &str) {
         let named = |wanted: &str| methods.iter().find(|method| method.sig.ident == wanted);
         for part in 1.. {
@@ -55,7 +55,7 @@ impl Values {
                     let values: Vec<f64> = list.elems.iter().map(|e| self.value(e)).collect();
                     self.array("out", &values);
                 }
-                // Guards, the parts, and the result in the variable that was written.
+                // Guards, calls of parts, and the result variable.
                 Stmt::Expr(..) => {}
                 _ => panic!("no such statement is generated"),
             }
@@ -64,7 +64,7 @@ impl Values {
 
     fn bind(&mut self, pattern: &Pat, value: &Expr) {
         match (pattern, value) {
-            // Arrays of zeros, and `k`: their entries are known by the array's name.
+            // Arrays of zeros, and `k`: their entries are stored under the array's name.
             (Pat::Ident(_), Expr::Repeat(_) | Expr::Reference(_)) => {}
             (Pat::Ident(name), value) => {
                 let value = self.value(value);
@@ -117,7 +117,7 @@ impl Values {
     }
 }
 
-/// The number in `S::from_f64`.
+/// Parses the number in `S::from_f64`.
 fn number(expression: &Expr) -> f64 {
     match expression {
         Expr::Lit(literal) => match &literal.lit {
@@ -129,7 +129,7 @@ fn number(expression: &Expr) -> f64 {
     }
 }
 
-/// `slots[3]` and the like as it stands.
+/// Returns the text of a place such as `slots[3]`.
 fn place_of(expression: &Expr) -> String {
     match expression {
         Expr::Path(path) => path.path.get_ident().expect("a name").to_string(),

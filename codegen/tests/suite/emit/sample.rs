@@ -1,4 +1,4 @@
-//! Small programs written by hand.
+//! Small hand-written programs.
 
 use super::sketch::{Declared, function, sketch};
 use hamel_codegen::algebra::graph::{Edge, Function as Elementary};
@@ -70,7 +70,7 @@ pub fn pendulum() -> Program {
     program
 }
 
-/// Every node, place and shape that can be printed, under names that are hard to print.
+/// Returns a program with every kind of node, place and shape that can be printed, under names that are hard to print.
 pub fn everything() -> Program {
     let s = ShapeKind::Scalar;
     let (mut program, [p, x, xi, u, xi_dot]) = sketch(
@@ -185,17 +185,17 @@ pub fn everything() -> Program {
     program
 }
 
-/// A random program of about `size` statements, all of them live; `pivots` of them are guards.
+/// Returns a random program of about `size` live statements, with `pivots` guards.
 pub fn random(size: usize, pivots: usize) -> Program {
     reaching(size, pivots, size)
 }
 
-/// The same without pivots, of parameters alone.
+/// Returns a random program of parameters only, without pivots.
 pub fn constant(size: usize) -> Program {
     drawn(size, 0, size, true)
 }
 
-/// The same, in which no value is read after more than `reach` others, but in one sum of all.
+/// Returns a random program in which no value is read after more than `reach` others, except in one sum of all.
 pub fn reaching(size: usize, pivots: usize, reach: usize) -> Program {
     drawn(size, pivots, reach, false)
 }
@@ -236,7 +236,7 @@ fn drawn(size: usize, pivots: usize, reach: usize, constant: bool) -> Program {
     let mut guards = Vec::new();
     let one = graph.one();
     while pool.len() < size {
-        // Mostly recent values, so that everything stays live; squashed now and then.
+        // Mostly recent values, so that everything stays live; sometimes through a bounded function.
         let near = pool.len() - draw(reach.min(40).min(pool.len())) - 1;
         let far = pool.len() - draw(reach.min(pool.len())) - 1;
         let (a, b) = (pool[near], pool[far]);
@@ -264,7 +264,7 @@ fn drawn(size: usize, pivots: usize, reach: usize, constant: bool) -> Program {
         }
     }
     let mut outputs = pool.split_off(pool.len() - 12);
-    // Results that are read again, one as its negative.
+    // Results that are read again, one of them negated.
     outputs[9] = pool[pool.len() / 3];
     outputs[10] = -pool[pool.len() / 2];
     let rest = graph.sum(&pool);

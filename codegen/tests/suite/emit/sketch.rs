@@ -1,4 +1,4 @@
-//! Programs without functions, to be filled by hand.
+//! Programs without functions, which tests add.
 
 use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::algebra::graph::{Edge, Graph};
@@ -18,7 +18,7 @@ pub struct Declared<'a> {
     pub inputs: &'a [(&'a str, ShapeKind)],
 }
 
-/// A program without functions, and its symbols: parameters, x, ξ, u, ξ̇.
+/// Returns a program without functions, and its symbols: parameters, x, ξ, u, ξ̇.
 pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
     let mut random = Random::new(7);
     let mut graph = Graph::new(class::PARAM);
@@ -128,7 +128,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
     (program, [p, x, xi, u, xi_dot])
 }
 
-/// A function with a line of documentation.
+/// Returns a function with a line of documentation.
 pub fn function(name: &str, arguments: &[Argument], shape: Shape, outputs: Vec<Edge>) -> Function {
     let docs = format!("The {name} of a sample.");
     Function {

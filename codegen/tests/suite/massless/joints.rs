@@ -1,6 +1,6 @@
-//! Trees of joints, many of which move nothing that has mass: some follow others, some move as functions of time, and loops tie
-//! others: the emitted accelerations against Lagrange's equations in numbers. A refusal is right where the reference finds a direction
-//! without inertia at the start, or no motion that is left.
+//! Trees of joints, many of which move no mass: some follow others, some are functions of time, and loops relate
+//! others. Emitted accelerations are compared with Lagrange's equations in numbers. A refusal is right if the reference
+//! finds a direction without inertia at the start, or no remaining motion.
 
 use super::{REGULAR, ROUNDING};
 use crate::common::{Random, attack, value};
@@ -10,7 +10,7 @@ use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// States tried per system.
+/// Number of states per system.
 const STATES: usize = 2;
 /// Axes of joints.
 const AXES: [[f64; 3]; 5] = [
@@ -21,7 +21,7 @@ const AXES: [[f64; 3]; 5] = [
     [1.0, -2.0, 2.0],
 ];
 
-/// Three to six joints in any mixture, with up to two loops; the last one moves a body.
+/// Returns three to six joints in any mixture, with up to two loops; the last one moves a body.
 fn system(random: &mut Random) -> System {
     let count = 3 + random.below(4);
     let mut joints: Vec<Joint> = (0..count).map(|i| joint(random, i)).collect();
@@ -41,7 +41,7 @@ fn system(random: &mut Random) -> System {
     system
 }
 
-/// A joint on one before it, or on the world.
+/// Returns a joint on an earlier one, or on the world.
 fn joint(random: &mut Random, i: usize) -> Joint {
     let motion = motion(random, i);
     let free = matches!(motion, Motion::Free);
@@ -81,7 +81,7 @@ fn motion(random: &mut Random, i: usize) -> Motion {
     }
 }
 
-/// One loop more, where one of a few is independent of the others at the guesses.
+/// Adds a loop if one of several candidates is independent of the others at the guesses.
 fn tie(system: &mut System, random: &mut Random) {
     let count = system.joints.len();
     let free: Vec<usize> = (0..count)
@@ -118,7 +118,7 @@ fn tie(system: &mut System, random: &mut Random) {
     }
 }
 
-/// Why a description is refused, where that is right.
+/// Returns whether the reason of a refusal is right.
 fn rightly_refused(system: &System, said: &str) -> bool {
     let (pivot, left, _) = system.regularity(&system.start());
     let idle = pivot <= REGULAR && said.contains("the mass matrix is not positive definite");
@@ -126,13 +126,13 @@ fn rightly_refused(system: &System, said: &str) -> bool {
     idle || still || said.contains("this spring does nothing") && system.has_idle_spring()
 }
 
-/// The number of the joint of a velocity, `j3_dot`.
+/// Parses the index of the joint of a velocity, `j3_dot`.
 fn number(name: &str) -> usize {
     let digits: String = name.chars().filter(char::is_ascii_digit).collect();
     digits.parse().expect("a joint has a number")
 }
 
-/// Evaluates the emitted accelerations at a state; each comes with the index of its joint.
+/// Evaluates the emitted accelerations at a state; each is paired with the index of its joint.
 fn found(of: &Generated, system: &System, q: &[f64], v: &[f64]) -> Vec<(usize, f64)> {
     let own = system.own();
     let model = &of.active;
@@ -155,13 +155,13 @@ fn found(of: &Generated, system: &System, q: &[f64], v: &[f64]) -> Vec<(usize, f
     places.into_iter().zip(rates).collect()
 }
 
-/// Result of comparing one system with the reference.
+/// The result of comparing a system with the reference.
 enum Outcome {
-    /// It is derived, and its rates are those of the reference at some states.
+    /// It is derived, and its rates agree with the reference at some states.
     Compared,
-    /// It is refused, and rightly so.
+    /// It is rightly refused.
     Refused,
-    /// It is derived, and close to singular at all states that were tried.
+    /// It is derived, but nearly singular at all tested states.
     Singular,
 }
 
@@ -212,7 +212,7 @@ fn outcome(system: &System, text: &str, random: &mut Random) -> Result<Outcome, 
     Ok(outcome)
 }
 
-/// A system; what has idle directions is drawn anew three times in four.
+/// Draws a system; one with massless directions is rejected in three quarters of all cases.
 fn drawn(random: &mut Random) -> System {
     loop {
         let system = system(random);

@@ -1,9 +1,9 @@
-//! Rides the Whipple bicycle along a line by its handlebar: a linear-quadratic regulator by the exact slopes of the
-//! controller's steps, on what the handlebar reaches.
+//! Rides the Whipple bicycle along a line by its handlebar: a linear-quadratic regulator from the exact slopes of the
+//! controller's steps, restricted to the subspace that the handlebar reaches.
 //!
-//! The wheels roll, so that velocities are tied to one another; of the (h, δξ) that a step's slopes are about, those
-//! combinations count that the input reaches: the span of B, A B, A² B …, here six: place, heading, lean, steering angle,
-//! and the rates of the last two.
+//! The wheels roll, so the velocities are constrained. Of the (h, δξ) in the slopes of a step, only the combinations
+//! that the input reaches count: the span of B, A B, A² B …. It has dimension six here: position, heading, lean,
+//! steering angle, and the rates of the last two.
 //!
 //! `cargo run --release -p control --bin bicycle`
 
@@ -21,16 +21,16 @@ use whipple::Bicycle;
 
 /// The period of the controller, in s.
 const PERIOD: f64 = 0.01;
-/// h of v, o, wd, wr, wf, then δ of o, wd, wr, wf: the hubs' velocities follow from the wheels'.
+/// h of v, o, wd, wr, wf, then δξ of o, wd, wr, wf: the hubs' velocities follow from the wheels'.
 const STATES: usize = 15;
-/// What the handlebar reaches.
+/// Dimension of the subspace that the handlebar reaches.
 const REACHED: usize = 6;
-/// Standard deviations: of the torque of the hands (N m), of measured rates (rad/s).
+/// Standard deviations of the hands' torque (N m) and of measured rates (rad/s).
 const NOISE: (f64, f64) = (0.5, 0.01);
 
 type Vector = SVector<f64, STATES>;
 
-/// Upright on the x axis at a speed in m/s: the velocities of the start are those of 1 m/s.
+/// The state upright on the x axis at a speed in m/s. The initial velocities are those of 1 m/s.
 fn riding(speed: f64) -> State<Bicycle<f64>> {
     let (x, xi) = Bicycle::<f64>::default().start();
     State {
@@ -40,10 +40,10 @@ fn riding(speed: f64) -> State<Bicycle<f64>> {
     }
 }
 
-/// How far a state is from riding along the x axis, as (h, δξ); distance covered and angles of wheels do not count.
+/// The deviation of a state from riding along the x axis, as (h, δξ), without distance covered and angles of wheels.
 fn error(state: &State<Bicycle<f64>>, ridden: &State<Bicycle<f64>>) -> Vector {
     let x = &state.x;
-    // r, then R by rows, then δ.
+    // x contains r, then R by rows, then δ.
     let turned = |i: usize, j: usize| x[3 + 3 * i + j];
     let mut error = Vector::zeros();
     error[1] = x[1];
@@ -56,17 +56,17 @@ fn error(state: &State<Bicycle<f64>>, ridden: &State<Bicycle<f64>>) -> Vector {
     error
 }
 
-/// K of steer = −K (h, δξ), for what the handlebar reaches; `None` where that is less than six combinations.
+/// The gain K of steer = −K (h, δξ) on the reachable subspace; `None` if its dimension is less than six.
 fn regulator(speed: f64) -> Result<Option<SMatrix<f64, 1, STATES>>, StepError> {
     let system = Bicycle::default();
     let (_, slopes) = step_slopes(&Rkmk4, &system, &riding(speed), &[0.0], PERIOD)?;
     let a = SMatrix::<f64, STATES, STATES>::from_fn(|i, j| slopes[i][j]);
     let b = Vector::from_fn(|i, _| slopes[i][STATES]);
-    // An orthonormal basis of what is reached.
+    // An orthonormal basis of the reachable subspace.
     let mut basis: Vec<Vector> = Vec::new();
     let mut next = b;
     while basis.len() < REACHED {
-        // Twice, for the digits.
+        // Orthogonalises twice, for accuracy.
         for _ in 0..2 {
             for one in &basis {
                 next -= *one * one.dot(&next);
@@ -94,8 +94,8 @@ fn regulator(speed: f64) -> Result<Option<SMatrix<f64, 1, STATES>>, StepError> {
     Ok(Some(gain * t.transpose()))
 }
 
-/// A ride from a push: the greatest lean (rad) and the greatest distance from the line in the last second (m), or the
-/// time at which the bicycle has fallen, by more than 60°.
+/// The outcome of a ride after a push: the greatest lean (rad) and the greatest distance from the line in the last
+/// second (m), or the time at which the lean exceeded 60° and the bicycle fell.
 enum Ride {
     Upright { lean: f64, astray: f64 },
     Fallen(f64),
@@ -105,7 +105,7 @@ fn ride(speed: f64, seconds: f64, gain: &SMatrix<f64, 1, STATES>) -> Result<Ride
     let system = Bicycle::default();
     let ridden = riding(speed);
     let mut state = riding(speed);
-    // A push: lean at half a radian per second.
+    // The push: a lean rate of half a radian per second.
     state.xi[0] = 0.5;
     let mut noise = Noise(7);
     let (mut lean, mut astray) = (0.0_f64, 0.0_f64);
@@ -162,7 +162,7 @@ mod tests {
             };
             assert!(lean < 0.4 && astray < 0.5, "{speed}: {lean} {astray}");
         }
-        // Below 4.29 m/s it falls by itself (Meijaard and others, table 2).
+        // The uncontrolled bicycle is unstable below 4.29 m/s (Meijaard and others, table 2).
         assert!(matches!(
             ride(3.0, 20.0, &SMatrix::zeros()),
             Ok(Ride::Fallen(_))

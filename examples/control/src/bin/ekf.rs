@@ -1,5 +1,5 @@
-//! Estimates attitude, place and speeds of a drone from a receiver of positions and two directions: an extended Kalman
-//! filter whose errors are displacements, three numbers for a rotation, so that nothing is renormalised.
+//! Estimates attitude, position and velocities of a drone from measured positions and two directions. The errors of the
+//! extended Kalman filter are displacements, three numbers for a rotation, so that nothing is renormalised.
 //!
 //! `cargo run --release -p control --bin ekf`
 
@@ -28,20 +28,20 @@ hamel::rigid_eom! {
 
 /// Time between measurements, in s.
 const PERIOD: f64 = 0.02;
-/// What a receiver of positions is off by, in m.
+/// Standard deviation of a measured position, in m.
 const PLACE: f64 = 0.5;
-/// What a direction is off by.
+/// Standard deviation of a measured direction.
 const DIRECTION: f64 = 0.05;
-/// What torques and thrusts are off by, in N m and N.
+/// Standard deviation of torques and thrusts, in N m and N.
 const PUSH: f64 = 2e-3;
-/// Errors: displacements h = (r, R), then those of ξ = (v, w).
+/// Number of errors: displacements h = (r, R), then the errors of ξ = (v, w).
 const N: usize = 12;
-/// Positions, and the directions up and north in body axes.
+/// Number of measurements: positions, and the directions up and north in body axes.
 const M: usize = 9;
 
 type Square = SMatrix<f64, N, N>;
 
-/// What is measured, y = (r, Rᵀ e₃, Rᵀ e₁).
+/// The measurement y = (r, Rᵀ e₃, Rᵀ e₁).
 fn measured(state: &State<Drone<f64>>) -> SVector<f64, M> {
     let x = &state.x;
     SVector::from([x[0], x[1], x[2], x[9], x[10], x[11], x[3], x[4], x[5]])
@@ -60,7 +60,7 @@ fn measurement(y: &SVector<f64, M>) -> SMatrix<f64, M, N> {
     slopes
 }
 
-/// The state moved by an error: x along the chart vector h, ξ by the rest.
+/// Displaces a state by an error: x along the chart vector h, ξ by the rest.
 fn moved(system: &Drone<f64>, state: &mut State<Drone<f64>>, by: &SVector<f64, N>) {
     let (h, change) = by.as_slice().split_at(6);
     manifold::retract(system.blocks(), &mut state.x, h);
@@ -71,14 +71,14 @@ fn moved(system: &Drone<f64>, state: &mut State<Drone<f64>>, by: &SVector<f64, N
         .for_each(|(xi, by)| *xi += by);
 }
 
-/// Errors of the angle in rad and of the place in m: before, and of the last second of a flight of ten.
+/// Errors of the angle (rad) and of the position (m): initially, and in the last second of a flight of ten seconds.
 fn flight(seed: u64) -> Result<[[f64; 2]; 2], StepError> {
     let drone = Drone::default();
     let mut noise = Noise(seed);
     let (x, xi) = drone.start();
     let mut truth = State { t: 0.0, x, xi };
     let mut guess = truth.clone();
-    // The filter begins 60 degrees and 2 m off.
+    // The initial estimate is off by 60 degrees and 2 m.
     let off = [
         1.0, -1.0, 1.4, 0.7, -0.6, 0.5, 0.3, 0.2, -0.1, 0.1, -0.2, 0.1,
     ];
@@ -101,13 +101,13 @@ fn flight(seed: u64) -> Result<[[f64; 2]; 2], StepError> {
         ];
         let pushed = u.map(|u| u + PUSH * noise.normal());
         step(&drone, Rkmk4, &mut truth, PERIOD, &|_, _, _| pushed)?;
-        // The step of the estimate, and of its errors.
+        // Predicts the estimate and its covariance.
         let (next, slopes) = step_slopes(&Rkmk4, &drone, &guess, &u, PERIOD)?;
         guess = next;
         let a = Square::from_fn(|i, j| slopes[i][j]);
         let b = SMatrix::<f64, N, 4>::from_fn(|i, j| slopes[i][N + j]);
         p = a * p * a.transpose() + PUSH * PUSH * b * b.transpose() + 1e-8 * Square::identity();
-        // The measurement.
+        // Corrects them by the measurement.
         let y = measured(&truth);
         let y = SVector::<f64, M>::from_fn(|i, _| {
             y[i] + noise.normal() * if i < 3 { PLACE } else { DIRECTION }
@@ -152,7 +152,7 @@ fn main() -> Result<(), StepError> {
 mod tests {
     use super::{DIRECTION, PLACE, flight};
 
-    /// Sixty degrees become less than the noise of one direction, two metres less than half of that of a position.
+    /// Sixty degrees shrink below the noise of one direction, two metres below half the noise of a position.
     #[test]
     fn errors_go_below_those_of_the_measurements() {
         for seed in 1..=5 {

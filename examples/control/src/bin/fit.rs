@@ -1,8 +1,8 @@
-//! Parameters of a pendulum from a swing that was filmed: sensitivities through a whole run.
+//! Estimates parameters of a pendulum from a filmed swing, by sensitivities through a whole run.
 //!
-//! A run in dual numbers has the slopes of every state by the parameters, exactly those of the discrete run. With them
-//! Gauss and Newton find length, damping and the angle of release in a few steps. What `parameter_slopes` gives is the
-//! same at one state: ∂ξ̇/∂p.
+//! A run in dual numbers has the slopes of every state with respect to the parameters, exactly those of the discrete
+//! run. With them, the Gauss-Newton method finds length, damping and the angle of release in a few steps.
+//! `parameter_slopes` gives the slopes ∂ξ̇/∂p at a single state.
 //!
 //! `cargo run --release -p control --bin fit`
 
@@ -26,16 +26,16 @@ hamel::rigid_eom! {
     }
 }
 
-/// Length, damping, and the angle of release.
+/// Number of unknowns: length, damping, and the angle of release.
 const SOUGHT: usize = 3;
-/// A number with its slopes by what is sought.
+/// A number with its slopes with respect to the unknowns.
 type Number = Dual<f64, SOUGHT>;
-/// The time between pictures, in s, and the steps between them.
+/// The time between pictures, in s, and the number of steps between them.
 const PICTURE: f64 = 0.1;
 const STEPS: f64 = 10.0;
 const PICTURES: usize = 60;
 
-/// The angles of a run in the pictures, in numbers of any kind.
+/// The angles of a run at the times of the pictures, for any type of number.
 fn swing<S: Scalar>([l, c, angle]: [S; SOUGHT]) -> Result<Vec<S>, Box<dyn Error>>
 where
     Swing<S>: hamel::System<
@@ -75,14 +75,14 @@ where
     Ok(angles)
 }
 
-/// A fit: what was sought, with the standard deviations that noise leaves it, and that of a picture.
+/// A fit: the unknowns with their standard deviations, and the standard deviation of a picture.
 struct Fit {
     found: [f64; SOUGHT],
     doubt: [f64; SOUGHT],
     picture: f64,
 }
 
-/// The best fit to measured angles by the steps of Gauss and Newton from a guess.
+/// Fits the unknowns to measured angles by Gauss-Newton steps from a guess.
 fn fit(measured: &[f64], guess: [f64; SOUGHT]) -> Result<Fit, Box<dyn Error>> {
     let mut sought = Vector3::from(guess);
     let mut last: Option<(Cholesky<f64, _>, f64)> = None;
@@ -110,7 +110,7 @@ fn fit(measured: &[f64], guess: [f64; SOUGHT]) -> Result<Fit, Box<dyn Error>> {
     })
 }
 
-/// Angles as a camera sees them, off by a deviation in rad.
+/// Angles as a camera measures them, with a standard deviation in rad.
 fn filmed(truth: [f64; SOUGHT], deviation: f64) -> Result<Vec<f64>, Box<dyn Error>> {
     let mut noise = Noise(7);
     let angles = swing(truth)?;
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Of the emitted ∂ξ̇/∂p and of ξ̇ in dual numbers.
+    /// Compares the emitted ∂ξ̇/∂p with the slopes of ξ̇ in dual numbers.
     #[test]
     fn slopes_of_a_state_are_those_of_dual_numbers() {
         let system = Swing::<f64>::default();
@@ -192,7 +192,7 @@ mod tests {
         let film = filmed(TRUTH, 0.02).expect("a run");
         let fit = fit(&film, [1.0, 0.1, 1.6]).expect("a fit");
         assert!((fit.picture - 0.02).abs() < 0.006, "{}", fit.picture);
-        // Each within four of its standard deviations, and these are small.
+        // Each estimate is within four of its standard deviations, and these are small.
         for i in 0..SOUGHT {
             let off = (fit.found[i] - TRUTH[i]).abs();
             assert!(off < 4.0 * fit.doubt[i], "{i}: {off}, {}", fit.doubt[i]);

@@ -1,7 +1,8 @@
-//! An arm on a ship that heaves, pitches and rolls: part of the motion is given, part of it follows from forces.
+//! Holds an arm on a ship that heaves, pitches and rolls: one part of the motion is prescribed, the other follows from
+//! forces.
 //!
-//! The ship's motion is prescribed as a function of the time, so that inverse dynamics knows the forces that the moving
-//! deck puts on the joints before they are felt. The same feedback holds the arm with and without that knowledge.
+//! The ship's motion is a prescribed function of time, so inverse dynamics includes the forces of the moving deck on
+//! the joints. The same feedback holds the arm with and without this feedforward.
 //!
 //! `cargo run --release -p control --bin hybrid`
 
@@ -31,20 +32,20 @@ hamel::rigid_eom! {
 /// The period of the controller, in s.
 const PERIOD: f64 = 0.005;
 
-/// How a controller knows the deck's motion.
+/// The model that a controller uses.
 #[derive(Clone, Copy)]
 enum Knows {
-    /// Not at all: it lifts the boom as on a deck at rest.
+    /// A deck at rest, so that only weights are compensated.
     Weight,
-    /// As it is prescribed.
+    /// The prescribed motion of the deck.
     Motion,
 }
 
-/// The greatest error of the joints (rad) and the greatest torque (N m) while they are to stand still on the deck for a
-/// time.
+/// The greatest error of the joints (rad) and the greatest torque (N m) while the controller holds the arm fixed to the
+/// deck for a time.
 fn held(knows: Knows, seconds: f64) -> Result<(f64, f64), Box<dyn Error>> {
     let arm = ShipArm::<f64>::default();
-    // The same arm on a deck that stands still.
+    // The same arm on a deck at rest.
     let still = ShipArmParameters {
         roll: 0.0,
         pitch: 0.0,
@@ -94,7 +95,7 @@ mod tests {
     fn the_prescribed_motion_is_compensated() {
         let (blind, _) = held(Knows::Weight, 10.0).expect("a run");
         let (seeing, _) = held(Knows::Motion, 10.0).expect("a run");
-        // What is left is that torques stand still for a period.
+        // The remaining error comes from torques that are constant over a period.
         assert!(blind > 0.02 && seeing < 0.05 * blind, "{blind} {seeing}");
     }
 }

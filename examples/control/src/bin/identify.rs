@@ -1,5 +1,5 @@
-//! Identifies the inertias of a UR5 from noisy torques: forces are f = Y(x, ξ, ξ̇) β, Y is generated in the base
-//! parameters, the only combinations of masses, centres of mass and inertias that torques can tell, and β is the
+//! Identifies the inertias of a UR5 from noisy torques. The forces are f = Y(x, ξ, ξ̇) β, where Y is generated in the
+//! base parameters, the only combinations of masses, centres of mass and inertias that torques determine. β is the
 //! least-squares solution over many samples of a motion that excites all joints.
 //!
 //! `cargo run --release -p control --bin identify`
@@ -31,16 +31,16 @@ hamel::rigid_eom! {
     }
 }
 
-/// Joints.
+/// Number of joints.
 const N: usize = 6;
-/// Base parameters.
+/// Number of base parameters.
 const BASE: usize = 36;
-/// Samples of a motion of 20 s.
+/// Number of samples of a motion of 20 s.
 const SAMPLES: usize = 2000;
-/// Noise of the torques, as a part of their root mean square.
+/// Noise of the torques, relative to their root mean square.
 const NOISE: f64 = 0.05;
 
-/// Angles, rates and accelerations.
+/// Angles, rates and accelerations of the joints.
 type Sample = [[f64; N]; 3];
 
 /// A motion that is a sum of five harmonics in each joint, with random phases.
@@ -82,15 +82,15 @@ fn size(torques: &[[f64; N]]) -> [f64; N] {
     })
 }
 
-/// What was found.
+/// The estimate.
 struct Found {
     beta: DVector<f64>,
-    /// Standard deviations.
+    /// Standard deviations of β.
     deviation: DVector<f64>,
 }
 
-/// Weighted least squares: rows of a joint count by the noise of its torque. Nothing where the motion does not excite
-/// all of β.
+/// Weighted least squares: the rows of a joint are divided by the noise of its torque. `None` if the motion does not
+/// excite all of β.
 fn identified(robot: &Ur5<f64>, motion: &[Sample], measured: &[[f64; N]]) -> Option<Found> {
     let sizes = size(measured);
     let mut y = DMatrix::zeros(N * motion.len(), BASE);
@@ -114,7 +114,7 @@ fn identified(robot: &Ur5<f64>, motion: &[Sample], measured: &[[f64; N]]) -> Opt
     })
 }
 
-/// The error of the torques on another motion, as a part of the root mean square of each joint.
+/// The error of predicted torques on another motion, relative to the root mean square of each joint's torque.
 fn predicted(robot: &Ur5<f64>, beta: &DVector<f64>, motion: &[Sample]) -> [f64; N] {
     let truth = torques(robot, motion);
     let errors: Vec<[f64; N]> = motion
@@ -135,7 +135,8 @@ fn predicted(robot: &Ur5<f64>, beta: &DVector<f64>, motion: &[Sample]) -> [f64; 
     std::array::from_fn(|joint| errors[joint] / sizes[joint])
 }
 
-/// Identifies from a noisy run; the parameters in units of their standard deviations off, and the errors of prediction.
+/// Identifies the parameters from a noisy run; returns the estimate, its errors in standard deviations, and the errors
+/// of prediction.
 fn run() -> Option<(Found, Vec<f64>, [f64; N])> {
     let robot = Ur5::default();
     let mut noise = Noise(1);
@@ -184,11 +185,11 @@ mod tests {
     #[test]
     fn torques_of_another_motion_are_better_known_than_they_were_measured() {
         let (_, off, errors) = run().expect("an exciting motion");
-        // 36 normal numbers: beyond 4.5 with a chance of 2 in 10,000; their mean square is near 1.
+        // Of 36 normal numbers, one exceeds 4.5 with a probability of 2 in 10,000; their mean square is near 1.
         assert!(off.iter().all(|off| off.abs() < 4.5), "{off:?}");
         let square = off.iter().map(|off| off * off).sum::<f64>() / BASE as f64;
         assert!((0.3..2.5).contains(&square), "{square}");
-        // 5 % of noise averages out.
+        // The noise of 5 % averages out.
         assert!(errors.iter().all(|error| *error < 0.01), "{errors:?}");
     }
 }

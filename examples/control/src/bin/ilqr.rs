@@ -1,5 +1,5 @@
-//! Swings a double pendulum up by the iterative linear-quadratic regulator: forwards a run, backwards the best answer
-//! to deviations from it, by the exact slopes of the steps that the run makes.
+//! Swings a double pendulum up by the iterative linear-quadratic regulator: a forward run, then backwards the optimal
+//! feedback for deviations from it, from the exact slopes of the run's steps.
 //!
 //! W. Li, E. Todorov, *Iterative linear quadratic regulator design for nonlinear biological movement systems*, ICINCO
 //! (2004). `cargo run --release -p control --bin ilqr`
@@ -28,23 +28,23 @@ hamel::rigid_eom! {
 
 /// Length of a step, in s.
 const STEP: f64 = 0.03;
-/// Steps of the swing.
+/// Number of steps of the swing.
 const STEPS: usize = 80;
-/// What a torque costs over a step, and how little the shoulder gives.
+/// Costs of the two torques over a step.
 const EFFORT: [f64; 2] = [0.02, 0.01];
-/// What the last state is off by costs.
+/// Cost of the deviation of the final state.
 const END: f64 = 200.0;
 
 type Position = State<Pendulums<f64>>;
 type Torques = [Vector2<f64>; STEPS];
 
-/// What a state is off by: both rods upright and at rest.
+/// The deviation of a state from both rods upright and at rest.
 fn off(state: &Position) -> Vector4<f64> {
     let ([first, second], [rate, other]) = (state.x, state.xi);
     Vector4::new(first - PI, second, rate, other)
 }
 
-/// The states of a run, and what it costs.
+/// The states of a run, and its cost.
 fn run(system: &Pendulums<f64>, torques: &Torques) -> Result<(Vec<Position>, f64), StepError> {
     let mut state = State {
         t: 0.0,
@@ -61,11 +61,11 @@ fn run(system: &Pendulums<f64>, torques: &Torques) -> Result<(Vec<Position>, f64
     Ok((states, cost + 0.5 * END * off(&state).norm_squared()))
 }
 
-/// k and K of an answer.
+/// k and K of a feedback.
 type Answer = (Vector2<f64>, Matrix2x4<f64>);
 
-/// The answers to deviations, u = k + K (h, δξ) for every step, by the value ½ (h, δξ)ᵀ V (h, δξ) + vᵀ (h, δξ) of what
-/// follows; `None` where a torque would not pay.
+/// The feedback u = k + K (h, δξ) for every step, from the value ½ (h, δξ)ᵀ V (h, δξ) + vᵀ (h, δξ) of the steps that
+/// follow; `None` if the quadratic model has no minimum.
 fn answers(
     tangent: &TangentSystem<Pendulums<f64>>,
     states: &[Position],
@@ -100,7 +100,7 @@ fn answers(
     Ok(Some(all))
 }
 
-/// The torques of a swing, and what it costs after each iteration.
+/// The torques of a swing, and the cost after each iteration.
 fn swing(iterations: usize) -> Result<(Torques, Vec<f64>), StepError> {
     let system = Pendulums::default();
     let tangent = TangentSystem::new(&system);
@@ -159,14 +159,14 @@ fn main() -> Result<(), StepError> {
 mod tests {
     use super::{Pendulums, STEPS, off, run, swing};
 
-    /// The rods stand, and no torque could be chosen better by more than a thousandth of the cost.
+    /// The rods stand upright, and no change of a torque reduces the cost by more than a thousandth.
     #[test]
     fn the_pendulum_swings_up() {
         let (torques, costs) = swing(120).expect("a swing");
         assert!(costs[120] < 1e-3 * costs[0] && costs[120] > 0.999 * costs[100]);
         let (states, _) = run(&Pendulums::default(), &torques).expect("a run");
         assert!(off(&states[STEPS]).amax() < 0.05, "{:?}", states[STEPS]);
-        // What another torque at one step alone could gain: its slope squared over twice the curvature.
+        // The gain from changing the torque of one step: its slope squared over twice the curvature.
         let cost = |k: usize, by: f64| {
             let mut other = torques;
             other[k].x += by;

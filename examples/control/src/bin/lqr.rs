@@ -1,5 +1,5 @@
-//! Balances a pole on a cart: the gain of the linear-quadratic regulator from the exact slopes of the step that the
-//! controller's period makes.
+//! Balances a pole on a cart: the gain of the linear-quadratic regulator comes from the exact slopes of a step of the
+//! controller's period.
 //!
 //! `cargo run --release -p control --bin lqr`
 
@@ -25,8 +25,8 @@ hamel::rigid_eom! {
 /// The period of the controller, in s.
 const PERIOD: f64 = 0.02;
 
-/// K of push = −K (h, δξ): the discrete Riccati equation P = Q + Aᵀ P (A − B K), K = (R + Bᵀ P B)⁻¹ Bᵀ P A, iterated
-/// until it stands.
+/// The gain K of push = −K (h, δξ): the discrete Riccati equation P = Q + Aᵀ P (A − B K), K = (R + Bᵀ P B)⁻¹ Bᵀ P A,
+/// iterated to convergence.
 fn regulator(system: &CartPole<f64>) -> Result<RowVector4<f64>, StepError> {
     let upright = State {
         t: 0.0,
@@ -46,7 +46,7 @@ fn regulator(system: &CartPole<f64>) -> Result<RowVector4<f64>, StepError> {
     Ok(gain)
 }
 
-/// The greatest force, and the state after some periods from a pole that leans.
+/// Returns the greatest force, and the state after some periods from a leaning pole.
 fn balanced(periods: u32) -> Result<(f64, State<CartPole<f64>>), StepError> {
     let system = CartPole::default();
     let gain = regulator(&system)?;
@@ -86,7 +86,7 @@ mod tests {
     use hamel::methods::Rkmk4;
     use nalgebra::{Matrix4, Vector4};
 
-    /// 20 degrees are brought upright, and A_d − B_d K has all eigenvalues within the unit circle.
+    /// A lean of 20 degrees is corrected, and all eigenvalues of A_d − B_d K are within the unit circle.
     #[test]
     fn the_pole_stands() {
         let (_, state) = balanced(500).expect("a run");

@@ -1,5 +1,5 @@
-//! Flies a quadrotor along a figure of eight by model-predictive control: at every tick a quadratic program over the next
-//! second, about the motion that was planned last, with the exact slopes of its steps and bounds on every rotor.
+//! Flies a quadrotor along a figure of eight by model-predictive control: each tick solves a quadratic program over the
+//! next second, linearised about the last plan by the exact slopes of its steps, with bounds on every rotor.
 //!
 //! M. Diehl, H. G. Bock, J. P. Schlöder, *A real-time iteration scheme for nonlinear optimization in optimal feedback
 //! control*, SIAM J. Control Optim. 43 (2005); the solver is that of P. J. Goulart, Y. Chen, *Clarabel* (2024).
@@ -37,33 +37,33 @@ hamel::rigid_eom! {
 
 /// Time between decisions, and the length of a predicted step, in s.
 const TICK: f64 = 0.05;
-/// Steps that are looked ahead.
+/// Number of steps of the horizon.
 const AHEAD: usize = 20;
-/// Errors: δr and a turn in body axes, then those of ξ = (v, w).
+/// Number of errors: δr and a rotation in body axes, then those of ξ = (v, w).
 const N: usize = 12;
-/// Rotors.
+/// Number of rotors.
 const M: usize = 4;
-/// The thrusts that a rotor can have, in N.
+/// Smallest and largest thrust of a rotor, in N.
 const THRUST: [f64; 2] = [0.5, 4.5];
-/// The thrust of each that carries the quadrotor.
+/// The thrust of each rotor in hover, in N.
 const HOVER: f64 = 1.1 * 9.81 / 4.0;
-/// What errors of place, attitude, velocity and angular velocity cost, and thrusts beyond those of hovering.
+/// Costs of errors of position, attitude, velocity and angular velocity, and of thrusts that differ from hover.
 const COST: [f64; 4] = [40.0, 1.0, 4.0, 0.2];
 const EFFORT: f64 = 0.05;
-/// How much more the last state costs.
+/// Factor of the costs of the last state.
 const END: f64 = 10.0;
 
 type Place = State<Quadrotor<f64>>;
 type Plan = [[f64; M]; AHEAD];
 
-/// Where the path is at a time, and its velocity.
+/// The position on the path at a time, and its velocity.
 fn path(time: f64) -> ([f64; 3], [f64; 3]) {
     let (s, c) = (0.9 * time).sin_cos();
     let (s2, c2) = (1.8 * time).sin_cos();
     ([2.0 * s, s2, 0.5 * c], [1.8 * c, 1.8 * c2, -0.45 * s])
 }
 
-/// What a state is off from the path: level, and as fast as the path goes.
+/// The deviation of a state from the path, level and at the path's velocity.
 fn off(place: &Place) -> [f64; N] {
     let (r, v) = path(place.t);
     let here = QuadrotorState::from(place);
@@ -87,7 +87,7 @@ fn off(place: &Place) -> [f64; N] {
     ]
 }
 
-/// Entries of a matrix, in any order.
+/// The entries of a sparse matrix, in any order.
 #[derive(Default)]
 struct Entries {
     rows: Vec<usize>,
@@ -109,8 +109,8 @@ impl Entries {
     }
 }
 
-/// Makes the plan better: errors e₁ … and changes of thrusts d₀ … that cost least, with eₖ₊₁ = Aₖ eₖ + Bₖ dₖ, e₀ = 0, and
-/// all thrusts within their bounds.
+/// Improves the plan: the errors e₁ … and changes of thrusts d₀ … of least cost, subject to eₖ₊₁ = Aₖ eₖ + Bₖ dₖ, e₀ =
+/// 0, and bounds on all thrusts.
 fn decide(
     tangent: &TangentSystem<Quadrotor<f64>>,
     now: &Place,
@@ -175,20 +175,20 @@ fn decide(
     }
     for (k, u) in plan.iter_mut().enumerate() {
         for (j, u) in u.iter_mut().enumerate() {
-            // The solver's own tolerance may be a last bit beyond.
+            // The solver's tolerance may exceed a bound by rounding.
             *u = (*u + solution.x[change(k, j)]).clamp(THRUST[0], THRUST[1]);
         }
     }
     Ok(())
 }
 
-/// What has been flown: the distance from the path and the thrusts, tick by tick.
+/// The record of a flight: the distance from the path and the thrusts, tick by tick.
 struct Flight {
     distances: Vec<f64>,
     thrusts: Vec<[f64; M]>,
 }
 
-/// Flies for a time, from a metre and a half beside the path.
+/// Flies for a time, starting a metre and a half from the path.
 fn fly(until: f64) -> Result<Flight, Box<dyn Error>> {
     let quadrotor = Quadrotor::default();
     let tangent = TangentSystem::new(&quadrotor);
@@ -205,14 +205,14 @@ fn fly(until: f64) -> Result<Flight, Box<dyn Error>> {
         let [x, y, z, ..] = off(&place);
         distances.push((x * x + y * y + z * z).sqrt());
         thrusts.push(u);
-        // What is planned begins a tick later.
+        // The plan starts a tick later.
         plan.rotate_left(1);
         plan[AHEAD - 1] = plan[AHEAD - 2];
     }
     Ok(Flight { distances, thrusts })
 }
 
-/// The largest and the smallest of all thrusts.
+/// The smallest and the largest of all thrusts.
 fn extremes(thrusts: &[[f64; M]]) -> [f64; 2] {
     let all = thrusts.iter().flatten();
     all.fold([f64::INFINITY, 0.0], |[least, most], u| {
@@ -237,7 +237,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 mod tests {
     use super::{THRUST, extremes, fly};
 
-    /// Bounds are reached on the way to the path, and never passed; then the quadrotor stays close to it.
+    /// Thrusts reach their bounds on the way to the path but never exceed them; then the quadrotor stays close to the
+    /// path.
     #[test]
     fn the_path_is_reached_within_the_bounds() {
         let flight = fly(8.0).expect("a flight");

@@ -1,7 +1,7 @@
-//! What a board has said, against the same controller on this machine, and against bounds.
+//! Compares the output of a board with the same controller on this machine, and with bounds.
 //!
-//! `report NAME single|double INSTRUCTIONS BYTES < what the board has said`: the greatest numbers of instructions of an
-//! iteration and of bytes of the stack. Ends with 1 where something is not as it has to be.
+//! `report NAME single|double INSTRUCTIONS BYTES < OUTPUT`, with the greatest numbers of instructions of an iteration
+//! and of bytes of the stack. The exit status is 1 if a check fails.
 
 use std::io::Read;
 use std::process::ExitCode;
@@ -9,13 +9,13 @@ use std::process::ExitCode;
 use hamel::{Scalar, StepError};
 use hamel_cortex::control::{ITERATIONS, NODES, Regulator};
 
-/// Instructions that a tick of the boards' timer takes: QEMU makes an instruction a nanosecond with `-icount shift=0`, and
+/// Instructions per tick of the boards' timer: with `-icount shift=0`, QEMU executes one instruction a nanosecond, and
 /// the clock of its MPS2 boards has 25 MHz.
 const TICK: u64 = 40;
-/// How far costs on two machines may be apart, relative: in `f64`, and in `f32`.
+/// Largest relative difference of costs between two machines, in `f64` and in `f32`.
 const CLOSE: [f64; 2] = [1e-12, 1e-5];
 
-/// What the plan costs at first, and after each iteration.
+/// Returns the initial cost of the plan, and its cost after each iteration.
 fn costs<S: Scalar>() -> Result<Vec<f64>, StepError> {
     let mut regulator = Regulator::<S>::tilted();
     regulator.hover()?;
@@ -27,18 +27,18 @@ fn costs<S: Scalar>() -> Result<Vec<f64>, StepError> {
     Ok(costs)
 }
 
-/// What a board has said.
+/// The output of a board.
 #[derive(Debug, Default)]
 struct Said {
     costs: Vec<f64>,
     instructions: Vec<u64>,
-    /// Instructions of a loop, and the same by the timer.
+    /// Instructions of a loop: computed, and measured by the timer.
     tried: [u64; 2],
-    /// Bytes of the stack that were used, and all of them.
+    /// Used bytes of the stack, and its size.
     stack: [u64; 2],
 }
 
-/// The lines of a board: a word, and numbers by their bits.
+/// Parses the lines of a board: a word, and the bits of numbers.
 fn read(text: &str) -> Option<Said> {
     let mut said = Said::default();
     for line in text.lines() {
@@ -88,7 +88,7 @@ fn checked(arguments: &[String]) -> Result<String, String> {
     let last = said.instructions.last().copied().unwrap_or(u64::MAX);
     let apart = said.costs.iter().zip(&here);
     let apart = apart.fold(0.0_f64, |most, (board, here)| {
-        // Not `max`, which hides what is not a number.
+        // Not `max`, which ignores NaN.
         let apart = (board - here).abs() / here.abs();
         if apart > most || apart.is_nan() {
             apart

@@ -5,10 +5,10 @@ use serde::Deserialize;
 use std::path::Path;
 use std::process::Command;
 
-/// How to have it.
+/// The command that installs it.
 pub const START: &str = "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
 
-/// Where its Python is looked for.
+/// Default path of its Python.
 pub const PYTHON: &str = "target/mujoco/bin/python";
 
 #[derive(Deserialize)]
@@ -17,10 +17,10 @@ struct Output {
     cases: Vec<Foreign>,
 }
 
-/// Runs the script; its version and results, or why there are none.
+/// Runs the script, and returns its version and results.
 ///
 /// # Errors
-/// In plain words: no such Python, the script failed, or its output cannot be read.
+/// A message if there is no such Python, the script fails, or its output cannot be read.
 pub fn run(python: &Path) -> Result<(String, Vec<Foreign>), String> {
     if !python.exists() {
         return Err(format!("no Python with it at {}", python.display()));

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 type Entries = SVector<f64, 12>;
 
-/// A system as the crate wants it.
+/// Adapts a system to the crate.
 struct Raw<'p, 'a, Sys: System<Scalar = f64>, U>(&'p Problem<'a, Sys, U>);
 
 impl<Sys, U> ode_solvers::System<f64, Entries> for Raw<'_, '_, Sys, U>
@@ -45,14 +45,14 @@ where
     Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
 {
     let start = Entries::from_iterator(problem.x.into_iter().chain(problem.xi));
-    // Half a step is taken off: the crate rounds the number of steps up.
+    // Subtracts half a step, since the crate rounds the number of steps up.
     let step = until / steps as f64;
     let mut solver = Rk4::new(Raw(problem), 0.0, start, until - 0.5 * step, step);
     solver.integrate().map_err(|error| error.to_string())?;
     Ok(solver.y_out().clone())
 }
 
-/// The method on a problem.
+/// The entry of this method for a problem.
 pub fn rk4<'p, Sys, U>(problem: &'p Problem<'_, Sys, U>) -> Entry<'p>
 where
     Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,

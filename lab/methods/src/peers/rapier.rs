@@ -1,4 +1,4 @@
-//! Rapier: its rigid body, free or on a ball joint, stepped by its whole pipeline without colliders.
+//! Rapier: its rigid body, free or on a ball joint, stepped by its full pipeline without colliders.
 
 use crate::runner::{BenchError, Runner, rows};
 use hamel::{System, so3};
@@ -9,7 +9,7 @@ use rapier3d_f64::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// A body as Rapier wants it: about its centre of mass.
+/// A body in Rapier's form, about its centre of mass.
 struct Body {
     mass: f64,
     centre: [f64; 3],
@@ -18,7 +18,7 @@ struct Body {
     joint: bool,
 }
 
-/// Rapier on a problem; about the origin of the body where there is a joint.
+/// The entry of Rapier for a problem; with a joint, about the origin of the body.
 pub fn entry<'p, Sys, U>(
     runner: &Runner,
     problem: &'p Problem<'_, Sys, U>,
@@ -90,7 +90,7 @@ fn vector([x, y, z]: [f64; 3]) -> Vector {
     Vector::new(x, y, z)
 }
 
-/// A matrix of entries by rows.
+/// Makes a matrix from its rows.
 fn matrix(m: [[f64; 3]; 3]) -> Matrix {
     Matrix::from_cols_array_2d(&m).transpose()
 }
@@ -139,7 +139,7 @@ impl Body {
     }
 }
 
-/// (R, ω) in our axes.
+/// Returns (R, ω) in our axes.
 fn state(world: &PhysicsWorld, handle: RigidBodyHandle) -> ([f64; 9], [f64; 3]) {
     let Some(body) = world.bodies.get(handle) else {
         return ([f64::NAN; 9], [f64::NAN; 3]);

@@ -1,5 +1,5 @@
-//! Runs and sweeps by machine code that is made at once, beside programs in Rust that do the same with generated code: whole
-//! processes of threads' time, by turns, after the ends were compared.
+//! Compares runs and sweeps by machine code made at run time with programs in Rust that do the same with generated
+//! code. Final states are compared first; then the CPU times of the processes are measured alternately.
 //!
 //! Started by `lab/native/runs.sh`.
 
@@ -21,7 +21,7 @@ const H: f64 = 1e-3;
 const MEMBERS: usize = 20_000;
 const MEMBER_STEPS: u32 = 1_000;
 const TURNS: usize = 5;
-/// Of ends, after a million steps of a motion that is not chaotic.
+/// Largest accepted difference of final states, after a million steps of a motion that is not chaotic.
 const CLOSE: f64 = 1e-6;
 
 fn seconds(act: impl FnOnce()) -> f64 {
@@ -30,7 +30,7 @@ fn seconds(act: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-/// Seconds by the clock, and of all processors together.
+/// Returns the wall time and the CPU time of all threads, in s.
 fn timed(act: impl FnOnce()) -> [f64; 2] {
     let start = Instant::now();
     let processors = seconds(act);
@@ -42,7 +42,7 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// The heavy top for a million steps by a method of generated code; where it ends.
+/// Integrates the heavy top for a million steps by a method of generated code, and returns its final state.
 fn compiled<M: Method<code::HeavyTop<f64>>>(method: &M) -> Vec<f64> {
     let system = code::HeavyTop::<f64>::default();
     let mut state = State::start(&system);

@@ -1,4 +1,4 @@
-//! One description as C, with a function that calls all functions at a few states and prints what they give.
+//! A description as C, with a function that calls all functions at a few states and prints their results.
 
 use crate::common::Random;
 use hamel_codegen::algebra::graph::Function::Raised;
@@ -15,9 +15,9 @@ use hamel_codegen::program::{Argument, Cause, Function, Program};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// States at random, besides those that the generator measures its programs at.
+/// Number of random states, in addition to those at which the generator measures its programs.
 const RANDOM: usize = 3;
-/// The arguments in the order of states.
+/// The arguments, in the order of [`State`].
 const ARGUMENTS: [Argument; 5] = [
     Argument::Coordinates,
     Argument::Velocities,
@@ -34,26 +34,26 @@ type State = [Vec<f64>; 5];
 pub struct Case {
     generated: Generated,
     states: Vec<State>,
-    /// Parameters are so many times their defaults.
+    /// Factor of the default parameters.
     times: f64,
 }
 
-/// What a function gives: values, or the status that it returns instead.
+/// The expected result of a function: values, or an error status.
 pub struct Expected {
     pub what: String,
     pub value: Result<Vec<f64>, i64>,
-    /// The values with what `raised` is in `float`.
+    /// The values with the factor of `raised` in `float`.
     pub single: Vec<f64>,
-    /// How much rounding of the arguments to `float` changes the values.
+    /// The change of the values due to rounding the arguments to `float`.
     pub doubt: f64,
-    /// The error of the values in `f64`, by those in twice the length.
+    /// The error of the values in `f64`, measured in doubled precision.
     pub error: f64,
     /// Whether rounding to `float` is as large as a pivot.
     pub narrow: bool,
 }
 
 impl Case {
-    /// A description, under a name of its own where one is given.
+    /// Makes a case of a description, with another name if one is given.
     pub fn new(mut generated: Generated, name: Option<&str>, times: f64) -> Self {
         if let Some(name) = name {
             generated.program.name = name.into();
@@ -78,7 +78,7 @@ impl Case {
         &self.generated.program.name
     }
 
-    /// Header and source in one, and the function `run_NAME` behind them.
+    /// Returns header and source in one text, and the function `run_NAME` that calls them.
     pub fn text(&self, precision: Precision) -> (String, String) {
         let files = written_in_c(&self.generated, "case.eom", None, precision).expect("C");
         let (prefix, functions) = declared(&files.header);
@@ -124,13 +124,13 @@ impl Case {
         (format!("{}\n{}", files.header, files.rest), text)
     }
 
-    /// The call of the function that [`Self::text`] defines.
+    /// Returns the call of the function that [`Self::text`] defines.
     pub fn run(&self) -> String {
         let files = written_in_c(&self.generated, "case.eom", None, Precision::Double).expect("C");
         format!("    run_{}();\n", declared(&files.header).0)
     }
 
-    /// What is printed, line by line.
+    /// Returns the expected output, line by line.
     pub fn expected(&self) -> Vec<Expected> {
         let program = &self.generated.program;
         let exact = |what: &str, value: &[f64]| Expected {
@@ -172,7 +172,7 @@ impl Case {
     }
 }
 
-/// The states at which the generator measures its programs; states of first order are given at random.
+/// The states at which the generator measures its programs; first-order states are random.
 fn near(generated: &Generated) -> Vec<State> {
     let program = &generated.program;
     if program.n_z > 0 || program.n == 0 {
@@ -187,7 +187,7 @@ fn near(generated: &Generated) -> Vec<State> {
     all.map(state).collect()
 }
 
-/// The prefix, and every function with what it returns.
+/// Returns the prefix, and every function with its return type.
 fn declared(header: &str) -> (String, Vec<(String, String)>) {
     let prefix = header.lines().find_map(|line| {
         line.strip_prefix("typedef struct ")?
@@ -234,7 +234,7 @@ fn call(program: &Program, function: &Function, returned: &str, name: &str) -> S
     }
 }
 
-/// The value of a function, and what rounding of its arguments to `float` changes.
+/// The value of a function, and its change due to rounding the arguments to `float`.
 fn interpreted(
     program: &Program,
     function: &Function,
@@ -263,7 +263,7 @@ fn interpreted(
             _ => f64::INFINITY,
         };
     }
-    // Statuses are numbered in the order of what can be missing, 0 where nothing is.
+    // Statuses number the causes in order; 0 is success.
     let guards = program
         .functions
         .iter()
@@ -285,7 +285,7 @@ fn numbers(program: &Program, params: &[f64], [x, xi, u, xi_dot, p]: &State) -> 
     [&[std::f64::consts::PI], params, x, xi, u, z, xi_dot, p].concat()
 }
 
-/// Numbers in `f64`, with what `raised` is in `float`.
+/// Numbers in `f64`, with the factor of `raised` in `float`.
 struct Single<'a>(Floats<'a>);
 
 impl Numbers for Single<'_> {
@@ -303,13 +303,13 @@ impl Numbers for Single<'_> {
     }
 }
 
-/// What a function gives where `raised` is that of `float`.
+/// Evaluates a function with the factor of `raised` in `float`.
 fn single(program: &Program, function: &Function, numbers: &[f64]) -> Vec<f64> {
     let numbers = &mut Single(Floats(numbers));
     evaluate(&program.graph, &function.outputs, numbers).expect("numbers")
 }
 
-/// What rounding makes of a function at a state.
+/// The rounding error of a function at a state, and whether a pivot is lost in rounding to `float`.
 fn rounding(program: &Program, function: &Function, numbers: &[f64]) -> (f64, bool) {
     let (outputs, guards) = (&function.outputs, &function.guards);
     let values = rounded(
@@ -327,7 +327,7 @@ fn rounding(program: &Program, function: &Function, numbers: &[f64]) -> (f64, bo
     (error, guards.iter().any(narrow))
 }
 
-/// The largest difference of two lists; NaN is far from all numbers but itself.
+/// The largest difference of two lists; NaN differs infinitely from all other numbers.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     if a.len() != b.len() {
         return f64::INFINITY;

@@ -1,4 +1,4 @@
-//! Cases compiled and run.
+//! Compiles and runs cases.
 
 use crate::case::{Case, Expected, distance};
 use hamel_codegen::emit::c::Precision;
@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
 
-/// Without a warning.
+/// Turns warnings into errors.
 pub const STRICT: &str = "-Wall -Wextra -Wpedantic -Wconversion -Werror";
 
-/// Whether all compilers read everything, and gcc looks for what it sees where it optimises.
+/// Whether to use all compilers, and to enable the warnings of gcc that need optimisation.
 static EVERYTHING: LazyLock<bool> = LazyLock::new(|| std::env::var_os("HAMEL_ATTACK").is_some());
 
-/// A folder of its own for the files of a test.
+/// Creates a separate folder for the files of a test.
 pub fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("c99")
@@ -21,13 +21,13 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Whether a compiler is installed.
+/// Returns whether a compiler is installed.
 pub fn installed(program: &str) -> bool {
     let version = Command::new(program).arg("--version").output();
     version.is_ok_and(|output| output.status.success())
 }
 
-/// Runs a program in a folder; what it printed, or what went wrong.
+/// Runs a program in a folder; returns its output or its error.
 pub fn run(folder: &Path, line: &str) -> Result<String, String> {
     let mut words = line.split_whitespace();
     let program = words.next().expect("a program");
@@ -54,7 +54,7 @@ pub fn run(folder: &Path, line: &str) -> Result<String, String> {
     }
 }
 
-/// What is wrong with a few cases in one source.
+/// Returns the faults of several cases in one source.
 pub fn faults(name: &str, cases: &[Case]) -> Vec<String> {
     let folder = folder(name);
     let (mut double, float) = rayon::join(
@@ -65,7 +65,7 @@ pub fn faults(name: &str, cases: &[Case]) -> Vec<String> {
     double
 }
 
-/// The same in one precision.
+/// Returns the faults in one precision.
 fn faults_in(folder: &Path, precision: Precision, cases: &[Case]) -> Vec<String> {
     let file = precision.name();
     std::fs::write(folder.join(format!("{file}.c")), source(cases, precision)).expect("written");
@@ -96,7 +96,7 @@ fn faults_in(folder: &Path, precision: Precision, cases: &[Case]) -> Vec<String>
     faults
 }
 
-/// All cases, and what calls them. Macros that a case leaves behind would show.
+/// Combines all cases with their calls in one source, in which macros left behind by a case would cause errors.
 fn source(cases: &[Case], precision: Precision) -> String {
     let mut text = "#include <stddef.h>\n#include <stdio.h>\n\n".to_string();
     let real = precision.name();
@@ -133,7 +133,7 @@ fn compared(printed: &str, cases: &[Case], precision: Precision) -> Vec<String> 
     faults
 }
 
-/// What is wrong with a value, if anything is.
+/// Returns the fault of a value, if any.
 fn wrong(status: i64, values: &[f64], expected: &Expected, precision: Precision) -> Option<String> {
     // Rounding may change the sign of a pivot that is nearly 0.
     let narrow = expected.doubt > 1.0 || expected.narrow && precision == Precision::Float;
@@ -148,7 +148,7 @@ fn wrong(status: i64, values: &[f64], expected: &Expected, precision: Precision)
     };
     let largest = |list: &[f64]| list.iter().fold(1.0, |most: f64, v| most.max(v.abs()));
     let scale = largest(wanted);
-    // Where the interpreter is off, another order of the same operations is, too.
+    // Where the interpreter has an error, another order of the operations has a similar one.
     let [rounding, slope, error] = match precision {
         Precision::Double => [1e-13, 1e-7, 8.0],
         Precision::Float => [1e-5, 100.0, 1e10],

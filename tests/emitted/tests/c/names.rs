@@ -1,4 +1,4 @@
-//! Descriptions with names that C, its headers, or the generated text may want for themselves.
+//! Descriptions with names that C, its headers or the generated text may use.
 
 const NAMES: &str = "
     int double long signed auto goto sizeof typedef restrict inline union register void bool_ float_ xor and not or class
@@ -10,8 +10,8 @@ const NAMES: &str = "
     sin1 cos1 _a a__b θ ω̇ é 名 SHOUT camelCase E I
 ";
 
-/// Every name as that of a system, of a parameter, of an expression, a coordinate, a velocity, an input, a state, an
-/// output, each in a description with seven others.
+/// Uses every name for a system, a parameter, an expression, a coordinate, a velocity, an input, a state and an output,
+/// each in a description with seven other names.
 pub fn descriptions() -> Vec<String> {
     let names: Vec<&str> = NAMES.split_whitespace().collect();
     let take = |index: usize, role: usize| names[(index + role * 13) % names.len()];

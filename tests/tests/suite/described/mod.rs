@@ -1,4 +1,4 @@
-//! Descriptions of `models/` derived and evaluated, and how close numbers have to be.
+//! Derives and evaluates descriptions of `models/`, with tolerances for comparisons.
 
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::interpret::Interpreter;
@@ -32,7 +32,7 @@ pub fn value(of: &Generated, name: &str, [x, xi, u]: [&[f64]; 3]) -> Vec<f64> {
         .expect("no pivot vanishes")
 }
 
-/// States of a few numbers, the same on every machine.
+/// Returns states of a few numbers, the same on every machine.
 pub fn states<const N: usize>() -> impl Iterator<Item = [f64; N]> {
     (1..8).map(|k| std::array::from_fn(|i| (1.7 * (k * (i + 2)) as f64).sin() * 1.3))
 }

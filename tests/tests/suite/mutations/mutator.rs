@@ -154,13 +154,13 @@ impl Random {
         Random(fp::Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
     }
 
-    /// A number below a bound that is not 0.
+    /// Returns a number below a nonzero bound.
     fn below(&mut self, bound: usize) -> usize {
         (self.0.bits() % bound.max(1) as u64) as usize
     }
 }
 
-/// The tokens of a text without its comments; joined by blanks they mean the same.
+/// Returns the tokens of a text without comments; joined by blanks, they form an equivalent text.
 pub fn tokens(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     for line in text.lines() {
@@ -180,16 +180,16 @@ pub fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-/// Descriptions to start from, and all their words.
+/// Descriptions to start from, and all their tokens.
 pub struct Corpus {
     all: Vec<Vec<String>>,
-    /// Right ones that are quickly generated.
+    /// Indices of correct ones that are generated quickly.
     quick: Vec<usize>,
     words: Vec<String>,
 }
 
 impl Corpus {
-    /// All fixtures.
+    /// Reads all fixtures.
     pub fn read() -> Self {
         let mut texts = Vec::new();
         let mut right = 0;
@@ -210,7 +210,7 @@ impl Corpus {
                 right = texts.len();
             }
         }
-        // A rotation makes a description expensive.
+        // Rotations make a description expensive.
         let dear = |text: &String| ["SO3", "SE3"].iter().any(|kind| text.contains(kind));
         let quick = (0..right).filter(|&i| !dear(&texts[i])).collect();
         let all: Vec<Vec<String>> = texts.iter().map(|text| tokens(text)).collect();
@@ -221,7 +221,7 @@ impl Corpus {
         Corpus { all, quick, words }
     }
 
-    /// A mutated description; `quick` prefers those that are cheap to generate.
+    /// Returns a mutated description; `quick` prefers those that are cheap to generate.
     pub fn mutate(&self, random: &mut Random, quick: bool) -> String {
         let index = if quick && random.below(4) > 0 {
             self.quick[random.below(self.quick.len())]
@@ -254,7 +254,7 @@ impl Corpus {
                 tokens.swap(at, other);
             }
             3 => tokens.insert(at, word),
-            // A word for a word, a number for a number, a sign for a sign: most often still a text.
+            // A word for a word, a number for a number, a sign for a sign: the text usually remains correct.
             4..=6 if !tokens.is_empty() => {
                 let kind = |token: &str| {
                     let first = token.chars().next().unwrap_or(' ');
@@ -288,7 +288,7 @@ impl Corpus {
         }
     }
 
-    /// Deletes, doubles or moves a whole statement.
+    /// Deletes, duplicates or moves a whole statement.
     fn statement(&self, tokens: &mut Vec<String>, random: &mut Random) {
         let all = statements(tokens);
         let Some(range) = all.get(random.below(all.len())).cloned() else {
@@ -308,7 +308,7 @@ impl Corpus {
         }
     }
 
-    /// Overwrites, inserts and cuts letters anywhere.
+    /// Overwrites, inserts and deletes characters anywhere.
     fn bytes(&self, text: &mut String, random: &mut Random) {
         let mut letters: Vec<char> = text.chars().collect();
         for _ in 0..1 + random.below(8) {
@@ -324,7 +324,7 @@ impl Corpus {
     }
 }
 
-/// The statements of a system: up to each `;` and each `}`.
+/// Returns the statements of a system, each up to a `;` or `}`.
 fn statements(tokens: &[String]) -> Vec<std::ops::Range<usize>> {
     let start = tokens
         .iter()

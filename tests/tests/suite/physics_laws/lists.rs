@@ -27,14 +27,14 @@ pub fn times(m: &[Vec<f64>], v: &[f64]) -> Vec<f64> {
 #[track_caller]
 pub fn assert_close(what: &str, a: &[f64], b: &[f64], bound: f64) {
     let difference = largest(&plus(a, -1.0, b));
-    // Written so that NaN fails.
+    // Fails for NaN as well.
     assert!(
         difference <= bound,
         "{what}: {a:?} against {b:?}, difference {difference:e} above {bound:e}"
     );
 }
 
-/// df/ds at s = 0 of a list, by central differences with one extrapolation.
+/// df/ds of a list at s = 0, by central differences with one extrapolation
 pub fn derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let central = |h: f64| -> Vec<f64> {
         let difference = plus(&f(h), -1.0, &f(-h));
@@ -45,7 +45,7 @@ pub fn derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     plus(&fine, 1.0 / 3.0, &change)
 }
 
-/// Cholesky's factor, or none where the matrix is not positive definite.
+/// Returns the Cholesky factor; `None` if the matrix is not positive definite.
 pub fn factor(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let mut l = m.to_vec();
     for i in 0..l.len() {
@@ -63,7 +63,7 @@ pub fn factor(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some(l)
 }
 
-/// The solution of G y = b for positive definite G.
+/// Returns the solution of G y = b for a positive definite G.
 pub fn solve(g: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     let l = factor(g).expect("columns of A are independent");
     let mut y = b.to_vec();

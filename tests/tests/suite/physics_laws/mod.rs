@@ -1,5 +1,5 @@
-//! Laws that every generated system obeys, at pseudo-random states: no numbers of our own, only what
-//! KR18 says of x, ξ, A, M, γ, T and V. Parameters are those of the descriptions.
+//! Laws that every generated system obeys at pseudo-random states: no reference numbers, only the relations of KR18
+//! between x, ξ, A, M, γ, T and V. Parameters are those of the descriptions.
 
 mod lists;
 mod point;
@@ -7,13 +7,13 @@ mod point;
 use lists::{assert_close, derivative, dot, factor, largest, plus, solve, times};
 use point::{Point, everywhere};
 
-/// Rounding of some hundred operations, 1e-16 each, relative to the largest term.
+/// Rounding of several hundred operations, 1e-16 each, relative to the largest term.
 const ROUNDING: f64 = 1e-13;
-/// What an extrapolated central difference may be off by, relative: h⁴/480 times fifth derivatives,
-/// which are below 1e4 in states and systems of this size, and rounding of 1e-12.
+/// Relative error of an extrapolated central difference: h⁴/480 times fifth derivatives, which are below 1e4 in states
+/// and systems of this size, and rounding of 1e-12.
 const DIFFERENCE: f64 = 1e-10;
 
-/// The columns of A at the state.
+/// Returns the columns of A at the state.
 fn frame(point: &dyn Point, x: &[f64]) -> Vec<Vec<f64>> {
     let n = point.xi().len();
     (0..n)
@@ -55,21 +55,21 @@ fn kinetic_energy_momentum_and_mass_matrix_agree() {
     });
 }
 
-/// M⁻¹ p is ξ, without M.
+/// M⁻¹ p equals ξ, computed without M.
 #[test]
 fn velocities_are_those_of_their_momenta() {
     everywhere(|point| {
         let xi = point.xi();
         let back = point.velocity_of(&point.momentum(point.x(), xi));
         let m = point.mass(point.x());
-        // Compared as momenta, so that what M does to roundings does not matter.
+        // Compared as momenta, so that the condition of M does not amplify rounding.
         let change = times(&m, &plus(&back, -1.0, xi));
         let bound = ROUNDING * largest(&times(&m, xi)).max(1.0);
         assert_close(point.label(), &change, &vec![0.0; xi.len()], bound);
     });
 }
 
-/// (30c), as the functions of its terms and as the inverse dynamics.
+/// (30c), by the functions of its terms and by the inverse dynamics.
 #[test]
 fn the_terms_of_the_equations_of_motion_add_up() {
     everywhere(|point| {
@@ -91,7 +91,7 @@ fn the_terms_of_the_equations_of_motion_add_up() {
     });
 }
 
-/// (5) and (7): φ(x) = 0 at the state, and ẋ = A ξ keeps it.
+/// (5) and (7): φ(x) = 0 at the state, and ẋ = A ξ preserves it.
 #[test]
 fn rates_are_tangent_to_the_constraint() {
     everywhere(|point| {
@@ -106,7 +106,7 @@ fn rates_are_tangent_to_the_constraint() {
     });
 }
 
-/// The chart of the integrators moves x as A ξ does.
+/// The chart of the integrators moves x by A ξ.
 #[test]
 fn chart_rates_and_rates_agree() {
     everywhere(|point| {
@@ -118,7 +118,7 @@ fn chart_rates_and_rates_agree() {
     });
 }
 
-/// (8) with Λ = I: Φ Ψ = I makes −Ψ φ a Newton step back to φ = 0.
+/// (8) with Λ = I: by Φ Ψ = I, −Ψ φ is a Newton step back to φ = 0.
 #[test]
 fn corrections_lead_back_to_the_constraint() {
     /// Size of the disturbance; φ is of this size before the step, and of its square after it.
@@ -148,7 +148,7 @@ fn potential_force_is_the_slope_of_the_potential() {
     });
 }
 
-/// d/dt (T + V) = fᵢ ξⁱ along the motion that the integrator computes.
+/// d/dt (T + V) = fᵢ ξⁱ along the computed motion.
 #[test]
 fn power_balance() {
     everywhere(|point| {
@@ -156,14 +156,14 @@ fn power_balance() {
         let energy_dot = derivative(|h| vec![point.energy_after(h)]);
         let x = point.x();
         let scale = point.kinetic(x).max(point.potential(x).abs()).max(1.0);
-        // One order of the step's error enters as one of the difference's: 100 times more of it,
-        // since the motion's derivatives grow with powers of its speeds.
+        // One order of the step's error enters as one of the difference's: it is 100 times larger, since the motion's
+        // derivatives grow with powers of its speeds.
         let bound = 100.0 * DIFFERENCE * scale.max(power.abs());
         assert_close(point.label(), &energy_dot, &[power], bound);
     });
 }
 
-/// ṗ is the slope of p along (ẋ, ξ̇).
+/// ṗ is the derivative of p along (ẋ, ξ̇).
 #[test]
 fn momentum_rate_is_the_rate_of_the_momentum() {
     everywhere(|point| {
@@ -171,22 +171,22 @@ fn momentum_rate_is_the_rate_of_the_momentum() {
         let (x, xi) = (point.x(), point.xi());
         let (x_dot, xi_dot) = (point.rate(x, xi), point.accel());
         let along = derivative(|s| point.momentum(&plus(x, s, &x_dot), &plus(xi, s, &xi_dot)));
-        // M ξ̇ and what is left of it.
+        // M ξ̇, and the part of it that remains.
         let inertia = largest(&times(&point.mass(x), &xi_dot));
         let scale = inertia.max(point.kinetic(x)).max(1.0);
         assert_close(point.label(), &rate, &along, 10.0 * DIFFERENCE * scale);
     });
 }
 
-/// (30a) without any table of ours: γ from the commutators of the columns of A, (12) by differences,
-/// and cᵢ = (d/dt Mᵢⱼ) ξʲ + γᵢⱼᵏ ξʲ pₖ − ∂ᵢT. The commutators must be tangent, (∂ᵢAⱼ − ∂ⱼAᵢ) = A γᵢⱼ.
+/// (30a) without tables of the generator: γ from the commutators of the columns of A, (12) by differences, and cᵢ =
+/// (d/dt Mᵢⱼ) ξʲ + γᵢⱼᵏ ξʲ pₖ − ∂ᵢT. The commutators must be tangent, (∂ᵢAⱼ − ∂ⱼAᵢ) = A γᵢⱼ.
 #[test]
 fn bias_is_that_of_hamels_equation() {
     everywhere(|point| {
         let (x, xi) = (point.x(), point.xi());
         let n = xi.len();
         let a = frame(point, x);
-        // ∂ᵢAⱼ, by i and j.
+        // ∂ᵢAⱼ by i and j.
         let slopes: Vec<Vec<Vec<f64>>> = a
             .iter()
             .map(|along| {
@@ -211,7 +211,7 @@ fn bias_is_that_of_hamels_equation() {
             }
             bias[i] -= derivative(|s| vec![point.kinetic(&plus(x, s, &a[i]))])[0];
         }
-        // Terms are of the size of the energy, but for the units of ξ, and cancel in part.
+        // Terms are of the size of the energy, apart from the units of ξ, and cancel partly.
         let scale = largest(&bias).max(point.kinetic(x)).max(1.0);
         assert_close(
             point.label(),

@@ -1,4 +1,4 @@
-//! Every generated system at pseudo-random states, behind one trait.
+//! Every generated system at pseudo-random states, as a trait object.
 
 use super::lists::{assert_close, largest};
 use crate::derived;
@@ -6,16 +6,16 @@ use hamel::methods::Rkmk4;
 use hamel::{Block, Singular, State, System, manifold};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// States tried per system and law.
+/// Number of states per system and law.
 const STATES: u64 = 24;
-/// Accelerations above this (SI units) halve the inputs, at most so often: motions are to be smooth at the
-/// steps of differences.
+/// The inputs are halved while accelerations exceed this (SI units), at most this often, so that motions are smooth on
+/// the scale of differences.
 const FASTEST: f64 = 1e3;
 const HALVINGS: usize = 12;
-/// f32 against f64: 6e-8 of rounding times the operations and the condition of M.
+/// Tolerance of f32 against f64: 6e-8 of rounding times the operations and the condition of M.
 const SINGLE: f64 = 1e-4;
 
-/// A system at a state, lengths of its lists forgotten. Values are at the state but for arguments.
+/// A system at a state, with lists of any length. Functions without arguments are evaluated at the state.
 pub trait Point {
     /// Name and seed.
     fn label(&self) -> &str;
@@ -38,9 +38,9 @@ pub trait Point {
     fn potential(&self, x: &[f64]) -> f64;
     fn energy(&self) -> f64;
     fn phi(&self, x: &[f64]) -> Vec<f64>;
-    /// T + V after a time h, inputs kept.
+    /// T + V after a time h, with constant inputs.
     fn energy_after(&self, h: f64) -> f64;
-    /// Numbers in ±1, others for every state.
+    /// Numbers in ±1, different for every state.
     fn random(&self, count: usize) -> Vec<f64>;
 }
 
@@ -53,7 +53,7 @@ struct At<Sys: System> {
     random: Random,
 }
 
-/// SplitMix64.
+/// The generator SplitMix64.
 #[derive(Clone)]
 struct Random(u64);
 
@@ -73,8 +73,8 @@ impl Random {
 }
 
 impl<Sys: System<Scalar = f64> + Default> At<Sys> {
-    /// From the start, turned at random along circles and rotations, then carried along a random
-    /// constant ξ, so that bare coordinates stay on their constraints.
+    /// Starts from a random displacement of the start along circles and rotations, then moves along a random constant
+    /// ξ, so that plain coordinates satisfy their constraints.
     fn new(name: &str, seed: u64) -> Self {
         let system = Sys::default();
         let mut random = Random(seed);
@@ -85,17 +85,17 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
             let mut state = Self::random_state(&system, &mut random);
             let usual = largest(&columns(&system, &State::start(&system).x).concat());
             let moderate = largest(&columns(&system, &state.x).concat()) <= 2.0 * usual.max(1.0);
-            // A linkage may have been turned into its other assembly, which is none of the start's.
+            // A linkage may have reached its other assembly, in which the kinematics are refused.
             let assembled = system.accel(&state.x, &state.xi, &system.zero_inputs());
             let assembled = !matches!(assembled, Err(Singular::Kinematics { .. }));
             if moderate && assembled {
                 random.fill(state.xi.as_mut(), 2.0);
                 break state;
-            } // else the frame A is near a pole of its own (1/ρ), where differences are rough
+            } // otherwise the frame A is near one of its poles (1/ρ), where differences are inaccurate
         };
         let mut inputs = system.zero_inputs();
         random.fill(inputs.as_mut(), 2.0);
-        // Light parts are pushed lightly.
+        // Light parts get small inputs.
         for _ in 0..HALVINGS {
             let accel = system.accel(&state.x, &state.xi, &inputs);
             if accel.is_ok_and(|accel| largest(accel.as_ref()) <= FASTEST) {
@@ -144,7 +144,7 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
     }
 }
 
-/// The columns of A.
+/// Returns the columns of A.
 fn columns<Sys: System<Scalar = f64>>(system: &Sys, x: &Sys::Coordinates) -> Vec<Vec<f64>> {
     let count = system.zero_velocities().as_ref().len();
     (0..count)
@@ -246,7 +246,7 @@ macro_rules! models {
             }
         })+
 
-        /// One law at every state of every system; a failure does not hide those of other systems.
+        /// Checks a law at every state of every system; a failure does not hide those of other systems.
         pub fn everywhere(law: fn(&dyn Point)) {
             let mut failures = Vec::new();
             $(
@@ -339,15 +339,15 @@ fn no_model_is_left_out() {
     let mut stems: Vec<&str> = derived::all()
         .into_iter()
         .filter(|model| {
-            // Where constraints hold velocities back A is no frame of the tangent space, and with time or drives
-            // these laws are others, too: see `physics_constraints.rs` and `time.rs`.
+            // With velocity constraints A is not a frame of the tangent space, and with time or drives these laws
+            // change: see `physics_constraints.rs` and `time.rs`.
             let generated = model.generated();
-            // Nor is what bends or jumps a matter of differences: see `physics_functions.rs`.
+            // Differences are not valid for kinks and jumps: see `physics_functions.rs`.
             let graph = &generated.program.graph;
             let bends = (0..graph.len() as u32).any(|id| graph.chosen_by(id).is_some());
-            // Air forces by angles of a velocity have no slopes near none: see `physics_flight.rs`.
+            // Aerodynamic forces by angles of a velocity have no slopes at zero: see `physics_flight.rs`.
             let steep = model.text.contains("asin(");
-            // States of first order stand behind the velocities: see `states.rs`.
+            // First-order states follow the velocities: see `states.rs`.
             let states = generated.program.n_z > 0;
             !generated.model.is_constrained() && !bends && !steep && !states
         })

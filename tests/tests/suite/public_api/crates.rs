@@ -1,4 +1,4 @@
-//! The modules of a crate, and which of their items can be named from outside.
+//! The modules of a crate, and their items that can be named from outside.
 
 use super::signature::{self, cfg};
 use std::collections::BTreeSet;
@@ -6,23 +6,24 @@ use std::fs;
 use std::path::Path;
 use syn::{Item, ItemImpl, Type, UseTree, Visibility};
 
-/// A module with its items; modules inside it stand in `modules`.
+/// A module with its items; modules inside it are in `modules`.
 struct Module {
     name: String,
     public: bool,
-    /// Whether it is left out of the documentation: open to the tests of this repository, and no part of the interface.
+    /// Whether it is left out of the documentation: open to the tests of this repository, but not part of the
+    /// interface.
     hidden: bool,
     condition: String,
     items: Vec<Item>,
     modules: Vec<Module>,
 }
 
-/// A crate as its sources have it.
+/// A crate, parsed from its sources.
 pub struct Crate {
     root: Module,
 }
 
-/// What is found on the way through a crate.
+/// The results of the traversal of a crate.
 #[derive(Default)]
 struct Found {
     lines: BTreeSet<String>,
@@ -41,7 +42,7 @@ impl Crate {
         }
     }
 
-    /// A line for everything that is public, sorted.
+    /// Returns a line for every public item, sorted.
     pub fn public(&self) -> Vec<String> {
         let mut found = Found::default();
         self.list(&self.root, &[], &mut found);
@@ -75,8 +76,8 @@ impl Crate {
         }
     }
 
-    /// `pub use target as name` in the module at `path`: what comes from a private module of the crate is
-    /// listed as if it stood here, all else by its path.
+    /// Handles `pub use target as name` in the module at `path`: an item of a private module of the crate is listed as
+    /// if it were here, all others by their paths.
     fn exported(
         &self,
         path: &[String],
@@ -103,7 +104,7 @@ impl Crate {
                 found.item(&here, item);
                 return;
             }
-            // A type that a macro of that module writes.
+            // A type written by a macro of that module.
             found.types.insert(name.into());
         }
         let renamed = match name == last {
@@ -114,7 +115,7 @@ impl Crate {
         found.lines.insert(at(&here, condition, &line));
     }
 
-    /// The module of a path from the root, and whether it can be named from outside.
+    /// Returns the module of a path from the root, and whether it can be named from outside.
     fn module(&self, path: &[String]) -> Option<(&Module, bool)> {
         let mut module = &self.root;
         let mut public = true;
@@ -127,7 +128,7 @@ impl Crate {
 }
 
 impl Module {
-    /// Takes the modules out of the items; those in files of their own are below `folder`.
+    /// Separates the modules from the items; modules in separate files are below `folder`.
     fn new(
         name: String,
         (public, hidden): (bool, bool),
@@ -188,7 +189,7 @@ impl Module {
         self.modules.iter().for_each(|inner| inner.traits(traits));
     }
 
-    /// Methods of public types and the traits that they implement, wherever they stand.
+    /// Lists methods of public types and the traits that they implement, in any module.
     fn methods(&self, found: &mut Found) {
         for item in &self.items {
             if let Item::Impl(item) = item {
@@ -201,7 +202,7 @@ impl Module {
 }
 
 impl Found {
-    /// An item of a public module.
+    /// Lists an item of a public module.
     fn item(&mut self, path: &str, item: &Item) {
         if let Item::Struct(syn::ItemStruct { vis, ident, .. })
         | Item::Enum(syn::ItemEnum { vis, ident, .. })
@@ -212,7 +213,7 @@ impl Found {
             self.types.insert(ident.to_string());
         }
         if let Item::Macro(item) = item {
-            // Types that a macro of the module writes.
+            // Types written by a macro of the module.
             let text = item.mac.tokens.to_string();
             for start in ["pub enum ", "pub struct "] {
                 let names = text.split(start).skip(1);
@@ -288,7 +289,7 @@ fn type_name(ty: &Type) -> Option<String> {
     }
 }
 
-/// The paths of a `use`, each with the name that it gets.
+/// Returns the paths of a `use`, each with the name that it introduces.
 fn imports(tree: &UseTree) -> Vec<(Vec<String>, String)> {
     match tree {
         UseTree::Path(path) => {

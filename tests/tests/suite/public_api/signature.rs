@@ -1,4 +1,4 @@
-//! One line for a public item: its signature without documentation, bodies and private fields.
+//! The line of a public item: its signature without documentation, bodies and private fields.
 
 use super::crates::is_public;
 use syn::{
@@ -6,7 +6,7 @@ use syn::{
     ItemTrait, Signature, TraitItem, Visibility, parse_str,
 };
 
-/// The lines of an item, each with the type that it belongs to, if any; none for what is not public.
+/// Returns the lines of an item, each with the type that it belongs to, if any; none if the item is not public.
 pub fn of(item: &Item) -> Vec<(String, String)> {
     let own = |vis: &Visibility, attrs: &[Attribute], line: String| match is_public(vis) {
         true => vec![(String::new(), format!("{}{line}", marks(attrs)))],
@@ -37,7 +37,7 @@ pub fn of(item: &Item) -> Vec<(String, String)> {
     }
 }
 
-/// The lines of a block of a public type: its public methods, or the trait.
+/// Returns the lines of an `impl` block of a public type: its public methods, or the trait.
 pub fn of_block(block: &ItemImpl) -> Vec<String> {
     if block.trait_.is_some() {
         let mut head = block.clone();
@@ -56,12 +56,12 @@ pub fn of_block(block: &ItemImpl) -> Vec<String> {
     lines.collect()
 }
 
-/// The condition of an item, with a space after it.
+/// Returns the condition of an item, followed by a space.
 pub fn cfg(attrs: &[Attribute]) -> String {
     shown(attrs, &["cfg"])
 }
 
-/// What else a user has to know of a type.
+/// Returns the attributes that matter to a user of a type.
 fn marks(attrs: &[Attribute]) -> String {
     shown(attrs, &["cfg", "derive", "non_exhaustive"])
 }
@@ -114,7 +114,7 @@ fn interface(item: &ItemTrait) -> Vec<(String, String)> {
     lines
 }
 
-/// A macro that is exported, or an invocation whose items cannot be read.
+/// Returns the line of an exported macro, or of an invocation whose items cannot be parsed.
 fn written(item: &syn::ItemMacro) -> Vec<(String, String)> {
     let line = match &item.ident {
         Some(name) if item.attrs.iter().any(|a| a.path().is_ident("macro_export")) => {
@@ -192,12 +192,12 @@ fn function(vis: &Visibility, sig: &Signature) -> String {
         sig,
         block: Box::new(parse_str::<Block>("{}").expect("Rust")),
     }));
-    // Whether a function changes an argument of its own is nobody else's business.
+    // Whether a function modifies its arguments locally is not part of the interface.
     let line = line.replace("(mut ", "(").replace(", mut ", ", ");
     line.trim_end_matches("{}").trim_end().into()
 }
 
-/// An item on one line.
+/// Prints an item on one line.
 fn printed(item: Item) -> String {
     let file = File {
         shebang: None,

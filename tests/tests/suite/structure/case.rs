@@ -1,4 +1,4 @@
-//! Every model of the tests, interpreted at points of its own.
+//! Every model of the tests, interpreted at random points.
 
 use crate::derived::{self, Derived};
 use hamel_codegen::generate::Generated;
@@ -8,14 +8,14 @@ use hamel_codegen::program::structure::Splitting;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// A model with its functions interpreted at the default parameters.
+/// A model whose functions are interpreted at the default parameters.
 pub struct Case {
     pub name: String,
     pub generated: &'static Generated,
     pub seed: u64,
 }
 
-/// All models, in order.
+/// Returns all models, in order.
 pub fn cases() -> impl Iterator<Item = Case> {
     let case = |model: &'static Derived| Case {
         name: model.name.clone(),
@@ -32,7 +32,7 @@ impl Case {
         Some(Interpreter::new(program, function, &program.defaults))
     }
 
-    /// A function of x, ξ, u and p.
+    /// Evaluates a function of x, ξ, u and p.
     pub fn call(&self, name: &str, x: &[f64], xi: &[f64], u: &[f64], p: &[f64]) -> DVector<f64> {
         let interpreter = self.interpreter(name);
         let interpreter = interpreter.unwrap_or_else(|| panic!("{}: no {name}", self.name));
@@ -40,7 +40,7 @@ impl Case {
         DVector::from_vec(value.unwrap_or_else(|pivot| panic!("{}: pivot {pivot}", self.name)))
     }
 
-    /// y of x where plain coordinates are shifted, x itself elsewhere.
+    /// Returns y of x if plain coordinates are shifted, otherwise x.
     pub fn moved(&self, name: &str, x: &[f64]) -> DVector<f64> {
         match self.interpreter(name) {
             Some(_) => self.call(name, x, &[], &[], &[]),
@@ -48,7 +48,7 @@ impl Case {
         }
     }
 
-    /// A number in ±1 (SplitMix64).
+    /// Returns a number in ±1 (SplitMix64).
     pub fn number(&mut self) -> f64 {
         self.seed = self.seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.seed;
@@ -62,14 +62,14 @@ impl Case {
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// A point of one block.
+    /// Returns a point of one block.
     pub fn point(&mut self, block: Block) -> Vec<f64> {
         let quaternion = |numbers: Vec<f64>| -> [f64; 4] {
             let norm = numbers.iter().map(|q| q * q).sum::<f64>().sqrt();
             std::array::from_fn(|i| numbers[i] / norm)
         };
         match block {
-            // Away from the poles of angles and the origins of radii.
+            // Away from the poles of angles and the zeros of radii.
             Block::Flat(n) => (0..n).map(|_| 1.2 + 0.4 * self.number()).collect(),
             Block::Circle => hamel::s1::exp(3.0 * self.number()).to_vec(),
             Block::Quaternion => quaternion(self.numbers(4)).to_vec(),
@@ -77,7 +77,7 @@ impl Case {
         }
     }
 
-    /// A point of X; the start where the description ties coordinates to one another.
+    /// Returns a point of X; the start if coordinates are constrained.
     pub fn x(&mut self) -> Vec<f64> {
         let model = &self.generated.model;
         if !model.points.constraints.is_empty() || !model.constraints.is_empty() {
@@ -89,7 +89,7 @@ impl Case {
             .collect()
     }
 
-    /// Names of the blocks, with their places in x and among the rates.
+    /// Returns the names of the blocks, with their ranges in x and among the rates.
     pub fn parts(&self) -> Vec<(String, Block, Range<usize>, Range<usize>)> {
         let (mut place, mut rate) = (0, 0);
         let mut parts = Vec::new();
@@ -111,7 +111,7 @@ impl Case {
         parts
     }
 
-    /// M in the rates of the coordinates, N⁻ᵀ M N⁻¹ with the columns of N the rates of unit ξ.
+    /// Returns M in the rates of the coordinates, N⁻ᵀ M N⁻¹, where the columns of N are the rates of unit ξ.
     pub fn inertia(&self, x: &[f64]) -> DMatrix<f64> {
         let n = self.generated.program.n;
         let columns: Vec<DVector<f64>> = (0..n)
@@ -128,7 +128,7 @@ impl Case {
         inverse.transpose() * mass * inverse
     }
 
-    /// J of every rotor.
+    /// Returns J of every rotor.
     pub fn rotors(&self, splitting: &Splitting) -> Vec<DMatrix<f64>> {
         if splitting.rotors.is_empty() {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! The tables of the fixtures against KR18 and against the geometry that they show.
+//! Compares the tables of the fixtures with KR18 and with their geometry.
 
 mod paper;
 mod values;
@@ -14,20 +14,20 @@ use hamel_codegen::tables::{Listing, Table, Tables, json, latex, markdown, text}
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// A table as it is printed.
+/// Returns a table as JSON.
 fn printed(generated: &Generated, table: Table) -> Value {
     let shown = generated.tables(&[table]).expect("derivable");
     json(&shown, false)["tables"][table.name()].clone()
 }
 
-/// The indices in a list of JSON.
+/// Returns the indices in a JSON list.
 fn index(value: &Value) -> Vec<usize> {
     let entries = value.as_array().expect("a list").iter();
     let entries = entries.map(|entry| entry.as_u64().expect("an index") as usize);
     entries.collect()
 }
 
-/// The entries of a table that are not 0: their indices and what is printed.
+/// Returns the nonzero entries of a table: their indices and printed values.
 fn values(generated: &Generated, table: Table) -> Vec<(Vec<usize>, String)> {
     let printed = printed(generated, table);
     let entries = printed["entries"].as_array().expect("a list").iter();
@@ -75,7 +75,7 @@ fn entries_contain_only_coordinates_that_they_depend_on() {
     }
 }
 
-/// Places in x of the coordinates in a value.
+/// Returns the indices in x of the coordinates in a value.
 fn coordinates(tables: &Tables, listing: &Listing, value: &Term) -> Vec<usize> {
     let mut places = Vec::new();
     for name in value.names() {
@@ -87,7 +87,7 @@ fn coordinates(tables: &Tables, listing: &Listing, value: &Term) -> Vec<usize> {
     places
 }
 
-/// Every block with a printed coordinate moves the value when it alone moves along X.
+/// Every block with a printed coordinate changes the value when it moves alone along X.
 fn check_blocks(geometry: &mut Geometry, edge: Edge, printed: &[usize], what: &str) {
     let model = &mut geometry.model;
     let mut first = 0;

@@ -1,4 +1,4 @@
-//! The tables of the free rigid body as KR18 prints them.
+//! The tables of the free rigid body as printed in KR18.
 
 use super::{index, printed, values};
 use crate::derived::model;
@@ -32,14 +32,15 @@ fn gamma_of_the_free_body_is_that_of_the_paper() {
             "1".into()
         };
     }
-    // In world axes spin commutes with the opposite sign, and not with the velocity.
+    // In world axes, the structure constants of the rotations have the opposite sign, and those with the velocity
+    // vanish.
     paper.retain(|(index, _)| index.iter().all(|&i| i > 3));
     assert_eq!(gamma("free_body_world"), paper);
 }
 
 #[test]
 fn connection_of_the_free_body_is_that_of_the_paper() {
-    // KR18 (45): value, indices ijk, negative of it.
+    // KR18 (45): value, indices ijk, and whether it is negated.
     let paper = [
         ("m", "135 216 324", "315 126 234"),
         ("m*s[1]", "254 364 515 616", "524 634 155 166"),

@@ -1,4 +1,4 @@
-//! What is printed has the value of what it stands for, in floating point at a point of X.
+//! Printed expressions have the values of the entries that they represent, in floating point at a point of X.
 
 use crate::derived::models;
 use hamel_codegen::algebra::graph::{Edge, Function, Graph};
@@ -12,7 +12,7 @@ use num_traits::ToPrimitive;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Rounding of some hundred operations on numbers near 1.
+/// Rounding of several hundred operations on numbers near 1.
 const TOLERANCE: f64 = 1e-9;
 
 type Values = BTreeMap<String, f64>;
@@ -49,7 +49,7 @@ fn atom(values: &Values, atom: &Atom) -> f64 {
     }
 }
 
-/// A point of X away from the identity; the start where the user wrote constraints.
+/// Returns a point of X away from the identity; the start if the description has constraints.
 fn point(generated: &Generated) -> Vec<f64> {
     let model = &generated.model;
     if !model.points.constraints.is_empty() {
@@ -58,7 +58,7 @@ fn point(generated: &Generated) -> Vec<f64> {
     let mut x = Vec::new();
     for block in &model.blocks {
         match block {
-            // No two alike: parallel rods are singular.
+            // All different: parallel rods are singular.
             Block::Flat(n) => {
                 let first = x.len();
                 x.extend((0..*n).map(|i| 0.7 + 0.2 * (first + i) as f64));
@@ -109,7 +109,7 @@ fn printed_values_are_those_of_the_graph() {
             .collect();
         let geometry = Geometry::new(model).expect("regular");
         let accel = generated.program.function("accel").expect("generated");
-        // ξ̇ is a function of the velocities that constraints leave.
+        // ξ̇ is a function of the independent velocities.
         let active = &generated.active;
         let left = |xi: &Edge| {
             let name = |graph: &Graph, node| {

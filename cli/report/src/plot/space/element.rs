@@ -1,4 +1,4 @@
-//! Shapes as elements of SVG, in tenths of pixels.
+//! Shapes as SVG elements, in tenths of pixels.
 
 use super::shape::{Ink, Shape, Vector};
 use super::view::{Ellipse, View};
@@ -9,57 +9,57 @@ use crate::plot::theme::{self, code, ramp};
 use plotters::style::RGBColor;
 use std::fmt::Write;
 
-/// The style of lines, and the light on ellipsoids, from above on the left.
+/// The style of lines, and the light on ellipsoids, which comes from the upper left.
 pub const LIGHT: &str = "<style>svg .line{fill:none;stroke-linejoin:round;stroke-linecap:round}</style>\n<defs><radialGradient id=\"light\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".32\" fy=\".26\">\
 <stop offset=\"0\" stop-color=\"#fff\" stop-opacity=\".55\"/><stop offset=\".55\" stop-color=\"#fff\" stop-opacity=\".08\"/>\
 <stop offset=\".75\" stop-color=\"#000\" stop-opacity=\".02\"/><stop offset=\"1\" stop-color=\"#000\" stop-opacity=\".3\"/>\
 </radialGradient></defs>\n";
 
-/// Teeth of a spring, and how far they stand out (pixels).
+/// Number of teeth of a spring, and their amplitude (pixels).
 const TEETH: u32 = 7;
 const TOOTH: f64 = 5.0;
-/// The part of a spring or damper that is straight, at each end.
+/// The fraction of a spring or damper that is straight, at each end.
 const LEAD: f64 = 0.18;
-/// Pieces of a path that have one colour.
+/// Number of single-coloured pieces of a path.
 const PIECES: usize = 48;
-/// Shorter half axes are lines (pixels).
+/// Ellipses with a shorter half axis below this are drawn as lines (pixels).
 const THIN: f64 = 0.2;
 
-/// Where points of space are in the drawing.
+/// The transformation from space to the drawing.
 pub struct Sheet {
     /// The projection.
     pub view: View,
-    /// Pixels over lengths.
+    /// Pixels per unit of length.
     pub scale: f64,
-    /// The place of the origin.
+    /// The position of the origin.
     pub origin: Point,
 }
 
 impl Sheet {
-    /// The place of a point (pixels).
+    /// Returns the position of a point (pixels).
     fn place(&self, point: Vector) -> Point {
         let (x, y) = self.arm(point);
         (self.origin.0 + x, self.origin.1 + y)
     }
 
-    /// How long a line is in the drawing (pixels).
+    /// Returns the length of a line in the drawing (pixels).
     pub fn length(&self, [from, to]: &[Vector; 2]) -> f64 {
         let ((a, b), (c, d)) = (self.place(*from), self.place(*to));
         (c - a).hypot(d - b)
     }
 
-    /// A direction with its length (pixels).
+    /// Transforms a direction with its length (pixels).
     fn arm(&self, arm: Vector) -> Point {
         let (x, y) = self.view.place(arm);
         (self.scale * x, self.scale * y)
     }
 
-    /// A point as SVG has it.
+    /// Formats a point for SVG.
     pub fn point(&self, point: Vector) -> String {
         written(self.place(point))
     }
 
-    /// A shape; a faint one has no light on it.
+    /// Draws a shape; a faint one is without light.
     pub fn shape(&self, ink: Ink, shape: &Shape, faint: bool) -> String {
         let colour = colour(ink);
         match shape {
@@ -84,7 +84,7 @@ impl Sheet {
         }
     }
 
-    /// A line of this width.
+    /// Draws a line of this width.
     pub fn stroke(&self, ends: &[Vector; 2], colour: RGBColor, width: f64, more: &str) -> String {
         polyline(&ends.map(|end| self.place(end)), colour, width, more)
     }
@@ -100,7 +100,7 @@ impl Sheet {
         )
     }
 
-    /// The outline, the light, and the seen halves of the three sections through principal axes.
+    /// Draws the outline, the light, and the visible halves of the three sections through principal axes.
     fn ellipsoid(&self, centre: Vector, arms: &[Vector; 3], colour: RGBColor) -> String {
         let (x, y) = self.place(centre);
         let flat = arms.map(|arm| self.arm(arm));
@@ -126,7 +126,7 @@ impl Sheet {
         text
     }
 
-    /// The half of an ellipse on an ellipsoid that faces the eye.
+    /// Draws the half of an ellipse on an ellipsoid that faces the eye.
     fn section(&self, centre: Vector, arms: [Vector; 2]) -> String {
         // The normal at cos t a + sin t b is cos t a/|a|² + sin t b/|b|².
         let facing = arms.map(|arm| {
@@ -162,7 +162,7 @@ impl Sheet {
         )
     }
 
-    /// The outline alone, filled.
+    /// Draws only the outline, filled.
     pub fn shade(&self, centre: Vector, arms: &[Vector; 3], colour: RGBColor) -> String {
         let (x, y) = self.place(centre);
         let outline = Ellipse::of(&arms.map(|arm| self.arm(arm)));
@@ -170,7 +170,7 @@ impl Sheet {
         ellipse((unit(x), unit(y)), outline, &fill)
     }
 
-    /// A path with time as colour.
+    /// Draws a path with time as colour.
     pub fn path(&self, path: &[Vector]) -> String {
         let points: Vec<Point> = path.iter().map(|point| self.place(*point)).collect();
         let steps = points.len().saturating_sub(1);
@@ -187,11 +187,11 @@ impl Sheet {
         text
     }
 
-    /// The directions of the axes of the world, below on the left.
+    /// Draws the directions of the world axes, at the lower left.
     pub fn compass(&self, height: f64) -> String {
         const LENGTH: f64 = 22.0;
         const NAMED: f64 = LENGTH + 9.0;
-        // The farthest name to the left, and the lowest, have room.
+        // Leaves room for the leftmost and the lowest name.
         let ends = [0, 1, 2].map(|axis| self.view.place(along(axis)));
         let left = ends.iter().fold(0.0, |least: f64, end| least.min(end.0));
         let low = ends.iter().fold(0.0, |most: f64, end| most.max(end.1));
@@ -206,7 +206,7 @@ impl Sheet {
             let end = (origin.0 + LENGTH * x, origin.1 + LENGTH * y);
             text += &polyline(&[origin, end], axis_colour(axis), 1.6, "");
             let name = (origin.0 + NAMED * x - 3.0, origin.1 + NAMED * y + 4.0);
-            // An axis towards the eye has no room for a name.
+            // There is no room to name an axis that points towards the eye.
             if x.hypot(y) > 0.3 {
                 let _ = writeln!(
                     text,
@@ -222,7 +222,7 @@ impl Sheet {
     }
 }
 
-/// The unit vector of an axis.
+/// Returns the unit vector of an axis.
 fn along(axis: usize) -> Vector {
     std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 })
 }
@@ -253,7 +253,7 @@ fn ellipse((x, y): (i32, i32), of: Ellipse, style: &str) -> String {
     format!("<ellipse cx=\"{x}\" cy=\"{y}\" rx=\"{long}\" ry=\"{short}\" {style}{turn}/>\n")
 }
 
-/// The end of what [`polyline`] writes.
+/// The end of the text that [`polyline`] writes.
 const CLOSED: &str = "\"/>\n";
 
 fn polyline(points: &[Point], colour: RGBColor, width: f64, more: &str) -> String {
@@ -266,7 +266,7 @@ fn polyline(points: &[Point], colour: RGBColor, width: f64, more: &str) -> Strin
     )
 }
 
-/// Elements one after the other; lines of one kind that follow each other are one element.
+/// Concatenates elements; consecutive lines of one kind become one element.
 pub fn joined(elements: impl Iterator<Item = String>) -> String {
     let mut text = String::new();
     let mut open = String::new();
@@ -275,7 +275,7 @@ pub fn joined(elements: impl Iterator<Item = String>) -> String {
             .find(" d=\"M")
             .filter(|_| element.starts_with("<path class"));
         let begin = head.map_or("", |end| &element[..end + 4]);
-        // One line alone: several, as those of a damper, are left as they are.
+        // Only single lines are merged; elements with several lines, such as dampers, stay unchanged.
         let one = !begin.is_empty() && element.matches('<').count() == 1;
         match text.strip_suffix(CLOSED) {
             Some(rest) if one && begin == open => {
@@ -290,7 +290,7 @@ pub fn joined(elements: impl Iterator<Item = String>) -> String {
     text
 }
 
-/// A point so far along a line, and so many pixels beside it.
+/// Returns the point at a fraction of a line, moved sideways by a number of pixels.
 fn beside(from: Point, to: Point, part: f64, aside: f64) -> Point {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let length = x.hypot(y).max(f64::MIN_POSITIVE);
@@ -311,7 +311,7 @@ fn zigzag(from: Point, to: Point) -> Vec<Point> {
     points
 }
 
-/// A rod with its piston, and the cylinder around it.
+/// Returns a rod with its piston, and the cylinder around it.
 fn piston(from: Point, to: Point) -> [Vec<Point>; 4] {
     const HALF: f64 = 5.0;
     let at = |part: f64, aside: f64| beside(from, to, part, aside);

@@ -1,4 +1,4 @@
-//! The floor below what is drawn: its height, its grid, and the shadows on it.
+//! The floor below the drawn shapes: its height, its grid, and the shadows on it.
 
 use super::element::{self, Sheet};
 use super::shape::{Part, Shape, THICK, Vector};
@@ -9,29 +9,29 @@ use crate::plot::theme;
 use plotters::style::RGBColor;
 use std::fmt::Write;
 
-/// Room around what stands on it, and below what hangs above it, over the size of all.
+/// Margins around the shapes and below hanging shapes, relative to their size.
 const ROOM: f64 = 0.12;
 const BELOW: f64 = 0.06;
-/// It is at the height 0 where nothing is lower, and nothing so far above, over that size.
+/// The floor is at height 0 if no shape is lower and the lowest is no higher than this, relative to the size.
 const NEAR: f64 = 0.8;
-/// Squares of its grid along its longer side, about.
+/// Approximate number of squares along its longer side.
 const SQUARES: f64 = 7.0;
 
-/// As dark on dark ground.
+/// Black on light ground and on dark.
 const SHADOW: RGBColor = RGBColor(0, 0, 0);
 
-/// A rectangle of a grid.
+/// A rectangular grid.
 pub struct Floor {
     base: Base,
     height: f64,
-    /// The side of a square.
+    /// The side length of a square.
     spacing: f64,
-    /// Its first and last line along both directions, in squares.
+    /// The first and the last line along both directions, in squares.
     lines: [(i64, i64); 2],
 }
 
 impl Floor {
-    /// The floor below these shapes and paths; none where there are none.
+    /// Creates the floor below shapes and paths; `None` if there are none.
     pub fn below<'a>(
         base: Base,
         shapes: impl Iterator<Item = &'a Shape>,
@@ -76,25 +76,25 @@ impl Floor {
         })
     }
 
-    /// A point of it, in squares.
+    /// Returns a grid point, given in squares.
     fn point(&self, u: i64, v: i64) -> Vector {
         let (u, v) = (u as f64 * self.spacing, v as f64 * self.spacing);
         let [first, second, up] = self.base;
         std::array::from_fn(|k| u * first[k] + v * second[k] + self.height * up[k])
     }
 
-    /// Its corners, one after the other.
+    /// Returns its corners, in order.
     pub fn corners(&self) -> [Vector; 4] {
         let [(a, b), (c, d)] = self.lines;
         [(a, c), (b, c), (b, d), (a, d)].map(|(u, v)| self.point(u, v))
     }
 
-    /// How large its squares are.
+    /// Returns a text with the size of its squares.
     pub fn said(&self) -> String {
         format!("grid {}", short(self.spacing))
     }
 
-    /// The rectangle and its lines.
+    /// Draws the rectangle and its lines.
     pub fn drawn(&self, sheet: &Sheet) -> String {
         let corners = self.corners().map(|corner| sheet.point(corner));
         let mut text = format!(
@@ -113,14 +113,14 @@ impl Floor {
         text
     }
 
-    /// A point or direction moved straight down to it.
+    /// Moves a point or direction vertically down to the floor.
     fn dropped(&self, point: Vector, height: f64) -> Vector {
         let up = self.base[2];
         let above = dot(up, point) - height;
         std::array::from_fn(|k| point[k] - above * up[k])
     }
 
-    /// The shadows of a light from straight above.
+    /// Draws the shadows of a light vertically above.
     pub fn shadows(&self, sheet: &Sheet, parts: &[Part]) -> String {
         let mut elements = Vec::new();
         for part in parts {
@@ -143,7 +143,7 @@ impl Floor {
     }
 }
 
-/// The nearest of 1, 2 and 5 times a power of ten.
+/// Returns the nearest of 1, 2 and 5 times a power of ten.
 fn nice(size: f64) -> f64 {
     let power = 10_f64.powf(size.log10().floor());
     let digit = size / power;
@@ -153,7 +153,7 @@ fn nice(size: f64) -> f64 {
         _ if digit < 7.5 => 5.0,
         _ => 10.0,
     };
-    // As a quotient where it is one, so that 0.2 is the number 0.2.
+    // Divides for negative powers, so that 0.2 is exactly the number 0.2.
     if power < 1.0 {
         nice / (1.0 / power).round()
     } else {

@@ -1,9 +1,9 @@
-//! Bodies in space as a drawing: ellipsoids, bars, springs and paths in a parallel projection, those that are farther away
-//! first, on a floor with a grid.
+//! Drawings of bodies in space: ellipsoids, bars, springs and paths in a parallel projection, in the order of
+//! decreasing distance, on a floor with a grid.
 //!
 //! | file | owns |
 //! |---|---|
-//! | `shape` | what there is to be drawn |
+//! | `shape` | the shapes |
 //! | `view` | the projection, outlines of ellipsoids |
 //! | `element` | each shape as SVG |
 //! | `floor` | the floor, its grid, shadows |
@@ -34,34 +34,35 @@ pub struct Space {
     pub title: String,
     /// A sentence below it.
     pub subtitle: String,
-    /// Two horizontal directions, and which one is up.
+    /// Two horizontal directions and the vertical one.
     pub base: Base,
     /// Azimuth and elevation of the eye (degrees).
     pub eye: (f64, f64),
     /// Whether there is a floor.
     pub floor: bool,
-    /// What is there.
+    /// The shapes of the current pose.
     pub parts: Vec<Part>,
-    /// Where it was, or will be: faint, the faintest first.
+    /// Earlier or later poses, drawn faintly, the faintest first.
     pub poses: Vec<Vec<Part>>,
     /// Paths of points, with time as colour.
     pub paths: Vec<Vec<Vector>>,
 }
 
-/// Width of a drawing, and its least and greatest height (pixels).
+/// Width of a drawing, and its smallest and largest height (pixels).
 const WIDTH: f64 = 520.0;
 const HEIGHT: (f64, f64) = (240.0, 460.0);
-/// Room above and on the other sides.
+/// Margins: at the top and on the other sides.
 const HEAD: f64 = 58.0;
 const SIDE: f64 = 26.0;
-/// Longest pieces of a bar, each of which has a depth of its own, and how many there are at most; bars thinner than `THICK` are in one piece (pixels).
+/// Longest piece of a bar, each of which has a separate depth, and largest number of pieces; bars thinner than `THICK`
+/// have one piece (pixels).
 const LONGEST: f64 = 40.0;
 const PIECES: f64 = 5.0;
-/// How much of the faintest and the strongest of the faint poses is seen.
+/// Opacities of the faintest and the strongest of the faint poses.
 const FAINT: (f64, f64) = (0.1, 0.24);
 
 impl Shape {
-    /// Points that have to be seen, in pixels around them.
+    /// Returns the points that have to be visible with a margin in pixels.
     fn points(&self) -> Vec<Vector> {
         match self {
             Shape::Ellipsoid { centre, .. } => vec![*centre],
@@ -73,7 +74,7 @@ impl Shape {
         }
     }
 
-    /// How far it reaches from its points along a direction.
+    /// Returns how far the shape extends from its points along a direction.
     fn reach(&self, along: Vector) -> f64 {
         match self {
             Shape::Ellipsoid { arms, .. } => {
@@ -84,7 +85,7 @@ impl Shape {
         }
     }
 
-    /// The same in pieces that can be sorted by their depth.
+    /// Splits the shape into pieces that can be sorted by depth.
     fn pieces(&self, sheet: &Sheet) -> Vec<Shape> {
         let Shape::Bar { ends, width } = self else {
             return vec![self.clone()];
@@ -115,7 +116,7 @@ impl Shape {
     }
 }
 
-/// A drawing of bodies in space. What has no finite place is left out.
+/// Draws bodies in space. Shapes that are not finite are left out.
 pub fn space(space: &Space) -> Figure {
     let view = View::new(space.base, space.eye);
     let seen = |parts: &[Part]| -> Vec<Part> {
@@ -185,7 +186,7 @@ pub fn space(space: &Space) -> Figure {
     Figure::of(WIDTH, height, &space.title, text)
 }
 
-/// The shapes of a pose, from the farthest to the nearest; faint ones are outlines, each in one piece.
+/// Draws the shapes of a pose, from the farthest to the nearest; faint ones are outlines, each in one piece.
 fn ordered(parts: &[Part], sheet: &Sheet, faint: bool) -> String {
     let mut pieces: Vec<(f64, Ink, Shape)> = Vec::new();
     for part in parts {
@@ -201,7 +202,7 @@ fn ordered(parts: &[Part], sheet: &Sheet, faint: bool) -> String {
             pieces.push((depth, part.ink, shape));
         }
     }
-    // Stable, so that what is as deep keeps its order.
+    // A stable sort, so that pieces of equal depth keep their order.
     pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
     let drawn = pieces
         .iter()
@@ -231,7 +232,7 @@ fn written(text: &str, (x, y): Point, size: f64, bold: bool) -> String {
     )
 }
 
-/// The rectangle around all that is drawn.
+/// The bounding rectangle of the drawing.
 struct Bounds {
     least: Point,
     most: Point,
@@ -250,7 +251,7 @@ impl Bounds {
         self.most = (self.most.0.max(x), self.most.1.max(y));
     }
 
-    /// The scale and the place at which all of it has room, and the height of the drawing.
+    /// Returns the scale and origin at which everything fits, and the height of the drawing.
     fn fitted(&self, view: View) -> (Sheet, f64) {
         let Bounds { least, most } = self;
         let size = |least: f64, most: f64| {

@@ -1,23 +1,23 @@
-//! What there is to be drawn in space.
+//! Shapes in space.
 
-/// The width from which on a bar has more than one piece, and a shadow (pixels).
+/// The width from which a bar is split into pieces and has a shadow (pixels).
 pub(super) const THICK: f64 = 3.0;
 
 /// A point or a direction.
 pub type Vector = [f64; 3];
 
-/// What something is drawn with.
+/// The colour of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ink {
     /// The colour of the line with this index.
     Series(usize),
-    /// That of headings.
+    /// The colour of headings.
     Dark,
-    /// That of labels.
+    /// The colour of labels.
     Soft,
 }
 
-/// What there is to be drawn; widths and radii in pixels.
+/// A shape; widths and radii are in pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A solid ellipsoid by its half axes.
@@ -34,7 +34,7 @@ pub enum Shape {
         /// Its width.
         width: f64,
     },
-    /// A line of dashes.
+    /// A dashed line.
     Dashes {
         /// Its ends.
         ends: [Vector; 2],
@@ -49,14 +49,14 @@ pub enum Shape {
         /// Its ends.
         ends: [Vector; 2],
     },
-    /// A disk that is as large in every picture.
+    /// A disk of the same size in every picture.
     Ball {
         /// Its centre.
         at: Vector,
         /// Its radius.
         radius: f64,
     },
-    /// A circle that is as large in every picture.
+    /// A circle of the same size in every picture.
     Ring {
         /// Its centre.
         at: Vector,
@@ -68,8 +68,8 @@ pub enum Shape {
 /// A shape with its colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// What it is drawn with.
+    /// Its colour.
     pub ink: Ink,
-    /// What is drawn.
+    /// Its shape.
     pub shape: Shape,
 }

@@ -1,4 +1,4 @@
-//! A parallel projection of space, and what ellipsoids and their sections look like in it.
+//! A parallel projection of space, and the images of ellipsoids and their sections.
 
 use super::shape::Vector;
 use crate::plot::line::Point;
@@ -17,7 +17,7 @@ pub struct View {
 /// Two horizontal directions and the vertical one, right-handed unit vectors.
 pub type Base = [Vector; 3];
 
-/// A base with this vertical direction; the first direction is as near to the first axis as it can be.
+/// Returns the base with this vertical direction whose first direction is as close to the first axis as possible.
 pub fn base(vertical: Vector) -> Base {
     let up = unit(vertical).unwrap_or([0.0, 0.0, 1.0]);
     let along = |axis: Vector| {
@@ -35,7 +35,8 @@ pub fn base(vertical: Vector) -> Base {
 }
 
 impl View {
-    /// Seen from an azimuth, counted from the first direction of the base towards the second, and an elevation (degrees).
+    /// Creates a view from an elevation and an azimuth, counted from the first direction of the base towards the second
+    /// (degrees).
     pub fn new([first, second, vertical]: Base, (azimuth, elevation): (f64, f64)) -> Self {
         let ((sa, ca), (se, ce)) = (
             azimuth.to_radians().sin_cos(),
@@ -49,28 +50,28 @@ impl View {
         }
     }
 
-    /// The place of a point in the drawing, whose second axis points down; lengths are those of space.
+    /// Projects a point to the drawing, whose second axis points down; lengths are those of space.
     pub fn place(&self, point: Vector) -> Point {
         (dot(self.right, point), -dot(self.up, point))
     }
 
-    /// The direction that points to the right.
+    /// Returns the direction that points to the right.
     pub fn right(&self) -> Vector {
         self.right
     }
 
-    /// The direction that points up.
+    /// Returns the direction that points up.
     pub fn up(&self) -> Vector {
         self.up
     }
 
-    /// How near a point is to the eye.
+    /// Returns the coordinate of a point towards the eye.
     pub fn depth(&self, point: Vector) -> f64 {
         dot(self.eye, point)
     }
 }
 
-/// An ellipse around its centre: its half axes, the longer one first, and the angle of that (degrees).
+/// An ellipse around its centre: its half axes, and the angle of the longer one (degrees).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
     /// The longer half axis.
@@ -79,13 +80,13 @@ pub struct Ellipse {
     pub short: f64,
     /// The angle from the first axis of the drawing to the longer half axis (degrees).
     pub angle: f64,
-    /// The symmetric matrix that makes it of the unit circle, by its entries 11, 12 and 22.
+    /// The symmetric matrix that maps the unit circle to the ellipse: its entries 11, 12 and 22.
     pub root: [f64; 3],
 }
 
 impl Ellipse {
-    /// The outline of all sums of the arms with coefficients whose squares add up to 1: that of an ellipsoid by its three half
-    /// axes, of a plane ellipse by two conjugate ones.
+    /// Returns the outline of all sums of the arms with coefficients whose squares add up to 1: for three half axes
+    /// that of an ellipsoid, for two conjugate ones a plane ellipse.
     pub fn of(arms: &[Point]) -> Self {
         let sum = |f: fn(&Point) -> f64| arms.iter().map(f).sum::<f64>();
         let (a, b, d) = (sum(|p| p.0 * p.0), sum(|p| p.0 * p.1), sum(|p| p.1 * p.1));
@@ -119,7 +120,7 @@ fn cross(a: Vector, b: Vector) -> Vector {
     })
 }
 
-/// The unit vector along another one, which has to have a length.
+/// Normalises a vector; `None` if it has no length.
 pub fn unit(a: Vector) -> Option<Vector> {
     let length = dot(a, a).sqrt();
     (length > 1e-12 && length.is_finite()).then(|| a.map(|entry| entry / length))

@@ -1,5 +1,6 @@
-//! Trees of joints that are free, follow others or move as functions of time, with loops and constraints, and their accelerations
-//! by Lagrange's equations in numbers: every body is a cloud of points, whose positions are differentiated twice.
+//! Trees of joints that are free, follow others or are functions of time, with loops and constraints, and their
+//! accelerations by Lagrange's equations in numbers: every body is a cloud of points, whose positions are
+//! differentiated twice.
 
 mod parts;
 
@@ -8,39 +9,39 @@ pub use parts::{Joint, Law, Load, Loop, Motion, Name, short};
 use crate::dense::{kernel, least_pivot, shortest, solution};
 use crate::jet::{Jet, constant, sum, turned};
 
-/// Newton's steps towards a configuration that closes the loops.
+/// Largest number of Newton steps to close the loops.
 const STEPS: usize = 40;
 
 #[derive(Clone)]
 pub struct System {
-    /// The joints, each on one before it.
+    /// The joints, each mounted on an earlier one.
     pub joints: Vec<Joint>,
     /// Closed loops, and the constants that close them at the guesses.
     pub loops: Vec<(Loop, f64)>,
-    /// Where the joints start, as far as nothing else says it.
+    /// Initial values of the joints, where nothing else determines them.
     pub guess: Vec<f64>,
     /// The acceleration of gravity.
     pub gravity: [f64; 3],
     /// Whether the time is declared.
     pub timed: bool,
-    /// Rows Σ c_k v_k = 0 by the joints k.
+    /// Rows Σ c_k v_k = 0 over joints k.
     pub rows: Vec<Vec<(usize, Law)>>,
     /// A joint with a force F − d v, and the values of F and d.
     pub acted: Option<(usize, [f64; 2])>,
 }
 
-/// Where everything is: the values of joints, and the frames as maps of points.
+/// The positions in a configuration: the values of joints, and the frames as maps of points.
 pub struct Placed<'a> {
-    /// What is placed.
+    /// The system.
     pub system: &'a System,
-    /// Of the joints.
+    /// The values of the joints.
     pub values: Vec<Jet>,
     /// The time.
     pub time: Jet,
 }
 
 impl Placed<'_> {
-    /// The value of a name.
+    /// Returns the value of a name.
     pub fn of(&self, name: Name) -> Jet {
         match name {
             Name::Joint(i) => self.values[i],
@@ -48,7 +49,7 @@ impl Placed<'_> {
         }
     }
 
-    /// A point of the frame that a joint moves, or of the world.
+    /// Returns a point of the frame that a joint moves, or of the world.
     pub fn point(&self, frame: Option<usize>, place: [f64; 3]) -> [Jet; 3] {
         let mut point = constant(place);
         let mut frame = frame;
@@ -66,7 +67,7 @@ impl Placed<'_> {
         point
     }
 
-    /// What a loop holds constant.
+    /// Returns the function that a loop holds constant.
     pub fn closed(&self, of: &Loop) -> Jet {
         match of {
             Loop::Tie(i, law) => self.values[*i] + law.value(|name| self.of(name)),
@@ -78,7 +79,7 @@ impl Placed<'_> {
 }
 
 impl System {
-    /// Whether a spring is on a joint whose value never changes, as one that follows q − q.
+    /// Returns whether there is a spring on a joint whose value never changes, such as one that follows q − q.
     pub fn has_idle_spring(&self) -> bool {
         let start = self.start();
         let elsewhere: Vec<f64> = start.iter().map(|q| 0.7 * q + 0.3).collect();
@@ -92,13 +93,13 @@ impl System {
         joints.any(|(i, joint)| joint.stiffness > 0.0 && rests(i))
     }
 
-    /// The joints that have a coordinate of their own, in the order of the variables; the time stands behind them.
+    /// Returns the joints with a coordinate, in the order of the variables; the time follows them.
     pub fn own(&self) -> Vec<usize> {
         let all = 0..self.joints.len();
         all.filter(|&i| self.joints[i].has_coordinate()).collect()
     }
 
-    /// The guesses with the prescribed coordinates at t = 0.
+    /// Returns the guesses, with prescribed coordinates at t = 0.
     pub fn start(&self) -> Vec<f64> {
         let own = self.own();
         let mut q: Vec<f64> = own.iter().map(|&i| self.guess[i]).collect();
@@ -118,7 +119,7 @@ impl System {
         }
     }
 
-    /// Where everything is at coordinates and the time behind them.
+    /// Returns the positions at coordinates, followed by the time.
     pub fn placed(&self, q: &[f64]) -> Placed<'_> {
         let time = Jet::variable(self.own().len(), q[self.own().len()]);
         let mut at = Placed {
@@ -140,7 +141,7 @@ impl System {
         at
     }
 
-    /// The functions that stay 0, of loops and of what is driven; those of drives by velocities have only their slopes.
+    /// Returns the residuals of loops and of prescribed motions; those of prescribed velocities have only slopes.
     pub fn residuals(&self, at: &Placed) -> Vec<Jet> {
         let loops = self.loops.iter();
         let mut all: Vec<Jet> = loops
@@ -150,7 +151,7 @@ impl System {
             match &joint.motion {
                 Motion::Placed(law) => all.push(at.values[i] - law.value(|name| at.of(name))),
                 Motion::Driven(law) => {
-                    // v − w: its slope by the time is −w, and that of w the acceleration.
+                    // v − w: its slope by the time is −w, whose rate is the acceleration.
                     let rate = law.value(|name| at.of(name));
                     let time = self.own().len();
                     let mut row = at.values[i] - Jet::number(at.values[i].value);
@@ -165,7 +166,7 @@ impl System {
         all
     }
 
-    /// Σ c_k v_k as slopes alone, whose bends are those of the coefficients.
+    /// Returns Σ c_k v_k as slopes, with the second derivatives from those of the coefficients.
     fn residual(&self, at: &Placed, row: &[(usize, Law)]) -> Jet {
         let own = self.own();
         let mut residual = Jet::number(0.0);
@@ -180,14 +181,14 @@ impl System {
         residual
     }
 
-    /// Their slopes by the coordinates.
+    /// Returns the slopes of the residuals by the coordinates.
     pub fn rows_of(&self, at: &Placed) -> Vec<Vec<f64>> {
         let n = self.own().len();
         let all = self.residuals(at);
         all.iter().map(|jet| jet.slopes[..n].to_vec()).collect()
     }
 
-    /// A configuration near another one with all residuals 0, the time as it is.
+    /// Returns a configuration near another one in which all residuals are 0, at the same time.
     pub fn assembled(&self, mut q: Vec<f64>) -> Option<Vec<f64>> {
         let n = self.own().len();
         self.prescribe(&mut q);
@@ -211,7 +212,7 @@ impl System {
         None
     }
 
-    /// Velocities near others that keep the residuals, behind them that of the time.
+    /// Returns velocities near others that satisfy the residuals, followed by that of the time.
     pub fn moving(&self, q: &[f64], mut v: Vec<f64>) -> Vec<f64> {
         let n = self.own().len();
         v.push(1.0);
@@ -222,7 +223,7 @@ impl System {
         v
     }
 
-    /// M and f − h − ∂V, with the velocities and that of the time.
+    /// Returns M and f − h − ∂V, for velocities followed by that of the time.
     pub fn inertia_and_force(&self, q: &[f64], v: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let own = self.own();
         let n = own.len();
@@ -255,7 +256,7 @@ impl System {
         (mass, force)
     }
 
-    /// The rates of the velocities, by elimination.
+    /// Returns the rates of the velocities, by elimination.
     pub fn acceleration(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         let (mass, force) = self.inertia_and_force(q, v);
         let residuals = self.residuals(&self.placed(q));
@@ -274,13 +275,13 @@ impl System {
         (least_pivot(&mass, &columns), columns.len(), independent)
     }
 
-    /// The description, with further statements.
+    /// Returns the description, with further statements.
     pub fn text(&self, more: &[String]) -> String {
         let mut lines = Vec::new();
         if self.timed {
             lines.push("time t;".to_owned());
         }
-        // Where no loop acts there is nothing to guess.
+        // Without loops, starts are not guesses.
         let sign = if self.loops.is_empty() { "=" } else { "~" };
         let mut starts = Vec::new();
         for (i, joint) in self.joints.iter().enumerate() {

@@ -6,7 +6,7 @@ use crate::jet::Jet;
 /// A sum of terms in the values of joints and the time, with its text.
 #[derive(Clone)]
 pub struct Law {
-    /// The term that depends on nothing.
+    /// The constant term.
     pub constant: f64,
     /// Terms c x.
     pub linear: Vec<(f64, Name)>,
@@ -35,7 +35,7 @@ impl Name {
     }
 }
 
-/// A number in ±1 with two digits, never 0.
+/// Returns a number in ±1 with two decimals, never 0.
 pub fn short(random: &mut Random) -> f64 {
     match (random.number() * 100.0).round() / 100.0 {
         0.0 => 0.5,
@@ -44,7 +44,7 @@ pub fn short(random: &mut Random) -> f64 {
 }
 
 impl Law {
-    /// A law of some names; nonlinear in half of all cases.
+    /// Returns a law of some names, nonlinear in half of all cases.
     pub fn random(random: &mut Random, names: &[Name]) -> Self {
         let name = |random: &mut Random| names[random.below(names.len())];
         let linear = (0..1 + random.below(2)).map(|_| {
@@ -63,7 +63,7 @@ impl Law {
         }
     }
 
-    /// A number.
+    /// Returns a constant law.
     pub fn constant(constant: f64) -> Self {
         Law {
             constant,
@@ -73,7 +73,7 @@ impl Law {
         }
     }
 
-    /// a + b t + c sin t.
+    /// a + b t + c sin t
     pub fn of_time(random: &mut Random) -> Self {
         Law {
             constant: short(random),
@@ -83,7 +83,7 @@ impl Law {
         }
     }
 
-    /// Whether it depends on something.
+    /// Returns whether the law depends on a variable.
     pub fn mentions(&self, wanted: Name) -> bool {
         let linear = self.linear.iter().map(|(_, name)| *name);
         let sine = self.sine.iter().map(|(_, name)| *name);
@@ -94,7 +94,7 @@ impl Law {
             .any(|name| name == wanted)
     }
 
-    /// How it is written.
+    /// Returns its text.
     pub fn text(&self) -> String {
         let linear = self.linear.iter();
         let mut terms: Vec<String> = linear.map(|(c, n)| format!("{c} * {}", n.text())).collect();
@@ -110,7 +110,7 @@ impl Law {
         terms.join(" + ")
     }
 
-    /// Its value.
+    /// Returns its value.
     pub fn value(&self, of: impl Fn(Name) -> Jet) -> Jet {
         let mut total = Jet::number(self.constant);
         for &(factor, name) in &self.linear {
@@ -129,13 +129,13 @@ impl Law {
 /// Source of the motion of a joint.
 #[derive(Clone)]
 pub enum Motion {
-    /// Forces alone.
+    /// Forces only.
     Free,
-    /// Other joints: it has no coordinate.
+    /// Other joints; it has no coordinate.
     Follows(Law),
-    /// Its coordinate is a function of time.
+    /// A law of time for its coordinate.
     Placed(Law),
-    /// Its velocity is.
+    /// A law of time for its velocity.
     Driven(Law),
 }
 
@@ -144,14 +144,14 @@ pub enum Motion {
 pub enum Load {
     /// Nothing.
     Nothing,
-    /// A mass and its place.
+    /// A mass and its position.
     Particle(f64, [f64; 3]),
-    /// Six points of equal mass, two on each axis at distances of their own from the centre of mass.
+    /// Six points of equal mass, two on each axis, at a different distance from the centre of mass for each axis.
     Body(f64, [f64; 3], [f64; 3]),
 }
 
 impl Load {
-    /// One of them, in half of all cases nothing.
+    /// Returns a random load, in half of all cases nothing.
     pub fn random(random: &mut Random) -> Self {
         let mass = 3.0 * (1 + random.below(3)) as f64;
         let place = [(); 3].map(|()| short(random));
@@ -165,7 +165,7 @@ impl Load {
         }
     }
 
-    /// Masses with their places in the frame.
+    /// Returns the masses with their positions in the frame.
     pub fn points(&self) -> Vec<(f64, [f64; 3])> {
         match *self {
             Load::Nothing => Vec::new(),
@@ -181,7 +181,7 @@ impl Load {
         }
     }
 
-    /// Its statement.
+    /// Returns its statement.
     pub fn text(&self, frame: usize) -> Option<String> {
         match *self {
             Load::Nothing => None,
@@ -189,7 +189,7 @@ impl Load {
                 Some(format!("particle mass {mass} at {place:?} on f{frame};"))
             }
             Load::Body(mass, centre, spread) => {
-                // Exact to four digits where the mass is a multiple of three and the distances have two.
+                // Exact to four digits if the mass is a multiple of three and the distances have two.
                 let squares = spread.map(|s| mass / 3.0 * s * s);
                 let total: f64 = squares.iter().sum();
                 let exact = |moment: f64| (moment * 1e4).round() / 1e4;
@@ -204,11 +204,11 @@ impl Load {
 
 #[derive(Clone)]
 pub struct Joint {
-    /// Its kind, as it is written.
+    /// The keyword of its kind.
     pub kind: &'static str,
     /// Its axis, of any length.
     pub axis: [f64; 3],
-    /// The joint whose frame it is mounted on; the world where there is none.
+    /// The joint on whose frame it is mounted, or the world.
     pub on: Option<usize>,
     /// The origin of its frame, in the frame that it is mounted on.
     pub at: [f64; 3],
@@ -223,12 +223,12 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// Whether it has a coordinate of its own.
+    /// Returns whether it has a coordinate.
     pub fn has_coordinate(&self) -> bool {
         !matches!(self.motion, Motion::Follows(_))
     }
 
-    /// Its statement.
+    /// Returns its statement.
     pub fn text(&self, i: usize) -> String {
         let on = self.on.map_or(String::new(), |j| format!(" on f{j}"));
         let follows = match &self.motion {
@@ -247,8 +247,8 @@ impl Joint {
 /// A closed loop; the constant closes it at the guesses.
 #[derive(Clone)]
 pub enum Loop {
-    /// A joint's own value and a law of others.
+    /// The value of a joint plus a law of others.
     Tie(usize, Law),
-    /// A component of the way between points of two frames, or of one and the world.
+    /// A component of the difference of points in two frames, or in one and the world.
     Point([(Option<usize>, [f64; 3]); 2], usize),
 }

@@ -3,7 +3,7 @@
 use super::{Kind, Link, Random};
 use Kind::{Continuous, Free, Quaternion, Revolute, Spherical, Universal};
 
-/// What hangs on the trunk (0) and on the waist (1): legs, arms, a head.
+/// The joints of legs, arms and head, each with its parent: the trunk (0) or the waist (1).
 const LIMBS: [(usize, &[Kind]); 5] = [
     (0, &[Universal, Revolute, Revolute, Universal]),
     (0, &[Universal, Revolute, Revolute, Universal]),
@@ -12,12 +12,12 @@ const LIMBS: [(usize, &[Kind]); 5] = [
     (1, &[Revolute, Revolute, Revolute]),
 ];
 
-/// A floating trunk with a waist, two legs, two arms and a head: 38 freedoms.
+/// Returns a floating trunk with a waist, two legs, two arms and a head: 38 degrees of freedom.
 pub fn humanoid() -> Vec<Link> {
     let mut random = Random::new(0x38);
     let mut links: Vec<Link> = Vec::new();
     let mut add = |kind: Kind, parent: Option<usize>| {
-        // Nothing follows here: 38 freedoms.
+        // Without links to follow, so that there are 38 degrees of freedom.
         let mut link = Link::on(&mut random, &[], kind, parent);
         link.follows = None;
         links.push(link);

@@ -1,4 +1,4 @@
-//! Random trees of bodies on joints: their text, and their dynamics by Newton and Euler in numbers.
+//! Random trees of bodies on joints: their text, and their dynamics by the recursive Newton-Euler algorithm.
 #![allow(dead_code, unused_imports)] // each test file uses a part
 
 mod humanoid;
@@ -14,7 +14,7 @@ pub use text::text;
 /// Acceleration of gravity.
 const GRAVITY: [f64; 3] = [0.5, -0.25, -9.81];
 
-/// How a joint moves.
+/// The kind of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     Revolute,
@@ -31,7 +31,7 @@ pub enum Kind {
     Fixed,
 }
 
-/// Joints of all kinds, hinges more often.
+/// Joints of all kinds, with more hinges than others.
 pub const ALL: [Kind; 12] = [
     Kind::Revolute,
     Kind::Revolute,
@@ -47,7 +47,7 @@ pub const ALL: [Kind; 12] = [
     Kind::Fixed,
 ];
 
-/// A joint whose coordinate is a + b q + c q², where q is that of another one.
+/// A joint whose coordinate is a + b q + c q², where q is the coordinate of another one.
 #[derive(Clone, Debug)]
 pub struct Follow {
     pub source: usize,
@@ -58,22 +58,22 @@ pub struct Follow {
 #[derive(Clone, Debug)]
 pub struct Link {
     pub kind: Kind,
-    /// The link that it stands on, the world where absent.
+    /// The link on which it is mounted, or the world.
     pub parent: Option<usize>,
-    /// What its coordinate follows.
+    /// The joint that its coordinate follows.
     pub follows: Option<Follow>,
     axis: [f64; 3],
     rpy: [f64; 3],
     place: [f64; 3],
-    /// Turn and place of a further frame; the body, and now and then the next link, is on it.
+    /// Rotation and position of a further frame, which carries the body and sometimes the next link.
     user: Option<([f64; 3], [f64; 3])>,
-    /// It stands on the further frame of the link before.
+    /// Whether it is mounted on the further frame of its parent, if there is one.
     far: bool,
     mass: f64,
     com: [f64; 3],
     /// Diagonal of the inertia about the centre of mass, and its products.
     inertia: [f64; 6],
-    /// A point mass beside the body.
+    /// A point mass in addition to the body.
     particle: Option<(f64, [f64; 3])>,
     damping: f64,
     armature: f64,
@@ -81,11 +81,11 @@ pub struct Link {
     rest: f64,
     /// Force of its drive for one unit of the input.
     force: f64,
-    /// Force in the axes of the frame for one unit of the input, and where it acts.
+    /// Force in the axes of the frame for one unit of the input, and its point of application.
     push: Option<([f64; 3], [f64; 3])>,
 }
 
-/// A number of two decimals, so that text and test mean the same.
+/// Rounds to two decimals, so that text and test have the same number.
 fn short(number: f64) -> f64 {
     (number * 100.0).round() / 100.0
 }
@@ -94,7 +94,7 @@ fn three(random: &mut Random, size: f64) -> [f64; 3] {
     [(); 3].map(|()| short(size * random.number()))
 }
 
-/// An axis across another one.
+/// Returns an axis perpendicular to another one.
 fn second(axis: [f64; 3]) -> [f64; 3] {
     match axis[1] {
         0.0 => [0.0, 1.0, 0.0],
@@ -103,7 +103,7 @@ fn second(axis: [f64; 3]) -> [f64; 3] {
 }
 
 impl Link {
-    /// A link on one of those before it, or on the world.
+    /// Returns a link on an earlier one, or on the world.
     pub fn random(random: &mut Random, links: &[Link], kinds: &[Kind]) -> Self {
         let before = links.len();
         let kind = kinds[random.below(kinds.len())];
@@ -111,9 +111,9 @@ impl Link {
         Link::on(random, links, kind, branch.checked_sub(1))
     }
 
-    /// A link of a kind on another one.
+    /// Returns a link of a kind on another one.
     pub fn on(random: &mut Random, links: &[Link], kind: Kind, parent: Option<usize>) -> Self {
-        // Chains of coordinate axes, and now and then any direction.
+        // Coordinate axes, and sometimes another direction.
         let axis = match random.below(5) {
             0 if kind != Kind::Planar => [0.6, 0.0, -0.8],
             1 if kind != Kind::Planar => [0.0, -1.0, 0.0],
@@ -140,8 +140,7 @@ impl Link {
         .driven(random, links)
     }
 
-    /// The same with what its kind can have of friction, armature, springs and drives; now and then
-    /// it follows another joint.
+    /// Adds friction, armature, springs and drives, as far as its kind permits; sometimes it follows another joint.
     fn driven(mut self, random: &mut Random, links: &[Link]) -> Self {
         let straight = matches!(self.kind, Kind::Revolute | Kind::Prismatic);
         let single = straight || self.kind == Kind::Continuous;
@@ -172,13 +171,13 @@ impl Link {
         self
     }
 
-    /// The same with a point mass.
+    /// Adds a point mass.
     pub fn with_particle(mut self, random: &mut Random) -> Self {
         self.particle = Some((short(1.0 + 0.5 * random.number()), three(random, 0.4)));
         self
     }
 
-    /// A link about the third axis whose principal axes are those of its frame.
+    /// Returns a link about the third axis whose principal axes are those of its frame.
     pub fn body(
         kind: Kind,
         parent: Option<usize>,
@@ -209,19 +208,19 @@ impl Link {
         }
     }
 
-    /// The same about another axis of its place.
+    /// Changes the axis of the joint.
     pub fn about(mut self, axis: [f64; 3]) -> Self {
         self.axis = axis;
         self
     }
 
-    /// The same with its place turned about the third axis.
+    /// Rotates the mounting about the third axis.
     pub fn turned(mut self, yaw: f64) -> Self {
         self.rpy = [0.0, 0.0, yaw];
         self
     }
 
-    /// Whether it stands on the further frame of the link before.
+    /// Returns whether it is mounted on the further frame of its parent.
     fn beyond(&self, links: &[Link]) -> bool {
         self.far
             && self
@@ -229,7 +228,7 @@ impl Link {
                 .is_some_and(|parent| links[parent].user.is_some())
     }
 
-    /// Its entries in x.
+    /// Returns the number of its entries in x.
     pub fn coordinates(&self) -> usize {
         match self.kind {
             _ if self.follows.is_some() => 0,
@@ -243,7 +242,7 @@ impl Link {
         }
     }
 
-    /// Its velocities.
+    /// Returns the number of its velocities.
     pub fn freedoms(&self) -> usize {
         match self.kind {
             _ if self.follows.is_some() => 0,

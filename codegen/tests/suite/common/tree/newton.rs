@@ -1,8 +1,8 @@
-//! Trees by Newton and Euler in numbers.
+//! Dynamics of trees by the recursive Newton-Euler algorithm in numbers.
 //!
-//! The recursion is Featherstone's (*Rigid Body Dynamics Algorithms*, 2008, table 5.1) in body
-//! coordinates. Joints of several axes are massless bodies in a row, so that every column is constant
-//! in the axes of its body. It shares nothing with the generator.
+//! The recursion is Featherstone's (*Rigid Body Dynamics Algorithms*, 2008, table 5.1) in body coordinates. Joints of
+//! several axes are chains of massless bodies, so that every column is constant in the axes of its body. It shares
+//! nothing with the generator.
 
 use super::spatial::{
     Pose, Six, about, add, apply, back, bracket, compose, cross, dual, halves, into, of_quaternion,
@@ -10,8 +10,7 @@ use super::spatial::{
 };
 use super::{GRAVITY, Kind, Link, second};
 
-/// A freedom: the twist for one unit of its rate, which is factor · ξⁱ; its acceleration is
-/// factor · ξ̇ⁱ + drift.
+/// A degree of freedom: the twist per unit of its rate, which is factor · ξⁱ; its acceleration is factor · ξ̇ⁱ + drift.
 struct Column {
     twist: Six,
     index: usize,
@@ -19,18 +18,18 @@ struct Column {
     drift: f64,
 }
 
-/// What moves against the element before.
+/// A body that moves relative to the previous one.
 struct Element {
     parent: Option<usize>,
     pose: Pose,
     columns: Vec<Column>,
-    /// Mass, centre of mass, inertia about it.
+    /// Mass, centre of mass, and inertia about it.
     masses: Vec<(f64, [f64; 3], [f64; 6])>,
-    /// A wrench for one unit of u.
+    /// The wrench for one unit of u.
     push: Six,
 }
 
-/// What acts on a joint: its place in ξ, its coordinate and d(coordinate)/d(what ξ belongs to).
+/// A load on a joint: its index in ξ, its coordinate, and the factor of that ξ in the coordinate's rate.
 struct Drive<'a> {
     link: &'a Link,
     index: usize,
@@ -40,7 +39,7 @@ struct Drive<'a> {
 
 /// A tree at a state.
 pub struct Tree<'a> {
-    /// Acceleration of gravity, world axes.
+    /// Acceleration of gravity in world axes.
     pub gravity: [f64; 3],
     elements: Vec<Element>,
     drives: Vec<Drive<'a>>,
@@ -49,7 +48,7 @@ pub struct Tree<'a> {
 }
 
 impl<'a> Tree<'a> {
-    /// A tree at (x, ξ).
+    /// Returns a tree at (x, ξ).
     pub fn new(links: &'a [Link], x: &[f64], xi: &'a [f64]) -> Self {
         let mut tree = Tree {
             gravity: GRAVITY,
@@ -59,7 +58,7 @@ impl<'a> Tree<'a> {
             xi,
         };
         let (mut place, mut speed) = (0, 0);
-        // Of each link: first entries in x and ξ, element of its frame and of the user's on it.
+        // For each link: first entries in x and ξ, and the elements of its frame and of the further frame.
         let mut known: Vec<(usize, usize, usize, usize)> = Vec::new();
         for link in links {
             let mut on = link.parent.map(|parent| match link.beyond(links) {
@@ -131,7 +130,7 @@ impl<'a> Tree<'a> {
         self.elements.len() - 1
     }
 
-    /// The forces that the accelerations ξ̇ need, gravity as an acceleration of the world.
+    /// Returns the forces for accelerations ξ̇, with gravity as an acceleration of the world.
     pub fn needed(&self, xi_dot: &[f64], gravity: f64) -> Vec<f64> {
         let world = whole([0.0; 3], self.gravity.map(|g| -gravity * g));
         let mut accelerations: Vec<Six> = Vec::new();
@@ -153,7 +152,7 @@ impl<'a> Tree<'a> {
         forces
     }
 
-    /// The generalised forces of wrenches on the elements.
+    /// Returns the generalised forces of wrenches on the elements.
     fn collected(&self, mut wrenches: Vec<Six>) -> Vec<f64> {
         let mut forces = vec![0.0; self.xi.len()];
         for (index, element) in self.elements.iter().enumerate().rev() {
@@ -169,7 +168,7 @@ impl<'a> Tree<'a> {
         forces
     }
 
-    /// ∂V of springs.
+    /// Returns ∂V of springs.
     pub fn springs(&self) -> Vec<f64> {
         let mut forces = vec![0.0; self.xi.len()];
         for drive in &self.drives {
@@ -179,7 +178,7 @@ impl<'a> Tree<'a> {
         forces
     }
 
-    /// The forces of dampers, and those of an input: on joints, and at points of links.
+    /// Returns the forces of dampers and of an input, on joints and at points of links.
     pub fn applied(&self, u: f64) -> Vec<f64> {
         let pushes = self.elements.iter().map(|element| element.push);
         let mut forces = self.collected(pushes.map(|push| push.map(|p| u * p)).collect());
@@ -192,14 +191,14 @@ impl<'a> Tree<'a> {
         forces
     }
 
-    /// The generalised forces of forces at the origins of bodies, in the axes of each; links are bodies
-    /// where none has further frames or joints of several axes.
+    /// Returns the generalised forces of forces at the origins of bodies, in body axes. Links are bodies if there are
+    /// neither further frames nor joints of several axes.
     pub fn pushed(&self, forces: &[[f64; 3]]) -> Vec<f64> {
         assert_eq!(forces.len(), self.elements.len());
         self.collected(forces.iter().map(|&force| whole([0.0; 3], force)).collect())
     }
 
-    /// T + V.
+    /// Returns T + V.
     pub fn energy(&self) -> f64 {
         let mut frames: Vec<Pose> = Vec::new();
         let mut energy = 0.0;
@@ -227,7 +226,7 @@ impl<'a> Tree<'a> {
 }
 
 impl Element {
-    /// Wrench of its inertia on a twist.
+    /// Returns the product of its inertia and a twist.
     fn momentum(&self, v: &Six) -> Six {
         let (w, u) = halves(v);
         let mut sum = [0.0; 6];
@@ -249,7 +248,7 @@ fn sum(columns: &[Column], rate: impl Fn(&Column) -> f64) -> Six {
     })
 }
 
-/// The poses that lead through a joint at its coordinates, each with the columns of its motion.
+/// Returns the poses along a joint at its coordinates, each with the columns of its motion.
 fn steps(link: &Link, q: &[f64]) -> Vec<(Pose, Vec<Six>)> {
     let (n, still) = (link.axis, [0.0; 3]);
     let (turning, sliding) = (whole(n, still), whole(still, n));

@@ -4,7 +4,7 @@
 pub type Six = [f64; 6];
 /// A matrix by rows.
 pub type M3 = [[f64; 3]; 3];
-/// Rotation and origin of a frame in the one before.
+/// Rotation and origin of a frame in the previous one.
 pub type Pose = (M3, [f64; 3]);
 
 pub fn add(a: &Six, b: &Six) -> Six {
@@ -19,7 +19,7 @@ pub fn whole(a: [f64; 3], b: [f64; 3]) -> Six {
     [a[0], a[1], a[2], b[0], b[1], b[2]]
 }
 
-/// A pose after another one.
+/// Returns the composition of two poses.
 pub fn compose((r, p): &Pose, (rotation, origin): &Pose) -> Pose {
     let moved = apply(r, *origin);
     (
@@ -28,7 +28,7 @@ pub fn compose((r, p): &Pose, (rotation, origin): &Pose) -> Pose {
     )
 }
 
-/// A twist of the frame before, in the axes and about the origin of the next.
+/// Transforms a twist of the previous frame to the axes and origin of the next.
 pub fn into((rotation, origin): &Pose, twist: &Six) -> Six {
     let (w, v) = halves(twist);
     let lever = cross(w, *origin);
@@ -36,7 +36,7 @@ pub fn into((rotation, origin): &Pose, twist: &Six) -> Six {
     whole(transposed(rotation, w), transposed(rotation, moved))
 }
 
-/// A wrench on the next frame, in the axes and about the origin of the one before.
+/// Transforms a wrench on the next frame to the axes and origin of the previous one.
 pub fn back((rotation, origin): &Pose, wrench: &Six) -> Six {
     let (torque, force) = halves(wrench);
     let (torque, force) = (apply(rotation, torque), apply(rotation, force));
@@ -44,14 +44,14 @@ pub fn back((rotation, origin): &Pose, wrench: &Six) -> Six {
     whole(std::array::from_fn(|i| torque[i] + lever[i]), force)
 }
 
-/// v × m of two twists.
+/// v × m of two twists
 pub fn bracket(v: &Six, m: &Six) -> Six {
     let ((w, u), (a, b)) = (halves(v), halves(m));
     let (first, second, third) = (cross(w, a), cross(w, b), cross(u, a));
     whole(first, std::array::from_fn(|i| second[i] + third[i]))
 }
 
-/// v ×* f of a twist and a wrench.
+/// v ×* f of a twist and a wrench
 pub fn dual(v: &Six, f: &Six) -> Six {
     let ((w, u), (torque, force)) = (halves(v), halves(f));
     let (first, second) = (cross(w, torque), cross(u, force));
@@ -85,7 +85,7 @@ pub fn rows(q: &[f64]) -> M3 {
     std::array::from_fn(|i| std::array::from_fn(|j| q[3 * i + j]))
 }
 
-/// The rotation of a unit quaternion (w, v): I + 2 w v̂ + 2 v̂ v̂.
+/// The rotation of a unit quaternion (w, v): I + 2 w v̂ + 2 v̂ v̂
 pub fn of_quaternion(q: &[f64]) -> M3 {
     let (w, v) = (q[0], [q[1], q[2], q[3]]);
     columns(|e| {
@@ -95,13 +95,13 @@ pub fn of_quaternion(q: &[f64]) -> M3 {
     })
 }
 
-/// Rz(yaw) Ry(pitch) Rx(roll).
+/// Rz(yaw) Ry(pitch) Rx(roll)
 pub fn turn([roll, pitch, yaw]: [f64; 3]) -> M3 {
     let about = |k: usize, angle: f64| about(unit(k), angle.cos(), angle.sin());
     product(&product(&about(2, yaw), &about(1, pitch)), &about(0, roll))
 }
 
-/// Rodrigues' formula.
+/// The rotation about an axis by Rodrigues' formula
 pub fn about(n: [f64; 3], c: f64, s: f64) -> M3 {
     columns(|e| {
         let (across, along) = (cross(n, e), n[0] * e[0] + n[1] * e[1] + n[2] * e[2]);
@@ -109,12 +109,12 @@ pub fn about(n: [f64; 3], c: f64, s: f64) -> M3 {
     })
 }
 
-/// A coordinate axis.
+/// Returns a coordinate axis.
 pub fn unit(k: usize) -> [f64; 3] {
     std::array::from_fn(|i| f64::from(u8::from(i == k)))
 }
 
-/// A matrix by what it does to the coordinate axes.
+/// Returns the matrix of a linear map.
 fn columns(of: impl Fn([f64; 3]) -> [f64; 3]) -> M3 {
     let columns = [of(unit(0)), of(unit(1)), of(unit(2))];
     std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]))

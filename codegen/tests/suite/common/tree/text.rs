@@ -15,7 +15,7 @@ fn pose(rpy: &[f64; 3], place: &[f64; 3]) -> String {
     format!("pose({rotation}, {})", list(place))
 }
 
-/// The description of a tree, with the functions that are asked for.
+/// Returns the description of a tree that requests these functions.
 pub fn text(links: &[Link], functions: &str) -> String {
     let mut text = String::from("system Tree {\n    input u;\n");
     for (index, link) in links.iter().enumerate() {

@@ -1,0 +1,1 @@
+//! Compiles generated C and compares it with the interpreter: `tests/attack.rs`.
