@@ -13,13 +13,8 @@ mkdir -p "$out/c"
 
 export HAMEL_C="$out/c" HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
-<<<<<<< HEAD:lab/c/run.sh
 cargo build --release --manifest-path lab/c/Cargo.toml --target-dir "$out/rust"
-# One core, where the system can say so.
-=======
-cargo build --release --manifest-path bench/c/Cargo.toml --target-dir "$out/rust"
 # Pins the process to one core, if the system can.
->>>>>>> w-textB:bench/c/run.sh
 pin=$(command -v taskset || true)
 # gcc is fastest when it schedules before register allocation and not after it, and does not vectorise adjacent
 # operations, which takes more moves than it saves.

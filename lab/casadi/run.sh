@@ -16,12 +16,7 @@ fi
 
 export HAMEL_CASADI="$out"
 export RUSTFLAGS="-C target-cpu=native"
-<<<<<<< HEAD:lab/casadi/run.sh
 cargo build --release --locked --manifest-path lab/casadi/Cargo.toml --target-dir "$out/rust"
-# One core, where the system can say so.
-=======
-cargo build --release --locked --manifest-path bench/casadi/Cargo.toml --target-dir "$out/rust"
 # Pins the process to one core, if the system can.
->>>>>>> w-textB:bench/casadi/run.sh
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} "$out/rust/release/hamel-casadi" "$out" | tee "$out/report.md"

@@ -8,12 +8,7 @@ target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
 robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
-<<<<<<< HEAD:lab/native/run.sh
 cargo build --release --manifest-path lab/native/Cargo.toml --target-dir target/bench-native --bin hamel-bench-native
-# One core, where the system can say so.
-=======
-cargo build --release --manifest-path bench/native/Cargo.toml --target-dir target/bench-native --bin hamel-bench-native
 # Pins the process to one core, if the system can.
->>>>>>> w-textB:bench/native/run.sh
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} target/bench-native/release/hamel-bench-native

@@ -11,13 +11,8 @@ robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head
 out="$target/bench-pinocchio"
 mkdir -p "$out"
 
-<<<<<<< HEAD:lab/pinocchio/run.sh
-# Headers and libraries of Pinocchio and of what it needs, from PyPI.
-here=lab/pinocchio
-=======
 # Headers and libraries of Pinocchio and its dependencies, from PyPI.
-here=bench/pinocchio
->>>>>>> w-textB:bench/pinocchio/run.sh
+here=lab/pinocchio
 if ! cmp -s "$here/requirements.txt" "$out/venv/requirements.txt"; then
     python3 -m venv --clear "$out/venv"
     "$out/venv/bin/pip" install --quiet --disable-pip-version-check --requirement "$here/requirements.txt"

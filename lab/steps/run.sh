@@ -9,12 +9,7 @@ target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
 robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
-<<<<<<< HEAD:lab/steps/run.sh
 cargo build --release --manifest-path lab/steps/Cargo.toml --target-dir target/bench-steps
-# One core, where the system can say so.
-=======
-cargo build --release --manifest-path bench/steps/Cargo.toml --target-dir target/bench-steps
 # Pins the process to one core, if the system can.
->>>>>>> w-textB:bench/steps/run.sh
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} target/bench-steps/release/hamel-bench-steps

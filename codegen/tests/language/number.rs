@@ -2,13 +2,8 @@
 
 use included::value;
 
-<<<<<<< HEAD:codegen/tests/language/number.rs
-// An empty literal never comes out of the text of a description.
-#[path = "../../language/src/syntax/number.rs"]
-=======
 // Included, since the text of a description never gives an empty literal.
-#[path = "../../src/syntax/number.rs"]
->>>>>>> w-textB:codegen/language/tests/suite/number.rs
+#[path = "../../language/src/syntax/number.rs"]
 mod included;
 
 fn exact(text: &str) -> String {

@@ -7,13 +7,8 @@ use hamel_language::model::layout;
 use included::{chart_rate, turned, way};
 use layout::{Block, rotation};
 
-<<<<<<< HEAD:codegen/tests/language/way.rs
-// Searches for the nearest configuration take ways, and show where they end alone.
-#[path = "../../language/src/model/way.rs"]
-=======
 // Included, since searches for the nearest configuration only show final positions.
-#[path = "../../src/model/way.rs"]
->>>>>>> w-textB:codegen/language/tests/suite/way.rs
+#[path = "../../language/src/model/way.rs"]
 mod included;
 
 /// The rate of the displacement between two points is the documented product, compared with differences.

@@ -56,13 +56,8 @@ impl Shell {
     /// Runs a script that makes crates next to a clone of the repository, `../hamel`, and returns its output. The
     /// crates are also copied to the folder of the page.
     ///
-<<<<<<< HEAD
-    /// The clone is this repository, by its own path, so that what `lab/` has compiled is not compiled again. The
-    /// packages are those of this repository's lock file, and nothing is downloaded.
-=======
-    /// The clone is this repository under its real path, so that everything that `tests/apart` has compiled is reused.
+    /// The clone is this repository under its real path, so that everything that `lab/` has compiled is reused.
     /// The packages are those of this repository's lock file, and nothing is downloaded.
->>>>>>> w-textB
     ///
     /// # Errors
     /// If a command fails, with the script and its messages.

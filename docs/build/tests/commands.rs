@@ -113,11 +113,7 @@ fn nothing_is_only_shown() {
                 "rust" | "rust,no_run" => {
                     programs.contains(name.strip_prefix("docs/").unwrap_or(&name))
                 }
-<<<<<<< HEAD
-                // tests/emitted/tests/c.rs
-=======
-                // By tests/c99/tests/attack.rs.
->>>>>>> w-textB
+                // By tests/emitted/tests/c.rs.
                 "c" => name == "docs/book/src/front-ends.md",
                 // By python/tests/test_pages.py and tests/sweep/readers.py.
                 "python" => python.contains(&name) || name == "docs/book/src/ensembles.md",

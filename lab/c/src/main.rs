@@ -1,12 +1,7 @@
 //! Times generated C against generated Rust for the same models, alternately in one process.
 //!
-<<<<<<< HEAD:lab/c/src/main.rs
-//! Started by `lab/c/run.sh`; inputs, rounds and medians are those of `lab/casadi`. Both have to agree before they are
-//! timed. Ends with 1 where the C takes more than 1.05 times as long as the Rust.
-=======
-//! Started by `bench/c/run.sh`; inputs, rounds and medians are those of `bench/casadi`. Results are compared before
+//! Started by `lab/c/run.sh`; inputs, rounds and medians are those of `lab/casadi`. Results are compared before
 //! they are timed. The exit status is 1 if the C takes more than 1.05 times as long as the Rust.
->>>>>>> w-textB:bench/c/src/main.rs
 
 
 use hamel_lab::{input, measure};

@@ -1,15 +1,8 @@
 //! Times generated Rust against C that CasADi generated for the same model, alternately in one process.
 //!
-<<<<<<< HEAD:lab/casadi/src/main.rs
-//! Started by `lab/casadi/run.sh`. Every function gets 32 different inputs, through a pointer, so that
-//! nothing is hoisted; times are thread CPU times, a batch of one and a batch of the other by turns; a
-//! figure is the lowest of the rounds' medians, because the machine may have other work.
-//! Before anything is timed, both have to agree.
-=======
-//! Started by `bench/casadi/run.sh`. Every function gets 32 different inputs through a pointer, so that nothing is
+//! Started by `lab/casadi/run.sh`. Every function gets 32 different inputs through a pointer, so that nothing is
 //! hoisted. Times are thread CPU times; batches of both functions alternate. A figure is the lowest of the rounds'
 //! medians, because the machine may have other work. Results are compared before anything is timed.
->>>>>>> w-textB:bench/casadi/src/main.rs
 
 mod ours;
 mod peer;

@@ -1,17 +1,10 @@
 //! Times generated Rust against Pinocchio's C++ for the same robots, alternately in one process: inverse and forward
 //! dynamics, the slopes of forward dynamics, the torque regressor, and the Jacobian of a link.
 //!
-<<<<<<< HEAD:lab/pinocchio/src/main.rs
-//! Started by `lab/pinocchio/run.sh`; inputs, rounds and medians are those of `lab/c` and `lab/casadi`. All values
-//! have to agree before they are timed. Pinocchio is called in several ways, by the functions that its wheel has compiled
-//! and by the same templates compiled for this machine by g++ and clang++, and ABA in the faster of its conventions. Each
-//! way has a column; ratios are those of the fastest.
-=======
-//! Started by `bench/pinocchio/run.sh`; inputs, rounds and medians are those of `bench/c` and `bench/casadi`. All
+//! Started by `lab/pinocchio/run.sh`; inputs, rounds and medians are those of `lab/c` and `lab/casadi`. All
 //! values are compared before they are timed. Pinocchio is called in several ways: by the functions compiled in its
 //! wheel, by the same templates compiled for this machine by g++ and clang++, and with ABA in the faster of its
 //! conventions. Each way has a column; ratios refer to the fastest.
->>>>>>> w-textB:bench/pinocchio/src/main.rs
 //!
 //! The functions differ slightly:
 //! - `slopes` are [A B] together with ξ̇, written to the same memory in each call: in addition to ∂ξ̇/∂h, ∂ξ̇/∂ξ and
@@ -73,11 +66,7 @@ struct Point<S: System> {
     xi_dot: S::Velocities,
 }
 
-<<<<<<< HEAD:lab/pinocchio/src/main.rs
-/// The inputs of `lab/c`; accelerations are further velocities.
-=======
-/// The inputs of `bench/c`; further velocities serve as accelerations.
->>>>>>> w-textB:bench/pinocchio/src/main.rs
+/// The inputs of `lab/c`; further velocities serve as accelerations.
 fn points<S: System>(system: &S) -> Vec<Point<S>> {
     let point = |k| {
         let Input { x, xi, u } = input(system, k);

@@ -1,15 +1,9 @@
 //! Times one step of every method for bodies: on the generated benchmark top at 150 rad/s, with steps of 0.075 rad, and
 //! on hand-written tops, whose moments may all differ.
 //!
-<<<<<<< HEAD:tests/cases/benches/steps.rs
-//! Ratios between rows are what counts; the step of `Rkmk4` stands beside the four accelerations and four
-//! exponentials that no method of its kind can do without. Run with
-//! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-cases --bench steps`.
-=======
 //! Compare the rows by their ratios; a step of `Rkmk4` is listed with the four accelerations and four exponentials that
 //! every method of its kind needs. Run with
-//! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-tests-long --bench steps`.
->>>>>>> w-textB:tests/long/benches/steps.rs
+//! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-cases --bench steps`.
 
 use divan::{Bencher, black_box};
 use hamel::flows::Flow;

@@ -8,13 +8,8 @@ use num_rational::BigRational as Rational;
 use order::Order;
 use sums::{merged, placed};
 
-<<<<<<< HEAD:codegen/tests/algebra/poly/normal_form.rs
-// Only divisions take these sums, and never show the two ways apart.
-#[path = "../../../algebra/src/poly/sums.rs"]
-=======
 // Included, since these sums are used only by divisions, which do not distinguish the two algorithms.
-#[path = "../../../src/poly/sums.rs"]
->>>>>>> w-textB:codegen/algebra/tests/suite/poly/normal_form.rs
+#[path = "../../../algebra/src/poly/sums.rs"]
 mod sums;
 
 /// Inserting terms of various sizes, some of which cancel, agrees with merging them.

@@ -4,13 +4,8 @@ use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::prime::Residue;
 use included::Sieve;
 
-<<<<<<< HEAD:codegen/tests/algebra/resubstitute/sieve.rs
-// What passes shows in the time that resubstitution takes, and in nothing else.
-#[path = "../../../algebra/src/resubstitute/sieve.rs"]
-=======
 // Included, since false positives only affect the duration of resubstitution.
-#[path = "../../../src/resubstitute/sieve.rs"]
->>>>>>> w-textB:codegen/algebra/tests/suite/resubstitute/sieve.rs
+#[path = "../../../algebra/src/resubstitute/sieve.rs"]
 mod included;
 
 #[test]

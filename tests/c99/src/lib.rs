@@ -1,1 +1,0 @@
-//! Compiles generated C and compares it with the interpreter: `tests/attack.rs`.
