@@ -25,6 +25,7 @@ const QUICK: Task = &[
 /// All checks that must pass before a change is merged.
 const CI: Task = &[
     "cargo fmt --all --check",
+    "cargo fmt --manifest-path lab/Cargo.toml --all --check",
     // Clippy, as configured by `.ci/rustc`.
     "HAMEL_LINT=1 cargo check --workspace --all-targets --locked",
     // `--all-targets` leaves out the tests that `cargo test --workspace` leaves out.
