@@ -1,9 +1,9 @@
 //! Generates the robots below `HAMEL_ROBOTS` that are in the folder `HAMEL_CONTROL_REFERENCE`, with their
 //! linearisation, and writes the samples of their discrete steps as constants.
 
-#[path = "../../../cli/tests/suite/common/pinocchio.rs"]
+#[path = "../../cli/tests/suite/common/pinocchio.rs"]
 mod pinocchio;
-#[path = "../../../cli/tests/suite/common/undamped.rs"]
+#[path = "../../cli/tests/suite/common/undamped.rs"]
 mod undamped;
 
 use hamel_codegen::Builder;
