@@ -1,4 +1,4 @@
-//! How an extension module is linked: without Python's own library.
+//! Links the extension module without `libpython`.
 
 fn main() {
     pyo3_build_config::add_extension_module_link_args();

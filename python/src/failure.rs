@@ -1,4 +1,4 @@
-//! Failures as exceptions of Python.
+//! Python exceptions for failures.
 
 use hamel_cli::Failure;
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
@@ -8,16 +8,16 @@ create_exception!(
     hamel,
     HamelError,
     PyValueError,
-    "What is wrong with a description or with what was asked of it, with its place in the source."
+    "Raised for an error in a description or a request, with its place in the source."
 );
 create_exception!(
     hamel,
     SingularError,
     PyArithmeticError,
-    "A function has no value: M is not positive definite there, or constraints depend on one another."
+    "Raised if a function has no value: M is not positive definite, or constraints are dependent."
 );
 
-/// The exception of a failure.
+/// Converts a failure to an exception.
 pub fn raised(failure: Failure) -> PyErr {
     let text = failure.text();
     let text = text.trim_end();

@@ -1,4 +1,4 @@
-//! Generated functions as Python calls them, with arrays.
+//! Generated functions, called from Python with arrays.
 
 use crate::failure::{SingularError, raised};
 use crate::rows::{Given, Rows, common, entries_last, given, together, unknown};
@@ -13,19 +13,19 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
-// Its documentation in Python is that of the function.
+// Python shows the documentation of the generated function, from `__doc__`.
 #[allow(missing_docs)]
 #[pyclass(frozen, module = "hamel")]
 pub struct Function {
     session: Arc<Session>,
     compiled: Compiled,
-    /// Parameters, and what depends on them alone; or why there is nothing.
+    /// Parameters with all values that depend on them alone, or the reason why there are none.
     constants: Result<Constants, Cause>,
-    /// What makes it once more elsewhere: a function of Python and its arguments.
+    /// Result of `__reduce__`: a Python function and its arguments, which restore this function.
     pickled: Py<PyTuple>,
 }
 
-/// The name that an argument has in Python.
+/// Name of an argument in Python.
 fn name(argument: Argument) -> &'static str {
     match argument {
         Argument::Coordinates => "x",
@@ -36,7 +36,7 @@ fn name(argument: Argument) -> &'static str {
     }
 }
 
-/// The lengths of the axes of a result.
+/// Shape of a result as lengths of axes.
 pub fn axes(shape: Shape) -> Vec<usize> {
     match shape {
         Shape::Scalar => Vec::new(),
@@ -46,7 +46,7 @@ pub fn axes(shape: Shape) -> Vec<usize> {
 }
 
 impl Function {
-    /// A function by its name, with these parameters.
+    /// Compiles a function by its name, with these parameters.
     pub fn new(
         session: &Arc<Session>,
         name: &str,
@@ -70,7 +70,7 @@ impl Function {
         })
     }
 
-    /// What was given for each of the arguments, by place or by name.
+    /// Matches positional and keyword arguments with the arguments of the function.
     fn given<'py>(
         &self,
         args: &Bound<'py, PyTuple>,
@@ -91,7 +91,7 @@ impl Function {
             let place = wanted.iter().position(|argument| name(*argument) == key);
             if place.is_none_or(|place| place < args.len()) {
                 let message = match place {
-                    Some(_) => format!("{} has `{key}` twice", signature()),
+                    Some(_) => format!("{} got `{key}` twice", signature()),
                     None => format!("{} takes no `{key}`", signature()),
                 };
                 return Err(PyTypeError::new_err(message));
@@ -109,11 +109,11 @@ impl Function {
             match value.map(|value| given(&what, length, &value)) {
                 Some(Ok(array)) => all.push((argument, array)),
                 Some(Err(error)) => errors.push(error),
-                // There is nothing to say.
+                // An argument without entries may be omitted.
                 None if length == 0 => {}
                 None => {
                     let message = format!(
-                        "{} was called without `{}`, {length} numbers",
+                        "{} was called without `{}` (length {length})",
                         signature(),
                         name(argument)
                     );
@@ -130,7 +130,7 @@ impl Function {
 
 #[pymethods]
 impl Function {
-    /// The name of the function.
+    /// Name of the function.
     #[getter]
     fn name(&self) -> &str {
         &self.compiled.name
@@ -162,14 +162,14 @@ impl Function {
         )
     }
 
-    /// The names of its arguments, in order.
+    /// Names of the arguments, in order.
     #[getter]
     fn arguments(&self) -> Vec<&'static str> {
         let arguments = self.compiled.arguments.iter();
         arguments.map(|&argument| name(argument)).collect()
     }
 
-    /// The shape of the result for one state.
+    /// Shape of the result for one state.
     #[getter]
     fn shape(&self, py: Python<'_>) -> PyResult<Py<PyTuple>> {
         Ok(PyTuple::new(py, axes(self.compiled.shape))?.unbind())
@@ -188,7 +188,26 @@ impl Function {
         )
     }
 
-    /// The result for one state, or for all states that arrays have along their first axes.
+    /// Evaluate the function at one state, or at many along the first axes of the arrays.
+    ///
+    /// Parameters
+    /// ----------
+    /// *args : array_like
+    ///     The `arguments`, by position or by keyword, with the entries of one state along the last axis.
+    /// parameters : array_like, optional
+    ///     Parameters (..., parameters), in place of those of the system.
+    /// singular : {"raise", "nan"}
+    ///     Whether a state without a value raises SingularError, or gives NaN.
+    ///
+    /// Returns
+    /// -------
+    /// float or array
+    ///     Result of the shape of the first axes followed by `shape`.
+    ///
+    /// Raises
+    /// ------
+    /// SingularError
+    ///     If a state has no value, with the index of the state.
     #[pyo3(signature = (*args, parameters=None, singular="raise", **kwargs))]
     fn __call__<'py>(
         &self,

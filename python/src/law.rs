@@ -1,4 +1,4 @@
-//! Functions of (t, x, ξ) in Python: those that give inputs, and those that are watched for events.
+//! Python functions of (t, x, ξ), which supply inputs or are watched for events.
 
 use crate::rows::numbers;
 use hamel_cli::{Control, Gauge, Law, Stop};
@@ -8,15 +8,15 @@ use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often Python is asked during long work whether it is interrupted.
+/// Time between two checks of Python's signals during long computations.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// The first exception of a function, or that of an interruption.
+/// First exception raised by a function or by an interruption.
 #[derive(Clone, Default)]
 pub struct Raised(Arc<Mutex<Option<PyErr>>>);
 
 impl Raised {
-    /// The exception, where there was one.
+    /// Takes the exception, if there is one.
     pub fn take(&self) -> Option<PyErr> {
         let mut raised = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         raised.take()
@@ -33,8 +33,8 @@ impl Raised {
     }
 }
 
-/// A function in Python as a law. Where it raises an exception, inputs are NaN from then on, which ends the run, and the
-/// exception is kept.
+/// Converts a Python function to a law. If it raises an exception, the exception is kept, and inputs are NaN from then
+/// on, which ends the run.
 pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
     let raised = raised.clone();
     let control = move |t: f64, x: &[f64], xi: &[f64], u: &mut [f64]| {
@@ -56,7 +56,7 @@ pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
     Law(control)
 }
 
-/// What gives up a run: an exception, or an interruption of Python, by Ctrl-C for one, which is kept as one.
+/// Cancels a run after an exception, or after an interruption of Python such as Ctrl-C, whose exception is kept.
 pub fn stop(raised: &Raised) -> Stop {
     let (raised, signals) = (raised.clone(), Signals::default());
     Stop(Arc::new(move || {
@@ -67,7 +67,7 @@ pub fn stop(raised: &Raised) -> Stop {
     }))
 }
 
-/// Signals that Python has got, which it is asked for from time to time.
+/// Periodic check of Python's signals.
 pub struct Signals(Mutex<Instant>);
 
 impl Default for Signals {
@@ -77,7 +77,7 @@ impl Default for Signals {
 }
 
 impl Signals {
-    /// Runs what Python has to say of its signals, where it was not asked just now.
+    /// Runs Python's signal handlers, unless the last check was less than `PATIENCE` ago.
     pub fn check(&self) -> PyResult<()> {
         let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if last.elapsed() < PATIENCE {
@@ -89,8 +89,8 @@ impl Signals {
     }
 }
 
-/// A function in Python that gives a number. Where it raises an exception, it has no value from then on, which ends the run,
-/// and the exception is kept.
+/// Converts a Python function to a watched quantity. If it raises an exception, the exception is kept, and the quantity
+/// is NaN from then on, which ends the run.
 pub fn gauge(name: &str, function: Py<PyAny>, raised: &Raised) -> Arc<Gauge> {
     let (name, raised) = (name.to_string(), raised.clone());
     Arc::new(move |t: f64, x: &[f64], xi: &[f64]| {
@@ -104,7 +104,7 @@ pub fn gauge(name: &str, function: Py<PyAny>, raised: &Raised) -> Arc<Gauge> {
                 let given = function.bind(py).call1((t, x, xi))?;
                 given.extract().map_err(|why: PyErr| {
                     let why = why.value(py);
-                    PyTypeError::new_err(format!("the event `{name}` is a number: {why}"))
+                    PyTypeError::new_err(format!("the event `{name}` must return a number: {why}"))
                 })
             };
             number(x, xi).unwrap_or_else(|error| {
@@ -124,15 +124,15 @@ fn called(
     let x = PyArray1::from_slice(py, x);
     let xi = PyArray1::from_slice(py, xi);
     let given = function.bind(py).call1((t, x, xi))?;
-    // One input may be a number alone.
+    // A single input may be a scalar.
     if let (1, Ok(number)) = (length, given.extract::<f64>()) {
         return Ok(vec![number]);
     }
-    let array = numbers("what the function gives as inputs", &given)?;
+    let array = numbers("the result of the input function", &given)?;
     let list: Vec<f64> = array.as_array().iter().copied().collect();
     if array.ndim() != 1 || list.len() != length {
         return Err(PyValueError::new_err(format!(
-            "inputs are {length} numbers, the function has given {}",
+            "the input function must return {length} numbers, it returned {}",
             given.repr()?
         )));
     }

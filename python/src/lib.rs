@@ -1,11 +1,11 @@
-//! `hamel._hamel`: what Python calls. The face that users see is written in Python, in `package/hamel`.
+//! Extension module `hamel._hamel`. The public interface is written in Python, in `package/hamel`.
 //!
 //! | file | owns |
 //! |---|---|
-//! | `session` | a description, and everything that is asked of it |
-//! | `run` | runs, with their options and what becomes of them |
+//! | `session` | a description, and all requests to it |
+//! | `run` | runs, with their options and results |
 //! | `function`, `states`, `rows` | generated functions over arrays: calls, evaluation, arrays of states |
-//! | `law` | functions in Python that give inputs, or are watched for events |
+//! | `law` | Python functions that supply inputs, or are watched for events |
 //! | `failure` | exceptions |
 
 mod failure;
@@ -18,7 +18,7 @@ mod states;
 
 use pyo3::prelude::*;
 
-/// Equations of motion from descriptions.
+/// Equations of motion of mechanical systems.
 #[pymodule]
 mod _hamel {
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! Arrays of states: the last axis has the entries of one, those before it are looped over.
+//! Arrays of states: the last axis contains the entries of one state, the axes before it enumerate states.
 
 use numpy::ndarray::{ArrayViewD, Axis, IxDyn};
 use numpy::{
@@ -9,13 +9,13 @@ use pyo3::exceptions::{PyMemoryError, PyOverflowError, PyTypeError, PyValueError
 use pyo3::prelude::*;
 use pyo3::type_object::PyTypeInfo;
 
-/// Most axes of an array.
+/// Largest number of axes of an array.
 const AXES: usize = 32;
 
-/// Numbers as they were given: an array, or what NumPy makes one of.
+/// Numbers from Python: an array, or an object that NumPy converts to one.
 pub type Given<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 
-/// The numbers that were given as `what`.
+/// Converts an object to numbers; messages call it `what`.
 pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
     let array: Given<'py> = match is_plain(value) {
         true => value.extract()?,
@@ -23,7 +23,7 @@ pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py
     };
     if array.ndim() > AXES {
         let message = format!(
-            "{what} has {AXES} axes at most, this array has {}",
+            "{what} can have at most {AXES} axes, this array has {}",
             array.ndim()
         );
         return Err(PyValueError::new_err(message));
@@ -31,8 +31,8 @@ pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py
     Ok(array)
 }
 
-/// Whether it is an array of NumPy that can be read where it is: its numbers stand at multiples of their size, which those
-/// of records that are packed do not.
+/// Whether an object is a NumPy array that can be read in place. Its numbers must be aligned, unlike those of packed
+/// records.
 fn is_plain(value: &Bound<'_, PyAny>) -> bool {
     let Ok(array) = value.cast::<PyArrayDyn<f64>>() else {
         return false;
@@ -46,8 +46,8 @@ fn is_plain(value: &Bound<'_, PyAny>) -> bool {
             .all(|stride| stride.unsigned_abs().is_multiple_of(size))
 }
 
-/// A new array of what was given. By itself NumPy would leave out imaginary parts and what masks hide, and make numbers of
-/// dates and of nothing.
+/// Converts an object to a new array. NumPy alone would drop imaginary parts and masks, and convert dates and `None` to
+/// numbers.
 fn made<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let py = value.py();
     let own = |why: PyErr| {
@@ -65,22 +65,20 @@ fn made<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny
         .call_method1("is_masked", (value,))?
         .is_truthy()?
     {
-        return Err(PyValueError::new_err(format!(
-            "{what} has entries that are masked"
-        )));
+        return Err(PyValueError::new_err(format!("{what} has masked entries")));
     }
     let array = numpy.call_method1("asarray", (value,)).map_err(own)?;
     let dtype = array.getattr("dtype")?;
     let kind = dtype.getattr("kind")?.to_string();
     if !"biufO".contains(&kind) {
-        let message = format!("{what} has real numbers, this array has the dtype {dtype}");
+        let message = format!("{what} needs real numbers, this array has the dtype {dtype}");
         return Err(PyTypeError::new_err(message));
     }
     if kind == "O" {
         for entry in array.getattr("flat")?.try_iter()? {
             let entry = entry?;
             if entry.is_none() || numpy.call_method1("iscomplexobj", (&entry,))?.is_truthy()? {
-                let message = format!("{what} has real numbers, {} was given", entry.repr()?);
+                let message = format!("{what} needs real numbers, {} was given", entry.repr()?);
                 return Err(PyTypeError::new_err(message));
             }
         }
@@ -88,21 +86,21 @@ fn made<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny
     array.call_method1("astype", ("float64",)).map_err(own)
 }
 
-/// The numbers that were given as `what`, with so many entries along the last axis.
+/// Converts an object to numbers, with `length` entries along the last axis; messages call it `what`.
 pub fn given<'py>(what: &str, length: usize, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
     let array = numbers(what, value)?;
     let shape = array.shape();
-    // A number alone is a list of one.
+    // A scalar counts as one entry.
     match shape.last() {
         Some(last) if *last == length => Ok(array),
         None if length == 1 => Ok(array),
         _ => Err(PyValueError::new_err(format!(
-            "{what} has {length} entries along its last axis, this array has the shape {shape:?}"
+            "{what} needs {length} entries along its last axis, this array has the shape {shape:?}"
         ))),
     }
 }
 
-/// All of several errors as one.
+/// Combines several errors into one.
 pub fn together(py: Python<'_>, mut errors: Vec<PyErr>) -> PyErr {
     if errors.len() == 1 {
         return errors.remove(0);
@@ -121,7 +119,7 @@ pub fn together(py: Python<'_>, mut errors: Vec<PyErr>) -> PyErr {
     }
 }
 
-/// So many entries for each of the states along axes, NaN until they are computed.
+/// Allocates `entries` numbers for each state of an array with these axes, filled with NaN.
 pub fn unknown(axes: &[usize], entries: usize) -> PyResult<Vec<f64>> {
     let mut all = Vec::new();
     let states = axes
@@ -138,11 +136,11 @@ pub fn unknown(axes: &[usize], entries: usize) -> PyResult<Vec<f64>> {
 
 fn too_many(axes: &[usize], entries: usize) -> PyErr {
     PyMemoryError::new_err(format!(
-        "there is no memory for {entries} numbers at each of the states of {axes:?}"
+        "there is no memory for {entries} numbers at each state of an array of the shape {axes:?}"
     ))
 }
 
-/// An array whose last axis has the entries: a number alone is a list of one.
+/// Returns an array with an axis of entries; a scalar becomes an array of one entry.
 pub fn entries_last(array: ArrayViewD<'_, f64>) -> ArrayViewD<'_, f64> {
     match array.ndim() {
         0 => array.insert_axis(Axis(0)),
@@ -150,23 +148,23 @@ pub fn entries_last(array: ArrayViewD<'_, f64>) -> ArrayViewD<'_, f64> {
     }
 }
 
-/// An array over the axes that are looped over.
+/// An array, broadcast to the axes of the states.
 pub struct Rows<'a> {
     array: ArrayViewD<'a, f64>,
-    /// All of it, where its entries stand one behind the other.
+    /// The whole array, if it is contiguous.
     flat: Option<&'a [f64]>,
-    /// How many entries a row has.
+    /// Number of entries of a row.
     length: usize,
-    /// Room for entries that are not one behind the other.
+    /// Buffer for a row that is not contiguous.
     room: Vec<f64>,
 }
 
 impl<'a> Rows<'a> {
-    /// An array, repeated along axes that it does not have.
+    /// Broadcasts an array to these axes.
     pub fn new(array: &'a ArrayViewD<'_, f64>, axes: &[usize]) -> PyResult<Self> {
         let length = array.shape().last().copied().unwrap_or(1);
         let shape = [axes, &[length]].concat();
-        // Axes are common to all arrays, and there may be more entries than can be counted.
+        // The axes are compatible; broadcasting fails if the number of entries overflows.
         let array = array
             .broadcast(IxDyn(&shape))
             .ok_or_else(|| too_many(axes, length))?;
@@ -178,7 +176,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// The entries of a row by its number, which is at this place.
+    /// Returns the entries of row `number`, whose index along the axes is `place`.
     pub fn at(&mut self, number: usize, place: &[usize]) -> &[f64] {
         let first = number * self.length;
         let flat = self
@@ -202,7 +200,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The axes before the last of all arrays, which are repeated where they have the length 1.
+/// Returns the common axes of the states, by the broadcasting rules of NumPy.
 pub fn common<'a>(shapes: impl Iterator<Item = &'a [usize]>) -> PyResult<Vec<usize>> {
     let mut all: Vec<usize> = Vec::new();
     for shape in shapes {
@@ -218,7 +216,7 @@ pub fn common<'a>(shapes: impl Iterator<Item = &'a [usize]>) -> PyResult<Vec<usi
                 (length, own) if length == own => {}
                 (length, own) => {
                     return Err(PyValueError::new_err(format!(
-                        "arrays of {length} and of {own} states cannot be taken together"
+                        "arrays of {length} and of {own} states cannot be broadcast together"
                     )));
                 }
             }
@@ -227,7 +225,7 @@ pub fn common<'a>(shapes: impl Iterator<Item = &'a [usize]>) -> PyResult<Vec<usi
     Ok(all)
 }
 
-/// The place behind a place, in the order of rows.
+/// Advances an index to the next one in row-major order.
 pub fn next(place: &mut [usize], axes: &[usize]) {
     for (index, length) in place.iter_mut().zip(axes).rev() {
         *index += 1;

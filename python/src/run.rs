@@ -1,4 +1,4 @@
-//! Runs: their options, and what becomes of them as arrays.
+//! Runs: their options, and their results as arrays.
 
 use crate::failure::{HamelError, raised};
 use crate::function::axes;
@@ -10,11 +10,11 @@ use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// An event as Python gives it: its name, an expression or a function, the sign of the changes that count or zero, and
-/// whether the run ends there.
+/// An event from Python: name, expression or function, sign of the changes that count or zero for both, and whether the
+/// run ends there.
 type Given = (String, Py<PyAny>, i8, bool);
 
-/// Events that are looked for; the first exception of a function is kept.
+/// Converts events from Python; the first exception of a function is kept in `raised`.
 fn watched(py: Python<'_>, given: Vec<Given>, raised: &Raised) -> PyResult<Vec<Event>> {
     let event = |(name, of, direction, terminal): Given| {
         let of = match of.extract::<String>(py) {
@@ -35,7 +35,7 @@ fn watched(py: Python<'_>, given: Vec<Given>, raised: &Raised) -> PyResult<Vec<E
     given.into_iter().map(event).collect()
 }
 
-/// So many rows of entries as an array.
+/// Converts `count` rows, each of shape `own`, to an array.
 fn rows<'py>(
     py: Python<'py>,
     numbers: Vec<f64>,
@@ -46,7 +46,7 @@ fn rows<'py>(
     PyArray1::from_vec(py, numbers).reshape(IxDyn(&shape))
 }
 
-/// A run of a session, from a state.
+/// Integrates the motion from a state, and returns the fields of `hamel.Run`.
 pub fn simulate<'py>(
     py: Python<'py>,
     session: &Session,

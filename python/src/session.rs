@@ -1,4 +1,4 @@
-//! A description, and everything that is asked of it.
+//! A description, and all requests to it.
 
 use crate::failure::{HamelError, SingularError, raised};
 use crate::function::Function;
@@ -17,13 +17,13 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Runs a command of the command line, whose words begin with the name of the program; its exit status.
+/// Runs the command line, whose first word is the name of the program, and returns the exit status.
 #[pyfunction]
 pub fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| hamel_cli::command(words))
 }
 
-/// Runs a command; what is wrong is raised.
+/// Runs the command line, and raises an exception if it fails.
 #[pyfunction]
 pub fn asked(py: Python<'_>, words: Vec<OsString>) -> PyResult<()> {
     let thrown = Raised::default();
@@ -35,17 +35,17 @@ pub fn asked(py: Python<'_>, words: Vec<OsString>) -> PyResult<()> {
     }
 }
 
-/// The text that the bytes of a file are.
+/// Decodes the bytes of a file.
 #[pyfunction]
 pub fn decoded(name: &str, bytes: Vec<u8>) -> PyResult<String> {
     hamel_cli::decoded(name, bytes).map_err(raised)
 }
 
-/// A description, derived.
+/// A description with its derived equations of motion.
 #[pyclass(frozen, module = "hamel._hamel")]
 pub struct Session(Arc<hamel_cli::Session>);
 
-/// Numbers of a state: x, ξ with z, u, parameters.
+/// Numbers of a state from Python: x, ξ and z, u, parameters.
 type Numbers<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
@@ -53,7 +53,7 @@ type Numbers<'py> = (
     Bound<'py, PyAny>,
 );
 
-/// The same, to Python.
+/// Numbers of a state to Python, in the same order.
 type Arrays<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
@@ -61,7 +61,7 @@ type Arrays<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// x, ξ and the slopes of a step.
+/// x, ξ and the derivatives of a step.
 type Stepped<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
@@ -71,7 +71,7 @@ type Stepped<'py> = (
 /// x and ξ of many states.
 type Ends<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
 
-/// Every entry, and groups by name, place and number.
+/// Names of all entries, and groups of entries: name, index of the first entry, number of entries.
 type Named = (Vec<String>, Vec<(String, usize, usize)>);
 
 fn arrays<'py>(py: Python<'py>, state: &State) -> Arrays<'py> {
@@ -88,36 +88,36 @@ fn named(names: Names) -> Named {
     (names.entries, names.groups)
 }
 
-/// Refuses what is no length of a step; backwards it is negative.
+/// Checks the length of a step; a negative one goes back in time.
 fn length(h: f64) -> PyResult<()> {
     match h.is_finite() && h != 0.0 {
         true => Ok(()),
         false => Err(HamelError::new_err(format!(
-            "a step of the length {h} is none: `h` is a finite number other than 0"
+            "`h` is a finite number other than 0, {h} was given"
         ))),
     }
 }
 
-/// So many finite numbers, the only ones of their kind.
+/// Converts an object to a list of `length` finite numbers, for one state.
 fn list(what: &str, length: usize, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = given(what, length, value)?;
     if array.ndim() > 1 {
         let shape = array.shape();
         return Err(PyValueError::new_err(format!(
-            "{what} has {length} entries and no other axes, this array has the shape {shape:?}"
+            "{what} needs {length} entries and no other axes, this array has the shape {shape:?}"
         )));
     }
     let numbers: Vec<f64> = array.as_array().iter().copied().collect();
     match numbers.iter().position(|number| !number.is_finite()) {
         None => Ok(numbers),
         Some(place) => Err(HamelError::new_err(format!(
-            "{what} has finite numbers, {} stands at the index {place}",
+            "{what} needs finite numbers, the entry at the index {place} is {}",
             numbers[place]
         ))),
     }
 }
 
-/// Rows as a matrix.
+/// Converts rows to a matrix.
 fn matrix<'py>(
     py: Python<'py>,
     rows: &[Vec<f64>],
@@ -128,7 +128,7 @@ fn matrix<'py>(
 }
 
 impl Session {
-    /// A state of finite numbers, in arrays of the right lengths.
+    /// Converts arrays to a state; checks lengths, and that all numbers are finite.
     fn of(&self, py: Python<'_>, (x, xi, u, params): Numbers<'_>) -> PyResult<State> {
         let start = self.0.start();
         let parts = [
@@ -153,7 +153,7 @@ impl Session {
 
 #[pymethods]
 impl Session {
-    /// Reads a file where `text` is none, else a text whose name `path` is; with the warnings.
+    /// Reads a text whose name is `path`, or the file at `path` if `text` is `None`; also returns the warnings.
     #[staticmethod]
     #[pyo3(signature = (path, text=None, *, constants=Vec::new(), floating=false, locks=Vec::new(), params=false, mimic=None, name=None, rounding=None))]
     fn open(
@@ -240,12 +240,12 @@ impl Session {
         self.0.functions()
     }
 
-    /// x, ξ, u and parameters of the description.
+    /// Returns x, ξ, u and parameters of the description.
     fn start<'py>(&self, py: Python<'py>) -> Arrays<'py> {
         arrays(py, &self.0.start())
     }
 
-    /// The same with these parameters, changed by a JSON text.
+    /// Returns the same with these parameters, changed by the values of a JSON text.
     fn state<'py>(
         &self,
         py: Python<'py>,
@@ -257,7 +257,7 @@ impl Session {
         Ok(arrays(py, &state))
     }
 
-    /// A function, with these parameters; `pickled` is what makes it once more elsewhere.
+    /// Compiles a function with these parameters; `pickled` is the result of its `__reduce__`.
     fn function(
         &self,
         py: Python<'_>,
@@ -284,13 +284,13 @@ impl Session {
             .map_err(raised)
     }
 
-    /// What `hamel eval` prints, as JSON.
+    /// Returns the output of `hamel eval`, as JSON.
     fn evaluate(&self, py: Python<'_>, state: Numbers<'_>) -> PyResult<String> {
         let state = self.of(py, state)?;
         py.detach(|| self.0.evaluate(&state)).map_err(raised)
     }
 
-    /// A run.
+    /// Integrates the motion from a state.
     fn simulate<'py>(
         &self,
         py: Python<'py>,
@@ -300,7 +300,7 @@ impl Session {
         run::simulate(py, &self.0, &self.of(py, state)?, options)
     }
 
-    /// x and ξ after a step of each of many states.
+    /// Returns x and ξ after a step from each of many states.
     #[pyo3(signature = (state, x, xi, u, h, method))]
     fn step<'py>(
         &self,
@@ -368,7 +368,7 @@ impl Session {
         Ok((array(all_x, lengths[0])?, array(all_xi, lengths[1])?))
     }
 
-    /// x and ξ after a step of one state, and the slopes of the step.
+    /// Returns x and ξ after a step from one state, and the derivatives of the step.
     #[pyo3(signature = (state, h, method))]
     fn step_slopes<'py>(
         &self,
@@ -423,7 +423,7 @@ impl Session {
         Ok(all)
     }
 
-    /// Base parameters: what is kept, values, and the table in three forms.
+    /// Returns the base parameters in four formats.
     fn base_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         use hamel_codegen::tables::regressor::{json, latex, markdown, text};
         let base = py.detach(|| self.0.base_parameters()).map_err(raised)?;

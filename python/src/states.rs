@@ -1,5 +1,5 @@
-//! A function at many states: two at once in the lanes of one code where they are many, else one after the other. The numbers
-//! are the same to the bit.
+//! Evaluation of a function at many states: two at a time in SIMD lanes if there are many, otherwise one by one. The
+//! results are the same to the bit.
 
 use crate::rows::{Rows, next};
 use hamel_cli::Function;
@@ -9,23 +9,23 @@ use hamel_native::{ARGUMENTS, Constants, Paired};
 /// The states of one call.
 pub struct States<'a> {
     function: &'a Function,
-    /// Parameters that all states have.
+    /// Parameters of all states, unless each has its own.
     constants: &'a Result<Constants, Cause>,
-    /// The arguments that are taken, which the first rows are of.
+    /// Arguments of the function, to which the first `rows` belong.
     taken: Vec<Argument>,
-    /// Behind the arguments may be parameters of each state.
+    /// Arguments, optionally followed by parameters of each state.
     rows: Vec<Rows<'a>>,
     axes: &'a [usize],
-    /// Two states at once: pairs of entries of each argument, and of the result.
+    /// Pairs of entries of each argument and of the result, for two states at a time.
     pairs: [Vec<f64>; 5],
     results: Vec<f64>,
 }
 
-/// A state by its number and its place along the axes.
+/// A state by its number and its index along the axes.
 type At<'p> = (usize, &'p [usize]);
 
 impl<'a> States<'a> {
-    /// The states that rows have.
+    /// Prepares the evaluation at the states of these rows.
     pub fn new(
         function: &'a Function,
         constants: &'a Result<Constants, Cause>,
@@ -44,14 +44,14 @@ impl<'a> States<'a> {
         }
     }
 
-    /// The results of all states, one behind the other. Where there is none it is NaN, or the first such state ends it with
-    /// its place, where that is an error.
+    /// Writes the results of all states to `out`, one after another. For a state without a result, writes NaN, or, if
+    /// `raise` is set, returns its cause and index.
     pub fn evaluate(&mut self, out: &mut [f64], raise: bool) -> Option<(Cause, Vec<usize>)> {
         let count: usize = self.axes.iter().product();
         let entries = self.function.shape.entries();
         let function = self.function;
         let paired = function.paired(count as u64);
-        // The same for all states, where they have no parameters of their own.
+        // Shared by all states, if there are no parameters of each state.
         let shared = match (paired, self.constants) {
             (Some(paired), Ok(constants)) if self.rows.len() == self.taken.len() => {
                 Some(paired.constants([constants, constants]))
@@ -80,7 +80,7 @@ impl<'a> States<'a> {
                 next(&mut following, self.axes);
                 number += 2;
             } else {
-                // The next two may do.
+                // The next two states may both have results.
                 let own = &mut out[first..first + entries];
                 if let Err(cause) = self.one((number, &place), own) {
                     if raise {
@@ -95,7 +95,7 @@ impl<'a> States<'a> {
         None
     }
 
-    /// The result of one state.
+    /// Evaluates one state.
     fn one(&mut self, (number, place): At<'_>, out: &mut [f64]) -> Result<(), Cause> {
         let (own, params) = self.rows.split_at_mut(self.taken.len());
         let mut arguments: [&[f64]; 5] = [&[]; 5];
@@ -116,7 +116,7 @@ impl<'a> States<'a> {
         }
     }
 
-    /// The results of two states, as pairs; whether both have one.
+    /// Evaluates two states at a time, as pairs; returns whether both have a result.
     fn both(&mut self, paired: &Paired, shared: Option<&[f64]>, two: [At<'_>; 2]) -> bool {
         let (own, params) = self.rows.split_at_mut(self.taken.len());
         for (argument, rows) in self.taken.iter().zip(own) {
@@ -144,13 +144,13 @@ impl<'a> States<'a> {
                 let constants = paired.constants([&one, &other]);
                 self.function.both(paired, &constants, arguments, out)
             }
-            // There is no result with these parameters.
+            // The parameters shared by all states admit no result.
             (None, None) => false,
         }
     }
 }
 
-/// The place of an argument among all of them.
+/// Returns the index of an argument in [`ARGUMENTS`].
 fn slot(argument: Argument) -> Option<usize> {
     ARGUMENTS.iter().position(|of| *of == argument)
 }

@@ -57,17 +57,17 @@ def test_arguments_by_name(pendulum):
     assert pendulum.accel.shape == (1,)
     assert pendulum.accel([0.3], u=[1.0], xi=[0.0]) == pendulum.accel([0.3], [0.0], [1.0])
     assert "Forward dynamics" in pendulum.accel.__doc__
-    with pytest.raises(TypeError, match="without `u`, 1 numbers"):
+    with pytest.raises(TypeError, match=r"without `u` \(length 1\)"):
         pendulum.accel([0.3], [0.0])
     with pytest.raises(TypeError, match="takes no `v`"):
         pendulum.accel([0.3], [0.0], v=[1.0])
-    with pytest.raises(TypeError, match="has `x` twice"):
+    with pytest.raises(TypeError, match="got `x` twice"):
         pendulum.accel([0.3], [0.0], x=[1.0])
     with pytest.raises(TypeError, match="called with 4 arrays"):
         pendulum.accel([0.3], [0.0], [0.0], [0.0])
     with pytest.raises(ValueError, match="1 entries along its last axis"):
         pendulum.accel([0.3, 0.1], [0.0], [0.0])
-    with pytest.raises(ValueError, match="cannot be taken together"):
+    with pytest.raises(ValueError, match="cannot be broadcast together"):
         pendulum.accel(np.zeros((3, 1)), np.zeros((4, 1)), [0.0])
     with pytest.raises(AttributeError, match="no function `acel`"):
         pendulum.acel  # noqa: B018
@@ -219,7 +219,7 @@ def test_what_cannot_be_run(pendulum):
     with pytest.raises(hamel.HamelError, match="greater than zero"):
         pendulum.simulate(float("nan"))
     for h in (0.0, float("nan")):
-        with pytest.raises(hamel.HamelError, match="is none"):
+        with pytest.raises(hamel.HamelError, match="is a finite number other than 0"):
             pendulum.step([0.0], [0.0], [0.0], h=h)
 
 
@@ -239,7 +239,7 @@ def test_exceptions_of_a_controller_come_through(pendulum):
         pendulum.simulate(1.0, inputs=law, method="rkmk4", step=0.01)
     # It is not called again.
     assert sum(t > 0.5 for t in calls) == 1
-    with pytest.raises(ValueError, match="inputs are 1 numbers"):
+    with pytest.raises(ValueError, match="must return 1 numbers"):
         pendulum.simulate(1.0, inputs=lambda t, x, xi: [1.0, 2.0], method="rkmk4")
 
 
@@ -348,7 +348,7 @@ def test_errors_show_their_place(models, tmp_path):
         hamel.System.from_file(tmp_path / "nothing.eom")
     with pytest.raises(FileNotFoundError):
         hamel.System.from_urdf(tmp_path / "nothing.urdf")
-    with pytest.raises(hamel.HamelError, match="is no robot in URDF"):
+    with pytest.raises(hamel.HamelError, match="is not a robot in URDF"):
         hamel.System.from_urdf(models / "pendulum.eom")
     with pytest.raises(hamel.HamelError, match="no constants"):
         hamel.System.from_text(PENDULUM, constants={"n": 3})

@@ -1,4 +1,4 @@
-"""Equations of motion from descriptions, as functions over NumPy arrays.
+"""Equations of motion of mechanical systems, as functions over NumPy arrays.
 
     import hamel
 
@@ -7,9 +7,9 @@
     run = top.simulate(until=10.0)             # run.t, run.x, run.xi, run.outputs
     linear = top.linearize()                   # linear.A, linear.B, linear.eigenvalues
 
-Functions become machine code when they are first asked for, no compiler is needed. x are the coordinates, xi the
-velocities (and behind them the states of first order), u the inputs; `System.coordinates` and the like say which entry is
-which.
+Functions are compiled to machine code on first use, without a compiler. x contains the coordinates, xi the
+velocities followed by the first-order states, u the inputs. `System.coordinates`, `System.velocities` and
+`System.inputs` list the names of their entries.
 """
 
 from ._hamel import Function, HamelError, SingularError, __version__

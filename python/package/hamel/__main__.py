@@ -7,8 +7,8 @@ from ._hamel import command
 
 
 def main() -> int:
-    """Runs the command that the arguments of this process are; its exit status."""
-    # A command that is interrupted, or whose reader has gone, ends as one that is no Python.
+    """Run the command given by `sys.argv`, and return its exit status."""
+    # Ctrl-C ends the process like any other command, without a KeyboardInterrupt.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(sys.argv)
 

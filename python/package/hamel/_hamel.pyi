@@ -13,14 +13,14 @@ _Given = tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]
 _Named = tuple[list[str], list[tuple[str, int, int]]]
 
 class HamelError(ValueError):
-    """What is wrong with a description or with what was asked of it, with its place in the source."""
+    """Raised for an error in a description or a request, with its place in the source."""
 
 class SingularError(ArithmeticError):
-    """A function has no value: M is not positive definite there, or constraints depend on one another."""
+    """Raised if a function has no value: M is not positive definite, or constraints are dependent."""
 
 @final
 class Function:
-    """A function of a system: machine code that is called with NumPy arrays."""
+    """Function of a system, compiled to machine code and called with NumPy arrays."""
 
     @property
     def name(self) -> str: ...
@@ -28,10 +28,10 @@ class Function:
     def __name__(self) -> str: ...
     @property
     def arguments(self) -> list[str]:
-        """The names of its arguments, in order."""
+        """Names of the arguments, in order."""
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of the result for one state."""
+        """Shape of the result for one state."""
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __call__(
         self,
@@ -44,7 +44,27 @@ class Function:
         p: ArrayLike = ...,
         u: ArrayLike = ...,
     ) -> Any:
-        """The result for one state, or for all states that arrays have along their first axes."""
+        """Evaluate the function at one state, or at many along the first axes of the arrays.
+
+        Parameters
+        ----------
+        *args : array_like
+            The `arguments`, by position or by keyword, with the entries of one state along the last axis.
+        parameters : array_like, optional
+            Parameters (..., parameters), in place of those of the system.
+        singular : {"raise", "nan"}
+            Whether a state without a value raises SingularError, or gives NaN.
+
+        Returns
+        -------
+        float or array
+            Result of the shape of the first axes followed by `shape`.
+
+        Raises
+        ------
+        SingularError
+            If a state has no value, with the index of the state.
+        """
 
 @final
 class Session:
@@ -88,6 +108,6 @@ class Session:
 
 def command(words: list[str]) -> int: ...
 def decoded(name: str, bytes: bytes) -> str:
-    """The text that the bytes of a file are: UTF-8, UTF-16, or what an XML declaration says."""
+    """Decode the bytes of a file: UTF-8, UTF-16, or the encoding of an XML declaration."""
 
 def asked(words: list[str]) -> None: ...

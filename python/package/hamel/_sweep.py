@@ -1,4 +1,4 @@
-"""Many runs of one system, here or on many machines."""
+"""Parameter sweeps: many runs of one system, on one machine or several."""
 
 from __future__ import annotations
 
@@ -18,24 +18,45 @@ def sweep(
     shard: tuple[int, int] | None = None,
     **options: Any,
 ) -> None:
-    """Runs a system many times and writes a table of the runs into a folder, as `hamel sweep` does.
+    """Run a system many times, and write a table of the results to a folder.
 
-    `vary` and `keep` are written as for the command, and so are the other options: ``members=1000, seed=7, threads=4``.
-    ``shard=(i, n)`` computes the i-th of n parts and no other, so that any engine can distribute the parts, Dask's for one::
+    The function is equivalent to the command `hamel sweep`. The table consists of Parquet files, which Polars, DuckDB
+    and pandas read. If a sweep is interrupted, calling it again computes the missing runs.
+
+    Parameters
+    ----------
+    description : str or path
+        File of the description.
+    vary : str
+        Varied parameters and initial values, in the syntax of the command.
+    out : str or path
+        Folder of the table.
+    until : float
+        Length of each run (s).
+    keep : str, optional
+        Kept quantities, in the syntax of the command.
+    shard : (int, int), optional
+        ``(i, n)`` computes only part i of n, with 1 ≤ i ≤ n; all parts write to the same folder.
+    **options
+        Other options of the command, such as ``members=1000, seed=7, threads=4``.
+
+    Raises
+    ------
+    HamelError
+        If the sweep cannot be run. A run that fails is a row of the table.
+
+    Examples
+    --------
+    Distribute the parts with Dask::
 
         futures = [client.submit(hamel.sweep, "top.eom", vary=..., out=..., until=10.0, shard=(i, 16))
                    for i in range(1, 17)]
-
-    All parts write files of Parquet into the same folder; read them with Polars, DuckDB or pandas. A part that was interrupted
-    computes what is missing when it runs again.
-
-    Raises HamelError where the sweep cannot be run; runs that fail are rows of the table.
     """
     if options.get("submit") is not None:
-        raise HamelError("tasks of an engine are commands: submit them with `hamel sweep --submit`")
+        raise HamelError("`submit` is an option of the command alone: use `hamel sweep --submit`")
     for name, text in {"vary": vary, "keep": keep}.items():
         if not isinstance(text, str | None):
-            raise HamelError(f"`{name}` is a text, written as for the command, not {text!r}")
+            raise HamelError(f"`{name}` is a string in the syntax of the command, not {text!r}")
     words = ["hamel", "sweep", os.fspath(description), "--vary", vary, "--out", os.fspath(out), "--until", str(until)]
     if keep is not None:
         words += ["--keep", keep]

@@ -1,4 +1,4 @@
-"""Systems, their functions, runs and linearisations."""
+"""Systems, with their functions, runs and linearisations."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ Inputs = Union[
 ]
 
 
-# The largest number.
+# The largest finite number.
 LARGEST = float(np.finfo(np.float64).max)
 
 Watched = Union[str, Callable[[float, Array, Array], float]]
 
 
 class RunError(HamelError):
-    """A run that ended early; `run` has what there was before."""
+    """Raised if a run ends early; `run` contains the samples up to then."""
 
     def __init__(self, why: str, run: Run) -> None:
         super().__init__(why)
@@ -42,15 +42,25 @@ class RunError(HamelError):
 
 
 class NoFunction(HamelError, AttributeError):
-    """A function that a system cannot have, asked for as an attribute: for `hasattr` and `getattr` there is none."""
+    """Raised for a function that a system cannot have. Being an AttributeError, it makes `hasattr` return False."""
 
 
 @dataclass(frozen=True)
 class State:
-    """Coordinates x, velocities xi with the states of first order behind them, inputs u and parameters.
+    """State of a system, with its inputs and parameters.
 
-    Arrays of one axis, as long as `coordinates`, `velocities`, `inputs` and `parameters` of the system, in the units of the
-    description: all of hamel computes with numbers as they are given, in SI where lengths are in m, masses in kg, times in s.
+    All numbers are in the units of the description: SI units if lengths are in m, masses in kg and times in s.
+
+    Attributes
+    ----------
+    x : (coordinates,)
+        Coordinates.
+    xi : (velocities,)
+        Velocities, followed by the first-order states.
+    u : (inputs,)
+        Inputs.
+    parameters : (parameters,)
+        Parameters.
     """
 
     x: Array
@@ -66,7 +76,7 @@ class State:
 
 
 class Names(Sequence[str]):
-    """Names of the entries of an array; `names.slice("w")` are the places of a group of them."""
+    """Names of the entries of an array; `names.slice("w")` is the slice of the entries of `w`."""
 
     def __init__(self, entries: list[str], groups: list[tuple[str, int, int]]) -> None:
         self._entries = tuple(entries)
@@ -86,11 +96,11 @@ class Names(Sequence[str]):
 
     @property
     def groups(self) -> dict[str, slice]:
-        """Each name of the description, with the places of its entries."""
+        """Names of the description, each with the slice of its entries."""
         return dict(self._groups)
 
     def slice(self, name: str) -> slice:
-        """The places of the entries of a name."""
+        """Return the slice of the entries of a name; raise KeyError if there is no such name."""
         try:
             return self._groups[name]
         except KeyError:
@@ -99,11 +109,16 @@ class Names(Sequence[str]):
 
 @dataclass(frozen=True)
 class Event:
-    """Where a number that is watched along a run changes its sign.
+    """Sign change of a quantity along a run.
 
-    `of` is an expression of the description's names, such as ``"foot.p[3] - 0.1"``, or a function of (t, x, xi). `direction`
-    is 1 where only changes from negative to positive count, -1 for the others, 0 for both. A run ends at the first event that
-    is `terminal`.
+    Attributes
+    ----------
+    of : str or callable
+        Expression in names of the description, such as ``"foot.p[3] - 0.1"``, or function of (t, x, xi).
+    direction : int
+        1 for changes from negative to positive only, -1 for the opposite, 0 for both.
+    terminal : bool
+        Whether the run ends at the event.
     """
 
     of: Watched
@@ -113,7 +128,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Happened:
-    """The times at which an event happened, with the states there: a row for each time."""
+    """Occurrences of an event: times t (k,) in s, and the states x (k, coordinates) and xi (k, velocities) at them."""
 
     t: Array
     x: Array
@@ -125,11 +140,26 @@ class Happened:
 
 @dataclass(frozen=True)
 class Run:
-    """A run: arrays with a row for each of k samples.
+    """Result of a run, with k samples.
 
-    `t` (k,) are the times (s), `x` (k, coordinates) and `xi` (k, velocities) the states, `energy` (k,) is T + V (J); `outputs`
-    and `invariants` have arrays (k,) of numbers, (k, n) of vectors and (k, m, n) of matrices, by their names. `steps` and
-    `evaluations` count steps and evaluations of forces.
+    ``run["w"]`` returns a coordinate, a velocity or an output by its name in the description.
+
+    Attributes
+    ----------
+    t : (k,)
+        Times (s).
+    x : (k, coordinates)
+        Coordinates.
+    xi : (k, velocities)
+        Velocities, followed by the first-order states.
+    energy : (k,)
+        T + V (J).
+    outputs, invariants : dict
+        Arrays by name: (k,) for numbers, (k, n) for vectors, (k, m, n) for matrices.
+    method : str
+        Integration method.
+    steps, evaluations : int
+        Numbers of steps and of evaluations of accelerations, forces or rates of momenta.
     """
 
     t: Array
@@ -139,25 +169,25 @@ class Run:
     outputs: dict[str, Array]
     invariants: dict[str, Array]
     method: str
-    #: Why the method was taken, where none was asked for.
+    #: Reason for the choice of the method, if it was not requested.
     reason: str | None
     steps: int
     evaluations: int
-    #: The largest change of the energy, relative; infinite where the run has got all of it from outside.
+    #: Largest relative change of the energy; infinite if all of it was supplied during the run.
     energy_deviation: float
-    #: The largest |phi(x)| on the way.
+    #: Largest |phi(x)| along the run.
     constraint: float
-    #: Why the run ended early.
+    #: Reason of an early end.
     failure: str | None
-    #: What became of the events, by their names.
+    #: Occurrences of the events, by name.
     events: dict[str, Happened]
-    #: The event at which the run ended.
+    #: Name of the event that ended the run.
     stopped_by: str | None
     coordinates: Names = field(repr=False)
     velocities: Names = field(repr=False)
 
     def __getitem__(self, name: str) -> Array:
-        """Coordinates, velocities or an output by the name in the description."""
+        """Return a coordinate, a velocity or an output by its name in the description."""
         if name in self.coordinates.groups:
             part = self.x[:, self.coordinates.groups[name]]
         elif name in self.velocities.groups:
@@ -172,10 +202,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Linearization:
-    """d/dt (h, δξ) = A (h, δξ) + B δu and δy = C (h, δξ) + D δu: displacements h along the columns of A(x), changes δξ.
+    """Linear model d/dt (h, δξ) = A (h, δξ) + B δu, δy = C (h, δξ) + D δu of the motion near a state.
 
-    A is (n, n), B (n, m), C (p, n), D (p, m) for the n names of `states`, m of `inputs` and p of `outputs`; `eigenvalues` (n,)
-    in 1/s.
+    h are displacements along the columns of A(x), δξ changes of the velocities. With n `states`, m `inputs` and p
+    `outputs`, A is (n, n), B (n, m), C (p, n), D (p, m), and `eigenvalues` (n,).
     """
 
     A: Array
@@ -185,18 +215,18 @@ class Linearization:
     states: list[str]
     inputs: list[str]
     outputs: list[str]
-    #: Of A, the fastest growing first.
+    #: Eigenvalues of A (1/s), the fastest growing first.
     eigenvalues: NDArray[np.complex128]
-    #: The accelerations at the state: where they are not zero, the matrices hold for that instant alone.
+    #: Accelerations at the state. If they are not zero, the matrices hold for this instant only.
     xi_dot: Array
 
 
 @dataclass(frozen=True)
 class StepSlopes:
-    """The state x, xi after a step, and (η, δξ)' = A (η, δξ) + B δu of displacements δx = A(x) η before and after it.
+    """State after a step, with the derivatives of the step: (η, δξ) after it is A (η, δξ) + B δu.
 
-    With n velocities, of which displacements have as many as the description has columns of A(x): x (coordinates,), xi (n,),
-    A square with a row for each displacement and each velocity, and B as high, with a column for each input.
+    η are displacements δx = A(x) η. With d columns of A(x), n velocities and m inputs, x is (coordinates,), xi (n,),
+    A (d + n, d + n) and B (d + n, m).
     """
 
     x: Array
@@ -207,9 +237,9 @@ class StepSlopes:
 
 @dataclass(frozen=True)
 class BaseParameters:
-    """What of all masses, centres of mass and inertias forces depend on: F = Y(x, xi, xi_dot) beta."""
+    """Base parameters beta: combinations of masses, centres of mass and inertias, with F = Y(x, xi, xi_dot) beta."""
 
-    #: The standard parameter that each of them is named by, and what belongs to it.
+    #: Names, values and definitions by the standard parameters, as `hamel regressor --format json` prints them.
     data: dict[str, Any]
     text: str = field(repr=False)
     latex: str = field(repr=False)
@@ -223,7 +253,7 @@ class BaseParameters:
 
 
 class Tables:
-    """Tables of coefficients: `str(tables)`, `tables.latex`, `tables.markdown` and `tables.data`."""
+    """Tables of coefficients, as text (`str(tables)`), LaTeX, Markdown or data."""
 
     def __init__(self, session: Session, of: list[str], all: bool) -> None:
         self._session, self._of, self._all = session, of, all
@@ -242,22 +272,22 @@ class Tables:
 
     @property
     def latex(self) -> str:
-        """For papers."""
+        """Tables in LaTeX."""
         return self._written("latex")
 
     @property
     def markdown(self) -> str:
-        """For documents and notebooks."""
+        """Tables in Markdown."""
         return self._written("markdown")
 
     @property
     def data(self) -> Any:
-        """For programs."""
+        """Tables as dictionaries and lists."""
         return json.loads(self._written("json"))
 
 
 def _plain(value: Any, place: str = "state") -> Any:
-    """What JSON can say."""
+    """Convert arrays and tuples to lists, and check that JSON can represent the value."""
     if isinstance(value, Mapping):
         return {str(name): _plain(part, f"{place}.{name}") for name, part in value.items()}
     if isinstance(value, np.ndarray | np.generic):
@@ -267,7 +297,7 @@ def _plain(value: Any, place: str = "state") -> Any:
     if isinstance(value, int | float) and not abs(value) <= LARGEST:
         raise HamelError(f"{place}: a finite number is needed, {value} was given")
     if not isinstance(value, str | int | float | None):
-        raise HamelError(f"{place}: a number, a list or names with numbers are needed, {value!r} was given")
+        raise HamelError(f"{place}: a number, a list or a dictionary of numbers is needed, {value!r} was given")
     return value
 
 
@@ -278,7 +308,7 @@ def _array(value: ArrayLike) -> Array:
 
 
 def _number(name: str, value: Any) -> float:
-    """A number that was given by this name."""
+    """Convert the argument of this name to a number."""
     if not isinstance(value, str | bytes) and not np.iscomplexobj(value):
         try:
             return float(value)
@@ -294,22 +324,22 @@ def _method(name: Any) -> str:
 
 
 def _read(path: str | os.PathLike[str]) -> tuple[str, str]:
-    """The path of a file as a text, and the text in the file."""
+    """Return the path of a file as a string, and the text of the file."""
     name = os.fspath(path)
     with open(name, "rb") as file:
         return name, decoded(name, file.read())
 
 
 class System:
-    """A mechanical system: a description or a robot, derived and proved.
+    """Mechanical system from a description or a robot, with derived and proved equations of motion.
 
-    Every generated function is an attribute, and is called with arrays whose last axis has the entries::
+    Every generated function is an attribute. It takes arrays whose last axis contains the entries of one state::
 
         system.accel(x, xi, u)            # (n,) for one state, (k, n) for k of them
         system.mass_matrix(x)             # (n, n)
         system.tool_jacobian(x)           # of a frame `tool`
 
-    `system.functions` lists them, with what they take and return in their docstrings.
+    `system.functions` lists their names; the docstring of each function gives its arguments, result and shapes.
     """
 
     def __init__(self, session: Session, source: tuple[str, str | None, dict[str, Any]], parameters: Array | None = None):
@@ -320,7 +350,7 @@ class System:
         self._start = State(x, xi, u, self._parameters)
         self._functions: dict[str, Function] = {}
 
-    # --- from where -------------------------------------------------------------------------------------------------
+    # --- constructors -----------------------------------------------------------------------------------------------
 
     @classmethod
     def _open(cls, path: str, text: str | None, options: dict[str, Any]) -> System:
@@ -333,7 +363,20 @@ class System:
     def from_file(
         cls, path: str | os.PathLike[str], *, constants: Mapping[str, object] | None = None
     ) -> System:
-        """The system that a file describes; `constants` are other values of its constants, such as the length of a chain."""
+        """Read a system from a file.
+
+        Parameters
+        ----------
+        path : str or path
+            File of a description or a robot.
+        constants : dict, optional
+            Values of constants of the description, in place of those in the file.
+
+        Raises
+        ------
+        HamelError
+            If the file cannot be read, or the description has an error.
+        """
         given = [(constant, str(value)) for constant, value in (constants or {}).items()]
         try:
             name, text = _read(path)
@@ -345,9 +388,24 @@ class System:
     def from_text(
         cls, text: str, *, name: str = "<text>", constants: Mapping[str, object] | None = None
     ) -> System:
-        """The system that a text describes; messages call it `name`."""
+        """Read a system from a text.
+
+        Parameters
+        ----------
+        text : str
+            Description.
+        name : str
+            Name of the text in messages.
+        constants : dict, optional
+            Values of constants of the description, in place of those in the text.
+
+        Raises
+        ------
+        HamelError
+            If the description has an error.
+        """
         if not isinstance(text, str):
-            raise TypeError(f"a description is a text, {text!r} was given")
+            raise TypeError(f"a description is a string, {text!r} was given")
         given = [(constant, str(value)) for constant, value in (constants or {}).items()]
         return cls._open(name, text, {"constants": given})
 
@@ -363,27 +421,46 @@ class System:
         name: str | None = None,
         rounding: float | None = None,
     ) -> System:
-        """A robot in URDF.
+        """Read a robot from a URDF file; `hamel import --help` describes the options in detail.
 
-        `floating` gives it a base that moves freely, `lock` are joints that do not move with their angle or length,
-        `parameters` makes masses, centres of mass and inertias parameters; see `hamel import --help`.
+        Parameters
+        ----------
+        path : str or path
+            URDF file.
+        floating : bool
+            Whether the base moves freely.
+        lock : dict, optional
+            Joints that do not move, with their angle (rad) or length (m).
+        parameters : bool
+            Whether masses, centres of mass and inertias are parameters, instead of numbers.
+        mimic : {"follow", "free"}
+            Whether joints with `<mimic>` follow their leader, or move freely.
+        name : str, optional
+            Name of the system.
+        rounding : float, optional
+            Tolerance within which angles become multiples of π/2, and small entries 0, from 0 to 0.1 (rad).
+
+        Raises
+        ------
+        HamelError
+            If the file is not a robot in URDF, or an option does not apply to it.
         """
         options: dict[str, Any] = {
             "floating": floating,
             "locks": [(joint, repr(_number(f"lock[{joint!r}]", value))) for joint, value in (lock or {}).items()],
             "params": parameters,
-            # What it is without a word.
+            # "follow" is the default.
             "mimic": None if mimic == "follow" else mimic,
             "name": name,
             "rounding": rounding,
         }
         file, text = _read(path)
         if not text.lstrip("\ufeff \t\r\n").startswith("<"):
-            raise HamelError(f"{file} is no robot in URDF; `System.from_file` reads descriptions")
+            raise HamelError(f"{file} is not a robot in URDF; `System.from_file` reads descriptions")
         return cls._open(file, text, options)
 
     def with_parameters(self, **values: ArrayLike) -> System:
-        """The same system with other values of parameters, by their names."""
+        """Return the same system with other values of the named parameters, without deriving it again."""
         start = self.state(param=values)
         system = System(self._session, self._source, start.parameters)
         system._start = start
@@ -392,65 +469,65 @@ class System:
     def __reduce__(self) -> Any:
         return (_restored, (self._source, self._parameters, self._start))
 
-    # --- what there is ----------------------------------------------------------------------------------------------
+    # --- properties -------------------------------------------------------------------------------------------------
 
     @property
     def name(self) -> str:
-        """The name of the system."""
+        """Name of the system."""
         return self._session.name
 
     @property
     def text(self) -> str:
-        """The text of the description; of a robot, the one that it was made into."""
+        """Text of the description; for a robot, the description generated from it."""
         return self._session.text
 
     @property
     def coordinates(self) -> Names:
-        """The names of the entries of x, in the order of arrays."""
+        """Names of the entries of x."""
         return Names(*self._session.coordinates())
 
     @property
     def velocities(self) -> Names:
-        """The names of the entries of xi, and of the states of first order behind them, in the order of arrays."""
+        """Names of the entries of xi: velocities, followed by first-order states."""
         return Names(*self._session.velocities())
 
     @property
     def inputs(self) -> Names:
-        """The names of the entries of u, in the order of arrays."""
+        """Names of the entries of u."""
         return Names(*self._session.inputs())
 
     @property
     def parameters(self) -> Names:
-        """The names of the entries of the parameters, whose values are `parameter_values`."""
+        """Names of the entries of `parameter_values`."""
         return Names(*self._session.parameters())
 
     @property
     def parameter_values(self) -> Array:
-        """The values of the parameters, (parameters,), in the units of the description."""
+        """Values of the parameters (parameters,), in the units of the description."""
         return self._parameters.copy()
 
     @property
     def outputs(self) -> list[str]:
-        """The outputs of the description."""
+        """Names of the outputs of the description."""
         return self._session.outputs()
 
     @property
     def joints(self) -> dict[str, slice]:
-        """The joints, by the names that they have in a robot's file, with the places of their velocities in xi."""
+        """Joints by their names in the URDF file, each with the slice of its velocities in xi."""
         return {name: slice(first, first + count) for name, first, count in self._session.joints()}
 
     @property
     def frames(self) -> list[str]:
-        """The frames of the description: `tool` has the functions `tool_pose`, `tool_twist`, `tool_jacobian` and others."""
+        """Names of the frames. A frame `tool` has the functions `tool_pose`, `tool_twist`, `tool_jacobian` and more."""
         return self._session.frames()
 
     @property
     def functions(self) -> list[str]:
-        """The names of all functions; one that this system cannot have, such as `regressor`, says why when it is asked for."""
+        """Names of all functions. Access to one that this system cannot have raises HamelError with the reason."""
         return self._session.functions()
 
     def function(self, name: str) -> Function:
-        """A function by its name; it is compiled when it is first asked for. Its docstring has the shapes of its arrays."""
+        """Return a function by its name, compiled on first use. Its docstring gives the shapes of its arrays."""
         found = self._functions.get(name)
         if found is None:
             pickled = (_function, (*self.__reduce__()[1], name))
@@ -479,14 +556,20 @@ class System:
     # --- states -----------------------------------------------------------------------------------------------------
 
     def start(self) -> State:
-        """The start of the description, with zero inputs."""
+        """Return the initial state of the description, with zero inputs."""
         return self._start._copy()
 
     def state(self, **parts: Mapping[str, Any]) -> State:
-        """A state by names: `system.state(coord={"q": 0.3}, velocity={"q_dot": 1.0}, input={"F": 2.0})`.
+        """Return a state with values given by name.
 
-        A robot's is given by its joints: `robot.state(configuration={"elbow": 0.3}, velocity={"elbow": 1.0})`. What is not
-        given is as at the start, and follows what is given where loops or other constraints ask for it.
+        All other values are those of the start, adjusted where loops or other constraints require it.
+
+        Examples
+        --------
+        A system, and a robot by its joints::
+
+            system.state(coord={"q": 0.3}, velocity={"q_dot": 1.0}, input={"F": 2.0}, param={"m": 1.5})
+            robot.state(configuration={"elbow": 0.3}, velocity={"elbow": 1.0})
         """
         return State(*self._session.state(self._parameters, json.dumps(_plain(parts))))
 
@@ -496,13 +579,13 @@ class System:
         elif isinstance(at, Mapping):
             at = self.state(**at)
         elif not isinstance(at, State):
-            raise HamelError(f"a state is a `hamel.State`, or a dictionary of what `System.state` takes, not {at!r}")
+            raise HamelError(f"a state is a `hamel.State` or a dictionary of arguments of `System.state`, not {at!r}")
         return at._numbers()
 
-    # --- what is asked ----------------------------------------------------------------------------------------------
+    # --- computations -----------------------------------------------------------------------------------------------
 
     def evaluate(self, at: State | Mapping[str, Any] | None = None) -> dict[str, Any]:
-        """Numbers of everything at a state, as `hamel eval` prints them: A, Y, gamma, M, Gamma, forces, energies.
+        """Evaluate all quantities at a state: A, Y, gamma, M, Gamma, forces and energies, as `hamel eval` does.
 
         With n velocities, M is (n, n), gamma and Gamma are (n, n, n), forces (n,), and energies are numbers (J).
         """
@@ -510,7 +593,7 @@ class System:
         return {name: _numeric(value) for name, value in values.items()}
 
     def tables(self, *of: str, all: bool = False) -> Tables:
-        """Tables by their names, such as `gamma`, `M` and `Gamma`; those that matter where none is named."""
+        """Return tables by name, such as `gamma`, `M` and `Gamma`; without names, the most important ones."""
         return Tables(self._session, list(of), all)
 
     def simulate(
@@ -529,35 +612,58 @@ class System:
         hold: bool = False,
         events: Mapping[str, Event | Watched] | None = None,
     ) -> Run:
-        """A run from a state, by default the start.
+        """Integrate the motion from a state.
 
         Parameters
         ----------
-        until : length of the run (s).
-        method : one of `hamel simulate --help`; `"auto"` takes what fits the system.
-        step : length of a step (s); `tol`: the permitted error per step, where steps are chosen by it.
-        rate : the rate at which the method `rk4` leads back to the constraint (1/s).
-        every : a sample after so many steps; `spacing`: at multiples of this time (s); `times`: at these times (s), (k,). One of
-            the three, or none for some thousand samples at most.
-        inputs : `{"F": 2.0, "tau": "-k * q"}` with numbers, or expressions of `t`, parameters, coordinates and velocities; or
-            a function of (t, x, xi) that returns u, (inputs,); or a file of CSV, whose values `hold` until the next row.
-        events : `{"ground": hamel.Event("foot.p[3]", direction=-1, terminal=True)}`, by names of your choice: where an
-            expression or a function of (t, x, xi) changes its sign. An expression or a function alone will do, too; `terminal`
-            and `direction` of a function are read as SciPy's `solve_ivp` reads them. `run.events["ground"].t` are the times,
-            found to rounding, and `run.stopped_by` is the name of the event that has ended the run. Signs are compared at the
-            ends of steps, so that two changes within one step are not seen; a zero at the start of the run is no event.
+        until : float
+            Length of the run (s).
+        at : State or dict, optional
+            Initial state, or arguments of `state`; by default the start of the description.
+        method : str
+            Method, one of those that `hamel simulate --help` lists; "auto" selects one that fits the system.
+        step : float, optional
+            Length of a step (s).
+        tol : float, optional
+            Permitted error per step, for methods that choose their steps.
+        rate : float, optional
+            Rate at which the method "rk4" returns to the constraint (1/s).
+        every, spacing, times : int, float or (k,), optional
+            Samples after every so many steps, at multiples of a time (s), or at given times (s). Without any of the
+            three, a run has a few thousand samples at most.
+        inputs : dict, callable or path, optional
+            Numbers or expressions in `t`, parameters, coordinates and velocities, as in
+            ``{"F": 2.0, "tau": "-k * q"}``; or a function of (t, x, xi) that returns u (inputs,); or a CSV file.
+        hold : bool
+            Whether the values of a CSV file hold until the next row, instead of being interpolated.
+        events : dict, optional
+            Events by names of your choice, as in
+            ``{"ground": hamel.Event("foot.p[3]", direction=-1, terminal=True)}``, or an expression or a function of
+            (t, x, xi) in place of an `Event`. As for SciPy's `solve_ivp`, a function may have attributes `terminal` and
+            `direction`. Signs are compared at the ends of steps, so two changes within one step are missed; a zero at
+            the start of the run is not an event.
 
-        Raises RunError where a run ends early, with what there was until then.
+        Returns
+        -------
+        Run
+            Samples, with the times of events to machine precision in `run.events`.
+
+        Raises
+        ------
+        RunError
+            If the run ends early; its attribute `run` contains the samples up to then.
+        HamelError
+            If an argument is not valid.
         """
         state = self._at(at)
         spaced = {"every": every, "spacing": spacing, "times": times}
         given = [f"`{name}`" for name, value in spaced.items() if value is not None]
         if len(given) > 1:
-            raise HamelError(f"samples are taken in one way, {' and '.join(given)} were given")
+            raise HamelError(f"`every`, `spacing` and `times` exclude one another, {' and '.join(given)} were given")
         if rate is not None and method != "rk4":
-            raise HamelError("`rate` goes with the method rk4 alone: the other methods keep the constraint by themselves")
+            raise HamelError("`rate` requires the method rk4: the other methods preserve the constraint without it")
         if hold and not isinstance(inputs, str | os.PathLike):
-            raise HamelError("`hold` goes with a file of inputs, whose values it holds until the next row")
+            raise HamelError("`hold` requires a file of inputs: it holds the values of a row until the next row")
         numbers = {"step": step, "tol": tol, "rate": rate, "spacing": spacing}
         options: dict[str, Any] = {
             "until": _number("until", until),
@@ -567,7 +673,7 @@ class System:
         }
         if every is not None:
             try:
-                # More steps than can be counted are as good as all of them.
+                # Larger numbers do not fit into 64 bits, and no run has so many steps.
                 options["every"] = min(operator.index(every), 2**62)
             except TypeError:
                 raise HamelError(f"`every` is a number of steps, 1 or greater, {every!r} was given") from None
@@ -587,7 +693,7 @@ class System:
                         wanted = places.stop - places.start
                         raise HamelError(f"the input `{name}` has {wanted} entries, {entries.size} were given")
                     if not np.isfinite(entries).all():
-                        raise HamelError(f"the input `{name}` is finite, {value!r} was given")
+                        raise HamelError(f"the input `{name}` must be finite, {value!r} was given")
                     fixed[places] = entries
                 else:
                     there = f"there are {', '.join(names)}" if names else "it has no inputs"
@@ -618,10 +724,30 @@ class System:
         h: float,
         method: str = "auto",
     ) -> tuple[Array, Array]:
-        """x and xi after a step of length h (s) with constant inputs, of one state or of many along the first axes.
+        """Take a step with constant inputs, from one state or from many along the first axes.
 
-        x is (…, coordinates), xi (…, velocities), u (…, inputs), and the results are as x and xi. h may be negative. Raises
-        SingularError where a state has no step, with the index of the state.
+        Parameters
+        ----------
+        x : (..., coordinates)
+            Coordinates.
+        xi : (..., velocities)
+            Velocities, followed by the first-order states.
+        u : (..., inputs), optional
+            Inputs; by default zero.
+        h : float
+            Length of the step (s), which may be negative.
+        method : str
+            Method, as for `simulate`.
+
+        Returns
+        -------
+        x, xi : (..., coordinates), (..., velocities)
+            State after the step.
+
+        Raises
+        ------
+        SingularError
+            If a step fails, with the index of its state.
         """
         state = self._at(None)
         held = state[2] if u is None else u
@@ -634,9 +760,10 @@ class System:
         h: float,
         method: str = "rkmk4",
     ) -> StepSlopes:
-        """A step of length h (s) from a state with constant inputs, and its slopes [A B]: rows and columns as in `linearize`.
+        """Take a step of length h (s) from a state with constant inputs, and differentiate it.
 
-        They are those of the step itself, to rounding, not of the motion; with `full` displacements where constraints act.
+        A and B are derivatives of the step itself, to rounding, not of the exact motion. Their rows and columns are
+        those of `linearize(full=True)`.
         """
         state = self._at(at)
         x, xi, slopes = self._session.step_slopes(state, _number("h", h), _method(method))
@@ -644,32 +771,35 @@ class System:
         return StepSlopes(x, xi, slopes[:, :rows], slopes[:, rows:])
 
     def linearize(self, at: State | Mapping[str, Any] | None = None, *, full: bool = False) -> Linearization:
-        """The motion near a state. Constraints leave some displacements and velocities; `full` has all of them."""
+        """Linearise the motion at a state.
+
+        With constraints, the states of the result are independent displacements and velocities; `full` keeps all.
+        """
         return Linearization(**self._session.linearize(self._at(at), full))
 
     def base_parameters(self) -> BaseParameters:
-        """The base parameters beta (p,), those that the p columns of `regressor` belong to."""
+        """Return the base parameters beta (p,), which belong to the p columns of `regressor`."""
         found = self._session.base_parameters()
         return BaseParameters(json.loads(found["json"]), found["text"], found["latex"], found["markdown"])
 
 
 def _watched(name: str, event: Event | Watched) -> tuple[str, Watched, int, bool]:
-    """An event as the session takes it."""
+    """Convert an event to the arguments of the session: name, quantity, direction and whether it is terminal."""
     if not isinstance(event, Event):
         event = Event(event, getattr(event, "direction", 0), getattr(event, "terminal", False))
     if not isinstance(event.of, str) and not callable(event.of):
         raise HamelError(f"the event `{name}` is an expression or a function of (t, x, xi), not {event.of!r}")
     if not isinstance(name, str):
-        raise HamelError(f"the name of an event is a text, not {name!r}")
+        raise HamelError(f"the name of an event is a string, not {name!r}")
     if not isinstance(event.direction, int | float | np.number) or np.isnan(event.direction):
         raise HamelError(f"`direction` of the event `{name}` is 1, -1 or 0, not {event.direction!r}")
     if event.terminal not in (False, True):
-        raise HamelError(f"`terminal` of the event `{name}` is True or False: a run ends at the first event, not after some of them")
+        raise HamelError(f"`terminal` of the event `{name}` is True or False, not {event.terminal!r}")
     return name, event.of, int(np.sign(event.direction)), bool(event.terminal)
 
 
 def _numeric(value: Any) -> Any:
-    """Lists of numbers as arrays, without a value as NaN."""
+    """Convert lists of numbers to arrays, and null to NaN."""
     if isinstance(value, dict):
         return {name: _numeric(part) for name, part in value.items()}
     if isinstance(value, list) and not _has_text(value):
