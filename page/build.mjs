@@ -1,4 +1,4 @@
-// Puts the page together: one file, page/dist/index.html, which needs nothing beside it and no server.
+// Assembles the page into a single file, page/dist/index.html, which needs no other files and no server.
 
 import { build, transform } from "esbuild";
 import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
@@ -7,7 +7,7 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import subsetFont from "subset-font";
-// Not what the package exports, which has no choice of contexts.
+// Internal modules, since the exports of the package do not allow context bits to be set.
 import { Encoder } from "./node_modules/lzma1/lib/encoder.js";
 import { MODES } from "./node_modules/lzma1/lib/lzma.js";
 import { InputBuffer, OutputBuffer } from "./node_modules/lzma1/lib/streams.js";
@@ -16,7 +16,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, "..");
 const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
 
-// The page unpacks, and never packs.
+// Removes the encoder from the page, which only decompresses.
 const unpacking = {
   name: "unpacking",
   setup(build) {
@@ -40,12 +40,12 @@ async function bundled(entry) {
 
 const from = (first, last) => String.fromCodePoint(...Array.from({ length: last - first + 1 }, (_, i) => first + i));
 
-// What formulas of the generator are set in: letters, digits and signs of ASCII, Greek, operators, accents; brackets and roots of
-// every size, with the pieces that large ones are made of.
+// Characters of the generator's formulas: ASCII, Greek, operators and accents; brackets and roots of every size, with
+// the pieces from which large ones are assembled.
 const letters = from(0x20, 0x7e) + from(0x391, 0x3f6) + "·×÷±¬°−∓∂∇∑∏√∞≈≡≠≤≥∈∘…⋯⋮⋱′⟨⟩∣∥⌊⌋⌈⌉→⊤⊥¨¯´`ˆ˙˜ˇ˘⃗\u00a0ıȷ";
 const brackets = "()[]{}⟨⟩⌊⌋⌈⌉∣∥⏐∑∏∫√\ue000\ue001" + from(0x239b, 0x23ad);
 
-// The style sheet of KaTeX with the fonts that formulas of the generator need, and the page's own.
+// The style sheet of KaTeX, with subsets of the fonts that the formulas need, followed by the style sheet of the page.
 async function style() {
   const katex = dirname(createRequire(import.meta.url).resolve("katex/dist/katex.min.css"));
   let css = await readFile(join(katex, "katex.min.css"), "utf8");
@@ -63,12 +63,12 @@ async function style() {
   return code;
 }
 
-// A remark as lines of comments that an editor beside other things has room for.
+// Wraps a remark into comment lines that fit the editor.
 function commented(remark) {
   return remark.replace(/(.{1,76})(\s+|$)/g, "// $1\n").trimEnd();
 }
 
-// The examples by their names: their texts without the options that the gallery is drawn and run with, and how long they run.
+// The examples, sorted by name: text without the options of the gallery, and length of a run (s).
 async function examples() {
   const folders = [join(root, "examples"), join(root, "examples", "gallery")];
   const all = [];
@@ -83,8 +83,7 @@ async function examples() {
   return all.sort((a, b) => (a.name < b.name ? -1 : 1));
 }
 
-// Instructions of WebAssembly and texts have no alignment, of which positions would say something; so many bits of the byte
-// before say more.
+// LZMA without position bits, since WebAssembly and text have no alignment, and with more literal context bits instead.
 class Unaligned extends Encoder {
   constructor(bits) {
     super();
@@ -97,13 +96,13 @@ class Unaligned extends Encoder {
   }
 }
 
-// A module of the page's sources, for the page's own construction.
+// Imports a module of the page's sources for use in this script.
 async function module(file) {
   const { code } = await transform(await readFile(join(here, "src", file), "utf8"), { loader: "ts", format: "esm" });
   return import(`data:text/javascript,${encodeURIComponent(code)}`);
 }
 
-// LZMA makes them a quarter smaller than what hosts compress by.
+// Compresses with LZMA, whose output is a quarter smaller than gzip's, and encodes in base64.
 function packed(bytes, bits = 4) {
   const output = new OutputBuffer(bytes.length);
   new Unaligned(bits).compress(new InputBuffer(bytes), output, MODES[9]);
@@ -131,7 +130,7 @@ let whole = html;
 const { apart, together } = await module("instructions.ts");
 const streams = apart(wasm);
 if (!WebAssembly.validate(together(streams)) || Buffer.compare(apart(together(streams)), streams) !== 0) {
-  throw new Error("what is put together is not the module that was taken apart");
+  throw new Error("the module reassembled from its streams differs from the original");
 }
 const generator = packed(streams, 2);
 const script = packed(Buffer.from(page));

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Builds the page from a clone: page/dist/index.html, one file that a browser opens as it is.
+# Builds the page: page/dist/index.html, a single file that a browser opens directly.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 bash page/module.sh
 npm --prefix page ci --silent
 npm --prefix page run --silent types
-# Instances of generic functions that came out alike are kept once. What else Binaryen could do makes the module shorter,
-# and what is downloaded longer, since then less of it repeats.
+# Merges identical instances of generic functions. Other passes of Binaryen shrink the module but enlarge the download,
+# since they leave less repetition to compress.
 folder="${CARGO_TARGET_DIR:-target}/page"
 page/node_modules/.bin/wasm-opt "$folder/hamel_page.wasm" -o "$folder/hamel_page.small.wasm" --enable-bulk-memory \
     --enable-sign-ext --enable-mutable-globals --enable-nontrapping-float-to-int --enable-multivalue \

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Builds the generator for browsers: target/page/hamel_page.wasm. The target of Rust comes by rustup; where that cannot
-# fetch it, Debian's sources of the standard library are built with Debian's compiler, unpacked below `target`.
+# Builds the generator for browsers: target/page/hamel_page.wasm. If rustup cannot install the WebAssembly target,
+# Debian's sources of the standard library are built with Debian's compiler, unpacked below `target`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 target=wasm32-unknown-unknown
 folder="${CARGO_TARGET_DIR:-target}"
-# The stack of a program: derivations of large robots go deep.
+# Stack size in bytes: derivations of large robots recurse deeply.
 flags="-C link-arg=-zstack-size=8388608"
 arguments=(build --quiet --locked --package hamel-page --profile page --target "$target")
 

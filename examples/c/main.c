@@ -1,7 +1,7 @@
 /*
- * A pole on a cart, simulated and held upright by state feedback; README.md says how to build it.
+ * A pole on a cart, simulated and held upright by state feedback; README.md shows how to build it.
  *
- * The motion is integrated by the method of Runge and Kutta of order 4, steps of 1 ms. The controller sees the state
+ * The motion is integrated by the Runge-Kutta method of order 4 with steps of 1 ms. The controller samples the state
  * every 10 ms and holds its force in between: u = -K (p, th, v, w), where K minimises the sum of
  * 10 p^2 + 10 th^2 + v^2 + w^2 + u^2 over all samples.
  */
@@ -21,7 +21,7 @@ typedef struct state {
     double xi[N];
 } state;
 
-/* The rate of a state. */
+/* The time derivative of a state. */
 static cart_pole_status rate(const cart_pole_system *system, const state *at, const double *u, state *out)
 {
     cart_pole_rate(system, at->x, at->xi, out->x);
@@ -40,7 +40,7 @@ static state moved(const state *at, double h, const state *slope)
     return next;
 }
 
-/* One step of order 4. */
+/* One step of the Runge-Kutta method of length h (s). */
 static cart_pole_status step(const cart_pole_system *system, state *at, const double *u, double h)
 {
     static const double place[4] = {0.0, 0.5, 0.5, 1.0};
@@ -81,7 +81,7 @@ int main(void)
     int ms;
 
     cart_pole_default_parameters(&parameters);
-    parameters.mp = 0.12; /* heavier than the controller believes */
+    parameters.mp = 0.12; /* heavier than the controller assumes */
     status = cart_pole_set_parameters(&system, &parameters);
     cart_pole_start(at.x, at.xi);
 
@@ -102,6 +102,6 @@ int main(void)
         return 1;
     }
     printf("the largest force was %.2f N\n", most);
-    /* The pole stands, and the cart is where it should be. */
+    /* The pole is upright, and the cart at the origin. */
     return fabs(at.x[CART_POLE_X_TH]) < 1e-3 && fabs(at.x[CART_POLE_X_P]) < 1e-2 ? 0 : 1;
 }

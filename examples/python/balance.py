@@ -1,8 +1,8 @@
-"""A pole is balanced on a cart: linearisation, optimal feedback, and the nonlinear motion under it.
+"""Balances a pole on a cart: linearisation, optimal feedback, and the nonlinear motion with it.
 
     python balance.py [FOLDER]
 
-writes balance.svg into the folder.
+writes balance.svg to the folder.
 """
 
 import sys
@@ -38,7 +38,7 @@ def main(folder: Path) -> None:
     upright = system.linearize({"coord": {"th": 0.0}})
     print("eigenvalues without control:", np.round(upright.eigenvalues, 3))
 
-    # Feedback F = -K (p, th, v, w) that is best for this weight of states and forces.
+    # The feedback F = -K (p, th, v, w) that minimises the weighted squares of states and force (LQR).
     weight, cost = np.diag([10.0, 10.0, 1.0, 1.0]), np.array([[1.0]])
     riccati = solve_continuous_are(upright.A, upright.B, weight, cost)
     gain = np.linalg.solve(cost, upright.B.T @ riccati)

@@ -1,9 +1,9 @@
-"""When a double pendulum that is let go turns over for the first time, for every start: a million runs.
+"""Maps the time until a double pendulum, released at rest, first turns over: a million runs.
 
     python basins.py [FOLDER] [--points 1000]
 
-lets it go at rest from every pair of angles of a grid, on all cores, and writes basins.png. A sweep that is stopped goes on where
-it was when the same command is given again with `--runs FOLDER`.
+releases it at every pair of angles of a grid, on all cores, and writes basins.png. With `--runs FOLDER`, repeating the
+command resumes an interrupted sweep.
 """
 
 import argparse
@@ -45,7 +45,7 @@ def main() -> None:
         description = Path(scratch) / "double_pendulum.eom"
         description.write_text(DOUBLE_PENDULUM)
         runs = options.runs or Path(scratch) / "runs"
-        # Between the lines of a grid from -pi to pi.
+        # Centres of the cells of a grid from -pi to pi.
         end = np.pi * (1 - 1 / n)
         hamel.sweep(
             description,
@@ -60,11 +60,11 @@ def main() -> None:
     first = table.select(pl.min_horizontal(pl.col("^event.*$"))).to_series().fill_null(np.nan)
     turned = first.to_numpy().reshape(n, n)
     th1, th2 = (table[f"start {name}"].to_numpy().reshape(n, n) for name in ("th1", "th2"))
-    # Without the energy to lift the second rod upright it cannot turn over.
+    # Below the energy of the second rod upright, it cannot turn over.
     low = -2 * np.cos(th1) - np.cos(th2) < -1
     print(f"{n * n} runs: {np.isfinite(turned).mean():.1%} turn over in {UNTIL:g} s; with too little energy none of {low.sum()}")
     assert not np.isfinite(turned[low]).any()
-    # Motions of mirror images are mirror images, as long as they have not forgotten their start.
+    # Mirrored starts have mirrored motions, until chaos amplifies rounding errors.
     early = turned < 3
     assert np.allclose(turned[early], turned[::-1, ::-1][early], rtol=1e-6)
 

@@ -1,9 +1,9 @@
-"""Where a pendulum stands on its head: its pivot is shaken up and down, by how much and how fast is varied.
+"""Maps the amplitudes and frequencies of a vibrating pivot for which a pendulum stands upright.
 
     python kapitza.py [FOLDER] [--points 120]
 
-runs the pendulum from near the upright for every amplitude and frequency of a grid, on all cores, and writes kapitza.png. The
-linear theory (Floquet) is drawn beside it, from an integration of its own.
+runs the pendulum from near the upright for every amplitude and frequency of a grid, on all cores, and writes
+kapitza.png with the boundary of the linear theory (Floquet), which is integrated separately.
 """
 
 import argparse
@@ -35,7 +35,7 @@ AMPLITUDES, FREQUENCIES = (0.01, 0.6), (5.0, 80.0)
 
 
 def trace(a: NDArray[np.float64], omega: NDArray[np.float64]) -> NDArray[np.float64]:
-    """That of the map over a period of q'' = (g - a Omega^2 cos(Omega t)) q / l: motions stay small where |trace| < 2."""
+    """Trace of the monodromy matrix of q'' = (g - a Omega^2 cos(Omega t)) q / l, which is stable if |trace| < 2."""
     steps = 400
     h = 2 * np.pi / omega / steps
     state = np.stack([np.ones_like(a), np.zeros_like(a), np.zeros_like(a), np.ones_like(a)])

@@ -1,4 +1,4 @@
-// What the generator answers, as `page/wasm/src/requests.rs` writes it.
+// Types of the generator's answers, written by `page/wasm/src/requests.rs`.
 
 export interface Mark {
   severity: "error" | "warning";
@@ -109,7 +109,7 @@ export interface Track {
 
 export type Vector = [number, number, number];
 
-// What can be drawn at one state; the generator says what the members are, in `cli/src/drawing/scene.rs`.
+// Drawable parts of a mechanism at one state; `cli/src/drawing/scene.rs` documents the members.
 export interface Scene {
   frames: { name: string; parent: number | null; attached: boolean; rotation: [Vector, Vector, Vector]; position: Vector }[];
   bodies: { frame: number; mass: number; centre: Vector; axes: [Vector, Vector, Vector]; radii: Vector }[];
@@ -132,20 +132,20 @@ export interface Run {
   reason: string | null;
   steps: number;
   evaluations: number;
-  /** None where all energy has come from outside. */
+  /** Largest relative change of the energy; `null` if all energy was supplied during the run. */
   drift: number | null;
   constraint: number;
   failure: string | null;
-  // What there is to draw, at the start, and how many numbers say where it is at each sample; no scene where nothing
-  // can be drawn.
+  // Scene at the start, or `null` if nothing can be drawn; `width` is the number of `numbers` that place the scene at
+  // one sample.
   scene: Scene | null;
-  // What is not drawn, and what would give it a place.
+  // Parts that are not drawn, with the statement that would give them a place.
   missing: string[];
   width: number;
   numbers?: Float32Array;
 }
 
-// A start that was pulled to by a point, with where everything is there.
+// The start after a point was dragged, with the numbers of its scene.
 export interface Pulled {
   x: number[];
   xi: number[];

@@ -1,4 +1,4 @@
-// Elements in one expression.
+// Helpers that create and find elements.
 
 type Child = Node | string | null | undefined;
 
@@ -15,7 +15,7 @@ export function element<Tag extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-// An element that the page has.
+// Returns an element of the page, which must exist.
 export function byId<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (found === null) {

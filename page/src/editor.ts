@@ -1,4 +1,4 @@
-// The editor: the text, and the generator's errors and warnings underlined in it.
+// The text editor, which underlines the generator's errors and warnings.
 
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { bracketMatching } from "@codemirror/language";
@@ -51,7 +51,7 @@ export class Editor {
           lintGutter(),
           EditorView.contentAttributes.of({ "aria-label": "Description of the mechanism" }),
           keymap.of([
-            // Tab leaves the editor after Escape, as everywhere in CodeMirror.
+            // Tab indents; after Escape it leaves the editor, as is usual in CodeMirror.
             indentWithTab,
             ...defaultKeymap,
             ...historyKeymap,
@@ -82,7 +82,7 @@ export class Editor {
     });
   }
 
-  // Underlines what is said of places in the text; what has no place stands at its start.
+  // Underlines errors and warnings; those without a place are shown at the start of the text.
   mark(marks: Mark[]): void {
     const end = this.view.state.doc.length;
     const placed = marks.map((mark): Diagnostic => {
@@ -94,7 +94,7 @@ export class Editor {
     this.view.dispatch(setDiagnostics(this.view.state, placed));
   }
 
-  // Takes the cursor to a place.
+  // Moves the cursor to an offset in the text.
   goTo(place: number): void {
     this.view.dispatch({ selection: { anchor: Math.min(place, this.view.state.doc.length) }, scrollIntoView: true });
     this.view.focus();

@@ -1,21 +1,21 @@
-// Formulas, set by KaTeX. Those that would fill the page are set when somebody asks for them.
+// Formulas, typeset by KaTeX. Very long ones are typeset on request.
 
 import katex from "katex";
 import { element } from "./dom";
 
-// Letters of LaTeX beyond which a formula is a wall.
+// Number of characters of LaTeX above which a formula is typeset on request.
 const LONG = 1500;
 
 export function formula(latex: string): HTMLElement {
   if (latex.length <= LONG) {
     return set(latex);
   }
-  const button = element("button", { class: "long", type: "button" }, `a formula of ${latex.length.toLocaleString("en")} letters: show it`);
+  const button = element("button", { class: "long", type: "button" }, `show a formula of ${latex.length.toLocaleString("en")} characters`);
   button.onclick = () => button.replaceWith(set(latex));
   return button;
 }
 
-// Formulas that were set already: most of them stay when somebody types. The oldest go first.
+// Cache of typeset formulas, since most stay the same while the text is edited; the oldest are removed first.
 const known = new Map<string, HTMLElement>();
 const KEPT = 3000;
 

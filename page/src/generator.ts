@@ -1,5 +1,5 @@
-// The generator as the page sees it: requests and their answers. A worker that is busy with an old text is ended, and
-// one that stands by takes its place, so that nobody waits for what nobody wants any more.
+// Client of the generator: sends requests to a worker and returns promises of the answers. A worker that is busy with
+// an outdated text is terminated, and a standby worker takes its place.
 
 import type { Opened } from "./answers";
 
@@ -15,10 +15,10 @@ interface Waiting {
   reject(error: Error): void;
 }
 
-// The answer to a request that a newer text has made pointless.
+// Rejection of a request that a newer text or request has superseded.
 export class Dropped extends Error {}
 
-// How long somebody who wants something else waits for older work, in ms.
+// Time that a new request waits for older work before terminating it (ms).
 const PATIENCE = 2000;
 
 export class Generator {
@@ -26,12 +26,12 @@ export class Generator {
   private standby: Worker;
   private waiting = new Map<number, Waiting>();
   private next = 0;
-  // The description that requests are about, and whether the worker has yet to open it: one that stood by knows of none.
+  // The open description, and whether a former standby worker has yet to open it.
   private last: { text: string; name: string } | undefined;
   private unopened = false;
-  // Who waits until nothing is worked on.
+  // Callbacks for the time when no request is pending.
   private readonly idle: (() => void)[] = [];
-  // Counts what somebody waits for.
+  // Number of the latest request of `instead`.
   private urgent = 0;
 
   constructor(
@@ -42,7 +42,7 @@ export class Generator {
     this.standby = this.started();
   }
 
-  // Reads and derives a text. Whatever was being done for an older one is dropped.
+  // Reads and derives a text, and drops all work on an older one.
   open(text: string, name: string): Promise<Opened> {
     this.drop();
     this.last = { text, name };
@@ -58,7 +58,7 @@ export class Generator {
     return this.post<T>(what, request);
   }
 
-  // Asks for what is wanted in place of anything older: work that goes on for too long is ended.
+  // Sends a request that supersedes older ones, whose work is terminated if it takes too long.
   async instead<T>(what: string, request: object): Promise<T> {
     const urgent = ++this.urgent;
     if (this.waiting.size > 0) {
@@ -83,7 +83,7 @@ export class Generator {
     return answer as Promise<T>;
   }
 
-  // Ends what is being worked on.
+  // Terminates all pending work.
   drop(): void {
     if (this.waiting.size === 0) {
       return;
@@ -92,7 +92,7 @@ export class Generator {
     this.refuse(new Dropped("a newer text has come"));
   }
 
-  // The worker that stands by takes over.
+  // Terminates the worker, and replaces it by the standby worker.
   private replace(): void {
     this.worker.terminate();
     this.worker = this.standby;
@@ -139,7 +139,7 @@ export class Generator {
     this.rest();
   }
 
-  // Tells those who wait for older work that there is none.
+  // Runs the idle callbacks if no request is pending.
   private rest(): void {
     if (this.waiting.size === 0) {
       this.idle.splice(0).forEach((resolve) => resolve());

@@ -1,7 +1,7 @@
-// A module of WebAssembly whose code is taken apart into streams, and put together again: what instructions do in one, which
-// variables, places in memory, constants and functions they do it with in others. More repeats within each stream than in
-// their mixture, so that it is packed shorter. Lengths of functions follow from their ends. How memory is aligned is a
-// hint without an effect on any value, and is left out: it comes back as "not at all".
+// Splits the code of a WebAssembly module into streams, and joins them again. Opcodes are in one stream, and variables,
+// memory offsets, constants and functions in others; each stream has more repetition than their mixture, and compresses
+// better. Lengths of functions follow from their ends. Alignments are hints without an effect on results; they are
+// omitted, and come back as 0.
 
 type Bytes = Uint8Array<ArrayBuffer>;
 
@@ -23,13 +23,13 @@ const enum Stream {
 const STREAMS = 12;
 const CODE = 10;
 
-// Where bytes come from.
+// Reads bytes.
 class Reader {
   at = 0;
 
   constructor(readonly bytes: Bytes) {}
 
-  // A byte, which is put there, too.
+  // Reads a byte, and copies it to `to`.
   byte(to?: Writer): number {
     const byte = this.bytes[this.at++];
     if (byte === undefined) {
@@ -39,8 +39,8 @@ class Reader {
     return byte;
   }
 
-  // A number of seven bits a byte, put there as it is. Lengths have less than 32 bits; of numbers that are longer, nobody asks
-  // for the value.
+  // Reads a LEB128 number, and copies its bytes to `to`. The value is correct below 32 bits, as for lengths; values of
+  // longer numbers are not used.
   number(to?: Writer): number {
     let value = 0;
     for (let shift = 0; ; shift += 7) {
@@ -57,7 +57,7 @@ class Reader {
   }
 }
 
-// Where they go.
+// Writes bytes to a growing buffer.
 class Writer {
   private bytes: Bytes = new Uint8Array(1 << 16);
   private length = 0;
@@ -97,21 +97,21 @@ class Writer {
   }
 }
 
-// One direction or the other: what a walk over the code does with what it meets.
+// Operations of a walk over the code, for splitting or joining.
 interface Hand {
-  // The next operation: one byte.
+  // The next opcode, one byte.
   operation(): number;
   // The next number of a stream.
   number(stream: Stream): number;
   // The next bytes of a stream.
   bytes(stream: Stream, count: number): void;
-  // How the memory that is meant is aligned.
+  // The alignment of a memory access.
   alignment(): void;
-  // A function, whose length stands before it.
+  // A function body, preceded by its length.
   body(walk: () => void): void;
 }
 
-// All functions of a module.
+// Walks over all functions of a module.
 function walk(hand: Hand): void {
   for (let count = hand.number(Stream.Counts); count > 0; count--) {
     hand.body(() => {
@@ -119,7 +119,7 @@ function walk(hand: Hand): void {
         hand.number(Stream.Counts);
         hand.bytes(Stream.Counts, 1);
       }
-      // The body is a block of its own.
+      // The body itself counts as a block.
       for (let depth = 1; depth > 0; ) {
         depth += instruction(hand);
       }
@@ -127,7 +127,7 @@ function walk(hand: Hand): void {
   }
 }
 
-// Operations that one number belongs to, by its stream: block, loop, if, memory.size, memory.grow, ref.null; br, br_if; call,
+// Opcodes with one number, by the stream of the number: block, loop, if, memory.size, memory.grow, ref.null; br, br_if; call,
 // ref.func; local.get, local.set, local.tee; global.get, global.set, table.get, table.set; i32.const, i64.const.
 const ONE: (Stream | undefined)[] = [];
 for (const [stream, operations] of [
@@ -141,13 +141,13 @@ for (const [stream, operations] of [
   operations.forEach((operation) => (ONE[operation] = stream));
 }
 
-// Operations that nothing belongs to: unreachable, nop, else, end, return, drop, select, ref.is_null; and arithmetic.
+// Opcodes without operands: unreachable, nop, else, end, return, drop, select, ref.is_null. Arithmetic has none either.
 const NONE = [0x00, 0x01, 0x05, 0x0b, 0x0f, 0x1a, 0x1b, 0xd1];
 
-// How many numbers belong to the operations behind 0xfc: roundings of reals, then parts of memories and tables.
+// Number of operands of the opcodes after 0xfc: saturating truncations, then bulk operations on memories and tables.
 const MORE = [0, 0, 0, 0, 0, 0, 0, 0, 2, 1, 2, 1, 2, 1, 2, 1, 1, 1];
 
-// An instruction with what belongs to it; by how much it changes the depth of blocks.
+// Walks over an instruction with its operands; returns the change of the block depth.
 function instruction(hand: Hand): number {
   const operation = hand.operation();
   const stream = ONE[operation];
@@ -159,7 +159,7 @@ function instruction(hand: Hand): number {
   if (stream !== undefined) {
     hand.number(stream);
   } else if (operation >= 0x28 && operation <= 0x3e) {
-    // Reads and writes of memory.
+    // Loads and stores.
     hand.alignment();
     hand.number(Stream.Places);
   } else if (operation === 0x0e) {
@@ -181,10 +181,10 @@ function instruction(hand: Hand): number {
 }
 
 function unknown(operation: number): never {
-  throw new Error(`no instruction of WebAssembly that is known here has the number ${operation}`);
+  throw new Error(`unsupported WebAssembly instruction: opcode ${operation}`);
 }
 
-// A module as streams, one behind the other, with their lengths before them.
+// Splits a module into streams, concatenated after a list of their lengths.
 export function apart(module: Bytes): Bytes {
   const from = new Reader(module);
   const streams = Array.from({ length: STREAMS }, () => new Writer());
@@ -220,7 +220,7 @@ export function apart(module: Bytes): Bytes {
   return whole.written();
 }
 
-// The module that was taken apart.
+// Joins the streams of a module.
 export function together(streams: Bytes): Bytes {
   const all = new Reader(streams);
   const lengths = Array.from({ length: STREAMS }, () => all.number());

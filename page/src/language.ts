@@ -1,5 +1,4 @@
-// The language of descriptions for the editor: comments, statements, kinds, functions, numbers. Errors are the
-// generator's; this only colours.
+// Syntax highlighting of descriptions: comments, statements, kinds, functions, numbers. It does not detect errors.
 
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import type { Extension } from "@codemirror/state";

@@ -1,4 +1,4 @@
-// The text in the address: compressed, so that a link is a system.
+// Links that contain the text of a description, compressed, in the fragment of the address.
 
 export async function packed(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
@@ -10,7 +10,7 @@ export async function packed(text: string): Promise<string> {
   return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-// The text of an address; none where there is none, or where it cannot be read.
+// Returns the text of a fragment, or `undefined` if it is not valid.
 export async function unpacked(packed: string): Promise<string | undefined> {
   try {
     const binary = atob(packed.replaceAll("-", "+").replaceAll("_", "/"));

@@ -1,8 +1,8 @@
-// What runs first: it unpacks the page's script, which gets everything else by the same code.
+// Unpacks and runs the script of the page, which unpacks all other parts with the same function.
 
 import { decompress } from "lzma1";
 
-// A part of the file: packed, in base64.
+// Unpacks a part of the file, which is compressed and encoded in base64.
 function part(id: string): Uint8Array<ArrayBuffer> {
   const text = document.getElementById(id)?.textContent ?? "";
   return decompress(Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0)));

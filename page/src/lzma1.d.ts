@@ -1,3 +1,3 @@
-// What the page takes of the package `lzma1`, whose own types are sources that do not pass the settings of this page.
+// Types of the function that the page uses from `lzma1`, whose own types fail the compiler settings of the page.
 
 export function decompress(packed: Uint8Array): Uint8Array<ArrayBuffer>;

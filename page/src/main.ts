@@ -1,4 +1,4 @@
-// The page: the text on the left, and on the right what the generator makes of it.
+// The page: the description on the left, the results of the generator on the right.
 
 import type { Advice, Checked, Imported, Mark, Operations, System, Tables } from "./answers";
 import { byId, element } from "./dom";
@@ -17,22 +17,22 @@ interface Example {
   until: number;
 }
 
-// How long the text has to rest before it is read, in ms: what a paste or a held key brings at once is read once.
+// Time after the last change before the text is read (ms), so that a paste or a held key is read once.
 const REST = 8;
 
 class Page {
   private readonly editor: Editor;
   private readonly tabs: Tabs;
   private resting: number | undefined;
-  // Counts texts, so that answers about an old one are not shown.
+  // Number of the current text, so that answers about older ones are ignored.
   private age = 0;
   private system: System | null = null;
-  // Whether any text was without errors.
+  // Whether any text so far had no errors.
   private derived = false;
-  // Panels that show the present text.
+  // Panels that show the current text.
   private readonly shown = new Set<string>();
   private name = "system.eom";
-  // The description that was made of a robot, and what was said of the robot.
+  // The last description generated from a robot, with the warnings of the import.
   private imported = { text: "", said: "" };
   readonly motion: Motion;
 
@@ -63,7 +63,7 @@ class Page {
     this.resting = window.setTimeout(() => void this.read(begin), REST);
   }
 
-  // Reads the text; then shows what the panel in front is about.
+  // Reads the text, then fills the active panel.
   private async read(begin = performance.now()): Promise<void> {
     const age = ++this.age;
     document.body.dataset["answered"] = "";
@@ -84,7 +84,7 @@ class Page {
       if (opened.system === null) {
         const errors = Math.max(1, opened.marks.filter((mark) => mark.severity === "error").length);
         document.body.dataset["answered"] = "yes";
-        const below = this.derived ? "; below is what the last one without errors gave" : "";
+        const below = this.derived ? "; the results below belong to the last text without errors" : "";
         this.status(`${errors} error${errors === 1 ? "" : "s"} in the description${below}`, true);
         return;
       }
@@ -98,7 +98,7 @@ class Page {
     }
   }
 
-  // Fills the panel in front, unless it shows the present text already.
+  // Fills the active panel, unless it already shows the current text.
   private async show(): Promise<void> {
     const name = this.tabs.current;
     const system = this.system;
@@ -132,7 +132,7 @@ class Page {
       const answer = await this.generator.ask<Tables>("tables", { of: [name] });
       return { answer, shown: answer.tables.filter((table) => table.nonzero > 0 || table.name === "gamma") };
     };
-    // One is derived while the one before it is set.
+    // Each table is derived while the one before it is typeset.
     const coming = tables.ALL.map((name) => ({ name, table: tables.waits(name, velocities) ? null : derived(name) }));
     coming.forEach(({ table }) => table?.catch(() => {}));
     let begun = false;
@@ -182,11 +182,11 @@ class Page {
     );
   }
 
-  // Errors and warnings below the text, each a button that leads to its place.
+  // Lists errors and warnings below the text, as buttons that move the cursor to their places.
   private say(marks: Mark[], said: string): void {
     const list: Node[] = marks.map((mark) => {
       const line = mark.range === null ? null : this.editor.view.state.doc.lineAt(Math.min(mark.range[0], this.editor.view.state.doc.length));
-      // Columns are letters, as the command line counts them: some are two units of a string.
+      // Columns count characters, like the command line; some characters are two UTF-16 units.
       const before = line === null || mark.range === null ? "" : line.text.slice(0, mark.range[0] - line.from);
       const place = line === null ? "" : ` at ${line.number}:${[...before].length + 1}`;
       const button = element(
@@ -236,7 +236,7 @@ class Page {
     };
   }
 
-  // Files come by the button, or are dropped onto the editor.
+  // Accepts files by the button, or dropped onto the editor.
   private files(): void {
     const picker = byId<HTMLInputElement>("file");
     byId("robot").onclick = () => picker.click();
@@ -271,7 +271,7 @@ class Page {
     );
   }
 
-  // A description is read as it is, a robot in URDF becomes one.
+  // Opens a description, or converts a robot in URDF to one.
   private async take(file: File): Promise<void> {
     const text = await decoded(file);
     const stem = file.name.replace(/\.[^.]*$/, "");
@@ -315,19 +315,19 @@ class Page {
     await this.keep(this.editor.text);
     try {
       await navigator.clipboard.writeText(location.href);
-      this.status("the link is copied; it holds the whole text");
+      this.status("link copied; it contains the whole text");
     } catch {
-      this.status("the address of this page is the link; it holds the whole text");
+      this.status("copy the address of this page; it contains the whole text");
     }
   }
 }
 
-// The text of a file: UTF-16 with its mark, what an XML declaration says, and else UTF-8.
+// Decodes a file: UTF-16 with a byte order mark, the encoding of an XML declaration, otherwise UTF-8.
 async function decoded(file: File): Promise<string> {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const start = new TextDecoder("latin1").decode(bytes.subarray(0, 200));
   const declared = /<\?xml[^>]*encoding\s*=\s*["']([^"']+)/.exec(start)?.[1];
-  // Single bytes that name UTF-16 are not UTF-16: the declaration is older than the file.
+  // A declaration of UTF-16 that is itself in single bytes is wrong: the file was converted.
   const narrow = declared?.toLowerCase().startsWith("utf-16") === true ? undefined : declared;
   const wide = start.startsWith("\u00ff\u00fe") ? "utf-16le" : start.startsWith("\u00fe\u00ff") ? "utf-16be" : undefined;
   try {
@@ -337,7 +337,7 @@ async function decoded(file: File): Promise<string> {
   }
 }
 
-// A part of the file, unpacked, from `page/src/loader.ts`.
+// Unpacks a part of the file; defined in `page/src/loader.ts`.
 declare const hamelPart: (id: string) => Uint8Array<ArrayBuffer>;
 
 async function begin(): Promise<void> {
@@ -348,7 +348,7 @@ async function begin(): Promise<void> {
   const first = examples.find((example) => example.name === "heavy_top");
   const generator = new Generator(module, worker);
   const page = new Page(generator, examples, linked ?? first?.text ?? "");
-  // For the console, and for tests: whatever the generator can be asked, the text, and the motion.
+  // For the console and tests.
   Object.assign(globalThis, { hamel: generator, hamelText: () => page.text, hamelMotion: page.motion });
   document.body.dataset["ready"] = "yes";
 }

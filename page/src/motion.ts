@@ -1,4 +1,4 @@
-// The motion: a run from a start that can be changed, in space and over time, and what the methods cost on it.
+// The panel of the motion: a run from an editable start, its picture and plots, and a comparison of methods.
 
 import type { Case, Pulled, Run, System } from "./answers";
 import { element } from "./dom";
@@ -7,25 +7,25 @@ import { overTime, precision, type Line } from "./plots";
 import { type Grip, Stage } from "./scene";
 import { Start } from "./start";
 
-// How long numbers rest before a run is made again, in ms.
+// Time after the last change of a number before a new run starts (ms).
 const REST = 120;
-// After how long somebody is told that a run is under way, in ms.
+// Time after which a run is shown as running (ms).
 const SLOW = 500;
-// Lines of one plot.
+// Largest number of lines in a plot, and of plots of outputs and invariants.
 const MOST = 8;
-// Numbers of steps of a comparison, and its length at most.
+// Numbers of steps of a comparison, and its largest length (s).
 const STEPS = [50, 100, 200, 400, 800];
 const LONGEST = 5;
 
 export class Motion {
   private stage: Stage | undefined;
   private run: Run | undefined;
-  // Where everything is at each sample, and at the moment that is shown.
+  // Numbers of the scene at each sample, and at the displayed time.
   private scenes: Float32Array[] = [];
   private between = new Float32Array();
   private system: System | undefined;
   private start: Start | undefined;
-  // A pull that waits for the one before it, whether one is under way, and whether a body is held.
+  // The next pull, whether one is being computed, and whether the pointer holds a body.
   private waiting: (() => Promise<void>) | undefined;
   private pulling = false;
   private held = false;
@@ -33,10 +33,10 @@ export class Motion {
   private playing = false;
   private time = 0;
   private last = 0;
-  // Entries of ξ.
+  // Names of the entries of ξ.
   private names: string[] = [];
   private resting: number | undefined;
-  // Counts runs.
+  // Number of the latest run.
   private turn = 0;
 
   private readonly method = element("select", { id: "method" });
@@ -51,7 +51,7 @@ export class Motion {
   private readonly summary = element("p", { class: "note", role: "status", id: "summary" });
   private readonly fields = element("div", {});
   private readonly missing = element("p", { class: "note", id: "missing" });
-  private readonly reset = element("button", { type: "button", id: "reset" }, "Back to the start of the text");
+  private readonly reset = element("button", { type: "button", id: "reset" }, "Reset to the start in the text");
   private readonly comparison = element("div", {});
 
   constructor(
@@ -88,20 +88,20 @@ export class Motion {
     };
   }
 
-  // Fields for the start of a system, or for another one.
+  // Creates the fields for the start of a system.
   private begin(system: System): void {
     this.start = new Start(system, () => this.again());
     this.fields.replaceChildren(this.start.element);
     this.reset.hidden = system === this.system;
   }
 
-  // Where the point of the picture is that a place of the world is seen at, for tests.
+  // Projects a point of the world to the window, for tests.
   place(point: number[]): [number, number] | undefined {
     return this.stage?.place(point);
   }
 
-  // A point of the mechanism follows the pointer: the start becomes one at which it is there, or near. One pull is made
-  // at a time, and the last one is always made.
+  // Changes the start so that a point of the mechanism is at the pointer, or near it. One pull is computed at a time,
+  // and the last one always.
   private pull(grip: Grip, target: number[], sight: number[]): void {
     this.held = true;
     this.waiting = async () => {
@@ -133,14 +133,14 @@ export class Motion {
     this.letGo();
   }
 
-  // Runs from where a body was put, once it is let go and the last pull is made.
+  // Starts a run after the body is released and the last pull is computed.
   private letGo(): void {
     if (!this.held && !this.pulling) {
       this.again();
     }
   }
 
-  // Runs a system that is new.
+  // Shows a new system, and runs it.
   async of(system: System): Promise<void> {
     const before = this.method.value;
     this.method.replaceChildren(...system.methods.map((name) => element("option", {}, name)));
@@ -152,17 +152,17 @@ export class Motion {
     await this.integrate(true);
   }
 
-  // How long runs are from now on (s).
+  // Sets the length of runs (s).
   lasts(until: number): void {
     this.until.value = String(until);
   }
 
-  // Draws the moment that is shown.
+  // Draws the displayed time again.
   draw(): void {
     this.show(this.time);
   }
 
-  // What a frame takes in ms when the motion is played, the median of so many, and how often it calls the graphics card.
+  // Measures the median time of a frame of the animation (ms), and its number of draw calls.
   measure(frames: number): { frame: number; calls: number } {
     const times = Array.from({ length: frames }, (_, at) => {
       const begin = performance.now();
@@ -190,7 +190,7 @@ export class Motion {
   private asked(): object {
     const step = this.step.valueAsNumber;
     return {
-      // What is no length is refused by the generator, in its words.
+      // The generator reports invalid lengths.
       until: Number.isNaN(this.until.valueAsNumber) ? 10 : this.until.valueAsNumber,
       ...(Number.isNaN(step) ? {} : { step }),
       method: this.method.value,
@@ -206,7 +206,7 @@ export class Motion {
     try {
       run = await this.generator.instead<Run>("simulate", this.asked());
     } catch (error) {
-      // A newer run is shown in its place.
+      // Errors of a superseded run are ignored.
       if (turn === this.turn) {
         this.refused(error);
         if (error instanceof Dropped) {
@@ -220,12 +220,12 @@ export class Motion {
     this.run = run;
     const reason = run.reason === null ? "" : `, chosen because ${run.reason}`;
     this.summary.classList.toggle("bad", run.failure !== null);
-    const drift = run.drift === null ? "all energy comes from outside" : `energy changes by ${run.drift.toExponential(1)} of its size at most`;
+    const drift = run.drift === null ? "all energy is supplied from outside" : `relative change of the energy at most ${run.drift.toExponential(1)}`;
     this.summary.textContent = run.failure ?? `${run.method}${reason}; ${run.steps.toLocaleString("en")} steps, ${drift}`;
     this.summary.dataset["drift"] = String(run.drift);
     const { scene, width, numbers } = run;
     this.view.hidden = scene === null || numbers === undefined;
-    const nothing = "There is nothing to draw: a statement such as `frame f = pose(R, r);` says where a part of the mechanism is.";
+    const nothing = "There is nothing to draw: a statement such as `frame f = pose(R, r);` would give a part of the mechanism a place.";
     const missing = run.missing.map((part) => `Not drawn: ${part}.`);
     this.missing.replaceChildren([...(scene === null ? [nothing] : []), ...missing].join(" "));
     if (scene !== null && numbers !== undefined) {
@@ -255,7 +255,7 @@ export class Motion {
     const velocities: Line[] = names.slice(0, MOST).map((name, index) => ({ name, y: run.t.map((_, at) => run.xi[at * wide + index] ?? null) }));
     const first = run.energy[0] ?? 0;
     const energy: Line[] = [{ name: "energy", y: run.energy.map((value) => (value === null ? null : value - first)) }];
-    const pictures = [overTime(names.length > MOST ? `velocities, the first ${MOST}` : "velocities", run.t, velocities), overTime(`energy less its start, ${first.toPrecision(4)}`, run.t, energy)];
+    const pictures = [overTime(names.length > MOST ? `velocities, the first ${MOST}` : "velocities", run.t, velocities), overTime(`energy minus its initial value, ${first.toPrecision(4)}`, run.t, energy)];
     const tracks = [
       ...run.invariants.map((track) => ({ ...track, title: `invariant ${track.name}` })),
       ...run.outputs.map((track) => ({ ...track, title: `output ${track.name}` })),
@@ -304,7 +304,7 @@ export class Motion {
     requestAnimationFrame((later) => this.tick(later));
   }
 
-  // The moment t: the scene between two samples is on the straight line between theirs.
+  // Shows the time t, with the scene interpolated linearly between two samples.
   private show(t: number): void {
     const run = this.run;
     const end = Number(this.scrub.max);
@@ -347,10 +347,10 @@ export class Motion {
         }));
       this.comparison.replaceChildren(
         precision(`error at t = ${until} against evaluations`, curves),
-        element("p", { class: "note" }, `Errors are differences from ${compared.reference}; further down and to the left is better.`),
+        element("p", { class: "note" }, `Errors are differences from ${compared.reference}; lower and further left is better.`),
       );
     } catch (error) {
-      // A run that was wanted in its place has ended it.
+      // A newer run has superseded the comparison.
       this.comparison.replaceChildren(...(error instanceof Dropped ? [] : [element("pre", {}, error instanceof Error ? error.message : String(error))]));
     }
   }

@@ -1,4 +1,4 @@
-// Small plots as SVG: lines over time with the present moment, and errors against work.
+// Small plots in SVG: lines over time with a cursor, and errors against work.
 
 import { element } from "./dom";
 
@@ -28,7 +28,7 @@ function svg(tag: string, attributes: Record<string, string | number>, text?: st
   return made;
 }
 
-// About four round numbers between two.
+// About four round numbers between two limits.
 function ticks(low: number, high: number): number[] {
   const raw = (high - low) / 4;
   const power = 10 ** Math.floor(Math.log10(raw));
@@ -81,7 +81,7 @@ function legend(names: string[]): HTMLElement {
   return list;
 }
 
-// Lines over time; `moment` moves the line of the present.
+// Plots lines over time; `moment` moves the cursor.
 export function overTime(title: string, t: number[], lines: Line[]): { element: HTMLElement; moment(t: number): void } {
   const values = lines.flatMap((line) => line.y).filter((value) => value !== null);
   let [low, high] = [Infinity, -Infinity];
@@ -112,7 +112,7 @@ export interface Curve {
   points: [work: number, error: number][];
 }
 
-// Errors against work, both by their logarithms.
+// Plots errors against work, on logarithmic axes.
 export function precision(title: string, curves: Curve[]): HTMLElement {
   const logs = curves.map((curve) => ({
     name: curve.name,
@@ -125,7 +125,7 @@ export function precision(title: string, curves: Curve[]): HTMLElement {
     return [Math.min(...list) - 0.2, Math.max(...list) + 0.2];
   };
   if (all.length === 0) {
-    return element("p", { class: "note" }, "No method has a run to show.");
+    return element("p", { class: "note" }, "No method has results to show.");
   }
   const { picture, x, y } = frame(title, range(0), range(1), true);
   drawn.forEach((curve, index) => {

@@ -1,4 +1,4 @@
-// Identities with their verdicts, operation counts with the adviser, and generated code.
+// Panels of identities with their verdicts, operation counts with advice on velocities, and generated code.
 
 import type { Advice, Checked, Counts, Operations } from "./answers";
 import { element } from "./dom";
@@ -18,10 +18,10 @@ export function identities(checked: Checked): Node[] {
     element(
       "p",
       { class: "note" },
-      "“proved” is exact, over the rationals and modulo the constraint; “checked” is equality at random points of the configuration manifold in exact arithmetic, with a bound of the chance that a false equation passes.",
+      "“proved” means exact, over the rationals and modulo the constraint; “checked” means equality at random points of the configuration manifold in exact arithmetic, with a bound on the probability that a false equation passes.",
     ),
     element("div", { class: "scroll" }, element("table", { class: "grid" }, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows))),
-    element("h3", {}, "What follows from the symbols"),
+    element("h3", {}, "Consequences of the coefficients"),
     element("pre", { tabindex: "0" }, checked.remarks.replace(/^ {2}/gm, "")),
   ];
 }
@@ -41,7 +41,7 @@ export function operations(counted: Operations): Node[] {
   );
   const once = KINDS.slice(1).reduce((sum, kind) => sum + counted.parameters.hoisted[kind], 0);
   return [
-    element("p", { class: "note" }, `Operations of one call. ${once} more are done once, when parameters are set. “written out” counts the same results without anything computed once for several uses.`),
+    element("p", { class: "note" }, `Operations of one call. ${once} more are done once, when parameters are set. “written out” counts the same results without shared subexpressions.`),
     element("div", { class: "scroll" }, element("table", { class: "grid" }, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows))),
   ];
 }
@@ -51,7 +51,7 @@ function compact(count: number): string {
 }
 
 export function advice(advised: Advice): Node[] {
-  const head = ["velocities", "accel", "rate", "what to write"].map((name) => element("th", { scope: "col" }, name));
+  const head = ["velocities", "accel", "rate", "statements"].map((name) => element("th", { scope: "col" }, name));
   const rows = advised.choices.map((choice) =>
     element(
       "tr",
@@ -59,13 +59,13 @@ export function advice(advised: Advice): Node[] {
       element("th", { scope: "row" }, choice.velocities),
       element("td", { class: "number" }, String(choice.accel.flops)),
       element("td", { class: "number" }, String(choice.rate.flops)),
-      choice.as_written === "yes" ? element("td", {}, "as it is written") : element("td", {}, element("pre", {}, choice.statements.join("\n"))),
+      choice.as_written === "yes" ? element("td", {}, "as written") : element("td", {}, element("pre", {}, choice.statements.join("\n"))),
     ),
   );
   return [element("div", { class: "scroll" }, element("table", { class: "grid" }, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows)))];
 }
 
-// Generated text with a button that copies it.
+// Generated code with a button that copies it.
 export function code(title: string, text: string): Node {
   const copy = element("button", { type: "button" }, "Copy");
   copy.onclick = async () => {

@@ -1,4 +1,4 @@
-// The mechanism in space: bodies as the ellipsoids of their inertia, frames, joints, springs, as three.js draws them.
+// The picture of the mechanism in three.js: bodies as ellipsoids of inertia, frames, joints, springs.
 
 import {
   AmbientLight,
@@ -28,16 +28,16 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Scene } from "./answers";
 
-// What a mechanism is held by: a point of a frame in its axes, or a particle.
+// A point that the pointer holds: a point of a frame in its axes, or a particle.
 export type Grip = { frame: number; at: number[] } | { particle: number };
 
 const COLOURS = [0x4f8fd9, 0xe08a4c, 0x5fae78, 0xb877b8, 0xcf6a5f, 0x9aa653, 0x45a5ab, 0x8f83cf];
-// The thinnest that a body is drawn, beside the size of the mechanism.
+// Smallest radius of a body, relative to the size of the mechanism.
 const THIN = 0.012;
-// How many times its own size a mechanism may move without being followed.
+// Extent of a run, relative to the size of the mechanism, above which the camera follows.
 const FAR = 8;
 
-// What is drawn as one list of numbers, in the order in which `page/wasm/src/scenes.rs` writes it.
+// Reads the vectors of a scene, in the order in which `page/wasm/src/scenes.rs` writes them.
 class Reader {
   private at = 0;
   constructor(private readonly numbers: ArrayLike<number>) {}
@@ -60,16 +60,16 @@ export class Stage {
   private readonly controls: OrbitControls;
   private mechanism = new Group();
   private scene: Scene | undefined;
-  // Whether the camera goes where the mechanism goes, and where that was last.
+  // Whether the camera follows the mechanism, and the last centre of the mechanism.
   private followed = false;
   private readonly centre = new Vector3();
   private update: (numbers: ArrayLike<number>) => void = () => {};
-  // What can be held, with the frame of a body.
+  // Frames, and parts that can be dragged.
   private frames: LineSegments[] = [];
   private held: { part: Mesh; body: number | null; particle: number }[] = [];
 
-  // `grips` says whether a pointer may take hold of what it meets; then `pulled` is told where it goes, and `released`
-  // that it let go.
+  // `grips` returns whether parts can be dragged; `pulled` is called with every target of a drag, and `released` at its
+  // end.
   constructor(
     private readonly holder: HTMLElement,
     private readonly grips: () => boolean,
@@ -80,9 +80,9 @@ export class Stage {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.holder.append(this.renderer.domElement);
     this.renderer.domElement.setAttribute("role", "img");
-    this.renderer.domElement.setAttribute("aria-label", "The mechanism; drag a body to place it at the start, drag beside it to look from elsewhere, scroll to come closer");
+    this.renderer.domElement.setAttribute("aria-label", "The mechanism: drag a body to change the start, drag the background to rotate the view, scroll to zoom");
     this.camera.up.set(0, 0, 1);
-    // Before the camera's own, which would turn it.
+    // Registered before the listener of the controls, which would rotate the view.
     this.renderer.domElement.addEventListener("pointerdown", (event) => this.take(event));
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.render());
@@ -93,8 +93,8 @@ export class Stage {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.render());
   }
 
-  // Shows a mechanism whose scenes along the run are these; one that is new is looked at from a distance that shows all of
-  // the run.
+  // Shows a mechanism with its scenes along a run. For a new one, the camera moves to a distance from which the whole
+  // run is visible.
   show(scene: Scene, scenes: ArrayLike<number>[], fresh: boolean): void {
     this.space.remove(this.mechanism);
     dispose(this.mechanism);
@@ -107,7 +107,7 @@ export class Stage {
     const size = Math.max(own.getSize(new Vector3()).length(), 2 * reach, 1e-6);
     this.update = this.built(scene, size);
     const whole = Math.max(box.getSize(new Vector3()).length() + 2 * reach, size);
-    // What goes further than this is followed: it would be a dot in the distance.
+    // A mechanism that moves far would be too small in a view of the whole run.
     this.followed = whole > FAR * size;
     const shown = this.followed ? 2 * size : whole;
     const centre = (this.followed ? own : box).getCenter(new Vector3());
@@ -131,7 +131,7 @@ export class Stage {
     this.controls.update();
   }
 
-  // Moves to a scene.
+  // Moves all parts to the places of a scene.
   move(numbers: ArrayLike<number>): void {
     this.update(numbers);
     if (this.followed && this.scene !== undefined) {
@@ -144,7 +144,7 @@ export class Stage {
     this.render();
   }
 
-  // Takes hold of a body or particle; it goes where the pointer is seen.
+  // Begins to drag a body or particle, in the plane through it that is parallel to the screen.
   private take(event: PointerEvent): void {
     if (event.button !== 0 || !this.grips()) {
       return;
@@ -184,7 +184,7 @@ export class Stage {
     };
   }
 
-  // Where a point of the world is in the window (pixels).
+  // Projects a point of the world to the window (pixels).
   place(point: number[]): [x: number, y: number] {
     const box = this.renderer.domElement.getBoundingClientRect();
     const { x, y } = new Vector3().fromArray(point).project(this.camera);
@@ -195,7 +195,7 @@ export class Stage {
     this.renderer.render(this.space, this.camera);
   }
 
-  // How often the last frame called the graphics card.
+  // Number of draw calls of the last frame.
   get calls(): number {
     return this.renderer.info.render.calls;
   }
@@ -210,7 +210,7 @@ export class Stage {
     }
   }
 
-  // The parts of a mechanism, and what moves them.
+  // Creates the parts of a mechanism, and returns the function that moves them.
   private built(scene: Scene, size: number): (numbers: ArrayLike<number>) => void {
     const add = <T extends Mesh | Line>(part: T): T => {
       part.frustumCulled = false;
@@ -230,7 +230,7 @@ export class Stage {
     const joints = scene.joints.map((joint) => joint.axes.map(() => add(new Mesh(pin, new MeshStandardMaterial({ color: 0x7a808c, roughness: 0.4 })))));
     const lines = scene.lines.map((line) => add(line.acts === "spring" ? coil() : segment(line.acts === "damper" ? 0x9aa653 : 0xcf6a5f)));
     const rods = scene.rods.map(() => add(segment(0x8a8f99)));
-    // Both points that a loop brings together, and what is between them where it is open.
+    // The two points that a loop joins, and a line between them if the loop is open.
     const closed = () => add(new Mesh(ball, new MeshStandardMaterial({ color: 0xcf6a5f, roughness: 0.4, wireframe: true })));
     const loops = scene.loops.map(() => ({ ends: [closed(), closed()], gap: add(segment(0xcf6a5f)) }));
     const centre = scene.centre === null ? null : add(new Mesh(ball, new MeshStandardMaterial({ color: 0xd9b13a })));
@@ -243,7 +243,7 @@ export class Stage {
       const reader = new Reader(numbers);
       const places: Vector3[] = [];
       scene.frames.forEach((frame, index) => {
-        // Between two samples they are a little shorter than 1.
+        // Vectors interpolated between two samples are slightly shorter than 1.
         const rows = [reader.vector().normalize(), reader.vector().normalize(), reader.vector().normalize()] as const;
         const place = reader.vector();
         places.push(place);
@@ -281,7 +281,7 @@ export class Stage {
   }
 }
 
-// Gives back what the graphics card keeps of parts that are not shown any more.
+// Frees the GPU memory of parts.
 function dispose(parts: Group): void {
   parts.traverse((part) => {
     if (part instanceof Mesh || part instanceof Line) {
@@ -295,7 +295,7 @@ function colour(index: number): number {
   return COLOURS[index % COLOURS.length] ?? 0x888888;
 }
 
-// All that the frames, bodies, particles and lines of these scenes touch.
+// The bounding box of the frames, bodies, particles and lines of scenes.
 function extent(scene: Scene, scenes: ArrayLike<number>[]): Box3 {
   const box = new Box3();
   const add = (point: Vector3) => {
@@ -353,7 +353,7 @@ function coil(): Line {
   return new Line(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({ color: 0x5fae78 }));
 }
 
-// A rotation that takes z along a direction.
+// A rotation that takes the z axis to a direction.
 function along(direction: Vector3): Matrix4 {
   const z = direction.clone().normalize();
   const helper = Math.abs(z.x) < 0.8 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
@@ -361,7 +361,7 @@ function along(direction: Vector3): Matrix4 {
   return new Matrix4().makeBasis(x, new Vector3().crossVectors(z, x), z);
 }
 
-// Puts what reaches along z from 0 to 1 between two points.
+// Places a part that extends along z from 0 to 1 between two points.
 function stretch(part: Line | null, from: Vector3, to: Vector3, width: number): void {
   if (part === null) {
     return;

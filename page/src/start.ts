@@ -1,5 +1,5 @@
-// The start of a run as fields that anybody can change: numbers as they are, circles by their angle, rotations by the turn
-// that is added to the one of the description. A label is a handle, too: dragged sideways it changes its number.
+// Editable fields of the start of a run: numbers, angles of circles, and rotation vectors that are applied after the
+// rotation of the description. Dragging a label sideways changes its number.
 
 import type { System } from "./answers";
 import { element } from "./dom";
@@ -40,13 +40,13 @@ export class Start {
     }
   }
 
-  // The start that a run is asked for from: numbers, and what was changed of them.
+  // Returns the start of a request: the numbers of the description, and the changes to them.
   asked(): { x: number[]; xi: number[]; state: object | null } {
     const { x, xi } = this.system.start;
     return { x, xi, state: this.state() };
   }
 
-  // What was changed, as the command line reads states.
+  // Returns the changed values in the state format of the command line, or `null`.
   private state(): { coord: Record<string, Value>; velocity: Record<string, Value> } | null {
     const values = (fields: Field[]) => {
       const moved = fields.filter((field) => {
@@ -86,7 +86,7 @@ export class Start {
   }
 }
 
-// The numbers of a coordinate that the fields show.
+// The numbers that the fields of a coordinate show.
 function shown(kind: string, start: number[]): number[] {
   switch (kind) {
     case "S1":
@@ -108,9 +108,9 @@ function labelled(field: Field, index: number): string {
       return `angle of ${field.name}`;
     case "S3":
     case "SO3":
-      return `turn of ${field.name}, ${axis[index]}`;
+      return `rotation of ${field.name}, ${axis[index]}`;
     case "SE3":
-      return index < 3 ? `${field.name}.p[${index + 1}]` : `turn of ${field.name}.R, ${axis[index - 3]}`;
+      return index < 3 ? `${field.name}.p[${index + 1}]` : `rotation of ${field.name}.R, ${axis[index - 3]}`;
     default:
       return field.numbers.length === 1 ? field.name : `${field.name}[${index + 1}]`;
   }
@@ -140,7 +140,7 @@ function product(a: number[][], b: number[][]): number[][] {
   return a.map((row) => [0, 1, 2].map((j) => row.reduce((sum, entry, k) => sum + entry * (b[k]?.[j] ?? 0), 0)));
 }
 
-// The rotation by a rotation vector: I + sin t/t hat v + (1 − cos t)/t² hat v hat v.
+// The rotation matrix of a rotation vector: I + sin t/t hat v + (1 − cos t)/t² hat v hat v.
 function rotation([x = 0, y = 0, z = 0]: number[]): number[][] {
   const t = Math.hypot(x, y, z);
   const [a, b] = t < 1e-9 ? [1, 0.5] : [Math.sin(t) / t, (1 - Math.cos(t)) / (t * t)];
@@ -153,7 +153,7 @@ function rotation([x = 0, y = 0, z = 0]: number[]): number[][] {
   return hat.map((row, i) => row.map((entry, j) => (i === j ? 1 : 0) + a * entry + b * (square[i]?.[j] ?? 0)));
 }
 
-// A unit quaternion, scalar first, times that of a rotation vector.
+// The product of a unit quaternion, scalar first, and the quaternion of a rotation vector.
 function turned([s = 1, a = 0, b = 0, c = 0]: number[], [x = 0, y = 0, z = 0]: number[]): number[] {
   const t = Math.hypot(x, y, z);
   const [p, k] = [Math.cos(t / 2), t < 1e-9 ? 0.5 : Math.sin(t / 2) / t];

@@ -1,25 +1,25 @@
-// Tables of φ, A, Y, γ, M, Γ: entries of one value share a row, as in the paper; those that are not shown are zero.
+// Tables of φ, A, Y, γ, M, Γ: entries with the same value share a row, as in the paper; entries not shown are zero.
 
 import type { Definition, Indexed, Table, Tables } from "./answers";
 import { element } from "./dom";
 import { formula } from "./formulas";
 
-// Rows that are set at once; the rest is set when it is asked for.
+// Number of rows that are shown at first; more are shown on request.
 const ROWS = 40;
 
-// What the tables are called for, in the order in which they are asked for: cheap ones first.
+// Names of the tables in the order of the requests: cheap ones first.
 export const ALL = ["phi", "A", "Y", "gamma", "M", "Gamma"];
 
-// Whether a table waits until somebody asks for it: of systems with so many velocities its entries fill pages.
+// Whether a table is derived only on request, since its entries would fill pages.
 export function waits(name: string, velocities: number): boolean {
   return velocities > ({ M: 8, Gamma: 5 }[name] ?? Infinity);
 }
 
-// What stands for such a table until somebody asks for it.
+// The placeholder of such a table, with a button that derives it.
 export function asked(name: string, velocities: number, derive: () => void): HTMLElement {
   const symbol = formula(name === "M" ? "M" : "\\Gamma");
   const entries = name === "M" ? velocities ** 2 : velocities ** 3;
-  const button = element("button", { type: "button" }, `derive ${entries.toLocaleString("en")} entries, which takes a while`);
+  const button = element("button", { type: "button" }, `derive ${entries.toLocaleString("en")} entries (slow)`);
   button.onclick = () => {
     button.disabled = true;
     button.textContent = "deriving…";
@@ -40,7 +40,7 @@ export function heading(tables: Tables): HTMLElement {
 }
 
 export function section(table: Table): HTMLElement {
-  const count = `${table.nonzero} of ${table.size} entries ${table.nonzero === 1 ? "is" : "are"} not zero`;
+  const count = `${table.nonzero} of ${table.size} entries ${table.nonzero === 1 ? "is" : "are"} nonzero`;
   const body = element("section", { class: "table", "data-table": table.name });
   body.append(
     element("h3", {}, formula(table.symbol), ` ${table.title}`, element("small", {}, count)),
@@ -51,8 +51,8 @@ export function section(table: Table): HTMLElement {
       "tr",
       {},
       element("th", { scope: "col" }, "value of ", formula(table.symbol)),
-      element("th", { scope: "col" }, "entries with it"),
-      element("th", { scope: "col" }, "with its negative"),
+      element("th", { scope: "col" }, "entries equal to it"),
+      element("th", { scope: "col" }, "entries equal to its negative"),
     );
     body.append(
       rows(
@@ -85,7 +85,7 @@ export function section(table: Table): HTMLElement {
   return body;
 }
 
-// The indices of entries; each shows its equation where it is pointed at or focused.
+// The indices of entries; each shows its equation on hover or focus.
 function indices(list: Indexed[], value: string, sign: string): Node[] {
   return list.map((entry) => {
     const equation = sign === "" ? `${entry.left} = ${value}` : `${entry.left} = -\\left(${value}\\right)`;
@@ -116,7 +116,7 @@ function definitions(list: Definition[]): Node[] {
   return [rows("listed", null, list.map(one))];
 }
 
-// A table whose later rows come when they are asked for.
+// A table with a button that shows more rows.
 function rows(kind: string, head: HTMLElement | null, make: (() => HTMLElement)[]): HTMLElement {
   const body = element("tbody", {}, ...make.slice(0, ROWS).map((row) => row()));
   const table = element("table", { class: kind }, head === null ? null : element("thead", {}, head), body);

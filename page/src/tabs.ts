@@ -1,4 +1,4 @@
-// Tabs as ARIA has them: arrows move between them, one panel is shown.
+// Tabs with the keyboard interface of ARIA: arrow keys move between them, and one panel is visible.
 
 import { byId } from "./dom";
 

@@ -1,4 +1,4 @@
-// The generator in a worker: it gets a compiled module once, and then one request after the other.
+// Worker that runs the generator: it receives the compiled module, then one request after another.
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -41,7 +41,7 @@ scope.onmessage = async (event) => {
     const numbers = new Float32Array(to.memory.buffer, to.hamel_numbers(), to.hamel_count()).slice();
     scope.postMessage({ number, answer, numbers }, [numbers.buffer]);
   } catch (fault) {
-    // A trap: nothing in the memory of this module can be trusted any more.
+    // A trap, after which the memory of the module is not valid.
     scope.postMessage({ number, fault: String(fault) });
   }
 };

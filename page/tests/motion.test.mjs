@@ -89,7 +89,7 @@ test("a run keeps its energy, and can be played, moved through and changed", asy
   // Velocities, energy, and what the description claims to be constant.
   const titles = await page.$$eval(".plots figcaption", (list) => list.map((one) => one.textContent));
   assert.ok(titles.includes("velocities"), titles.join());
-  assert.ok(titles.some((title) => title.startsWith("energy less its start")), titles.join());
+  assert.ok(titles.some((title) => title.startsWith("energy minus its initial value")), titles.join());
   const claimed = [...top.matchAll(/^ *invariant (\w+)/gm)].filter(([, name]) => name !== "energy").map(([, name]) => `invariant ${name}`);
   assert.ok(claimed.length > 1);
   for (const title of claimed) {

@@ -1,4 +1,4 @@
-//! The extension module is built along with all tests; `tests/python/run.sh` takes it from beside this one.
+//! Checks that the extension module is built with the tests; `tests/python/run.sh` takes it from the same folder.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 

@@ -1,4 +1,4 @@
-"""Where descriptions and robots are, a pendulum, and a heavy top."""
+"""Fixtures: folders of descriptions and robots, a pendulum, a heavy top."""
 
 import os
 from pathlib import Path

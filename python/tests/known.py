@@ -1,8 +1,8 @@
-"""Systems whose equations are known on paper, for several tests."""
+"""Systems with equations from textbooks, shared by several tests."""
 
 import numpy as np
 
-# Angular velocities of a heavy top, body axes (rad/s).
+# Angular velocity of a heavy top in body axes (rad/s).
 XI = np.array([0.3, 0.2, 5.0])
 
 PENDULUM = """
@@ -22,7 +22,7 @@ system Pendulum {
 
 
 def heavy_top_rates(_, y):
-    """Euler's equations of tests/models/heavy_top.eom, a rigid body on a fixed point: y = (R by rows, w)."""
+    """Euler's equations of tests/models/heavy_top.eom, a rigid body with a fixed point: y = (R by rows, w)."""
     m, g = 1.3, 9.81
     s = np.array([0.1, -0.2, 0.3])
     inertia = np.array([[2.1, 0.1, -0.2], [0.1, 1.7, 0.15], [-0.2, 0.15, 1.2]])

@@ -1,5 +1,6 @@
-"""All functions of random mechanisms, of one state and of many in arrays of odd layouts, against d'Alembert's principle in numbers of
-80 digits: `lab/dalembert` computes them from the data that it writes the text from. Runs are those of SciPy with these accelerations."""
+"""Functions and runs of random mechanisms against d'Alembert's principle, computed with 80 digits by `lab/dalembert`.
+
+Functions are called with one state, and with many in arrays of unusual layouts. Runs are compared with SciPy's."""
 
 import sys
 import warnings
@@ -22,7 +23,7 @@ LENGTH = 0.05
 
 
 def layouts(rows):
-    """The same numbers in other arrays."""
+    """The same numbers in arrays of other layouts and types."""
     spread = np.zeros((len(rows), 2 * rows.shape[1] + 1))
     spread[:, 1::2] = rows
     packed = np.zeros(len(rows), dtype=[("flag", "i1"), ("row", "f8", rows.shape[1:])])
@@ -31,7 +32,7 @@ def layouts(rows):
 
 
 class Package:
-    """The functions of a system, as generated C is called by the comparison."""
+    """Adapter that gives the functions of a system the interface of generated C in the comparison."""
 
     def __init__(self, system):
         self.system = system
@@ -43,7 +44,7 @@ class Package:
         self.parameters = np.array([float(value) for value in values])[: len(self.parameters)]
 
     def __contains__(self, name):
-        # What a regressor is of, the comparison knows for trees of bodies alone.
+        # The comparison supports regressors only for trees of bodies.
         return name != "regressor" and hasattr(self.system, name) or name == "set_parameters" and len(self.parameters) > 0
 
     def call(self, name, count, **given):
@@ -67,7 +68,7 @@ class Package:
 
 
 class Asked(Doors):
-    """What the package evaluates and linearises, as the command line prints it."""
+    """Adapter that gives `evaluate` and `linearize` the interface of the command line in the comparison."""
 
     def eval(self, state=None):
         said = self.system.evaluate(state)
@@ -91,7 +92,7 @@ def test_a_random_mechanism(tmp_path, kind, seed):
     comparison.run(made.state, c=package, kind="")
     assert errors.found == [] and package.calls > 20
 
-    # Its functions are known to be right: runs and steps follow from them.
+    # The functions are verified above, so runs can be checked against them.
     state = system.state(**comparison.state(comparison.d.held(made.state)))
     given = {"u": state.u}
 

@@ -1,4 +1,4 @@
-"""Parts of a sweep by workers of Dask: the same table as by one machine."""
+"""A sweep in parts on Dask workers gives the same table as on one machine."""
 
 import hamel
 import polars

@@ -1,4 +1,4 @@
-"""Events of runs: against SciPy's, and against laws that hold at crossings."""
+"""Events of runs: compared with SciPy, and with conservation laws at the events."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 import hamel
 from known import heavy_top_rates
 
-# Steps that an error chooses, and equal ones of an order that leaves no more of it.
+# Adaptive steps, and equal steps of methods whose error is as small.
 STEPPINGS = [{"tol": 1e-12}, {"method": "rkmk8", "step": 0.01}, {"method": "gauss6", "step": 0.005}]
 
 
@@ -16,7 +16,7 @@ def solved(rates, start, until, events):
 
 
 def event(of, direction=0, terminal=False):
-    """As SciPy wants events."""
+    """An event function for SciPy's `solve_ivp`."""
 
     def function(t, y):
         return of(t, y)
@@ -47,7 +47,7 @@ def test_a_pendulum_as_scipy_has_it(pendulum, stepping, direction):
     run = pendulum.simulate(5.0, events=events, **stepping)
     assert run.stopped_by is None and run.t[-1] == 5.0
     for (name, found), t, y in zip(run.events.items(), expected.t_events, expected.y_events):
-        # SciPy counts the zero of w at the start.
+        # SciPy reports the zero of w at the start.
         t, y = (t[1:], y[1:]) if name == "turns" and t[0] == 0.0 else (t, y)
         assert len(found) == len(t) and len(t) > 0 or direction == -1 and name == "time", (name, found.t, t)
         assert np.abs(found.t - t).max(initial=0.0) < 1e-9, name
@@ -58,12 +58,12 @@ def test_a_pendulum_as_scipy_has_it(pendulum, stepping, direction):
 
 @pytest.mark.parametrize("method", ["rkmk8", "rkmk4", "auto"])
 def test_a_heavy_top_as_scipy_has_it(models, method):
-    """The first time at which the second axis of the body is horizontal, which ends the run."""
+    """The run ends when `x[0]`, an entry of R, first changes its sign."""
     start = [*np.eye(3).ravel(), 0.3, 0.2, 5.0]
     wanted = [event(lambda t, y: y[0], terminal=True), event(lambda t, y: y[10])]
     expected = solved(heavy_top_rates, start, 5.0, wanted)
     system = hamel.System.from_file(models / "heavy_top.eom")
-    # SciPy's way of saying it.
+    # A function with the attributes that SciPy uses.
     def first(t, x, xi):
         return x[0]
 
@@ -82,12 +82,12 @@ def test_a_heavy_top_as_scipy_has_it(models, method):
 
 @pytest.mark.parametrize("stepping", STEPPINGS)
 def test_laws_at_crossings(pendulum, stepping):
-    """Energy as at the start; the motion back from a crossing comes to the start; crossings of one kind are periods apart."""
+    """At crossings the energy is that of the start, and the reversed motion returns to it; crossings are periodic."""
     run = pendulum.simulate(6.0, events={"lowest": "q", "rest": hamel.Event("w", 1)}, **stepping)
     lowest = run.events["lowest"]
     energy = pendulum.energy(lowest.x, lowest.xi)
     assert np.abs(energy - run.energy[0]).max() < 1e-9
-    # The greatest speed that the height allows.
+    # The speed that follows from the height by energy.
     assert np.allclose(np.abs(lowest.xi), np.sqrt(2 * 9.81 / 0.5 * (1 - np.cos(0.7))), rtol=1e-9)
     periods = np.diff(lowest.t[::2])
     assert len(periods) > 2 and np.ptp(periods) < 1e-8
@@ -116,14 +116,14 @@ def test_runs_end_at_the_first_terminal_event(pendulum, options):
         "behind": hamel.Event(lambda t, x, xi: t - 0.507),
     }
     run = pendulum.simulate(1.0, events=events, **options)
-    # All of them are in one step where steps are equal.
+    # Equal steps have all of them within one step.
     assert run.stopped_by == "first"
     assert abs(run.t[-1] - 0.503) < 1e-14
     assert {name: len(found) for name, found in run.events.items()} == {"later": 0, "before": 1, "first": 1, "behind": 0}
-    # Samples that are asked for end there, too.
+    # Requested samples end there, too.
     sampled = pendulum.simulate(1.0, events=events, times=[0.25, 0.5, 0.502, 0.504, 0.9], **options)
     assert list(sampled.t)[:2] == [0.25, 0.5] and (sampled.t <= 0.503).all()
-    # From where one run has stopped the next one begins: a zero at its start is no event.
+    # The next run begins where the first one stopped: a zero at the start is not an event.
     stopped = pendulum.simulate(2.0, events={"low": hamel.Event("q", terminal=True)}, **options)
     state = hamel.State(stopped.x[-1] * 0.0, stopped.xi[-1], np.zeros(1), pendulum.parameter_values)
     again = pendulum.simulate(2.0, at=state, events={"low": hamel.Event("q", terminal=True)}, **options)
@@ -131,7 +131,7 @@ def test_runs_end_at_the_first_terminal_event(pendulum, options):
 
 
 def test_events_of_runs_with_inputs(pendulum, tmp_path):
-    """Inputs that jump, and laws: what happens behind the jump is what happens where the run is taken up there."""
+    """With inputs that jump, a run after the jump is the same as one that starts there."""
     (tmp_path / "push.csv").write_text("t,tau\n0,0\n0.1,3\n")
     held = hamel.Event("q - 0.2", direction=-1, terminal=True)
     for options in [{"method": "rkmk8", "step": 0.01}, {"tol": 1e-12}]:
@@ -169,7 +169,7 @@ def test_wrong_events_are_told(pendulum):
         with pytest.raises(hamel.HamelError, match=why) as wrong:
             pendulum.simulate(1.0, events=events)
         assert "hamel_keep" not in str(wrong.value)
-    # With its place among all of them.
+    # The message shows the place within the list of all events.
     with pytest.raises(hamel.HamelError) as wrong:
         pendulum.simulate(1.0, events={"a": "q - 1", "b": "q - spead"})
     assert "q - 1; q - spead" in str(wrong.value) and "^^^^^" in str(wrong.value)

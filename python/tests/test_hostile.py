@@ -1,4 +1,4 @@
-"""What users do to a package: arrays out of records, states that are written into, files that change, Ctrl-C."""
+"""Robustness: fields of record arrays, states modified in place, files that change, Ctrl-C."""
 
 import inspect
 import os
@@ -17,7 +17,7 @@ from known import PENDULUM, XI
 
 
 def test_numbers_that_stand_at_odd_places(top):
-    """Records that are packed have numbers at places, and in distances, that are no multiples of their size."""
+    """Packed records have unaligned numbers, with strides that are not multiples of their size."""
     x = top.start().x
     many = np.array([XI, 2 * XI, -XI])
     expected = top.accel(x, many)
@@ -30,7 +30,7 @@ def test_numbers_that_stand_at_odd_places(top):
         assert np.array_equal(top.accel(x, array), expected)
         ends = top.step(np.tile(x, (3, 1)), array, h=0.1)
         assert np.array_equal(ends[1], top.step(np.tile(x, (3, 1)), many, h=0.1)[1])
-    # A column whose numbers are four bytes too far from each other.
+    # A column with a stride of 12 bytes.
     column = np.zeros(3, dtype=[("xi", "f8"), ("number", "i4")])
     column["xi"] = XI
     assert np.array_equal(top.accel(x, column["xi"]), expected[0])
@@ -77,7 +77,7 @@ def test_numbers_by_name_are_said_to_be_none(top):
 
 
 def test_a_system_that_is_pickled_is_the_one_that_was_read(tmp_path):
-    """Whatever becomes of the file."""
+    """Pickles contain the text, so later changes of the file have no effect."""
     file = tmp_path / "a pendulum, größer ξ.eom"
     file.write_text(PENDULUM)
     system = hamel.System.from_file(file)
@@ -126,7 +126,7 @@ def test_words_of_robots_that_are_not_understood_are_warned_of(robots, tmp_path)
 
 
 def test_functions_that_there_are_not_are_no_attributes(models):
-    """As `hasattr`, `getattr` with a default, `inspect` and editors ask for them."""
+    """`hasattr`, `getattr` with a default, and `inspect` treat them as missing."""
     disk = hamel.System.from_file(models / "rolling_disk.eom")
     assert not hasattr(disk, "regressor") and hasattr(disk, "accel")
     assert getattr(disk, "regressor", None) is None
@@ -136,8 +136,8 @@ def test_functions_that_there_are_not_are_no_attributes(models):
 
 
 def interrupted(work):
-    """How long work goes on after Ctrl-C."""
-    # What a shell starts in the background ignores it.
+    """The time that work continues after Ctrl-C (s)."""
+    # Background processes of a shell ignore SIGINT.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
     begin = time.perf_counter()
@@ -165,14 +165,14 @@ def test_long_work_is_interrupted(top, models, tmp_path):
     ):
         assert interrupted(work) < 3.0
     options = {"vary": "m = normal(1, 0.01)", "until": 3.0, "members": 10**5, "keep": "max(w[1])", "out": tmp_path / "runs"}
-    # With its machine code and its proof a sweep takes a while to begin.
+    # A sweep first compiles machine code and proves it, which takes longer.
     assert interrupted(lambda: hamel.sweep(models / "heavy_top.eom", **options)) < 10.0
-    # What was not done is done another time, and nothing is there that is not whole.
+    # A later sweep works: no incomplete file remains.
     hamel.sweep(models / "heavy_top.eom", **{**options, "members": 20, "out": tmp_path / "others"})
 
 
 def test_stubs_agree_with_what_is_there(tmp_path):
-    """mypy's stubtest imports the package and compares every public name with its types."""
+    """mypy's stubtest compares every public name of the package with its type stubs."""
     pytest.importorskip("mypy")
     words = [sys.executable, "-m", "mypy.stubtest", "hamel"]
     said = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)

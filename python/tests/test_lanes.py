@@ -1,11 +1,11 @@
-"""Functions over many states, which are computed two at once: to the bit what each of them is alone."""
+"""Functions of many states, computed two at a time: equal to the bit to calls with single states."""
 
 import numpy as np
 import pytest
 
 import hamel
 
-# So many states are worth code for two of them at once.
+# Number of states from which code for two states at a time is compiled.
 MANY = 1 << 15
 
 BEAD = """
@@ -21,7 +21,7 @@ system Bead {
 
 
 def one_by_one(function, *arrays, **options):
-    """Calls with one state are always of code for one."""
+    """Calls with single states, which always use the code for one state."""
     return np.array([function(*row, **options) for row in zip(*arrays)])
 
 
@@ -30,7 +30,7 @@ def same(a, b):
 
 
 def moved(system, count):
-    """States on the manifold."""
+    """States on the configuration manifold."""
     random = np.random.default_rng(5)
     x = np.repeat(system.start().x[None], count, 0)
     return system.step(x, random.normal(size=(count, len(system.velocities))), h=0.3, method="rkmk4")
@@ -43,17 +43,17 @@ def test_many_states_are_each_alone(models, model):
     u = np.random.default_rng(6).normal(size=(len(x), len(system.inputs)))
     alone = one_by_one(system.accel, x, xi, u)
     masses = one_by_one(system.mass_matrix, x)
-    # As often as is needed for code for two at once, and an odd number of them.
+    # Repeated until code for two states is compiled, an odd number in total.
     repeated = [np.tile(array, (MANY // len(x) + 1, 1)) for array in (x, xi, u)]
     assert len(repeated[0]) % 2 == 1
     many = system.accel(*repeated).reshape(-1, *alone.shape)
     assert all(same(part, alone) for part in many)
     system.mass_matrix(repeated[0])
     assert same(system.mass_matrix(x), masses)
-    # From now on few states are computed by it, too: an even number, an odd one, one, none.
+    # From now on small numbers of states use it, too: even, odd, one, none.
     for count in (1000, 7, 2, 1, 0):
         assert same(system.accel(x[:count], xi[:count], u[:count]), alone[:count])
-    # Along several axes, some of which are repeated, and in another order of memory.
+    # Several axes, with broadcasting, and in column-major order.
     x, xi, u = x[:15].reshape(3, 5, -1), xi[:5], u[0]
     expected = [[system.accel(x[i, j], xi[j], u) for j in range(5)] for i in range(3)]
     assert same(system.accel(x, xi, u), np.array(expected))
@@ -71,7 +71,7 @@ def test_parameters_of_each_state(models):
 
 @pytest.mark.parametrize("places", [[0], [1], [6], [0, 1], [1, 2], [0, 3, 4, 6], list(range(7)), []])
 def test_states_without_a_value_are_told_one_by_one(places):
-    """M is not positive definite where q >= 1; the states beside are as they are alone."""
+    """M is not positive definite where q >= 1; all other states have the same results as alone."""
     system = hamel.System.from_text(BEAD)
     system.accel(np.zeros((MANY, 1)), [0.0])
     q = np.linspace(-1.0, 0.5, 7)[:, None]
@@ -88,7 +88,7 @@ def test_states_without_a_value_are_told_one_by_one(places):
 
 
 def test_states_that_code_leaves_to_the_interpreter(models):
-    """Beyond a million radians sines are computed elsewhere: for one state of two, or for both."""
+    """Sines beyond a million radians are left to the interpreter: for one state of a pair, or for both."""
     system = hamel.System.from_file(models / "double_pendulum_angles.eom")
     x, xi = moved(system, MANY)
     system.accel(x, xi)

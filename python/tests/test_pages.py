@@ -1,4 +1,4 @@
-"""The programs in Python that the pages show run as they stand."""
+"""The Python programs in the documentation run unchanged."""
 
 import shutil
 from pathlib import Path
@@ -11,7 +11,7 @@ import hamel
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# A ball that is thrown: what the chapter calls a leg has a foot, whose velocity is `v`.
+# A thrown ball in place of the chapter's leg: it has a frame `foot` and a velocity `v`.
 LEG = """
 system Leg {
     coord r: R3;
@@ -33,7 +33,7 @@ def programs(page: str) -> list[str]:
 
 @pytest.fixture
 def names(tmp_path: Path, models: Path, robots: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """What the programs take for granted: files, a state of a UR5, and a leg."""
+    """Names and files that the programs use: robots, a state of a UR5, and a leg."""
     shutil.copy(robots / "ur_description" / "urdf" / "ur5_robot.urdf", tmp_path)
     shutil.copy(models / "heavy_top.eom", tmp_path)
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""Eight robots at random states against the wheel of Pinocchio."""
+"""Eight robots at random states, compared with Pinocchio."""
 
 import json
 
@@ -10,7 +10,7 @@ import hamel
 
 ROBOTS = ["a1", "double_pendulum", "finger_edu", "iris", "so100", "solo12", "ur5", "z1"]
 STATES = 20
-# Of the largest entry; both compute in double precision.
+# Relative to the largest entry; both compute in double precision.
 CLOSE = 1e-11
 
 
@@ -20,19 +20,19 @@ def close(ours, theirs):
 
 
 class Pair:
-    """A robot in both programs, with states and the order of velocities."""
+    """A robot in both libraries, with the order of its velocities."""
 
     def __init__(self, name, robots, reference):
         described = json.loads((reference / "robots" / f"{name}.json").read_text())
         urdf = robots / described["urdf"]
         floating = "root_joint" in described["velocity_order"]
-        # Every digit of the angles: by default 1.57079632679 is a right angle.
+        # All digits of angles are kept; by default 1.57079632679 becomes a right angle.
         self.ours = hamel.System.from_urdf(urdf, floating=floating, mimic="free", rounding=0.0)
         root = pin.JointModelFreeFlyer() if floating else None
         self.model = pin.buildModelFromUrdf(str(urdf), root) if root else pin.buildModelFromUrdf(str(urdf))
         self.model.armature[:] = 0.0
         self.data = self.model.createData()
-        # Places of their velocities in ours.
+        # Indices of Pinocchio's velocities in xi.
         self.order = np.zeros(self.model.nv, int)
         for joint in range(1, self.model.njoints):
             own = self.ours.joints[self.model.names[joint]]

@@ -1,4 +1,4 @@
-"""Random trees of links, with axes at 45 degrees, axes that are parallel but for 1e-7, and any others, against Pinocchio."""
+"""Random trees of links, compared with Pinocchio: axes at multiples of 45 degrees, almost parallel axes, and others."""
 
 import numpy as np
 import pinocchio as pin
@@ -8,12 +8,12 @@ import hamel
 
 ROBOTS = 12
 STATES = 5
-# Of the largest entry. Axes that are nearly parallel lose digits in no quantity here.
+# Relative to the largest entry; almost parallel axes do not lose digits in these quantities.
 CLOSE = 1e-9
 
 
 def rotation(random):
-    """A mount: a multiple of 45 degrees about an axis of coordinates, that and 1e-7 more, or anything."""
+    """Roll, pitch and yaw of a mount: zero, a multiple of 45 degrees about one axis, 1e-7 more, or random angles."""
     kind = random.integers(4)
     if kind == 0:
         return np.zeros(3)
@@ -25,12 +25,12 @@ def rotation(random):
 
 
 def written(random, count):
-    """A tree in URDF: its text."""
+    """The URDF text of a random tree."""
     links, joints = ['<link name="link0"/>'], []
     for index in range(1, count + 1):
         spread = random.normal(size=(3, 3))
         inertia = spread @ spread.T + np.eye(3)
-        # Triangle inequality: as of points with these second moments.
+        # An inertia from second moments satisfies the triangle inequality.
         inertia = 1e-2 * (np.trace(inertia) * np.eye(3) - inertia)
         pairs = [(a, b) for a in range(3) for b in range(a, 3)]
         entries = " ".join(f'i{"xyz"[a]}{"xyz"[b]}="{float(inertia[a, b])!r}"' for a, b in pairs)
@@ -74,7 +74,7 @@ def test_a_random_tree(tmp_path, seed):
             (accel[k][order], pin.aba(model, data, q, v, tau)),
         ]:
             assert np.abs(found - expected).max() < CLOSE * max(1.0, np.abs(expected).max())
-    # A long run in whole steps of machine code against steps one by one, and its energy.
+    # A long run, compared with single steps, and its energy.
     at, speed = x[0], 0.1 * xi[0]
     start = hamel.State(at, speed, 0 * u[0], ours.parameter_values)
     free = ours.simulate(0.5, step=2e-4, every=2500, method="rkmk4", at=start)

@@ -1,4 +1,4 @@
-"""What is asked wrongly is refused with all that is wrong, and never ends Python."""
+"""Invalid arguments raise exceptions that name all errors, and never crash Python."""
 
 import pickle
 
@@ -43,7 +43,7 @@ def test_numbers_that_are_not_real_are_refused(top):
             top.step(wrong, XI, h=0.1)
     with pytest.raises(TypeError, match="`x` of accel.*needs real numbers"):
         top.accel("abc", XI)
-    # Lists of them would lose their imaginary parts, or become NaN, without a word.
+    # NumPy would silently drop imaginary parts of lists, or convert None to NaN.
     for wrong in ([np.complex128(1 + 2j), 0, 1], [None, 0, 1], np.array([None, 0, 1]), np.array([1j, 0, 1], object), None):
         with pytest.raises(TypeError, match="`xi` of accel.* needs real numbers"):
             top.accel(x, wrong)
@@ -152,6 +152,6 @@ def test_what_a_sweep_cannot_be(models, tmp_path):
         with pytest.raises(hamel.HamelError, match=why):
             sweep(**options)
         assert not (tmp_path / "runs").exists()
-    # Numbers of NumPy are numbers.
+    # NumPy scalars are accepted as numbers.
     sweep(members=np.int64(2), until=np.float64(0.1), step=np.float64(0.05), seed=np.uint8(3))
     assert (tmp_path / "runs" / "shard-000000.parquet").exists()

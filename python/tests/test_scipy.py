@@ -1,4 +1,4 @@
-"""Runs against SciPy's DOP853 on equations that are written by hand from textbooks."""
+"""Runs, compared with SciPy's DOP853 on equations from textbooks."""
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def law(t, p, th, v, w):
 
 @pytest.mark.parametrize("form", ["function", "expression"])
 def test_cart_and_pole_with_a_controller(models, form):
-    """A point mass on a rod on a cart, angle from the upright, with a force on the cart that depends on time and state."""
+    """A point mass on a rod on a cart; the angle is from the upright, the force depends on time and state."""
     mc, mp, l, g = 1.0, 0.1, 0.5, 9.81
 
     def rates(t, y):

@@ -1,4 +1,4 @@
-"""Functions over arrays, states, runs, slopes, tables; laws and errors."""
+"""Functions of arrays, states, runs, derivatives, tables, controllers and errors."""
 
 import json
 import multiprocessing
@@ -15,7 +15,7 @@ import hamel
 from known import PENDULUM
 
 def random_states(system, count, seed=1):
-    """States on the manifold: those of short runs from random velocities."""
+    """States on the configuration manifold, after short runs from random velocities."""
     random = np.random.default_rng(seed)
     x, xi = np.array(system.start().x), random.normal(size=(count, len(system.velocities)))
     x = np.repeat(x[None], count, 0)
@@ -46,7 +46,7 @@ def test_arrays_are_repeated_along_axes_that_they_do_not_have(pendulum):
     assert np.array_equal(many.transpose(1, 0, 2), pendulum.accel(q.transpose(1, 0, 2), w, tau[:, None]))
     assert np.array_equal(pendulum.accel(q[::2], w, tau), many[::2])
     assert pendulum.accel([0], [0], [1]) == pendulum.accel(0.0, 0.0, 1.0)
-    # A single number, and a number for each state.
+    # A scalar for one state, and an array for many.
     assert isinstance(pendulum.energy([0.0], [1.0]), float)
     assert pendulum.energy(q, w).shape == (3, 5)
     assert pendulum.accel(np.zeros((0, 1)), w, [0.0]).shape == (0, 1)
@@ -109,7 +109,7 @@ def test_singular_states(models):
 
 @pytest.mark.parametrize("model", ["heavy_top", "rolling_disk", "sleigh", "free_body", "spherical_bob"])
 def test_power_and_momentum(models, model):
-    """M xi_dot + bias + slope of V = force; kinetic energy is half of xi M xi; slopes of the energy make the power."""
+    """M xi_dot + bias + potential force = force; T = xi M xi / 2; the rate of the energy is the power."""
     system = hamel.System.from_file(models / f"{model}.eom")
     x, xi = random_states(system, 50)
     u = np.zeros(len(system.inputs))
@@ -167,9 +167,9 @@ def test_states_by_names(models, robots):
     assert system.velocities.slice("w") == slice(0, 3) and system.velocities[1] == "w[2]"
     with pytest.raises(hamel.HamelError) as wrong:
         system.state(velocity={"w": [1.0], "v": 2.0}, coord={"R": np.ones((3, 3))})
-    # All that is wrong, at once.
+    # All errors are reported at once.
     assert str(wrong.value).count("error") >= 2
-    # A loop is closed by what is not given.
+    # Coordinates that are not given close the loop.
     loop = hamel.System.from_file(models / "four_bar_loop.eom")
     moved = loop.state(coord={"q1": 1.2})
     assert moved.x[0] == 1.2
@@ -186,7 +186,7 @@ def test_runs(pendulum):
     assert pendulum.simulate(1.0).reason
     with pytest.raises(KeyError):
         run["nothing"]
-    # The slope of order four.
+    # The observed order is 4.
     ends = [pendulum.simulate(2.0, step=h, method="rkmk4").x[-1, 0] for h in (0.02, 0.01, 0.005)]
     assert abs(np.log2((ends[0] - ends[1]) / (ends[1] - ends[2])) - 4.0) < 0.2
     # From another state, with a constant input.
@@ -237,7 +237,7 @@ def test_exceptions_of_a_controller_come_through(pendulum):
 
     with pytest.raises(Broken, match="half"):
         pendulum.simulate(1.0, inputs=law, method="rkmk4", step=0.01)
-    # It is not called again.
+    # The controller is not called again.
     assert sum(t > 0.5 for t in calls) == 1
     with pytest.raises(ValueError, match="must return 1 numbers"):
         pendulum.simulate(1.0, inputs=lambda t, x, xi: [1.0, 2.0], method="rkmk4")
@@ -256,9 +256,9 @@ def test_a_run_that_ends_early_keeps_what_there_was():
 
 @pytest.mark.parametrize("robot", ["double_pendulum", "ur5"])
 def test_slopes_of_steps(robots, reference, tmp_path, robot):
-    """Semi-implicit steps with their slopes against Pinocchio's."""
+    """Derivatives of semi-implicit steps, compared with Pinocchio."""
     known = json.loads((reference / "control" / f"{robot}.json").read_text())
-    # The reference is without damping.
+    # The reference has no damping.
     urdf = (robots / known["urdf"]).read_text()
     (tmp_path / "robot.urdf").write_text(re.sub(r'(damping|friction)="[^"]*"', r'\1="0"', urdf))
     system = hamel.System.from_urdf(tmp_path / "robot.urdf", rounding=0.0)
@@ -279,7 +279,7 @@ def test_slopes_of_steps(robots, reference, tmp_path, robot):
 @pytest.mark.parametrize("method", ["rkmk4", "cf4", "rkmk8", "semi-implicit-euler", "backward-euler"])
 @pytest.mark.parametrize("model", ["heavy_top", "drone", "rolling_disk"])
 def test_slopes_are_those_of_the_step(models, model, method):
-    """Along velocities and inputs, by central differences of the step itself."""
+    """Derivatives by velocities and inputs, compared with central differences of the step."""
     system = hamel.System.from_file(models / f"{model}.eom")
     x, xi = random_states(system, 1)
     u = np.full(len(system.inputs), 0.3)
@@ -355,7 +355,7 @@ def test_errors_show_their_place(models, tmp_path):
 
 
 def test_descriptions_made_by_programs():
-    """The train of the book: three masses with springs between them have the frequencies of K v = omega^2 M v."""
+    """The train of the book, three masses with springs, has the frequencies of K v = omega^2 M v."""
     masses = [1.0, 0.5, 2.0]
     parts = [
         f"coord y_{i}; velocity v_{i}; rate y_{i} = v_{i}; particle mass {mass} at [y_{i}, 0, 0];"

@@ -1,9 +1,9 @@
-//! A description that was read, as the page shows it: names, the start, and what was said with its places.
+//! JSON of an open description: names, the start, and diagnostics with their places.
 
 use hamel_cli::{Mark, Names, Said, Session};
 use serde_json::{Value, json};
 
-/// Names and the start of a description.
+/// Returns names and the start of a description.
 pub fn described(session: &Session) -> Value {
     let start = session.start();
     let names = |names: Names| {
@@ -23,7 +23,7 @@ pub fn described(session: &Session) -> Value {
     })
 }
 
-/// Errors and warnings at their places in a text, counted as JavaScript counts.
+/// Returns errors and warnings with their ranges in a text, in UTF-16 units.
 pub fn marks(said: &Said, text: &str) -> Vec<Value> {
     said.marks.iter().map(|mark| marked(mark, text)).collect()
 }
@@ -44,7 +44,7 @@ fn marked(mark: &Mark, text: &str) -> Value {
     })
 }
 
-/// UTF-16 units before a byte; a place inside of a character, or behind the text, is the next one that there is.
+/// Counts UTF-16 units before a byte offset; one inside a character is rounded up, one beyond the text is its end.
 fn units(text: &str, byte: usize) -> usize {
     let ahead = text.char_indices().take_while(|(at, _)| *at < byte);
     ahead.map(|(_, letter)| letter.len_utf16()).sum()

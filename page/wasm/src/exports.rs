@@ -1,7 +1,7 @@
-//! What JavaScript calls. A request is written into memory that `hamel_room` reserves; `hamel_answer` reads it, and the
-//! answer lies where `hamel_said` points to until the next request, and numbers that belong to it where `hamel_numbers` does.
+//! Functions exported to JavaScript, which writes a request to memory reserved by `hamel_room`, then calls
+//! `hamel_answer`. The answer is at `hamel_said`, its numbers are at `hamel_numbers`, until the next request.
 //!
-//! Nothing here is unsafe but for the names of the exports, which nothing else may have: no pointer is read from.
+//! Only the unmangled names of the exports, which must be unique, require `unsafe`; no pointer is dereferenced.
 
 #![allow(unsafe_code)]
 
@@ -13,7 +13,7 @@ thread_local! {
     static NUMBERS: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Makes room for a request of as many bytes, and says where it is.
+/// Reserves memory for a request, and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn hamel_room(bytes: usize) -> *mut u8 {
     REQUEST.with_borrow_mut(|request| {
@@ -23,7 +23,7 @@ pub extern "C" fn hamel_room(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request; how many bytes the answer has.
+/// Answers the request, and returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn hamel_answer() -> usize {
     let request = REQUEST.take();
@@ -34,19 +34,19 @@ pub extern "C" fn hamel_answer() -> usize {
     length
 }
 
-/// Where the answer is.
+/// Returns the address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn hamel_said() -> *const u8 {
     ANSWER.with_borrow(|answer| answer.as_ptr())
 }
 
-/// How many numbers belong to the answer.
+/// Returns the number of numbers of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn hamel_count() -> usize {
     NUMBERS.with_borrow(Vec::len)
 }
 
-/// Where these numbers are.
+/// Returns the address of these numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn hamel_numbers() -> *const f32 {
     NUMBERS.with_borrow(|numbers| numbers.as_ptr())

@@ -1,11 +1,11 @@
-//! The generator in a browser: the session of the command line, which JavaScript asks in JSON.
+//! The generator in a browser: sessions of the command line, with requests from JavaScript in JSON.
 //!
 //! | file | owns |
 //! |---|---|
-//! | `exports` | what JavaScript calls: a text goes in through memory, a text comes out |
-//! | `requests` | what can be asked, and the answers |
-//! | `scenes` | what is drawn of a run |
-//! | `described` | a description that was read: names, the start, errors and warnings with their places |
+//! | `exports` | functions exported to JavaScript, which exchange text through memory |
+//! | `requests` | requests and their answers |
+//! | `scenes` | scenes of a run, to be drawn |
+//! | `described` | JSON of an open description: names, the start, errors and warnings with their places |
 
 mod described;
 mod exports;

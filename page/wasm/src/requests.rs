@@ -1,5 +1,5 @@
-//! What can be asked, and the answers. A description is opened once; what is asked of it after that is derived or run by
-//! the code behind the commands of `hamel`.
+//! Requests and their answers. A description is opened once; later requests derive or run it with the code behind the
+//! commands of `hamel`.
 
 use crate::described::{described, marks};
 use crate::scenes::scenes;
@@ -10,12 +10,12 @@ use serde_json::{Value, json};
 use std::cell::RefCell;
 
 thread_local! {
-    /// The description that was opened last.
+    /// The open description.
     static OPEN: RefCell<Option<Session>> = const { RefCell::new(None) };
 }
 
-/// The answer to a request, `{ "do": … }`: what was asked for under `done`, or what is wrong under `error`; and behind it
-/// the numbers of scenes, which are too many for a text.
+/// Answers a request, `{ "do": … }`: JSON with the result in `done` or a message in `error`, and the numbers of scenes,
+/// which are too many for JSON.
 pub fn answer(request: &str) -> (String, Vec<f32>) {
     let mut numbers = Vec::new();
     let answer = match serde_json::from_str::<Value>(request) {
@@ -42,10 +42,10 @@ fn answered(request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
     })
 }
 
-/// Reads and derives a description; what is wrong with it is part of the answer.
+/// Reads and derives a description; its errors are part of the answer.
 fn open(request: &Value) -> Value {
     let (text, name) = (text(request, "text"), text(request, "name"));
-    // What was open goes first: its memory is needed.
+    // The memory of the old description is freed first.
     OPEN.replace(None);
     let (read, said) = Session::marked(text.clone(), &name, &RobotOptions::default());
     let marks = marks(&said, &text);
@@ -59,7 +59,7 @@ fn open(request: &Value) -> Value {
     }
 }
 
-/// A robot in URDF as a description.
+/// Converts a robot in URDF to a description.
 fn import(request: &Value) -> Value {
     let options = RobotOptions {
         floating: request["floating"] == true,
@@ -104,7 +104,7 @@ fn asked(
             };
             parsed(session.compare(&state(session, request)?, &asked))?
         }
-        _ => return Err(format!("nothing is called `{what}`")),
+        _ => return Err(format!("there is no request `{what}`")),
     })
 }
 
@@ -121,7 +121,7 @@ fn check(session: &Session) -> Value {
     json!({ "identities": identities.collect::<Vec<Value>>(), "remarks": remarks })
 }
 
-/// The start, or the x and ξ that are given, changed by what is asked for.
+/// Returns the start, with x and ξ of the request if given, and the changes of the request.
 fn state(session: &Session, request: &Value) -> Result<State, String> {
     let mut start = session.start();
     for (entries, key) in [(&mut start.x, "x"), (&mut start.xi, "xi")] {
@@ -139,11 +139,11 @@ fn state(session: &Session, request: &Value) -> Result<State, String> {
     }
 }
 
-/// The start after a point of it was pulled towards a place, and how it looks.
+/// Returns the start after a point is pulled towards a target, with its scene.
 fn pull(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
     let vector = |key: &str| {
         <[f64; 3]>::try_from(list(request, key))
-            .map_err(|_| format!("`{key}` has to have three numbers"))
+            .map_err(|_| format!("`{key}` must have three numbers"))
     };
     let index = |key: &str| {
         request[key]
@@ -188,7 +188,7 @@ fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Resul
         run.map_err(said)
     };
     let mut ran = run(None)?;
-    // Steps that are chosen by their error may be too long to be drawn; what is between them is known as exactly.
+    // Adaptive steps may be too long to be drawn; the dense output between them is as accurate.
     if drawn && stepping.step.is_none() && ran.t.len() < MOMENTS && ran.failure.is_none() {
         ran = run(Some(moments(stepping.until)))?;
     }
@@ -233,16 +233,16 @@ fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Resul
     }))
 }
 
-/// As many samples are drawn at least.
+/// Smallest number of samples of a drawn run.
 const MOMENTS: usize = 600;
 
-/// Times from 0 to an end.
+/// Equally spaced times from 0 to an end.
 fn moments(until: f64) -> Vec<f64> {
     let inner = (0..MOMENTS).map(|k| until * k as f64 / MOMENTS as f64);
     inner.chain([until]).collect()
 }
 
-/// A text that is JSON already.
+/// Parses a text that is JSON.
 fn parsed(written: Result<String, Failure>) -> Result<Value, String> {
     let written = written.map_err(said)?;
     serde_json::from_str(&written).map_err(|error| error.to_string())
@@ -300,7 +300,7 @@ mod tests {
             said.contains(mark["message"].as_str().expect("a text")),
             "{said}"
         );
-        // What was open before is not any more.
+        // The description that was open before is closed.
         let refused = asked(json!({ "do": "tables", "of": ["M"] }));
         assert_eq!(refused["error"], "no description is open");
     }

@@ -1,19 +1,19 @@
-//! What is drawn of a run: what there is to draw, and one list of numbers that says where it is at each sample.
+//! Scenes of a run: the drawable parts, and one list of numbers that places them at each sample.
 
 use hamel_cli::{Scene, Session};
 use serde_json::{Value, json};
 
-/// Scenes of a run, one after the other.
+/// Scenes of a run.
 pub struct Scenes {
-    /// What there is to draw, at the first sample.
+    /// The scene at the first sample, with all drawable parts.
     pub first: Value,
-    /// Numbers of one scene.
+    /// Number of numbers of one scene.
     pub width: usize,
-    /// Those of all scenes; what is drawn needs no more digits than these have.
+    /// Numbers of all scenes; single precision suffices for drawing.
     pub numbers: Vec<f32>,
 }
 
-/// The scenes of samples whose x lie one behind the other; none where nothing of the description can be drawn.
+/// Returns the scenes of samples, whose x are concatenated; `None` if nothing of the description can be drawn.
 pub fn scenes(session: &Session, params: &[f64], x: &[f64]) -> Option<Scenes> {
     let drawing = session.drawing().ok()?;
     let drawn = drawing.with(params);
@@ -34,7 +34,7 @@ pub fn scenes(session: &Session, params: &[f64], x: &[f64]) -> Option<Scenes> {
     })
 }
 
-/// What moves in a scene, in the order in which `page/src/scene.ts` reads it.
+/// Lists the moving vectors of a scene, in the order in which `page/src/scene.ts` reads them.
 fn listed(scene: &Scene) -> Vec<f32> {
     let frames = scene.frames.iter();
     let frames = frames.flat_map(|frame| [&frame.rotation[..], &[frame.position]].concat());
