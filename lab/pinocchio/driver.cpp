@@ -1,7 +1,7 @@
-// Pinocchio's algorithms behind C functions: a robot, states that are put in beforehand, and one function for each
-// algorithm, which returns where its result stands.
+// C interface to Pinocchio's algorithms: a robot, states added in advance, and one function for each algorithm, which
+// returns a pointer to its result.
 //
-// No call that is timed copies or allocates: states are vectors of Eigen, results stay in Pinocchio's `Data`.
+// Timed calls neither copy nor allocate: states are Eigen vectors, and results stay in Pinocchio's `Data`.
 
 #include "robot.h"
 
@@ -73,7 +73,7 @@ Eigen::VectorXd vector(const double *numbers, int count) {
 
 extern "C" {
 
-// A null pointer, and a line that says why, where there is no such robot.
+// Creates a robot; on failure, prints the reason and returns a null pointer.
 Robot *pin_open(const Description *description) try {
   return new Robot(*description);
 } catch (const std::exception &why) {
@@ -87,53 +87,54 @@ int pin_nq(const Robot *robot) { return robot->model.nq; }
 
 int pin_nv(const Robot *robot) { return robot->model.nv; }
 
-// The number of bodies, each with ten parameters.
+// Number of bodies, each with ten parameters.
 int pin_bodies(const Robot *robot) { return robot->model.njoints - 1; }
 
-// Adds a state, which later calls name by its place.
+// Adds a state, to which later calls refer by its index.
 void pin_add(Robot *robot, const double *q, const double *v, const double *a, const double *tau) {
   const int nq = robot->model.nq, nv = robot->model.nv;
   robot->states.push_back({vector(q, nq), vector(v, nv), vector(a, nv), vector(tau, nv)});
 }
 
-// tau
+// Inverse dynamics: tau.
 const double *pin_rnea(Robot *robot, std::size_t k) {
   const State &at = robot->states[k];
   return pinocchio::rnea(robot->model, robot->data, at.q, at.v, at.a).data();
 }
 
-// The acceleration.
+// Forward dynamics with local frames: the acceleration.
 const double *pin_aba_local(Robot *robot, std::size_t k) {
   const State &at = robot->states[k];
   return pinocchio::aba(robot->model, robot->data, at.q, at.v, at.tau, pinocchio::Convention::LOCAL).data();
 }
 
-// The acceleration.
+// Forward dynamics with the world frame: the acceleration.
 const double *pin_aba_world(Robot *robot, std::size_t k) {
   const State &at = robot->states[k];
   return pinocchio::aba(robot->model, robot->data, at.q, at.v, at.tau, pinocchio::Convention::WORLD).data();
 }
 
-// Slopes of the acceleration by displacements, by rows; those by velocities are `pin_by_velocity`.
+// Derivatives of the acceleration by displacements, in row-major order; `pin_by_velocity` returns those by velocities.
 const double *pin_derivatives(Robot *robot, std::size_t k) {
   const State &at = robot->states[k];
   pinocchio::computeABADerivatives(robot->model, robot->data, at.q, at.v, at.tau);
   return robot->data.ddq_dq.data();
 }
 
-// Slopes of the acceleration by velocities, of the last call of `pin_derivatives`, by rows.
+// Derivatives of the acceleration by velocities from the last call of `pin_derivatives`, in row-major order.
 const double *pin_by_velocity(const Robot *robot) { return robot->data.ddq_dv.data(); }
 
-// Slopes of the acceleration by forces, of the last call of `pin_derivatives`: symmetric.
+// Derivatives of the acceleration by forces from the last call of `pin_derivatives`, a symmetric matrix.
 const double *pin_by_force(const Robot *robot) { return robot->data.Minv.data(); }
 
-// Ten columns for every body, by columns.
+// Regressor with ten columns for each body, in column-major order.
 const double *pin_regressor(Robot *robot, std::size_t k) {
   const State &at = robot->states[k];
   return pinocchio::computeJointTorqueRegressor(robot->model, robot->data, at.q, at.v, at.a).data();
 }
 
-// Six rows, linear before angular, in axes of the world, by columns. Columns of joints that do not move the frame stay 0.
+// Frame Jacobian: six rows, linear before angular, in world axes, column-major. Columns of joints that do not move the
+// frame stay 0.
 const double *pin_jacobian(Robot *robot, std::size_t k) {
   const State &at = robot->states[k];
   pinocchio::computeFrameJacobian(robot->model, robot->data, at.q, robot->frame, pinocchio::LOCAL_WORLD_ALIGNED,
@@ -141,7 +142,7 @@ const double *pin_jacobian(Robot *robot, std::size_t k) {
   return robot->jacobian.data();
 }
 
-// What the columns of the regressor belong to.
+// Inertial parameters, in the order of the columns of the regressor.
 void pin_parameters(const Robot *robot, double *out) {
   for (int i = 1; i < robot->model.njoints; ++i)
     Eigen::Map<Eigen::Matrix<double, 10, 1>>(out + 10 * (i - 1)) = robot->model.inertias[i].toDynamicParameters();

@@ -1,4 +1,4 @@
-// Reads URDF files by Pinocchio's wheel.
+// Reads URDF files with the library from Pinocchio's wheel.
 
 #include "robot.h"
 
@@ -37,8 +37,8 @@ Placed placed(pinocchio::JointIndex parent, const pinocchio::SE3 &at) {
 
 extern "C" {
 
-// A robot with a fixed or a floating base and the frame of a link; `locked` are joints that stay at 0, up to a null
-// pointer. A null pointer, and a line that says why, where there is no such robot.
+// Reads a robot with a fixed or a floating base, and the frame of a link. `locked` is a null-terminated list of joints
+// fixed at 0. On failure, prints the reason and returns a null pointer.
 Description *pin_read(const char *urdf, int floating, const char *const *locked, const char *link) try {
   pinocchio::Model model;
   if (floating)

@@ -1,10 +1,10 @@
-// A robot as plain numbers, so that the reader of URDF files and the algorithms may be compiled with different options,
-// with which Eigen's matrices are laid out differently.
+// A robot as plain numbers, so that the URDF reader and the algorithms can be compiled with different options, which
+// change the layout of Eigen's matrices.
 #pragma once
 
 enum Kind { FREE, ABOUT_X, ABOUT_Y, ABOUT_Z };
 
-// A frame on a joint: axes by columns, then the origin.
+// A frame fixed to a joint: rotation in column-major order, and origin (m).
 struct Placed {
   int parent;
   double rotation[9];
@@ -16,11 +16,11 @@ struct Joint {
   Placed at;
   double mass;
   double com[3];
-  // About the centre of mass: xx, xy, yy, xz, yz, zz.
+  // About the centre of mass (kg m²): xx, xy, yy, xz, yz, zz.
   double inertia[6];
 };
 
-// Joints follow their parents; joint 0 is the world, and stands in no list.
+// Joints follow their parents; joint 0 is the world, which `joints` omits.
 struct Description {
   int count;
   Joint joints[32];

@@ -1,4 +1,4 @@
-// Pinocchio's forward dynamics over many states, as a user of C++ writes it: a loop without copies.
+// Pinocchio's forward dynamics of many states, as C++ users write it: a loop without allocation.
 
 #include <pinocchio/algorithm/aba.hpp>
 
@@ -29,8 +29,8 @@ struct Arm {
 
 extern "C" {
 
-// A chain of hinges: for each its axis, the pose of its frame in the one before (rotation by columns, position), and mass, centre of
-// mass and inertia about it (xx, xy, yy, xz, yz, zz) of what it carries.
+// Creates a chain of revolute joints. Each has an axis, the pose of its frame in the previous one (rotation in
+// column-major order, position), and mass, centre of mass and inertia about it (xx, xy, yy, xz, yz, zz) of its body.
 Arm *chain(std::size_t n, const int *axes, const double *poses, const double *inertias) {
   auto *arm = new Arm();
   for (std::size_t i = 0; i < n; ++i) {

@@ -1,4 +1,4 @@
-// A real Chromium with the page in it. Any request that leaves the page fails the test.
+// The page in Chromium. Any request to the network fails the test.
 
 import { chromium } from "playwright-core";
 import { spawnSync } from "node:child_process";
@@ -33,7 +33,7 @@ export async function stopped() {
   await browser?.close();
 }
 
-// The page, ready, in a window of its own; `left` fills with what should not have happened.
+// Opens the page in a new window, and waits until it is ready; `left` collects forbidden requests and errors.
 export async function opened(url = address, options = {}) {
   const context = await (await started()).newContext({ viewport: { width: 1280, height: 900 }, ...options });
   const page = await context.newPage();
@@ -54,7 +54,7 @@ export async function opened(url = address, options = {}) {
   return { page, left, close: () => context.close() };
 }
 
-// Puts a text into the editor as a paste does, and waits until the page has an answer to it.
+// Pastes a text into the editor, and waits for the answer.
 export async function typed(page, text) {
   await page.click(".cm-content");
   await page.keyboard.press("Control+A");
@@ -66,19 +66,19 @@ export async function answered(page, timeout = 120_000) {
   await page.waitForFunction(() => document.body.dataset.answered === "yes", undefined, { timeout });
 }
 
-// What the generator of the page answers to a request, on its own.
+// Sends a request directly to the generator of the page, and returns the answer.
 export async function asked(page, what, request = {}) {
   return page.evaluate(([what, request]) => globalThis.hamel.ask(what, request), [what, request]);
 }
 
-// Keeps what the page looks like, where somebody wants to see it.
+// Saves a screenshot to the folder HAMEL_PICTURES, if set.
 export async function picture(page, name) {
   if (process.env.HAMEL_PICTURES !== undefined) {
     await page.screenshot({ path: join(process.env.HAMEL_PICTURES, `page-${name}.png`) });
   }
 }
 
-// What the command line says.
+// Runs the command line.
 export function said(words, input) {
   const { status, stdout, stderr } = spawnSync(process.env.HAMEL ?? join(root, "target", "debug", "hamel"), words, {
     cwd: root,
@@ -93,7 +93,7 @@ export async function model(name) {
   return readFile(join(root, "tests", "models", `${name}.eom`), "utf8");
 }
 
-// The folder of the page, as any static host gives it out.
+// Serves the page like a static host.
 export async function served() {
   const server = createServer(async (request, answer) => {
     const path = new URL(request.url, "http://localhost").pathname;

@@ -1,4 +1,4 @@
-// The motion: energy along a run, a robot that is dropped, what is drawn, and how fast.
+// The motion: energy along a run, a robot dropped onto the editor, the picture and its speed.
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
@@ -15,7 +15,7 @@ async function shown(page) {
   });
 }
 
-// How many points of the scene are not of the colour behind it.
+// Counts the pixels of the scene that are not background.
 function drawn(page) {
   return page.evaluate(() => {
     const canvas = document.querySelector(".stage canvas");
@@ -37,7 +37,7 @@ async function gallery(name) {
   return readFile(join(root, "examples", "gallery", `${name}.eom`), "utf8");
 }
 
-// How many points near one of the window are red, where nothing else is.
+// Counts the red pixels near a point of the window.
 function red(page, [x, y]) {
   return page.evaluate(
     ([x, y]) => {
@@ -86,7 +86,7 @@ test("a run keeps its energy, and can be played, moved through and changed", asy
   const drift = Number(await page.getAttribute("#summary", "data-drift"));
   assert.ok(drift > 0 && drift < 1e-9, `energy changes by ${drift}`);
   assert.ok((await drawn(page)) > 1000);
-  // Velocities, energy, and what the description claims to be constant.
+  // Plots of velocities, energy, and the invariants of the description.
   const titles = await page.$$eval(".plots figcaption", (list) => list.map((one) => one.textContent));
   assert.ok(titles.includes("velocities"), titles.join());
   assert.ok(titles.some((title) => title.startsWith("energy minus its initial value")), titles.join());
@@ -101,7 +101,7 @@ test("a run keeps its energy, and can be played, moved through and changed", asy
   assert.equal(await page.textContent("#play"), "Play");
   await picture(page, "motion");
   const before = await page.$eval(".plots polyline", (line) => line.getAttribute("points"));
-  // Another start: another run.
+  // Another start gives another run.
   const field = page.locator(".start input").last();
   await field.fill("9");
   await page.waitForFunction((before) => document.querySelector(".plots polyline").getAttribute("points") !== before, before);
@@ -134,7 +134,7 @@ test("a run without an end gives way to what is wanted next", async () => {
   await summary("^running…$");
   await step("0.01");
   await summary("^rkmk4; 1,000 steps");
-  // All else is asked of a generator that knows the description, too, and so it is where a robot that is none takes its place.
+  // A new worker opens the description for other requests as well, also after a file that is not a robot.
   await page.click("#tab-identities");
   await page.waitForSelector("#panel-identities .verdict");
   await page.click("#tab-motion");
@@ -144,7 +144,7 @@ test("a run without an end gives way to what is wanted next", async () => {
   await page.waitForFunction(() => /cannot be read as a robot/.test(document.querySelector("#status").textContent));
   await step("0.01");
   await summary("^rkmk4; 1,000 steps");
-  // What is no length is no run of another length.
+  // An invalid length is an error.
   await page.fill("#until", "-5");
   await page.press("#until", "Enter");
   await summary("the length of a run has to be a number greater than zero");
@@ -192,7 +192,7 @@ test("a robot that is dropped is drawn sixty times a second", async () => {
   assert.ok((await drawn(page)) > 1000);
   const places = await page.$eval(".plots polyline", (line) => line.getAttribute("points").split(" ").length);
   assert.ok(places >= 300, `${places} samples`);
-  // What the page does for a frame, whatever draws it: software here, a graphics card elsewhere.
+  // Work of the page for a frame, without that of the renderer, which is software here.
   const { frame, calls } = await page.evaluate(() => globalThis.hamelMotion.measure(200));
   console.log(`Solo12: ${frame.toFixed(2)} ms of work for a frame, ${calls} calls of the graphics card`);
   assert.ok(frame < 1000 / 60, `${frame} ms`);
@@ -202,7 +202,7 @@ test("a robot that is dropped is drawn sixty times a second", async () => {
   await close();
 });
 
-// Two bars that meet in a loop, which no frame and no body is near.
+// Two bars that meet in a loop, far from any frame or body.
 const BARS = `pub system Bars {
     joint a: revolute [0, 1, 0] moves left;
     joint b: revolute [0, 1, 0] at [1, 0, 0] moves right;
@@ -229,7 +229,7 @@ test("points of loops are drawn where they meet, and what has no place is named"
   assert.ok((await red(page, await place(one))) > 10);
   assert.equal(await red(page, await place([one[0], one[1], one[2] + 0.3])), 0);
   assert.equal(await page.textContent("#missing"), "");
-  // Energies alone have no place, and a loop of numbers has none either.
+  // Inertia given by an energy has no place.
   await typed(page, "pub system Abstract { coord q; velocity w; rate q = w; kinetic w^2 / 2; potential q^2 / 2; start q = 1; }");
   await shown(page);
   const missing = await page.textContent("#missing");
@@ -242,7 +242,7 @@ test("points of loops are drawn where they meet, and what has no place is named"
 test("a body that is dragged at the start stays where it was put", async () => {
   const { page, left, close } = await opened();
   await answered(page);
-  // The two bars in a loop have one freedom: what is dragged comes as near as its path does.
+  // The bars in a loop have one degree of freedom, so a dragged point comes only as near as its path allows.
   for (const [text, [right, down], near] of [
     [await gallery("double_pendulum"), [-14, 10], 1],
     [BARS, [14, 3], 10],
@@ -258,7 +258,7 @@ test("a body that is dragged at the start stays where it was put", async () => {
     const before = await fields();
     await page.locator(".stage").scrollIntoViewIfNeeded();
     const [x, y] = await found();
-    // A few pixels, so that two bars in a loop can follow.
+    // A few pixels, which the bars in a loop can follow.
     const to = [x + right, y + down];
     await page.mouse.move(x, y);
     await page.mouse.down();
@@ -277,7 +277,7 @@ test("a body that is dragged at the start stays where it was put", async () => {
     const [a, b] = await found();
     assert.ok(Math.hypot(a - to[0], b - to[1]) < near, `${[x, y]} was dragged to ${to}, and is at ${[a, b]}`);
     assert.doesNotMatch(await page.getAttribute("#summary", "class"), /bad/);
-    // Loops are closed, and the energy is kept.
+    // Loops are closed, and the energy is constant.
     assert.ok(Number(await page.getAttribute("#summary", "data-drift")) < 1e-6);
     await page.click("#reset");
     await page.waitForFunction((before) => [...document.querySelectorAll(".start input")].every((one, k) => one.value === before[k]), before);
@@ -291,7 +291,7 @@ test("a name that is dragged sideways changes its number", async () => {
   const { page, left, close } = await opened();
   await answered(page);
   await shown(page);
-  // By a hundredth for each pixel.
+  // By 0.01 for each pixel.
   const handle = page.locator(".start .handle").first();
   const input = page.locator(".start input").first();
   await handle.scrollIntoViewIfNeeded();

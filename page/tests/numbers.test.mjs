@@ -1,4 +1,4 @@
-// The numbers of the page are those of the command line: of every function at a state, and along a run.
+// The numbers of the page are those of the command line: all quantities at a state, and along a run.
 
 import assert from "node:assert/strict";
 import { mkdtemp, readFile, rm } from "node:fs/promises";
@@ -22,10 +22,10 @@ const MODELS = [
   "lagging_drone",
   "kapitza",
 ];
-// Functions are not fused in a browser: what differs is rounding.
+// Relative tolerance: WebAssembly has no fused multiply-add, so results differ by rounding.
 const NEAR = 1e-13;
 
-// All numbers of a value, in order; whatever else it has stands there as it is.
+// All leaves of a value, in order.
 function flat(value) {
   return value !== null && typeof value === "object" ? Object.values(value).flatMap(flat) : [value];
 }

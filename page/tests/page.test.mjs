@@ -1,4 +1,4 @@
-// What somebody does with the page: types, makes a mistake, drops a robot, follows a link, reads it on a phone.
+// Use of the page: typing, errors, robots, links, the keyboard, phones, and latency.
 
 import assert from "node:assert/strict";
 import { mkdtemp, readFile, writeFile } from "node:fs/promises";
@@ -34,12 +34,12 @@ test("a system that is typed has its γ, from a file and from a server", async (
     );
     const gamma = await page.textContent('[data-table="gamma"]');
     assert.match(gamma, /value of/);
-    // γ of body rates on SO(3): ±1 for the permutations of 123, and nothing else.
+    // γ of body rates on SO(3): ±1 for the permutations of 123, zero otherwise.
     const indices = await page.$$eval('[data-table="gamma"] .index', (list) => list.map((one) => one.textContent).sort());
     assert.deepEqual(indices, ["123", "132", "213", "231", "312", "321"]);
     const shown = await page.$$eval("[data-table]", (list) => list.map((one) => one.dataset.table).sort());
     assert.deepEqual(shown, ["A", "Gamma", "M", "Y", "gamma", "phi"]);
-    // Pointing at an entry shows its equation, and so does moving to it by the keyboard.
+    // Hovering over an entry shows its equation, and so does focusing it by the keyboard.
     const tip = '[data-table="gamma"] .tip .katex';
     await page.hover('[data-table="gamma"] .index');
     await page.waitForSelector(tip);
@@ -57,7 +57,7 @@ test("a system that is typed has its γ, from a file and from a server", async (
 test("an error is underlined where it is, in the words of the command line", async () => {
   const { page, left, close } = await opened();
   await answered(page);
-  // A letter that is two bytes and one unit stands before it, and a warning beside it.
+  // A character of two bytes and one UTF-16 unit precedes it, and there is a warning as well.
   const text = (await model("free_body")).replace("hat(w)", "hat(ww)").replace("pub system", "// γ\npub system");
   assert.match(text, /hat\(ww\)/);
   await typed(page, text);
@@ -72,10 +72,10 @@ test("an error is underlined where it is, in the words of the command line", asy
   for (const line of help) {
     assert.ok(stderr.includes(line), `${line} in ${stderr}`);
   }
-  // The place, as the command line counts it.
+  // The place is that of the command line.
   const place = /-->\s*\S+?:(\d+:\d+)/.exec(stderr)[1];
   assert.match(await page.textContent(".message.error b"), new RegExp(` at ${place}$`));
-  // Behind letters that are two units of a string, too.
+  // Also after characters of two UTF-16 units.
   const behind = "system S { /* 𝔸𝔹 */ velcity w; }";
   await typed(page, behind);
   const [, column] = /-->\s*\S+?:(\d+:\d+)/.exec(said(["check", "-"], behind).stderr);
@@ -83,7 +83,7 @@ test("an error is underlined where it is, in the words of the command line", asy
   await typed(page, text);
   assert.deepEqual(left, []);
   await picture(page, "error");
-  // The error goes when its cause goes.
+  // The error disappears with its cause.
   await typed(page, text.replace("hat(ww)", "hat(w)"));
   assert.equal(await page.$$eval(".cm-lintRange-error, .message.error", (list) => list.length), 0);
   await close();
@@ -108,7 +108,7 @@ test("identities, operations and code are those of the command line", async () =
     return rows.find((row) => row.querySelector("th")?.textContent === "accel")?.querySelector("td").textContent;
   });
   assert.equal(accel, String(counts.functions.accel.shared.flops));
-  // The adviser's choices are those of the command line, with what each costs.
+  // The adviser's choices are those of the command line, with the same costs.
   await page.waitForSelector("#panel-operations h3 + div .grid");
   const advised = JSON.parse(said(["ops", "tests/models/cart_pole.eom", "--advise", "--format", "json"]).stdout);
   const choices = await page.$$eval("#panel-operations h3 + div tbody tr", (rows) =>
@@ -123,7 +123,7 @@ test("identities, operations and code are those of the command line", async () =
   assert.match(rust, /impl/);
   assert.match(header, /#ifndef/);
   assert.match(source, /#include/);
-  // To the byte, but for the name of the file.
+  // Equal to the byte, except for the name of the file.
   const emitted = said(["emit", "-"], text).stdout;
   const body = (code) => code.split("\n").filter((line) => !line.startsWith("//")).join("\n");
   assert.equal(body(rust), body(emitted));
@@ -151,11 +151,11 @@ test("a link holds the system", async () => {
   await answered(other.page);
   const kept = await other.page.evaluate(() => globalThis.hamelText());
   assert.equal(kept, text);
-  // A link that is broken opens the page as if there were none.
+  // A broken link opens the page as without a link.
   const broken = await opened(`${url.split("#")[0]}#not-a-link`);
   await answered(broken.page);
   assert.ok((await broken.page.textContent("#panel-tables")).length > 100);
-  // One whose text has an error says nothing of what is not there.
+  // A link whose text has an error does not refer to earlier results.
   const wrong = await opened(`${url.split("#")[0]}#K64sLknNVQguLUgFAA`);
   await answered(wrong.page);
   assert.equal(await wrong.page.textContent("#status"), "1 error in the description");
@@ -173,7 +173,7 @@ test("tabs, editor and motion are reached by the keyboard", async () => {
   assert.equal(await page.evaluate(() => document.activeElement.id), "tab-identities");
   await page.keyboard.press("End");
   assert.equal(await page.evaluate(() => document.activeElement.id), "tab-motion");
-  // The time moves by the arrows, and the space bar plays.
+  // Arrow keys change the time, and the space bar plays.
   await page.waitForFunction(() => document.body.dataset.motion !== undefined, undefined, { timeout: 120_000 });
   await page.focus('.controls input[type="range"]');
   await page.keyboard.press("ArrowRight");
@@ -220,15 +220,15 @@ test("dark, and on a phone, nothing is wider than the window", async () => {
   }
 });
 
-// Bars in ms, for a machine on which a million turns of the loop of `calibrated` take NOMINAL ms.
+// Limits (ms) for a machine on which a million iterations of the loop of `calibrated` take NOMINAL ms.
 const BARS = { body: 100, arm: 1000 };
 const NOMINAL = 1.25;
 
 test("latency: tables of a free body and of a UR5", async () => {
   const { page, left, close } = await opened();
   await answered(page);
-  // How long a loop takes here and now: where the machine is slower, or shared, everything else is, too.
-  // It takes as long as the bar, so that both are interrupted as often.
+  // Time of a loop, which measures how much slower the machine is, or how busy. The loop takes about as long as the
+  // limit, so that both are interrupted equally often.
   const calibrated = (bar) =>
     page.evaluate((turns) => {
       const begin = performance.now();
@@ -239,7 +239,7 @@ test("latency: tables of a free body and of a UR5", async () => {
       globalThis.hamelKept = state;
       return performance.now() - begin;
     }, (1e6 * bar) / NOMINAL);
-  // The least of several: what else the machine does only ever adds to a time.
+  // The smallest of several times, since other processes only add to a time.
   const least = (list) => Math.min(...list);
   const latency = async (text, bar, rounds) => {
     const [times, loops] = [[], []];
