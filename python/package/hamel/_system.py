@@ -556,7 +556,7 @@ class System:
     # --- states -----------------------------------------------------------------------------------------------------
 
     def start(self) -> State:
-        """Return the initial state of the description, with zero inputs."""
+        """Return the initial state, with zero inputs."""
         return self._start._copy()
 
     def state(self, **parts: Mapping[str, Any]) -> State:
@@ -764,6 +764,13 @@ class System:
 
         A and B are derivatives of the step itself, to rounding, not of the exact motion. Their rows and columns are
         those of `linearize(full=True)`.
+
+        Raises
+        ------
+        SingularError
+            If the step fails.
+        HamelError
+            If the method has no derivatives, such as "rk4".
         """
         state = self._at(at)
         x, xi, slopes = self._session.step_slopes(state, _number("h", h), _method(method))
