@@ -1,6 +1,6 @@
 //! JSON with members in the order in which they were given, and short lists on one line.
 
-use crate::number::exact;
+use hamel_files::number::exact;
 
 /// A value to be written.
 #[derive(Clone, Debug)]

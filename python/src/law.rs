@@ -1,7 +1,8 @@
 //! Functions of (t, x, ξ) in Python: those that give inputs, and those that are watched for events.
 
 use crate::rows::numbers;
-use hamel_cli::{Control, Gauge, Law, Stop};
+use hamel_engine::run::{Control, Gauge};
+use hamel_engine::{Law, Stop};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;

@@ -6,7 +6,7 @@
 //! | `run` | runs, with their options and what becomes of them |
 //! | `function`, `states`, `rows` | generated functions over arrays: calls, evaluation, arrays of states |
 //! | `law` | functions in Python that give inputs, or are watched for events |
-//! | `failure` | exceptions |
+//! | `failure`, `warnings` | exceptions, and warnings |
 
 mod failure;
 mod function;
@@ -15,6 +15,7 @@ mod rows;
 mod run;
 mod session;
 mod states;
+mod warnings;
 
 use pyo3::prelude::*;
 

@@ -7,7 +7,6 @@
 //! | module | owns |
 //! |---|---|
 //! | [`auto`] | how good the chosen method is |
-//! | [`baselines`] | methods that are measured to show what they lose |
 //! | `controlled` | runs by error control as a table |
 //! | [`counted`] | a system that counts the evaluations of its forces |
 //! | [`problem`] | one system with its start, its errors and what it conserves |
@@ -21,7 +20,6 @@
 //! | `code` | code between backticks, in pages and pictures |
 //! | [`summary`] | the runs behind that part |
 //! | [`plot`] | pictures as SVG |
-//! | [`number`] | numbers as people read them |
 //!
 //! Pictures are drawn by `plotters` (MIT) with its SVG backend alone: axes, ticks and logarithmic
 //! scales are its work. It is in wide use, needs no fonts on the machine (text is measured by its
@@ -38,7 +36,6 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod auto;
-pub mod baselines;
 #[cfg(feature = "pictures")]
 mod code;
 mod controlled;
@@ -50,7 +47,6 @@ pub mod excerpt;
 pub mod json;
 pub mod markdown;
 pub mod measure;
-pub mod number;
 #[cfg(feature = "pictures")]
 pub mod page;
 #[cfg(feature = "pictures")]
@@ -59,3 +55,5 @@ pub mod problem;
 pub mod solution;
 pub mod summary;
 pub mod work;
+
+use hamel_files::number;

@@ -1,6 +1,6 @@
 //! What a mechanism looks like: its scene as shapes of a picture.
 
-use crate::drawing::{Acts, Frame, Joint, Scene, Vector};
+use hamel_engine::drawing::{Acts, Frame, Joint, Scene, Vector};
 use hamel_report::plot::space::{Ink, Part, Shape};
 
 /// Widths of links, axes of joints, rails and axes of frames (pixels).

@@ -1,9 +1,9 @@
 //! The angular momentum of a single body, and whether it is nearly free: what Poinsot's construction
 //! needs.
 
-use super::sample::Sample;
-use crate::mechanism::{Instance, Numbers};
 use hamel::{Block, System};
+use hamel_engine::mechanism::{Instance, Numbers};
+use hamel_engine::run::Sample;
 use hamel_report::plot::Poinsot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 

@@ -1,10 +1,9 @@
 //! Samples as files.
 
-use super::record::Run;
-use super::sample::Sample;
 use crate::failure::Failure;
 use crate::json::Json;
-use crate::number::exact;
+use hamel_engine::run::{Run, Sample};
+use hamel_files::number::exact;
 use std::path::Path;
 
 /// What a file holds, by the end of its name.

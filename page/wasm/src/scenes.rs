@@ -1,6 +1,6 @@
 //! What is drawn of a run: what there is to draw, and one list of numbers that says where it is at each sample.
 
-use hamel_cli::{Scene, Session};
+use hamel_engine::{Scene, Session};
 use serde_json::{Value, json};
 
 /// Scenes of a run, one after the other.

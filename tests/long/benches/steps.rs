@@ -10,7 +10,7 @@ use hamel::flows::Flow;
 use hamel::methods::{Cf4, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, Splitting};
 use hamel::{Method, State, System, so3};
 use hamel_cases::bodies::benchmark_top;
-use hamel_report::baselines::{Buss, Slide};
+use hamel_engine::baselines::{Buss, Slide};
 use hamel_tests_long::common::{Body, QuaternionTop, Reference, Spin, Top};
 
 /// Steps of one measurement: the state moves on, so that nothing is computed once for all.

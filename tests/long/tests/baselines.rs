@@ -2,7 +2,7 @@
 
 use hamel::methods::Rkmk4;
 use hamel::{Method, State, StepError, System, so3};
-use hamel_report::baselines::{Baseline, Buss, Rk4Added, Slide};
+use hamel_engine::baselines::{Baseline, Buss, Rk4Added, Slide};
 use hamel_tests_long::common::{QuaternionTop, Reference, Spin, Top, distance, run, slopes};
 use std::cell::Cell;
 

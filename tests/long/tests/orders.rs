@@ -6,7 +6,7 @@
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, Lgvi, Scheme, Splitting, free};
 use hamel::{Method, State, StepError};
-use hamel_report::baselines::{Buss, Slide};
+use hamel_engine::baselines::{Buss, Slide};
 use hamel_tests_long::common::{Reference, Spin, Top, distance, run, slopes};
 
 /// How far a measured error may be from the expected one.

@@ -1,0 +1,9 @@
+//! Machine code against tapes and graphs; a module alone: `cargo test -p hamel-native --test suite random::`.
+
+mod float;
+mod models;
+mod random;
+#[path = "../../../../codegen/tests/suite/common/size.rs"]
+mod size;
+#[path = "../../../../codegen/tests/suite/common/some.rs"]
+mod some;
