@@ -2,8 +2,7 @@
 
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
-use crate::source::Source;
-use crate::state::solved::lines as lines_of;
+use crate::source;
 use clap::Args;
 use hamel_codegen::derive::care::{HELP, MANY, losses};
 use hamel_codegen::derive::geometry::Inspection;
@@ -13,6 +12,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::proof::check::{Identity, Verdict, check};
 use hamel_codegen::proof::confidence::Confidence;
 use hamel_codegen::tables::geometry::lines;
+use hamel_engine::state::constraint_lines;
 use std::path::PathBuf;
 
 /// Functions that lose fewer decimal digits than this are not listed.
@@ -51,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let gap = if index > 0 { "\n" } else { "" };
             print(&format!("{gap}\x1b[1m{}\x1b[0m\n", path.display()))?;
         }
-        let checked = Source::open(path, &arguments.robot).and_then(|source| {
+        let checked = source::open(path, &arguments.robot).and_then(|source| {
             let generated = source.derive_available(&[])?;
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
@@ -201,7 +201,7 @@ fn merging(generated: &Generated) -> String {
 
 /// Lists the velocities that constraints leave, and the constraints that determine the others.
 fn constrained(generated: &Generated, text: &str) -> String {
-    let lines = lines_of(generated, text);
+    let lines = constraint_lines(generated, text);
     lines.iter().map(|line| format!("  {line}\n")).collect()
 }
 

@@ -1,11 +1,11 @@
 //! The command line: its subcommands and their dispatch.
 
 use crate::failure::{self, Failure};
-use crate::simulate::stop::Stop;
 use crate::{
     check, compare, draw, emit, eval, import, linearize, ops, regressor, simulate, sweep, tables,
 };
 use clap::{Parser, Subcommand};
+use hamel_engine::Stop;
 use std::ffi::OsString;
 
 const EXAMPLES: &str = "\

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, print, update};
 use crate::outputs;
 use crate::robot::RobotOptions;
-use crate::source::Source;
+use crate::source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::builder;
 use hamel_codegen::emit::c::{Files, Precision, includable};
@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Language::C, Some(out)) => Some(stem(out)?),
         _ => None,
     };
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = source::open(&arguments.file, &arguments.robot)?;
     if let Some(out) = arguments.out.as_deref().filter(|_| !arguments.check) {
         let out = match &stem {
             Some(stem) => [".h", ".c"].map(|ending| out.with_file_name(format!("{stem}{ending}"))),

@@ -1,78 +1,165 @@
-//! Failures of commands, their exit statuses, and warnings.
+//! What ends a command early, how it is shown, and the exit status that it ends with.
 
-use hamel_codegen::diagnostics::Diagnostic;
-use std::cell::RefCell;
+use hamel_codegen::render::{render, warnings};
+use hamel_codegen::urdf;
+use hamel_engine::{Error, Warning};
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
-/// A failure, ready to be printed.
+/// Why a command ends early.
 #[derive(Debug)]
 pub enum Failure {
+    /// The engine cannot do what is asked for.
+    Engine(Error),
     /// A description or a check failed: status 1.
     Failed(String),
     /// Wrong usage, unreadable files: status 2.
     Usage(String),
+    /// Several things are wrong with one input: status 2.
+    Usages {
+        /// The input.
+        about: String,
+        /// What is wrong with it.
+        messages: Vec<String>,
+    },
+    /// The words of the command line are wrong, in the words of its parser: status 2.
+    CommandLine(String),
+    /// Several failures.
+    Several(Vec<Failure>),
     /// The reader of standard output has gone, as in `hamel … | head`: nothing is left to do.
     Closed,
 }
 
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Failure::Engine(error)
+    }
+}
+
 impl Failure {
     /// A failure of the request, in one message.
-    pub fn failed(message: impl AsRef<str>) -> Self {
-        Failure::Failed(headed(message.as_ref()))
+    pub fn failed(message: impl Into<String>) -> Self {
+        Failure::Failed(message.into())
     }
 
     /// Unusable input, in one message.
-    pub fn usage(message: impl AsRef<str>) -> Self {
-        Failure::Usage(headed(message.as_ref()))
+    pub fn usage(message: impl Into<String>) -> Self {
+        Failure::Usage(message.into())
     }
 
     /// Several messages about the same subject.
     pub fn usages(about: &str, messages: &[String]) -> Self {
-        let mut text: String = messages
-            .iter()
-            .map(|message| headed(&format!("{about}: {message}")))
-            .collect();
-        if messages.len() > 1 {
-            text.push_str(&format!("{} errors\n", messages.len()));
+        Failure::Usages {
+            about: about.into(),
+            messages: messages.to_vec(),
         }
-        Failure::Usage(text)
     }
 
-    /// The message without colours.
-    pub fn text(&self) -> String {
+    /// What is shown of it, on as many lines as that takes.
+    pub fn render(&self, color: bool) -> String {
+        let headed = |message: &str| match color {
+            true => format!("\x1b[1;31merror\x1b[0m: {message}\n"),
+            false => format!("error: {message}\n"),
+        };
+        let list = |about: &str, messages: &[String]| {
+            let lines = messages.iter().map(|message| format!("{about}: {message}"));
+            let mut text: String = lines.map(|line| headed(&line)).collect();
+            if messages.len() > 1 {
+                text.push_str(&format!("{} errors\n", messages.len()));
+            }
+            text
+        };
         match self {
-            Failure::Failed(text) | Failure::Usage(text) => plain(text),
+            Failure::Engine(error) => match (underlined(error, color), error.list()) {
+                (Some(text), _) => text,
+                (None, Some((about, messages))) => list(&about, &messages),
+                (None, None) => headed(&error.to_string()),
+            },
+            Failure::Failed(message) | Failure::Usage(message) => headed(message),
+            Failure::Usages { about, messages } => list(about, messages),
+            Failure::CommandLine(text) => text.clone(),
+            Failure::Several(all) => all.iter().map(|failure| failure.render(color)).collect(),
             Failure::Closed => String::new(),
         }
     }
 
-    /// Writes the failure to standard error and returns the exit status.
-    pub fn report(self) -> u8 {
-        let (text, code) = match self {
-            Failure::Failed(text) => (text, 1),
-            Failure::Usage(text) => (text, 2),
-            Failure::Closed => return 0,
-        };
-        // If standard error is closed, the message cannot be delivered.
-        let _ = anstream::stderr().write_all(text.as_bytes());
-        code
+    /// The exit status of a command that ends by it.
+    fn status(&self) -> u8 {
+        match self {
+            Failure::Engine(error) => 1 + u8::from(error.is_misuse()),
+            Failure::Failed(_) => 1,
+            Failure::Usage(_) | Failure::Usages { .. } | Failure::CommandLine(_) => 2,
+            Failure::Several(all) => all.iter().map(Failure::status).max().unwrap_or(0),
+            Failure::Closed => 0,
+        }
     }
 
-    /// The more severe of two failures, with the text of both.
+    /// Writes the failure to standard error; the exit status.
+    pub fn report(self) -> u8 {
+        // If standard error is closed, the message cannot be delivered.
+        let _ = anstream::stderr().write_all(self.render(true).as_bytes());
+        self.status()
+    }
+
+    /// Both of two failures.
     pub fn and(self, other: Failure) -> Failure {
         match (self, other) {
             (Failure::Closed, other) => other,
             (this, Failure::Closed) => this,
-            (Failure::Failed(a), Failure::Failed(b)) => Failure::Failed(a + &b),
-            (Failure::Failed(a) | Failure::Usage(a), Failure::Failed(b) | Failure::Usage(b)) => {
-                Failure::Usage(a + &b)
-            }
+            (this, other) => Failure::Several(vec![this, other]),
         }
     }
 }
 
-fn headed(message: &str) -> String {
-    format!("\x1b[1;31merror\x1b[0m: {message}\n")
+/// An error that has places in a text, with these underlined.
+fn underlined(error: &Error, color: bool) -> Option<String> {
+    Some(match error {
+        Error::Description {
+            path,
+            text,
+            diagnostics,
+        } => render(diagnostics, path, text, color),
+        Error::Robot {
+            path,
+            urdf,
+            imported,
+            diagnostics,
+        } => urdf::refused(diagnostics, imported, path, urdf, color),
+        Error::Import {
+            path,
+            urdf,
+            problems,
+        } => urdf::errors(problems, path, urdf, color),
+        Error::Argument {
+            option,
+            text,
+            diagnostics,
+        } => render(diagnostics, option, text, color),
+        _ => return None,
+    })
+}
+
+/// Shows a warning of the engine on standard error.
+pub fn warn_of(warning: &Warning<'_>) {
+    warn(&match *warning {
+        Warning::Description {
+            path,
+            text,
+            diagnostics,
+        } => warnings(diagnostics, path, text, true),
+        Warning::Robot {
+            path,
+            urdf,
+            imported,
+        } => urdf::warnings(imported, path, urdf, true),
+        Warning::LeftOut { .. } => warning.to_string(),
+    });
+}
+
+/// Writes what does not end the command to standard error.
+pub fn warn(text: &str) {
+    // If standard error is closed, the message cannot be delivered.
+    let _ = anstream::stderr().write_all(text.as_bytes());
 }
 
 /// Writes a result to standard output; colours are dropped if it is not a terminal, or with `NO_COLOR`.
@@ -105,74 +192,12 @@ pub fn said(answer: &clap::Error) -> u8 {
     }
 }
 
-/// Messages in addition to a result: warnings as a text without colours, and the places of errors and warnings.
-#[derive(Clone, Debug, Default)]
-pub struct Said {
-    /// The warnings, each with its source underlined.
-    pub warnings: String,
-    /// Errors and warnings with their places in the description.
-    pub marks: Vec<Mark>,
-}
-
-/// An error or a warning with its place in the description, for editors that underline it.
-#[derive(Clone, Debug)]
-pub struct Mark {
-    /// Whether it is an error.
-    pub is_error: bool,
-    /// The place, the message and the help.
-    pub diagnostic: Diagnostic,
-}
-
-thread_local! {
-    /// Messages captured in this thread, while [`collected`] runs.
-    static SAID: RefCell<Option<Said>> = const { RefCell::new(None) };
-}
-
-/// Records the places of errors or warnings if messages are being captured.
-pub fn mark(diagnostics: &[Diagnostic], is_error: bool) {
-    SAID.with_borrow_mut(|said| {
-        let Some(said) = said else { return };
-        said.marks.extend(diagnostics.iter().map(|diagnostic| Mark {
-            is_error,
-            diagnostic: diagnostic.clone(),
-        }));
-    });
-}
-
-/// Writes a warning to standard error, or to the captured messages.
-pub fn warn(text: &str) {
-    let collected = SAID.with_borrow_mut(|said| match said {
-        Some(said) => {
-            said.warnings.push_str(&plain(text));
-            true
-        }
-        None => false,
-    });
-    if !collected {
-        // If standard error is closed, the warning cannot be delivered.
-        let _ = anstream::stderr().write_all(text.as_bytes());
-    }
-}
-
-/// Runs `act` and captures the messages that it emits.
-pub fn collected<T>(act: impl FnOnce() -> T) -> (T, Said) {
-    let outer = SAID.replace(Some(Said::default()));
-    let done = act();
-    let said = SAID.replace(outer).unwrap_or_default();
-    (done, said)
-}
-
-/// Removes the colours of a text.
-fn plain(text: &str) -> String {
-    anstream::adapter::strip_str(text).to_string()
-}
-
 /// Writes a file atomically.
-pub fn write(path: &std::path::Path, text: &str) -> Result<(), Failure> {
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     hamel_files::write(path, text).map_err(|error| Failure::usage(error.to_string()))
 }
 
 /// Writes a file atomically, unless it already has this text.
-pub fn update(path: &std::path::Path, text: &str) -> Result<(), Failure> {
+pub fn update(path: &Path, text: &str) -> Result<(), Failure> {
     hamel_files::update(path, text).map_err(|error| Failure::usage(error.to_string()))
 }

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, print, warn, write};
 use crate::outputs;
 use crate::robot::RobotOptions;
-use crate::source::Source;
+use crate::source;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -40,14 +40,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         [("-o", arguments.out.as_deref())],
         [Some(arguments.file.as_path())],
     )?;
-    let source = Source::read(&arguments.file)?;
+    let source = source::read(&arguments.file)?;
     if !source.is_urdf() {
         return Err(Failure::usage(format!(
             "{}: this is no URDF, which is XML and begins with `<`; a description needs no import",
             source.path
         )));
     }
-    let source = source.given(&arguments.robot)?;
+    let source = source.given(&(&arguments.robot).into())?;
     let cleaned = source
         .robot
         .iter()

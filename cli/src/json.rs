@@ -1,6 +1,6 @@
 //! Writes JSON with members in insertion order, and short lists on one line.
 
-use crate::number::exact;
+use hamel_files::number::exact;
 
 /// A JSON value to be written.
 #[derive(Clone, Debug)]
@@ -11,7 +11,7 @@ pub enum Json {
     Count(u128),
     /// A text.
     Text(String),
-    /// Nothing.
+    /// No given entries.
     Null,
     /// A list.
     List(Vec<Json>),

@@ -1,4 +1,4 @@
-//! The commands of `hamel`, for the command line and for other front ends.
+//! The commands of `hamel`, which print what [`hamel_engine`] computes.
 //!
 #![doc = include_str!("../README.md")]
 //!
@@ -7,21 +7,12 @@
 //! | file | owns |
 //! |---|---|
 //! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
-//! | `eigenvalues` | eigenvalues of a general matrix |
-//! | `source` | reading and deriving a description |
-//! | `added` | a description with more outputs: those that a sweep keeps or a run watches |
-//! | `text` | options that are lists, and the places of errors in them |
-//! | `robot` | robots in URDF as descriptions, and the options for them |
-//! | `state` | reading the values of a state |
-//! | `mechanism` | a described system as the integrators run it |
-//! | `singular` | finding the velocity without inertia after a failed run or evaluation |
-//! | `method` | the methods by name, and the systems that each fits |
-//! | `json`, `names`, `columns` | writing results; pictures and numbers come from `hamel-report` |
-//! | `progress` | progress bars; `silent` without the feature `command` |
-//! | `drawing` | the drawable parts of a mechanism at a state, as plain numbers |
 //! | `command` | the command line, with the feature of that name |
-//! | `session` | the commands for other front ends: numbers instead of text |
-//! | `failure` | errors, warnings and exit statuses |
+//! | `source`, `robot` | descriptions as the command line opens them, and the options for that |
+//! | `reports` | what commands report, for other front ends |
+//! | `json`, `columns`, `outputs` | how results are written; pictures are those of `hamel-report` |
+//! | `progress` | what long work shows |
+//! | `failure` | errors and warnings as they are shown, and exit statuses |
 
 //! # Features
 //!
@@ -34,65 +25,44 @@
 // Without the command line, code that only it calls is kept and unused.
 #![cfg_attr(not(feature = "command"), allow(dead_code, unused_imports))]
 
-mod added;
 mod check;
 mod columns;
 #[cfg(feature = "command")]
 mod command;
 mod compare;
-mod constants;
-mod divided;
 #[cfg(feature = "command")]
 mod draw;
-pub mod drawing;
-mod eigenvalues;
+#[cfg(feature = "command")]
 mod emit;
+#[cfg(feature = "command")]
 mod eval;
 mod failure;
+#[cfg(feature = "command")]
 mod import;
 mod json;
+#[cfg(feature = "command")]
 mod linearize;
-mod mechanism;
-mod method;
-mod names;
 mod ops;
+#[cfg(feature = "command")]
 mod outputs;
-#[cfg_attr(not(feature = "command"), path = "silent.rs")]
+#[cfg(feature = "command")]
 mod progress;
+#[cfg(feature = "command")]
 mod regressor;
+pub mod reports;
 mod robot;
-mod session;
+#[cfg(feature = "command")]
 mod simulate;
-mod singular;
 mod source;
-mod state;
 #[cfg(feature = "command")]
 mod sweep;
 mod tables;
-mod text;
 
 pub use check::Checked;
 #[cfg(feature = "command")]
 pub use command::{asked, command, described};
 pub use compare::Comparison;
-pub use drawing::{Drawing, Drawn, Scene};
-pub use failure::{Failure, Mark, Said};
-pub use linearize::Linear;
-pub use mechanism::{End, Varied};
-pub use robot::{Mimic, RobotOptions};
-pub use session::{Function, Grip, Happened, Motion, Names, Session, Stepped, imported};
-pub use simulate::events::{Event, Gauge, Watched};
-pub use simulate::inputs::{Asked, Control, Law};
-pub use simulate::plan::Every;
-pub use simulate::stepping::Stepping;
-pub use simulate::stop::Stop;
-pub use source::decoded;
-pub use state::State;
+pub use failure::Failure;
+#[cfg(feature = "command")]
+pub use progress::Terminal;
 pub use tables::Format;
-
-/// The sign changes that count as events.
-pub use hamel::adaptive::Direction;
-/// The shape of a value, matrices by rows.
-pub use hamel_codegen::program::Shape;
-
-use hamel_report::number;

@@ -1,25 +1,27 @@
 //! Progress bars on standard error, shown if it is a terminal.
 
-pub use indicatif::ProgressBar as Bar;
+use crate::failure::warn_of;
+use hamel_engine::{Reporter, Warning};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// Interval between updates of a spinner.
 const TICK: Duration = Duration::from_millis(200);
 
 /// A bar for a number of steps, with the remaining time.
-pub fn bar(steps: u64) -> Bar {
+fn bar(steps: u64) -> ProgressBar {
     styled(steps, "{percent}%  {eta} left")
 }
 
 /// A bar for many items, with their rate and the remaining time.
-pub fn rated(count: u64) -> Bar {
+pub fn rated(count: u64) -> ProgressBar {
     let bar = styled(count, "{percent}%  {pos} of {len}, {per_sec}, {eta} left");
     bar.enable_steady_tick(TICK);
     bar
 }
 
-fn styled(steps: u64, told: &str) -> Bar {
+fn styled(steps: u64, told: &str) -> ProgressBar {
     let colour = anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never;
     let bar = ProgressBar::new(steps);
     let drawn = if colour { "{bar:40.cyan}" } else { "{bar:40}" };
@@ -29,13 +31,8 @@ fn styled(steps: u64, told: &str) -> Bar {
     }
 }
 
-/// A bar that is not shown.
-pub fn hidden() -> Bar {
-    ProgressBar::hidden()
-}
-
 /// A bar with a name and the elapsed time; its length is set later.
-pub fn named(name: &str) -> Bar {
+pub fn named(name: &str) -> ProgressBar {
     let bar = ProgressBar::new(1).with_message(name.to_string());
     match ProgressStyle::with_template("{msg} {bar:40} {elapsed}") {
         Ok(style) => bar.with_style(style),
@@ -43,14 +40,39 @@ pub fn named(name: &str) -> Bar {
     }
 }
 
-/// Does work of unknown length, showing the elapsed time.
-pub fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
-    let bar = ProgressBar::new_spinner().with_message(what);
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
-        bar.set_style(style);
+/// Shows what the engine reports on standard error: warnings, and how long work takes where that is a terminal.
+#[derive(Default)]
+pub struct Terminal(Mutex<Option<ProgressBar>>);
+
+impl Terminal {
+    fn bar(&self) -> MutexGuard<'_, Option<ProgressBar>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    bar.enable_steady_tick(TICK);
-    let done = work();
-    bar.finish_and_clear();
-    done
+}
+
+impl Reporter for Terminal {
+    fn warn(&self, warning: &Warning<'_>) {
+        warn_of(warning);
+    }
+
+    fn begin(&self, work: &'static str) {
+        let spinner = ProgressBar::new_spinner().with_message(work);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
+            spinner.set_style(style);
+        }
+        spinner.enable_steady_tick(TICK);
+        self.bar().replace(spinner);
+    }
+
+    fn advance(&self, done: u64, all: u64) {
+        self.bar()
+            .get_or_insert_with(|| bar(all))
+            .set_position(done);
+    }
+
+    fn end(&self) {
+        if let Some(bar) = self.bar().take() {
+            bar.finish_and_clear();
+        }
+    }
 }

@@ -1,10 +1,8 @@
 //! Options for robots in URDF and for descriptions, common to all commands that read descriptions.
 
-use crate::failure::Failure;
 use clap::{Args, ValueEnum};
-use hamel_codegen::syntax::suggest::closest;
-use hamel_codegen::urdf::{self, Imported, Options, TOLERANCE};
-use std::path::Path;
+use hamel_codegen::urdf;
+use hamel_engine::OpenOptions;
 
 /// Options for reading a robot in URDF.
 #[derive(Args, Clone, Debug, Default)]
@@ -44,114 +42,41 @@ pub enum Mimic {
     Free,
 }
 
-fn lock(text: &str) -> Result<(String, String), String> {
+impl From<&RobotOptions> for OpenOptions {
+    fn from(options: &RobotOptions) -> Self {
+        OpenOptions {
+            floating: options.floating,
+            locks: options.locks.clone(),
+            params: options.params,
+            mimic: options.mimic.map(|mimic| match mimic {
+                Mimic::Follow => urdf::Mimic::Follow,
+                Mimic::Free => urdf::Mimic::Free,
+            }),
+            name: options.name.clone(),
+            rounding: options.rounding,
+            constants: options.constants.clone(),
+        }
+    }
+}
+
+fn lock(text: &str) -> Result<(String, String), &'static str> {
     let (joint, value) = text
         .rsplit_once('=')
         .ok_or("write JOINT=VALUE, as in `--lock finger_joint=0.04`")?;
     Ok((joint.to_string(), value.to_string()))
 }
 
-fn constant(text: &str) -> Result<(String, String), String> {
+fn constant(text: &str) -> Result<(String, String), &'static str> {
     let (name, value) = text
         .split_once('=')
         .ok_or("write NAME=VALUE, as in `--const n=100`")?;
     Ok((name.trim().to_string(), value.trim().to_string()))
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
-    let tolerance: f64 = text.parse().map_err(|_| "not a number".to_string())?;
-    if (0.0..=0.1).contains(&tolerance) {
-        Ok(tolerance)
-    } else {
-        Err("not between 0 and 0.1".into())
-    }
-}
-
-impl RobotOptions {
-    /// Whether any option was given.
-    pub fn given(&self) -> bool {
-        self.floating
-            || !self.locks.is_empty()
-            || self.params
-            || self.mimic.is_some()
-            || self.name.is_some()
-            || self.rounding.is_some()
-    }
-
-    /// The options of the import.
-    fn options(&self, path: &str) -> Options {
-        let file = Path::new(path).file_name();
-        Options {
-            file: file.map_or_else(|| path.to_string(), |file| file.to_string_lossy().into()),
-            name: self.name.clone(),
-            floating: self.floating,
-            locks: self.locks.clone(),
-            params: self.params,
-            mimic: match self.mimic {
-                Some(Mimic::Free) => urdf::Mimic::Free,
-                Some(Mimic::Follow) | None => urdf::Mimic::Follow,
-            },
-            tolerance: self.rounding.unwrap_or(TOLERANCE),
-        }
-    }
-}
-
-/// A robot, with the text that it was read from.
-pub struct Robot {
-    /// The URDF.
-    pub urdf: String,
-    /// The result of the import.
-    pub imported: Imported,
-}
-
-impl Robot {
-    /// Reads a URDF text; warnings go to standard error.
-    pub fn read(urdf: String, path: &str, options: &RobotOptions) -> Result<Self, Failure> {
-        let imported =
-            urdf::import(&urdf, &options.options(path), path, true).map_err(Failure::Failed)?;
-        crate::failure::warn(&urdf::warnings(&imported, path, &urdf, true));
-        Ok(Robot { urdf, imported })
-    }
-
-    /// The frame of a link, by the link's name in the file or else in the description; a link that is fixed in the
-    /// world becomes a frame.
-    pub fn frame(&mut self, link: &str) -> Result<String, String> {
-        let Imported { links, ground, .. } = &self.imported;
-        let all: Vec<&(String, String)> = links.iter().chain(ground).collect();
-        let written = all.iter().find(|(written, _)| written == link);
-        let found = written.or_else(|| all.iter().find(|(_, name)| name == link));
-        let Some((_, frame)) = found else {
-            let names = || all.iter().map(|(written, _)| written.as_str());
-            let help = match closest(link, names()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("the links are {}", names().collect::<Vec<_>>().join(", ")),
-            };
-            return Err(format!("no link is called `{link}`; {help}"));
-        };
-        let frame = frame.clone();
-        if ground.as_ref().is_some_and(|(_, name)| *name == frame) {
-            self.stand();
-        }
-        Ok(frame)
-    }
-
-    /// Makes the link that is fixed in the world a frame of the description.
-    fn stand(&mut self) {
-        let Imported {
-            text,
-            origins,
-            links,
-            ground,
-            ..
-        } = &mut self.imported;
-        let (Some(place), Some(link)) = (text.rfind('}'), ground.take()) else {
-            return;
-        };
-        text.insert_str(
-            place,
-            &format!("    frame {} = pose(identity(3), [0, 0, 0]);\n", link.1),
-        );
-        origins.insert(origins.len().saturating_sub(1), None);
-        links.push(link);
+fn tolerance(text: &str) -> Result<f64, &'static str> {
+    let tolerance: f64 = text.parse().map_err(|_| "not a number")?;
+    match (0.0..=0.1).contains(&tolerance) {
+        true => Ok(tolerance),
+        false => Err("not between 0 and 0.1"),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
-use crate::source::Source;
+use crate::source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::tables::{self, Table, Tables};
 use std::path::PathBuf;
@@ -52,7 +52,7 @@ pub enum Format {
 
 /// Derives and prints the tables.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = source::open(&arguments.file, &arguments.robot)?;
     let generated = source.derive_available(&[])?;
     let tables = generated
         .tables(&arguments.of)

@@ -6,7 +6,7 @@ mod idle;
 use crate::diagnostics::Diagnostic;
 use crate::functions::Needs;
 use crate::render::{Level, Note, notes, render, span_bytes};
-pub use hamel_import::{Imported, Mimic, Options, TOLERANCE, Undecoded, decode};
+pub use hamel_import::{Imported, Mimic, Options, Problem, TOLERANCE, Undecoded, decode};
 use std::ops::Range;
 use std::path::Path;
 
@@ -19,9 +19,21 @@ pub fn is_urdf(path: &Path) -> bool {
 /// Converts a robot to a description, without redundant equations of its closing joints. Errors are shown with the text
 /// underlined, under the name `path`.
 pub fn import(text: &str, options: &Options, path: &str, color: bool) -> Result<Imported, String> {
-    hamel_import::import(text, options)
-        .map(|imported| idle::without_idle(text, options, imported))
-        .map_err(|problems| shown(&problems, Level::Error, path, text, color))
+    read(text, options).map_err(|problems| errors(&problems, path, text, color))
+}
+
+/// Converts a robot to a description as [`import`] does.
+///
+/// # Errors
+/// Each with its place in the text.
+pub fn read(text: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
+    let imported = hamel_import::import(text, options)?;
+    Ok(idle::without_idle(text, options, imported))
+}
+
+/// Shows the errors of a robot, with the text underlined.
+pub fn errors(problems: &[Problem], path: &str, text: &str, color: bool) -> String {
+    shown(problems, Level::Error, path, text, color)
 }
 
 /// Shows legal but suspicious parts of a robot, with the text underlined; empty if there are none.
@@ -32,13 +44,7 @@ pub fn warnings(imported: &Imported, path: &str, text: &str, color: bool) -> Str
     }
 }
 
-fn shown(
-    problems: &[hamel_import::Problem],
-    level: Level,
-    path: &str,
-    text: &str,
-    color: bool,
-) -> String {
+fn shown(problems: &[Problem], level: Level, path: &str, text: &str, color: bool) -> String {
     let list: Vec<Note> = problems
         .iter()
         .map(|problem| Note {

@@ -109,7 +109,7 @@ export interface Track {
 
 export type Vector = [number, number, number];
 
-// Drawable parts of a mechanism at one state; `cli/src/drawing/scene.rs` documents the members.
+// What can be drawn at one state; the generator says what the members are, in `engine/src/drawing/scene.rs`.
 export interface Scene {
   frames: { name: string; parent: number | null; attached: boolean; rotation: [Vector, Vector, Vector]; position: Vector }[];
   bodies: { frame: number; mass: number; centre: Vector; axes: [Vector, Vector, Vector]; radii: Vector }[];

@@ -1,6 +1,6 @@
 //! Python exceptions for failures.
 
-use hamel_cli::Failure;
+use hamel_engine::Error;
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::{PyErr, create_exception};
 
@@ -17,9 +17,7 @@ create_exception!(
     "Raised if a function has no value: M is not positive definite, or constraints are dependent."
 );
 
-/// Converts a failure to an exception.
-pub fn raised(failure: Failure) -> PyErr {
-    let text = failure.text();
-    let text = text.trim_end();
-    HamelError::new_err(text.strip_prefix("error: ").unwrap_or(text).to_string())
+/// The exception of an error.
+pub fn raised(error: Error) -> PyErr {
+    HamelError::new_err(error.to_string())
 }

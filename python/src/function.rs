@@ -3,8 +3,8 @@
 use crate::failure::{SingularError, raised};
 use crate::rows::{Given, Rows, common, entries_last, given, together, unknown};
 use crate::states::States;
-use hamel_cli::{Function as Compiled, Session};
 use hamel_codegen::program::{Argument, Cause, Shape};
+use hamel_engine::{Function as Compiled, Session};
 use hamel_native::Constants;
 use numpy::ndarray::{ArrayViewD, IxDyn};
 use numpy::{PyArray1, PyArrayMethods};

@@ -1,7 +1,8 @@
 //! Python functions of (t, x, ξ), which supply inputs or are watched for events.
 
 use crate::rows::numbers;
-use hamel_cli::{Control, Gauge, Law, Stop};
+use hamel_engine::run::{Control, Gauge};
+use hamel_engine::{Law, Stop};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;

@@ -5,8 +5,8 @@
 //! | `session` | a description, and all requests to it |
 //! | `run` | runs, with their options and results |
 //! | `function`, `states`, `rows` | generated functions over arrays: calls, evaluation, arrays of states |
-//! | `law` | Python functions that supply inputs, or are watched for events |
-//! | `failure` | exceptions |
+//! | `law` | functions in Python that give inputs, or are watched for events |
+//! | `failure`, `warnings` | exceptions, and warnings |
 
 mod failure;
 mod function;
@@ -15,6 +15,7 @@ mod rows;
 mod run;
 mod session;
 mod states;
+mod warnings;
 
 use pyo3::prelude::*;
 

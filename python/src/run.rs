@@ -3,8 +3,10 @@
 use crate::failure::{HamelError, raised};
 use crate::function::axes;
 use crate::law::{Raised, gauge, law, stop};
-use hamel_cli::{Asked, Direction, Event, Every, Happened, Session, State, Stepping, Watched};
+use hamel::adaptive::Direction;
 use hamel_codegen::program::Shape;
+use hamel_engine::run::{Event, Every, Happened, Watched};
+use hamel_engine::{Drive, InputOptions, Motion, Samples, Session, Simulation, State, Stepping};
 use numpy::ndarray::IxDyn;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -86,10 +88,10 @@ pub fn simulate<'py>(
         },
     };
     let times: Option<Vec<f64>> = get("times")?.map(|times| times.extract()).transpose()?;
-    let asked = Asked {
-        inputs: get("file")?.map(|path| path.extract()).transpose()?,
+    let asked = InputOptions {
+        file: get("file")?.map(|path| path.extract()).transpose()?,
         hold: get("hold")?.is_some(),
-        input: match get("expressions")? {
+        expressions: match get("expressions")? {
             Some(all) => all.extract()?,
             None => Vec::new(),
         },
@@ -100,10 +102,23 @@ pub fn simulate<'py>(
         Some(all) => watched(py, all.extract()?, &thrown)?,
         None => Vec::new(),
     };
-    let stop = Some(stop(&thrown));
+    let simulation = Simulation {
+        stepping,
+        samples: match (times, every) {
+            (Some(times), _) => Samples::At(times),
+            (None, Some(every)) => Samples::Every(every),
+            (None, None) => Samples::Usual,
+        },
+        drive: match own {
+            Some(law) => Drive::Law(law),
+            None => Drive::Options(asked),
+        },
+        events,
+        stop: Some(stop(&thrown)),
+    };
     let run = py.detach(|| {
-        let inputs = (&asked, own);
-        session.simulate(state, &stepping, (every, times), inputs, &events, stop)
+        let run = session.simulate(state, &simulation)?;
+        Ok(Motion::of(&run))
     });
     if let Some(error) = thrown.take() {
         return Err(error);
@@ -131,7 +146,7 @@ pub fn simulate<'py>(
     all.set_item("evaluations", run.evaluations)?;
     all.set_item("energy_deviation", run.energy_deviation)?;
     all.set_item("constraint", run.constraint)?;
-    all.set_item("failure", run.failure)?;
+    all.set_item("failure", run.failure.map(|why| why.to_string()))?;
     let happened = PyDict::new(py);
     for Happened { name, t, x, xi } in run.events {
         let times = t.len();

@@ -5,7 +5,10 @@ use crate::function::Function;
 use crate::law::{Raised, Signals, stop};
 use crate::rows::{Rows, common, entries_last, given, next, together, unknown};
 use crate::run;
-use hamel_cli::{Format, Mimic, Names, RobotOptions, State};
+use crate::warnings::Warnings;
+use hamel_cli::{Failure, Format, reports};
+use hamel_codegen::urdf::Mimic;
+use hamel_engine::{Names, OpenOptions, State};
 use numpy::ndarray::{ArrayViewD, IxDyn};
 use numpy::{
     Complex64, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods,
@@ -31,19 +34,26 @@ pub fn asked(py: Python<'_>, words: Vec<OsString>) -> PyResult<()> {
     let done = py.detach(|| hamel_cli::asked(words, Some(&stop)));
     match thrown.take() {
         Some(error) => Err(error),
-        None => done.map_err(raised),
+        None => done.map_err(|failure| match failure {
+            Failure::Engine(error) => raised(error),
+            other => {
+                let text = other.render(false);
+                let text = text.trim_end();
+                HamelError::new_err(text.strip_prefix("error: ").unwrap_or(text).to_string())
+            }
+        }),
     }
 }
 
 /// Decodes the bytes of a file.
 #[pyfunction]
 pub fn decoded(name: &str, bytes: Vec<u8>) -> PyResult<String> {
-    hamel_cli::decoded(name, bytes).map_err(raised)
+    hamel_engine::source::decoded(name, bytes).map_err(raised)
 }
 
 /// A description with its derived equations of motion.
 #[pyclass(frozen, module = "hamel._hamel")]
-pub struct Session(Arc<hamel_cli::Session>);
+pub struct Session(Arc<hamel_engine::Session>);
 
 /// Numbers of a state from Python: x, ξ and z, u, parameters.
 type Numbers<'py> = (
@@ -181,7 +191,7 @@ impl Session {
             let message = format!("`rounding` is a number from 0 to 0.1, not {other}");
             return Err(HamelError::new_err(message));
         }
-        let options = RobotOptions {
+        let options = OpenOptions {
             floating,
             locks,
             params,
@@ -190,12 +200,19 @@ impl Session {
             rounding,
             constants,
         };
-        let opened = py.detach(|| match text {
-            Some(text) => hamel_cli::Session::read(text, &path.to_string_lossy(), &options),
-            None => hamel_cli::Session::open(Path::new(&path), &options),
+        let warnings = Arc::new(Warnings::default());
+        let opened = py.detach(|| {
+            let reporter = warnings.clone();
+            match text {
+                Some(text) => {
+                    let name = path.to_string_lossy();
+                    hamel_engine::Session::read(text, &name, &options, reporter)
+                }
+                None => hamel_engine::Session::open(Path::new(&path), &options, reporter),
+            }
         });
-        let (session, warnings) = opened.map_err(raised)?;
-        Ok((Session(Arc::new(session)), warnings))
+        let session = opened.map_err(raised)?;
+        Ok((Session(Arc::new(session)), warnings.take()))
     }
 
     #[getter]
@@ -280,14 +297,15 @@ impl Session {
                 return Err(PyValueError::new_err(message));
             }
         };
-        py.detach(|| self.0.tables(&of, format, all))
+        py.detach(|| reports::tables(&self.0, &of, format, all))
             .map_err(raised)
     }
 
     /// Returns the output of `hamel eval`, as JSON.
     fn evaluate(&self, py: Python<'_>, state: Numbers<'_>) -> PyResult<String> {
         let state = self.of(py, state)?;
-        py.detach(|| self.0.evaluate(&state)).map_err(raised)
+        let numbers = py.detach(|| self.0.evaluate(&state)).map_err(raised)?;
+        serde_json::to_string(&numbers).map_err(|error| HamelError::new_err(error.to_string()))
     }
 
     /// Integrates the motion from a state.
@@ -350,7 +368,7 @@ impl Session {
                 let mut xi = xi_rows.at(number, &place).to_vec();
                 let ended = stepped.step(&mut x, &mut xi, u_rows.at(number, &place), h);
                 ended.map_err(|why| match place.as_slice() {
-                    [] => SingularError::new_err(why),
+                    [] => SingularError::new_err(why.to_string()),
                     place => SingularError::new_err(format!("{why}, at the index {place:?}")),
                 })?;
                 signals.check()?;

@@ -2,8 +2,8 @@
 //! results are the same to the bit.
 
 use crate::rows::{Rows, next};
-use hamel_cli::Function;
 use hamel_codegen::program::{Argument, Cause};
+use hamel_engine::Function;
 use hamel_native::{ARGUMENTS, Constants, Paired};
 
 /// The states of one call.

@@ -79,7 +79,7 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test suite -- free_rotation:: stiff::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files -p hamel-import",
     "bash tests/robots/install.sh",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --lib --test suite -- states:: emitted:: shaken:: misspelt:: eigenvalues::",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-engine -p hamel-cli --lib --test suite -- states:: emitted:: shaken:: misspelt:: eigenvalues::",
     "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-emitted --test c",
     // Not optimised, and a fifth at a time: compiling is all of the work.
     "HAMEL_ATTACK=full HAMEL_PART=0 cargo test --locked -p hamel-tests-emitted",

@@ -62,7 +62,7 @@ pub struct Case {
 /// A method that was chosen by the structure of a system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
-    /// Its name.
+    /// Name.
     pub method: String,
     /// The reason, in a sentence.
     pub reason: String,
@@ -71,7 +71,7 @@ pub struct Choice {
 /// A method that was not measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Missing {
-    /// Its name.
+    /// Name.
     pub method: String,
     /// The reason, in a sentence.
     pub why: String,
@@ -92,7 +92,7 @@ pub enum Kind {
 /// The runs of one method on one case, in the order of decreasing step length.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodRuns {
-    /// Its name.
+    /// Name.
     pub method: String,
     /// Its role.
     pub kind: Kind,

@@ -6,8 +6,7 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | [`auto`] | the quality of the automatic choice of a method |
-//! | [`baselines`] | methods that are measured to show their defects |
+//! | [`auto`] | how good the chosen method is |
 //! | `controlled` | runs by error control as a table |
 //! | [`counted`] | a system that counts the evaluations of its forces |
 //! | [`problem`] | a system with its start, its error and its constants of motion |
@@ -21,7 +20,6 @@
 //! | `code` | code between backticks, in pages and pictures |
 //! | [`summary`] | the runs behind the excerpt |
 //! | [`plot`] | pictures as SVG |
-//! | [`number`] | numbers formatted for people |
 //!
 //! Pictures are drawn by `plotters` (MIT), with only its SVG backend, which provides axes, ticks and logarithmic
 //! scales. It is in wide use, needs no fonts on the machine (text is measured by its length), and its output is
@@ -38,7 +36,6 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod auto;
-pub mod baselines;
 #[cfg(feature = "pictures")]
 mod code;
 mod controlled;
@@ -50,7 +47,6 @@ pub mod excerpt;
 pub mod json;
 pub mod markdown;
 pub mod measure;
-pub mod number;
 #[cfg(feature = "pictures")]
 pub mod page;
 #[cfg(feature = "pictures")]
@@ -59,3 +55,5 @@ pub mod problem;
 pub mod solution;
 pub mod summary;
 pub mod work;
+
+use hamel_files::number;

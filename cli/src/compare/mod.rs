@@ -5,12 +5,10 @@ mod reference;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::mechanism::{Instance, Numbers};
-use crate::method::{self, Named, Stepper};
+#[cfg(feature = "command")]
 use crate::progress;
 use crate::robot::RobotOptions;
-use crate::source::Source;
-use crate::state::State;
+use crate::source;
 use clap::{Args, ValueEnum};
 use hamel::Method;
 use hamel::adaptive::Adaptive;
@@ -18,9 +16,12 @@ use hamel::methods::General;
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::structure::Structure;
+use hamel_engine::State;
+use hamel_engine::mechanism::{Instance, Numbers};
+use hamel_engine::method::{self, Named, Role, Stepper, Unfit};
 use hamel_report::auto;
 use hamel_report::counted::Counted;
-use hamel_report::data::{Case, Choice, Kind, Machine, Report};
+use hamel_report::data::{Case, Choice, Kind, Machine, Missing, Report};
 use hamel_report::entry::Entry;
 use hamel_report::measure::{Plan, measure};
 use hamel_report::problem::Problem;
@@ -39,7 +40,7 @@ const TOLERANCES: [f64; 8] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 /// Timings of each run, and the least duration of each (s).
 const REPEATS: u32 = 3;
 const LEAST: f64 = 1e-3;
-/// Errors below this are rounding.
+/// Errors below this are taken for rounding.
 const FLOOR: f64 = 1e-13;
 /// Ratio of the steps of the reference run to those of the finest run.
 const FINER: u64 = 4;
@@ -159,12 +160,13 @@ pub struct Comparison {
 }
 
 /// Compares the methods on one description.
+#[cfg(feature = "command")]
 fn compare(
     file: &Path,
     arguments: &Arguments,
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
-    let source = Source::open(file, &arguments.robot)?.in_numbers();
+    let source = source::open(file, &arguments.robot)?.in_numbers();
     let generated = source.derive_all()?;
     let mut state = State::read(&source, &generated, arguments.at.as_deref())?;
     let fields = solution
@@ -180,7 +182,21 @@ fn compare(
         steps: arguments.steps.clone(),
         repeats: REPEATS,
     };
-    case(&generated, source.shown(), &state, &asked, fields.as_ref())
+    let bar = progress::named(&generated.program.name);
+    let mut show = |done, all| {
+        bar.set_length(all);
+        bar.set_position(done);
+    };
+    let case = case(
+        &generated,
+        source.shown(),
+        &state,
+        &asked,
+        fields.as_ref(),
+        &mut show,
+    );
+    bar.finish_and_clear();
+    case
 }
 
 /// Compares the methods on a derived description, from a state; `shown` is the text for messages.
@@ -190,6 +206,7 @@ pub fn case(
     state: &State,
     asked: &Comparison,
     fields: Option<&Fields>,
+    show: &mut dyn FnMut(u64, u64),
 ) -> Result<Case, Failure> {
     let until = asked.until;
     let system = Instance::new(generated, state, shown)?;
@@ -210,7 +227,7 @@ pub fn case(
         inputs,
         error: Box::new(|_, _| f64::NAN),
         momenta: Box::new(momenta),
-        said: Box::new(|error| system.said(error)),
+        said: Box::new(|error| system.step_error(error).to_string()),
         conservative: true,
     };
     let mut steps = asked.steps.clone();
@@ -226,7 +243,7 @@ pub fn case(
         until,
         error: "largest difference of the state, each field over max(1, its largest entry)".into(),
         auto: Some(choice(structure)),
-        missing,
+        missing: missing.into_iter().map(unfit).collect(),
         ..Case::default()
     };
     if methods.is_empty() {
@@ -245,7 +262,7 @@ pub fn case(
                 Failure::failed(format!(
                     "the reference run of {} with {finest} steps failed: {}",
                     best.name,
-                    system.said(&error)
+                    system.step_error(&error)
                 ))
             };
             let (x, xi) = problem.end(&best.stepper, finest).map_err(failed)?;
@@ -262,11 +279,11 @@ pub fn case(
     let mut entries: Vec<Entry> = Vec::new();
     for Named {
         name,
-        kind,
+        role,
         stepper,
     } in &methods
     {
-        entries.push(problem.by(name, *kind, stepper.clone()));
+        entries.push(problem.by(name, kind(*role), stepper.clone()));
         let adaptive = format!("{name} adaptive");
         match stepper {
             Stepper::General(General::Rkmk54) => {
@@ -285,13 +302,22 @@ pub fn case(
         least: LEAST,
         floor: FLOOR,
     };
-    let bar = progress::named(&name);
-    measure(&mut case, &entries, &plan, &mut |done, all| {
-        bar.set_length(all);
-        bar.set_position(done);
-    });
-    bar.finish_and_clear();
+    measure(&mut case, &entries, &plan, show);
     Ok(case)
+}
+
+fn kind(role: Role) -> Kind {
+    match role {
+        Role::Method => Kind::Method,
+        Role::Baseline => Kind::Baseline,
+    }
+}
+
+fn unfit(method: Unfit) -> Missing {
+    Missing {
+        method: method.name.into(),
+        why: method.obstacles.join("; "),
+    }
 }
 
 /// One case as JSON.
@@ -303,7 +329,7 @@ pub fn one(case: &Case) -> Result<String, Failure> {
 fn best(methods: &[Named]) -> &Named {
     let rank = |named: &Named| {
         let order = Method::<Instance>::order(&named.stepper);
-        (named.kind == Kind::Method, order)
+        (named.role == Role::Method, order)
     };
     let better = |best, named| {
         if rank(named) > rank(best) {
@@ -349,7 +375,10 @@ fn until(arguments: &Arguments, solution: Option<&Solution>) -> Result<f64, Fail
     if times.contains(&until) && until > 0.0 {
         return Ok(until);
     }
-    let list: Vec<String> = times.iter().map(|&t| crate::number::short(t)).collect();
+    let list: Vec<String> = times
+        .iter()
+        .map(|&t| hamel_files::number::short(t))
+        .collect();
     Err(Failure::usage(format!(
         "the reference has no state at t = {until}; it has {}",
         list.join(", ")
@@ -357,7 +386,7 @@ fn until(arguments: &Arguments, solution: Option<&Solution>) -> Result<f64, Fail
 }
 
 fn read(path: &Path) -> Result<Solution, Failure> {
-    let source = Source::read(path)?;
+    let source = source::read(path)?;
     Solution::parse(&source.text)
         .map_err(|error| Failure::usage(format!("{}: {error}", source.path)))
 }
@@ -385,7 +414,7 @@ fn command(arguments: &Arguments) -> String {
             "until",
             arguments
                 .until
-                .map_or_else(String::new, crate::number::short),
+                .map_or_else(String::new, hamel_files::number::short),
         ),
         ("reference", name(arguments.reference.as_deref())),
         ("at", name(arguments.at.as_deref())),

@@ -1,9 +1,9 @@
 //! Matches the fields of a reference solution with coordinates and velocities.
 
 use crate::failure::Failure;
-use crate::state::State;
 use hamel_codegen::model::layout::entry_names;
 use hamel_codegen::program::Program;
+use hamel_engine::State;
 use hamel_report::solution::{Solution, largest, relative};
 
 /// A field and its place in (x, ξ).

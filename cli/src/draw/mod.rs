@@ -2,22 +2,15 @@
 
 mod shapes;
 
-use crate::drawing::{Drawing, Scene};
 use crate::failure::{self, Failure, print};
-use crate::mechanism::Instance;
-use crate::method::AUTO;
 use crate::outputs;
 use crate::robot::RobotOptions;
-use crate::simulate::inputs::{Asked, Inputs};
-use crate::simulate::plan::Spacing;
-use crate::simulate::positive;
-use crate::simulate::record::Run;
-use crate::simulate::stepping::Stepping;
-use crate::source::Source;
-use crate::state::State;
+use crate::simulate::{InputArguments, positive};
+use crate::source;
 use clap::Args;
 use hamel_codegen::generate::Generated;
-use hamel_report::number::short;
+use hamel_engine::{Drive, Samples, Scene, Session, Simulation, State, Stepping};
+use hamel_files::number::short;
 use hamel_report::plot::space::{ISOMETRIC, Space, Vector, base, space};
 use shapes::Shapes;
 use std::path::PathBuf;
@@ -67,7 +60,7 @@ pub struct Arguments {
     #[arg(long, value_name = "F.svg")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    inputs: Asked,
+    inputs: InputArguments,
     #[command(flatten)]
     robot: RobotOptions,
 }
@@ -87,17 +80,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         [("--out", out)],
         [Some(arguments.file.as_path()), at, given.inputs.as_deref()],
     )?;
-    let source = Source::open(&arguments.file, &arguments.robot)?;
-    let source = source.in_numbers().showing_frames();
-    let generated = match until > 0.0 {
-        true => source.derive_all()?,
-        false => source.derive_places()?,
+    let source = source::open(&arguments.file, &arguments.robot)?.showing_frames();
+    let session = match until > 0.0 {
+        true => Session::complete(source)?,
+        false => Session::of_places(source)?,
     };
-    let state = State::read(&source, &generated, at)?;
-    let traced = traced(&generated, &arguments.trace)?;
-    let drawing = Drawing::new(&generated)?;
+    let state = session.state_of(at)?;
+    let traced = traced(session.generated(), &arguments.trace)?;
+    let drawing = session.drawing()?;
     let moments = match until > 0.0 {
-        true => moments(arguments, &source, &generated, &state, until)?,
+        true => moments(arguments, &session, &state, until)?,
         false => Moments {
             poses: vec![state.x.clone()],
             path: Vec::new(),
@@ -111,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if last.is_empty() {
         return Err(Failure::failed(format!(
             "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. A statement such as `frame f = pose(R, r);` says where a part of it is{}",
-            generated.model.name,
+            session.name(),
             drawing
                 .missing()
                 .iter()
@@ -130,7 +122,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let floor = vertical.iter().any(|entry| *entry != 0.0);
     let shapes = Shapes::new(last);
     let picture = Space {
-        title: generated.model.name.clone(),
+        title: session.name().into(),
         subtitle: said(arguments),
         base: base(vertical),
         eye: arguments.view,
@@ -160,8 +152,7 @@ struct Moments {
 /// Runs the motion and samples it.
 fn moments(
     arguments: &Arguments,
-    source: &Source,
-    generated: &Generated,
+    session: &Session,
     state: &State,
     until: f64,
 ) -> Result<Moments, Failure> {
@@ -187,21 +178,14 @@ fn moments(
     let mut times: Vec<f64> = poses.iter().chain(&path).copied().collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let stepping = Stepping {
-        until,
-        step: None,
-        method: AUTO.into(),
-        tol: None,
-        lambda: None,
+    let simulation = Simulation {
+        samples: Samples::At(times),
+        drive: Drive::Options((&arguments.inputs).into()),
+        ..Simulation::new(Stepping::until(until))
     };
-    let given = Inputs::new(&arguments.inputs, until, generated, state)?;
-    let system = Instance::new(generated, state, source.shown())?.with(given);
-    system.check_parameters(&state.x)?;
-    let mut plan = stepping.plan(generated, &system, None)?;
-    plan.spacing = Spacing::Times(times);
-    let run = Run::new(generated, &system, plan)?;
+    let run = session.simulate(state, &simulation)?;
     if let Some(why) = run.failure {
-        return Err(Failure::failed(why));
+        return Err(Failure::failed(why.to_string()));
     }
     let at = |time: &f64| {
         let away = |place: usize| (run.samples[place].t - time).abs();

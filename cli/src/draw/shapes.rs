@@ -1,6 +1,6 @@
 //! Turns the scene of a mechanism into shapes of a picture.
 
-use crate::drawing::{Acts, Frame, Joint, Scene, Vector};
+use hamel_engine::drawing::{Acts, Frame, Joint, Scene, Vector};
 use hamel_report::plot::space::{Ink, Part, Shape};
 
 /// Widths of links, joint axes, rails and frame axes (pixels).

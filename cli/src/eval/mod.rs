@@ -1,25 +1,15 @@
 //! `hamel eval`: evaluates all quantities at a state.
 
-mod frames;
-mod geometry;
 mod sample;
 
 use crate::failure::{Failure, print, warn};
 use crate::json::Json;
-use crate::mechanism::{Instance, function};
-use crate::names;
 use crate::robot::RobotOptions;
-use crate::source::Source;
-use crate::state::State;
-use crate::state::file::File;
-use crate::state::joints::{joints, rows};
+use crate::source;
 use clap::Args;
-use geometry::Geometry;
-use hamel::System;
-use hamel_codegen::derive::undetermined::undetermined;
-use hamel_codegen::functions::FunctionId;
-use hamel_codegen::generate::Generated;
-use hamel_codegen::program::Shape;
+use hamel_engine::evaluate::{Cube, Kinematics, Value, asked, evaluate};
+use hamel_engine::state::File;
+use hamel_engine::{Evaluation, State};
 use std::path::PathBuf;
 
 /// Number of velocities above which γ and Γ, with n³ entries each, are printed only with --tables.
@@ -75,7 +65,7 @@ pub struct Arguments {
 
 /// Evaluates and prints; values that do not exist are `null`, and make the command fail.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    let mut source = source::open(&arguments.file, &arguments.robot)?.in_numbers();
     if !arguments.frame.is_empty() {
         source = source.showing_frames();
     }
@@ -85,163 +75,108 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
         return sample::run(&source, at, &frames);
     }
-    let generated = source.derive_available(&frames::asked(&frames))?;
+    let generated = source.derive_available(&asked(&frames))?;
     let state = match &at {
         Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
     };
     let shown = arguments.tables || generated.model.n() <= MOST_SHOWN;
-    let (value, missing) = numbers((&generated, source.shown()), &state, &frames, shown)?;
+    let numbers = evaluate((&generated, source.shown()), &state, &frames, shown)?;
     if !shown {
         warn(&format!(
             "gamma and Gamma, 2 × {}³ numbers, are left out: --tables prints them\n",
             generated.model.n()
         ));
     }
-    print(&value.pretty())?;
-    if missing.is_empty() {
-        Ok(())
-    } else {
-        Err(Failure::failed(format!(
+    print(&json(&numbers).pretty())?;
+    match numbers.missing.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::failed(format!(
             "{}: {}",
             source.path,
-            missing.join("; ")
-        )))
+            numbers.missing.join("; ")
+        ))),
     }
 }
 
-/// The values of all quantities at a state and of frames, with γ and Γ on request, and messages about missing values;
-/// `shown` is the text whose line numbers messages give.
-pub fn numbers(
-    (generated, shown): (&Generated, &str),
-    state: &State,
-    frames: &[frames::Named],
-    with_tables: bool,
-) -> Result<(Json, Vec<String>), Failure> {
-    let states = generated.model.states.iter();
-    let states: Vec<String> = states.flat_map(names::group).collect();
+/// The numbers as JSON.
+fn json(numbers: &Evaluation) -> Json {
+    let cube = |table: &Cube| Json::List(table.iter().map(|rows| Json::matrix(rows)).collect());
+    let vector = |list: &Option<Vec<f64>>| list.as_deref().map_or(Json::Null, Json::vector);
     let mut members = vec![
-        ("system", Json::Text(generated.model.name.clone())),
-        (
-            "coordinates",
-            Json::texts(&names::coordinates(&generated.model)),
-        ),
-        (
-            "velocities",
-            Json::texts(&names::velocities(&generated.active)),
-        ),
-        ("states", Json::texts(&states)),
-        ("frame", Json::texts(&names::velocities(&generated.model))),
-        ("x", Json::vector(&state.x)),
-        ("xi", Json::vector(&state.xi)),
+        ("system", Json::Text(numbers.system.clone())),
+        ("coordinates", Json::texts(&numbers.coordinates)),
+        ("velocities", Json::texts(&numbers.velocities)),
+        ("states", Json::texts(&numbers.states)),
+        ("frame", Json::texts(&numbers.frame)),
+        ("x", Json::vector(&numbers.x)),
+        ("xi", Json::vector(&numbers.xi)),
     ];
-    members.retain(|(name, _)| *name != "states" || !states.is_empty());
-    // Rows by joint, if there are joints.
-    let known = joints(&generated.active, &[]);
-    if !known.is_empty() {
-        let rows = rows(&generated.active, &known);
-        members.push(("joints", Json::texts(&rows)));
-    }
-    members.extend(Geometry::new(generated, state, with_tables)?.members());
-    let mut missing: Vec<String> = Vec::new();
-    members.extend(motion(generated, (state, shown), &mut missing)?);
-    members.extend(frames::kinematics(generated, state, frames)?.map(|all| ("kinematics", all)));
-    let infinite = members.iter().filter(|(_, value)| !finite(value));
-    let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
-    if !infinite.is_empty() {
-        missing.push(format!("not finite at this state: {}", infinite.join(", ")));
-    }
-    Ok((Json::object(members), missing))
-}
-
-/// The values of forces, rates, energies and outputs.
-fn motion(
-    generated: &Generated,
-    (state, text): (&State, &str),
-    missing: &mut Vec<String>,
-) -> Result<Vec<(&'static str, Json)>, Failure> {
-    let system = Instance::new(generated, state, text)?;
-    let State { params, x, xi, u } = state;
-    let start = system.start();
-    let vector = |name: &str| -> Result<Json, Failure> {
-        let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
-        Ok(Json::vector(&value.unwrap_or_default()))
-    };
-    let has_inertia = generated.model.has_inertia;
-    let accel = match system.motion(x, xi, u) {
-        Ok(accel) => Json::vector(&accel),
-        // That the function is missing has been reported before.
-        Err(_) if generated.program.function(FunctionId::Accel).is_none() => Json::Null,
-        Err(why) => {
-            missing.push(format!("{why}: `accel` has no value"));
-            Json::Null
-        }
-    };
-    // λ of constraints on the velocities and forces of drives; absent without multipliers.
-    let constraint_force = match generated.program.function("constraint_force") {
-        _ if !generated.model.has_multipliers() => None,
-        Some(_) => Some(vector("constraint_force")?),
-        None => Some(Json::vector(&[])),
-    };
-    let outputs = system.outputs().iter().map(|output| {
-        let values = system.output(output, 0.0, x, xi);
-        let value = match output.shape {
-            Shape::Scalar => Json::Number(values.first().copied().unwrap_or(f64::NAN)),
-            Shape::Vector(_) => Json::vector(&values),
-            Shape::Matrix(_, columns) => Json::matrix(
-                &values
-                    .chunks(columns.max(1))
-                    .map(<[f64]>::to_vec)
-                    .collect::<Vec<_>>(),
-            ),
-        };
-        (output.name.as_str(), value)
-    });
-    let mut members = vec![
+    members.retain(|(name, _)| *name != "states" || !numbers.states.is_empty());
+    members.extend(
+        numbers
+            .joints
+            .iter()
+            .map(|rows| ("joints", Json::texts(rows))),
+    );
+    members.push(("A", Json::matrix(&numbers.a)));
+    members.extend(numbers.gamma.iter().map(|gamma| ("gamma", cube(gamma))));
+    let mass = numbers.mass.as_deref();
+    members.push(("M", mass.map_or(Json::Null, Json::matrix)));
+    let connection = numbers.connection.iter();
+    members.extend(connection.map(|table| ("Gamma", table.as_ref().map_or(Json::Null, cube))));
+    let outputs = numbers.outputs.iter();
+    let outputs = outputs.map(|(name, value)| (name.as_str(), json_of(value)));
+    members.extend([
+        ("bias", vector(&numbers.bias)),
+        ("potential_force", Json::vector(&numbers.potential_force)),
         (
-            "bias",
-            match has_inertia {
-                true => vector("bias")?,
-                false => Json::Null,
-            },
+            "generalized_force",
+            Json::vector(&numbers.generalized_force),
         ),
-        ("potential_force", vector("potential_force")?),
-        ("generalized_force", vector("generalized_force")?),
-        ("rate", vector("rate")?),
-        ("accel", accel),
+        ("rate", Json::vector(&numbers.rate)),
+        ("accel", vector(&numbers.accel)),
         (
             "kinetic_energy",
-            match has_inertia {
-                true => Json::Number(system.kinetic_energy(&start.0, &start.1)),
-                false => Json::Null,
-            },
+            numbers.kinetic_energy.map_or(Json::Null, Json::Number),
         ),
-        (
-            "potential_energy",
-            Json::Number(system.potential_energy(&start.0)),
-        ),
-        ("constraint", Json::vector(&system.constraint(x))),
+        ("potential_energy", Json::Number(numbers.potential_energy)),
+        ("constraint", Json::vector(&numbers.constraint)),
         ("outputs", Json::object(outputs)),
-    ];
-    if let Some(force) = constraint_force {
-        // The independent rows as they are written, and the velocities whose rates are prescribed.
-        let model = &generated.model;
-        let rows = model.constraints.iter().filter(|row| !row.redundant);
-        let rows = rows.map(|row| row.label());
-        let names = names::velocities(model);
-        let driven = model.accelerated.iter();
-        let driven = driven.filter_map(|&(velocity, _)| names.get(velocity).cloned());
-        let rows: Vec<String> = rows.chain(driven).collect();
-        let free = undetermined(model).into_iter().zip(&rows);
-        let free = free.filter(|(free, _)| *free).map(|(_, row)| row.clone());
-        let free: Vec<String> = free.collect();
-        members.push(("constraints", Json::texts(&rows)));
-        members.push(("constraint_force", force));
-        if !free.is_empty() {
-            members.push(("undetermined", Json::texts(&free)));
+    ]);
+    if let Some(forces) = &numbers.multipliers {
+        members.push(("constraints", Json::texts(&forces.constraints)));
+        members.push(("constraint_force", Json::vector(&forces.constraint_force)));
+        if !forces.undetermined.is_empty() {
+            members.push(("undetermined", Json::texts(&forces.undetermined)));
         }
     }
-    Ok(members)
+    members.extend(
+        numbers
+            .kinematics
+            .iter()
+            .map(|all| ("kinematics", json_of_frames(all))),
+    );
+    Json::object(members)
+}
+
+/// A value, matrices by rows.
+fn json_of(value: &Value) -> Json {
+    match value {
+        Value::Number(number) => Json::Number(*number),
+        Value::Vector(list) => Json::vector(list),
+        Value::Matrix(rows) => Json::matrix(rows),
+    }
+}
+
+/// An object for every frame.
+fn json_of_frames(Kinematics(frames): &Kinematics) -> Json {
+    let frame = |values: &[(String, Value)]| {
+        let values = values.iter();
+        Json::object(values.map(|(name, value)| (name.as_str(), json_of(value))))
+    };
+    let frames = frames.iter();
+    Json::object(frames.map(|(name, values)| (name.as_str(), frame(values))))
 }
 
 fn finite(value: &Json) -> bool {

@@ -1,19 +1,15 @@
 //! Evaluates states given by joints: M, bias and acceleration as other programs define them.
 
-use super::finite;
-use super::frames::{Named, asked, kinematics};
+use super::{finite, json_of_frames};
 use crate::failure::{Failure, print};
 use crate::json::Json;
-use crate::mechanism::{constant_singular, function};
-use crate::names;
-use crate::singular;
-use crate::source::Source;
-use crate::state::State;
-use crate::state::file::File;
-use crate::state::joints::rows;
-use crate::state::sample::{ORDER, Sample};
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
+use hamel_engine::evaluate::{NamedFrame, asked, kinematics};
+use hamel_engine::mechanism::{self, constant_singular, function};
+use hamel_engine::names;
+use hamel_engine::state::{File, ORDER, Sample, rows};
+use hamel_engine::{Error, Source, State};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 
@@ -33,9 +29,10 @@ const REACHED: f64 = 1e-9;
 
 /// Evaluates and prints one state, or each state of a list `samples`.
 ///
-/// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force: it includes friction
-/// and other loads of the description. Without a force the loads of the description act, with zero input.
-pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> {
+/// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
+/// friction and other loads of the description are part of it, not added to it. Without a force
+/// the loads of the description act, with zero input.
+pub fn run(source: &Source, at: &File, frames: &[NamedFrame]) -> Result<(), Failure> {
     let File { path, json } = at;
     let generated = source.derive_only(&FUNCTIONS, &asked(frames))?;
     let (list, several) = match json.get("samples") {
@@ -62,7 +59,7 @@ pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> 
                         .map(|error| format!("samples[{index}].{error}")),
                 );
             }
-            Err(found) => errors.extend(found),
+            Err(found) => errors.extend(found.iter().map(ToString::to_string)),
         }
     }
     if !errors.is_empty() {
@@ -103,11 +100,11 @@ type Members = (Vec<(&'static str, Json)>, Vec<String>);
 fn members(
     (generated, text): (&Generated, &str),
     sample: &Sample,
-    frames: &[Named],
-) -> Result<Members, Failure> {
+    frames: &[NamedFrame],
+) -> Result<Members, Error> {
     let model = &generated.active;
     let state = &sample.state;
-    let call = |name: &str| -> Result<Vec<f64>, Failure> {
+    let call = |name: &str| -> Result<Vec<f64>, Error> {
         let value = function(&generated.program, name, &state.params)?;
         Ok(value
             .call(&state.x, &state.xi, &state.u, &[])
@@ -152,12 +149,13 @@ fn members(
         ("kinetic_energy", kinetic.unwrap_or(Json::Null)),
         ("potential_energy", number(call("potential_energy")?)),
     ];
-    members.extend(kinematics(generated, state, frames)?.map(|all| ("kinematics", all)));
+    let kinematics = kinematics(generated, state, frames)?;
+    members.extend(kinematics.map(|all| ("kinematics", json_of_frames(&all))));
     let mut missing = Vec::new();
     // A missing function has been reported before.
     let is_there = generated.program.function(FunctionId::Accel).is_some();
     if let (None, true, Some(mass)) = (&accel.value, is_there, &mass) {
-        let why = singular::of(generated, &state.params, mass, text);
+        let why = mechanism::of(generated, &state.params, mass, text);
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));
@@ -178,7 +176,7 @@ fn accel(
     generated: &Generated,
     sample: &Sample,
     mass: Option<&DMatrix<f64>>,
-) -> Result<Accel, Failure> {
+) -> Result<Accel, Error> {
     let state = &sample.state;
     let program = &generated.program;
     let forward = function(program, "accel", &state.params).ok();
@@ -235,12 +233,10 @@ fn accel(
 }
 
 /// Checks that there are n × n entries.
-fn square(entries: Vec<f64>, n: usize) -> Result<Vec<f64>, Failure> {
+fn square(entries: Vec<f64>, n: usize) -> Result<Vec<f64>, Error> {
     if entries.len() == n * n {
         Ok(entries)
     } else {
-        Err(Failure::failed(
-            "the mass matrix has no value at this state",
-        ))
+        Err(Error::NoMassMatrix)
     }
 }

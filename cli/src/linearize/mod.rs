@@ -1,21 +1,14 @@
 //! `hamel linearize`: linearises the motion at a state, with eigenvalues.
 
-mod minimal;
-
 use crate::columns::aligned;
-use crate::eigenvalues::eigenvalues;
 use crate::failure::{Failure, print};
 use crate::json::Json;
-use crate::mechanism::{Instance, function};
-use crate::names;
-use crate::number::short;
 use crate::robot::RobotOptions;
-use crate::source::Source;
-use crate::state::State;
+use crate::source;
 use clap::{Args, ValueEnum};
-use hamel_codegen::functions::SLOPES;
-use hamel_codegen::generate::Generated;
-use hamel_codegen::program::Shape;
+use hamel_engine::State;
+use hamel_engine::linearize::{Linearization, linearize};
+use hamel_files::number::short;
 use std::path::PathBuf;
 
 /// Largest acceleration that counts as a rounding error of zero.
@@ -65,41 +58,12 @@ const ROUNDING: f64 = 1e-14;
 /// zero of the characteristic polynomial by √ε.
 const ZERO: f64 = 1e-7;
 
-/// Numbers of a linearisation.
-#[derive(Clone, Debug)]
-pub struct Linear {
-    /// Name of the system.
-    pub system: String,
-    /// Names of h and δξ.
-    pub states: Vec<String>,
-    /// Names of u.
-    pub inputs: Vec<String>,
-    /// A, by rows.
-    pub a: Vec<Vec<f64>>,
-    /// B, by rows.
-    pub b: Vec<Vec<f64>>,
-    /// Names of the entries of y.
-    pub outputs: Vec<String>,
-    /// C, by rows.
-    pub c: Vec<Vec<f64>>,
-    /// D, by rows.
-    pub d: Vec<Vec<f64>>,
-    /// Number of displacements and velocities that constraints determine from these; 0 in the full form.
-    pub given: usize,
-    /// Real and imaginary parts, the fastest growing first; `None` if they were not found.
-    pub eigenvalues: Option<Vec<(f64, f64)>>,
-    /// Whether there are states of first order.
-    pub with_states: bool,
-    /// ξ̇ at the state.
-    pub xi_dot: Vec<f64>,
-}
-
 /// Linearises and prints the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    let source = source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_linearized()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
-    let linear = linear(&generated, &state, source.shown(), arguments.full)?;
+    let linear = linearize(&generated, &state, source.shown(), arguments.full)?;
     print(&match arguments.format {
         Format::Text => text(&linear),
         Format::Json => json(&linear).pretty(),
@@ -107,102 +71,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     complete(&linear)
 }
 
-/// The linearisation at a state, of all displacements and velocities if `full`; `shown` is the text whose line numbers
-/// messages give.
-///
-/// # Errors
-/// If the motion has no value at the state.
-pub fn linear(
-    generated: &Generated,
-    state: &State,
-    shown: &str,
-    full: bool,
-) -> Result<Linear, Failure> {
-    let program = &generated.program;
-    let State { params, x, xi, u } = state;
-    let system = Instance::new(generated, state, shown)?;
-    let none = |why: String| Failure::failed(format!("there is no linearisation: {why}"));
-    let xi_dot = system.motion(x, xi, u).map_err(none)?;
-    let flat = function(program, "linearize", params)?
-        .call(x, xi, u, &[])
-        .map_err(|_| none(system.at(x)))?;
-    let inputs: Vec<String> = generated
-        .model
-        .inputs
-        .iter()
-        .flat_map(names::group)
-        .collect();
-    // Displacements along the full frame, and changes of the velocities that constraints leave.
-    let mut frame = names::velocities(&generated.model);
-    if let Some(clock) = generated.model.clock {
-        // The time is not displaced.
-        frame.remove(clock.xi);
-    }
-    let velocities = names::moving(&generated.active);
-    let displacements = frame.iter().map(|name| format!("h({name})"));
-    let changes = velocities.iter().map(|name| format!("d({name})"));
-    let states: Vec<String> = displacements.chain(changes).collect();
-    if let Some(entry) = flat.iter().position(|value| !value.is_finite()) {
-        return Err(Failure::failed(format!(
-            "the linearisation is not finite at this state: row {} has no value",
-            entry / (states.len() + inputs.len()).max(1) + 1
-        )));
-    }
-    let split = |flat: &[f64]| -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
-        let rows = flat.chunks((states.len() + inputs.len()).max(1));
-        let rows = rows.map(|row| row.split_at(states.len()));
-        rows.map(|(left, right)| (left.to_vec(), right.to_vec()))
-            .unzip()
-    };
-    let (a, b) = split(&flat);
-    let (mut outputs, mut slopes) = (Vec::new(), Vec::new());
-    for (name, _) in &generated.model.outputs {
-        let Ok(function) = function(program, &format!("{name}{SLOPES}"), params) else {
-            continue;
-        };
-        slopes.extend(
-            function
-                .call(x, xi, u, &[])
-                .map_err(|_| none(system.at(x)))?,
-        );
-        let shape = program.function(name).map_or(Shape::Scalar, |f| f.shape);
-        outputs.extend(names::shaped(name, shape));
-    }
-    let (c, d) = split(&slopes);
-    let mut linear = Linear {
-        system: generated.model.name.clone(),
-        eigenvalues: None,
-        with_states: !generated.model.states.is_empty(),
-        states,
-        inputs,
-        a,
-        b,
-        outputs,
-        c,
-        d,
-        given: 0,
-        xi_dot,
-    };
-    if !full {
-        let flat = function(program, "displacement_frame", params)?
-            .call(x, &[], &[], &[])
-            .map_err(|_| none(system.at(x)))?;
-        let columns = flat.len() / x.len().max(1);
-        let rows: Vec<Vec<f64>> = flat.chunks(columns.max(1)).map(<[f64]>::to_vec).collect();
-        if let Some(tangent) = minimal::tangent(generated, state, &rows) {
-            linear.given = linear.states.len() - tangent.kept.len();
-            linear.a = tangent.of_square(&linear.a);
-            linear.b = tangent.of_list(&linear.b);
-            linear.c = tangent.of_columns(&linear.c);
-            linear.states = tangent.of_list(&linear.states);
-        }
-    }
-    linear.eigenvalues = eigenvalues(&linear.a);
-    Ok(linear)
-}
-
 /// Fails if eigenvalues are missing, after A and B have been printed.
-fn complete(linear: &Linear) -> Result<(), Failure> {
+fn complete(linear: &Linearization) -> Result<(), Failure> {
     match linear.eigenvalues {
         Some(_) => Ok(()),
         None => Err(Failure::failed(
@@ -211,7 +81,7 @@ fn complete(linear: &Linear) -> Result<(), Failure> {
     }
 }
 
-fn text(linear: &Linear) -> String {
+fn text(linear: &Linearization) -> String {
     let mut text = format!(
         "\x1b[1m{}\x1b[0m  d/dt (h, d) = A (h, d) + B du; displacements h along the columns of A(x), changes d of velocities{}\n",
         linear.system,
@@ -316,7 +186,7 @@ fn table(rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
     aligned(&lines, "  ")
 }
 
-fn json(linear: &Linear) -> Json {
+fn json(linear: &Linearization) -> Json {
     let pair = |&(re, im): &(f64, f64)| Json::vector(&[re, im]);
     Json::object([
         ("system", Json::Text(linear.system.clone())),
@@ -345,7 +215,7 @@ mod tests {
     /// Without eigenvalues, both formats print the rest of the result, and the command fails with the reason.
     #[test]
     fn matrices_stand_without_their_eigenvalues() {
-        let mut linear = Linear {
+        let mut linear = Linearization {
             with_states: false,
             system: "Stalled".into(),
             states: vec!["h(v)".into(), "d(v)".into()],

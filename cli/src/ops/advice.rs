@@ -3,10 +3,10 @@
 use crate::columns;
 use crate::failure::Failure;
 use crate::json::Json;
-use crate::source::Source;
 use hamel_codegen::derive::adviser::{Choice, advise};
 use hamel_codegen::model::Model;
 use hamel_codegen::program::count::Count;
+use hamel_engine::Source;
 
 /// Compares the choices and writes them as a table or as JSON.
 pub fn written(source: &Source, model: &Model, as_json: bool) -> Result<String, Failure> {

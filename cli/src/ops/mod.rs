@@ -6,7 +6,7 @@ use crate::columns;
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::robot::RobotOptions;
-use crate::source::Source;
+use crate::source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::algebra::function::Cost;
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
@@ -15,6 +15,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
 use hamel_codegen::program::count::{Count, count_nodes};
 use hamel_codegen::program::schedule::Schedule;
+use hamel_engine::Source;
 use std::path::PathBuf;
 
 /// Counts the operations of every generated function.
@@ -104,7 +105,7 @@ impl Counts {
 
 /// Counts and prints the operations.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = source::open(&arguments.file, &arguments.robot)?;
     if arguments.advise {
         let model = source.derive()?.model;
         let as_json = matches!(arguments.format, Format::Json);

@@ -2,11 +2,11 @@
 
 use super::bodies::{Map, NoBodies, nearest};
 use crate::failure::{Failure, print};
-use crate::source::Source;
-use crate::state::strict;
 use crate::tables::Format;
 use hamel_codegen::syntax::suggest::closest;
 use hamel_codegen::tables::regressor::BaseParameters;
+use hamel_engine::Source;
+use hamel_engine::state::parse;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -94,7 +94,7 @@ fn base(map: &Map, standard: &[f64]) -> Vec<f64> {
 
 /// Reads β from the text of a file.
 fn read(all: &BaseParameters, path: &str, text: &str) -> Result<Vec<f64>, Failure> {
-    let json = strict::parse(text).map_err(|error| Failure::usages(path, &[error]))?;
+    let json = parse(text).map_err(|error| Failure::usages(path, &[error.to_string()]))?;
     let kept: Vec<&str> = all.names().collect();
     let mut beta = base(&all.map(), all.values());
     let mut errors = Vec::new();

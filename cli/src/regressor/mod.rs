@@ -6,12 +6,11 @@ mod identified;
 
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
-use crate::source::Source;
+use crate::source;
 use crate::tables::Format;
 use clap::Args;
-use hamel_codegen::derive::regressor::regressor;
-use hamel_codegen::proof::regressor::prove;
-use hamel_codegen::tables::regressor::{BaseParameters, json, latex, markdown, text};
+use hamel_codegen::tables::regressor::{json, latex, markdown, text};
+use hamel_engine::session::base_parameters;
 use std::path::PathBuf;
 
 /// Prints the base parameters: the inertial parameters, or combinations of them, that forces can identify.
@@ -47,8 +46,8 @@ pub struct Arguments {
 
 /// Derives and prints the parameters.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?;
-    let all = base(&source)?;
+    let source = source::open(&arguments.file, &arguments.robot)?;
+    let all = base_parameters(&source)?;
     if let Some(file) = &arguments.identified {
         return identified::print_bodies(&all, &source, file, arguments.format);
     }
@@ -58,23 +57,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Latex => latex(&all),
         Format::Json => format!("{:#}\n", json(&all)),
     })
-}
-
-/// The base parameters of a description.
-///
-/// # Errors
-/// If the system has constraints, or forces that robots do not have.
-pub fn base(source: &Source) -> Result<BaseParameters, Failure> {
-    let model = source.model()?;
-    let derived = regressor(&model).and_then(|regressor| {
-        prove(&model, &regressor)?;
-        Ok(regressor)
-    });
-    let regressor = derived.map_err(|why| {
-        Failure::failed(format!(
-            "{}: `{}` has no regressor: {why}",
-            source.path, model.name
-        ))
-    })?;
-    Ok(BaseParameters::new(&regressor))
 }

@@ -1,41 +1,24 @@
 //! `hamel simulate`: runs a system over time.
 
-pub mod advance;
-pub mod balance;
-pub mod events;
-pub mod inputs;
-#[cfg(feature = "command")]
+mod options;
 mod panels;
-#[cfg(feature = "command")]
 mod picture;
-pub mod plan;
-pub mod record;
-mod recorder;
-#[cfg(feature = "command")]
 mod rotor;
-pub mod sample;
-pub mod steady;
-pub mod stepping;
-pub mod stop;
-mod stretch;
 mod summary;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::mechanism::Instance;
-use crate::method;
 use crate::outputs;
 use crate::robot::RobotOptions;
-use crate::source::Source;
-use crate::state::State;
+use crate::source;
 use clap::Args;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
-use plan::{Every, Spacing};
-use record::Run;
+use hamel_engine::run::Every;
+use hamel_engine::{Drive, Samples, Session, Simulation, Stepping, method};
+pub use options::{InputArguments, SteppingArguments, positive};
+use picture::picture;
 use std::path::PathBuf;
-use stepping::Stepping;
-pub use stepping::positive;
 use write::Format;
 
 /// Integrates the equations of motion from a start.
@@ -58,7 +41,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
-    stepping: Stepping,
+    stepping: SteppingArguments,
     /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
@@ -79,7 +62,7 @@ pub struct Arguments {
     #[arg(long, value_name = "F.csv", conflicts_with = "every")]
     times: Option<PathBuf>,
     #[command(flatten)]
-    inputs: inputs::Asked,
+    inputs: InputArguments,
     /// Plot coordinates, velocities, outputs and conserved quantities over time, with the path of a body
     /// axis if there is exactly one attitude, and with Poinsot's construction of a body that is nearly free.
     #[arg(long, value_name = "F.svg")]
@@ -88,10 +71,13 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
-/// Runs and reports the results.
-#[cfg(feature = "command")]
+/// Runs the comparisons and prints the report.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    arguments.stepping.check()?;
+    let simulation = arguments.simulation();
+    simulation
+        .stepping
+        .check()
+        .map_err(hamel_engine::Error::from)?;
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
     let (out, plot) = (arguments.out.as_deref(), arguments.plot.as_deref());
     outputs::svg("--plot", plot)?;
@@ -104,20 +90,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.inputs.inputs.as_deref(),
         ],
     )?;
-    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
-    let generated = source.derive_all()?;
-    let state = State::read(&source, &generated, arguments.at.as_deref())?;
-    let until = arguments.stepping.until;
-    let given = inputs::Inputs::new(&arguments.inputs, until, &generated, &state)?;
-    let system = Instance::new(&generated, &state, source.shown())?.with(given);
-    system.check_parameters(&state.x)?;
-    let mut plan = arguments
-        .stepping
-        .plan(&generated, &system, arguments.every)?;
-    if let Some(path) = &arguments.times {
-        plan.spacing = Spacing::Times(inputs::times(path, until, &generated, &state)?);
-    }
-    let run = Run::new(&generated, &system, plan)?;
+    let session = Session::complete(source::open(&arguments.file, &arguments.robot)?)?;
+    let state = session.state_of(arguments.at.as_deref())?;
+    let run = session.simulate(&state, &simulation)?;
 
     let mut written = String::new();
     for (path, format) in [
@@ -130,27 +105,41 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let text = match format {
             Format::Csv => write::csv(&run),
             Format::Json => write::json(&run),
-            Format::Svg => drawn(&run.picture(&system))?,
+            Format::Svg => drawn(&picture(&run))?,
         };
         crate::failure::write(path, &text)?;
         written.push_str(&format!("wrote {}\n", path.display()));
     }
     if arguments.tables {
-        print(&coefficients(&generated))?;
+        print(&coefficients(&run.generated))?;
     }
     if arguments.out.is_none() {
         print(&summary::table(&run))?;
     }
-    print(&summary::text(&run, arguments.stepping.step.is_none()))?;
+    print(&summary::text(&run, simulation.stepping.step.is_none()))?;
     print(&written)?;
     match run.failure {
-        Some(why) => Err(Failure::failed(why)),
+        Some(early) => Err(Failure::failed(early.to_string())),
         None => Ok(()),
     }
 }
 
+impl Arguments {
+    /// The run that is asked for.
+    fn simulation(&self) -> Simulation {
+        Simulation {
+            samples: match (&self.times, self.every) {
+                (Some(path), _) => Samples::File(path.clone()),
+                (None, Some(every)) => Samples::Every(every),
+                (None, None) => Samples::Usual,
+            },
+            drive: Drive::Options((&self.inputs).into()),
+            ..Simulation::new(Stepping::from(&self.stepping))
+        }
+    }
+}
+
 /// The SVG of a picture.
-#[cfg(feature = "command")]
 fn drawn(picture: &hamel_report::plot::Picture) -> Result<String, Failure> {
     let figure =
         hamel_report::plot::run(picture).map_err(|error| Failure::failed(error.to_string()))?;
@@ -167,12 +156,12 @@ fn coefficients(generated: &Generated) -> String {
 }
 
 /// Parses `10` as steps and `0.01s` as a time.
-fn every(text: &str) -> Result<Every, String> {
+fn every(text: &str) -> Result<Every, &'static str> {
     match text.strip_suffix('s') {
         Some(time) => positive(time).map(Every::Time),
         None => match text.parse::<u64>() {
             Ok(steps) if steps > 0 => Ok(Every::Steps(steps)),
-            _ => Err("a number of steps, 1 or greater, or a time as in 0.01s is needed".into()),
+            _ => Err("a number of steps, 1 or greater, or a time as in 0.01s is needed"),
         },
     }
 }

@@ -1,98 +1,97 @@
 //! Panels of a plot over time: coordinates, velocities, outputs.
 
-use super::record::Run;
-use super::sample::Sample;
-use crate::mechanism::Instance;
 use hamel::{s3, so3};
 use hamel_codegen::program::Shape;
 use hamel_codegen::syntax::ast::CoordKind;
+use hamel_engine::run::{Run, Sample};
 use hamel_report::plot::Panel;
 use std::f64::consts::{PI, TAU};
 
 /// A name with its values over time.
 type Line = (String, Vec<f64>);
 
-impl Run<'_> {
-    /// Panels of coordinates, velocities and outputs, with a separate one for each vector. If the only attitude is
-    /// drawn on a sphere, it is omitted here.
-    pub fn panels(&self, system: &Instance, on_sphere: bool) -> Vec<Panel> {
-        let mut panels = self.coordinates(on_sphere);
-        let groups = self.program.velocities.iter();
-        let groups = groups.map(|group| (group.name.as_str(), group.len));
-        let line = |i: usize| self.line(&self.velocity_names[i], |sample| sample.xi[i]);
-        panels.extend(grouped(["velocity", "velocities"], groups, line));
-        let outputs = system.outputs().iter();
-        let outputs = outputs.map(|output| (output.name.as_str(), entries(output.shape)));
-        let states = self.program.states.iter();
-        let states = states.map(|group| (group.name.as_str(), group.len));
-        let line = |i: usize| {
-            let place = self.program.n + i;
-            self.line(&self.velocity_names[place], |sample| sample.xi[place])
-        };
-        panels.extend(grouped(["state", "states"], states, line));
-        let line = |i: usize| self.line(&self.output_names[i], |sample| sample.outputs[i]);
-        panels.extend(grouped(["output", "outputs"], outputs, line));
-        panels
-    }
+/// Panels of coordinates, velocities and outputs, with a separate one for each vector. If the only attitude is
+/// drawn on a sphere, it is omitted here.
+pub fn panels(run: &Run, on_sphere: bool) -> Vec<Panel> {
+    let system = &run.system;
+    let mut panels = coordinates(run, on_sphere);
+    let groups = run.generated.program.velocities.iter();
+    let groups = groups.map(|group| (group.name.as_str(), group.len));
+    let line = |i: usize| tracked(run, &run.velocity_names[i], |sample| sample.xi[i]);
+    panels.extend(grouped(["velocity", "velocities"], groups, line));
+    let outputs = system.outputs().iter();
+    let outputs = outputs.map(|output| (output.name.as_str(), entries(output.shape)));
+    let states = run.generated.program.states.iter();
+    let states = states.map(|group| (group.name.as_str(), group.len));
+    let line = |i: usize| {
+        let place = run.generated.program.n + i;
+        tracked(run, &run.velocity_names[place], |sample| sample.xi[place])
+    };
+    panels.extend(grouped(["state", "states"], states, line));
+    let line = |i: usize| tracked(run, &run.output_names[i], |sample| sample.outputs[i]);
+    panels.extend(grouped(["output", "outputs"], outputs, line));
+    panels
+}
 
-    fn line(&self, name: &str, of: impl Fn(&Sample) -> f64) -> Line {
-        (name.to_string(), self.track.iter().map(of).collect())
-    }
+fn tracked(run: &Run, name: &str, of: impl Fn(&Sample) -> f64) -> Line {
+    (name.to_string(), run.track.iter().map(of).collect())
+}
 
-    /// Coordinates: numbers directly, circles by their angles, attitudes by their angles from the axes of
-    /// the world or of the joint.
-    fn coordinates(&self, on_sphere: bool) -> Vec<Panel> {
-        let mut panels = Vec::new();
-        let mut numbers = Panel::new("coordinates");
-        let mut turns = Panel::new("angles of rotation");
-        let position = |name: &str, at: usize, len: usize| {
-            let mut panel = Panel::new(&format!("coordinate {name}"));
-            let line = |i: usize| self.line(&format!("{name}[{}]", i + 1), |s| s.x[at + i]);
-            panel.lines = (0..len).map(line).collect();
-            panel
-        };
-        let attitude = |name: &str, of: &dyn Fn(&[f64]) -> [f64; 9]| {
-            self.line(name, |sample| norm(so3::log(of(&sample.x))))
-        };
-        for coordinate in &self.program.coordinates {
-            let (name, at) = (coordinate.name.as_str(), coordinate.offset);
-            // It is the horizontal axis.
-            if self.time.place == Some(at) {
-                continue;
+/// Coordinates: numbers directly, circles by their angles, attitudes by their angles from the axes of
+/// the world or of the joint.
+fn coordinates(run: &Run, on_sphere: bool) -> Vec<Panel> {
+    let mut panels = Vec::new();
+    let mut numbers = Panel::new("coordinates");
+    let mut turns = Panel::new("angles of rotation");
+    let position = |name: &str, at: usize, len: usize| {
+        let mut panel = Panel::new(&format!("coordinate {name}"));
+        let line = |i: usize| tracked(run, &format!("{name}[{}]", i + 1), |s| s.x[at + i]);
+        panel.lines = (0..len).map(line).collect();
+        panel
+    };
+    let attitude = |name: &str, of: &dyn Fn(&[f64]) -> [f64; 9]| {
+        tracked(run, name, |sample| norm(so3::log(of(&sample.x))))
+    };
+    for coordinate in &run.generated.program.coordinates {
+        let (name, at) = (coordinate.name.as_str(), coordinate.offset);
+        // It is the horizontal axis.
+        if run.time.place == Some(at) {
+            continue;
+        }
+        match coordinate.kind {
+            CoordKind::Real => numbers
+                .lines
+                .push(tracked(run, name, |sample| sample.x[at])),
+            CoordKind::S1 => {
+                let (name, angles) =
+                    tracked(run, name, |sample| sample.x[at + 1].atan2(sample.x[at]));
+                numbers.lines.push((name, unwound(angles)));
             }
-            match coordinate.kind {
-                CoordKind::Real => numbers.lines.push(self.line(name, |sample| sample.x[at])),
-                CoordKind::S1 => {
-                    let (name, angles) =
-                        self.line(name, |sample| sample.x[at + 1].atan2(sample.x[at]));
-                    numbers.lines.push((name, unwound(angles)));
-                }
-                CoordKind::Euclidean(len) => panels.push(position(name, at, len)),
-                CoordKind::S3 => turns.lines.push(attitude(name, &|x| {
-                    s3::to_matrix(std::array::from_fn(|i| x[at + i]))
-                })),
-                CoordKind::SO3 => turns
+            CoordKind::Euclidean(len) => panels.push(position(name, at, len)),
+            CoordKind::S3 => turns.lines.push(attitude(name, &|x| {
+                s3::to_matrix(std::array::from_fn(|i| x[at + i]))
+            })),
+            CoordKind::SO3 => turns
+                .lines
+                .push(attitude(name, &|x| std::array::from_fn(|i| x[at + i]))),
+            CoordKind::SE3 => {
+                panels.push(position(&format!("{name}.p"), at, 3));
+                let name = format!("{name}.R");
+                turns
                     .lines
-                    .push(attitude(name, &|x| std::array::from_fn(|i| x[at + i]))),
-                CoordKind::SE3 => {
-                    panels.push(position(&format!("{name}.p"), at, 3));
-                    let name = format!("{name}.R");
-                    turns
-                        .lines
-                        .push(attitude(&name, &|x| std::array::from_fn(|i| x[at + 3 + i])));
-                }
+                    .push(attitude(&name, &|x| std::array::from_fn(|i| x[at + 3 + i])));
             }
         }
-        if on_sphere {
-            turns.lines.clear();
-        }
-        panels.extend(
-            [numbers, turns]
-                .into_iter()
-                .filter(|panel| !panel.lines.is_empty()),
-        );
-        panels
     }
+    if on_sphere {
+        turns.lines.clear();
+    }
+    panels.extend(
+        [numbers, turns]
+            .into_iter()
+            .filter(|panel| !panel.lines.is_empty()),
+    );
+    panels
 }
 
 /// One panel for each vector, then one for all scalars; groups follow one another.

@@ -1,8 +1,8 @@
 //! The angular momentum of a single body, and whether the body is nearly free, for Poinsot's construction.
 
-use super::sample::Sample;
-use crate::mechanism::{Instance, Numbers};
 use hamel::{Block, System};
+use hamel_engine::mechanism::{Instance, Numbers};
+use hamel_engine::run::Sample;
 use hamel_report::plot::Poinsot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 

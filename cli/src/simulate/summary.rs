@@ -1,10 +1,9 @@
 //! Summary of a run for a terminal.
 
-use super::record::Run;
-use super::sample::Sample;
 use crate::columns::aligned;
-use crate::number::{digits, error, grouped, short};
 use hamel_codegen::syntax::ast::CoordKind;
+use hamel_engine::run::{Run, Sample};
+use hamel_files::number::{digits, error, grouped, short};
 
 /// Number of rows of the table.
 const ROWS: usize = 20;
@@ -72,7 +71,7 @@ pub fn text(run: &Run, default_step: bool) -> String {
     };
     let mut text = format!(
         "\x1b[1m{}\x1b[0m  {method}, {steps}, {} of {}\n",
-        run.program.name,
+        run.generated.program.name,
         plural(run.evaluations, "evaluation"),
         chosen.stepper.evaluated(),
     );
@@ -89,7 +88,7 @@ pub fn text(run: &Run, default_step: bool) -> String {
 /// The last state by names, with rotation matrices as matrices.
 fn state(run: &Run, last: &Sample) -> String {
     let mut groups: Vec<(String, Vec<&[f64]>)> = Vec::new();
-    for coordinate in &run.program.coordinates {
+    for coordinate in &run.generated.program.coordinates {
         if run.time.place == Some(coordinate.offset) {
             continue;
         }
@@ -107,7 +106,7 @@ fn state(run: &Run, last: &Sample) -> String {
             }
         }
     }
-    for group in &run.program.moving() {
+    for group in &run.generated.program.moving() {
         groups.push((
             group.name.clone(),
             vec![&last.xi[group.offset..group.offset + group.len]],
@@ -149,7 +148,12 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
     }
     rows.push(row("energy", first.energy, last.energy, change));
     // States of first order have no momentum.
-    for (index, name) in run.velocity_names.iter().enumerate().take(run.program.n) {
+    for (index, name) in run
+        .velocity_names
+        .iter()
+        .enumerate()
+        .take(run.generated.program.n)
+    {
         let (size, change) = spread(run, |sample| sample.momentum[index]);
         if size > 0.0 && change <= KEPT * size {
             rows.push(row(
@@ -184,7 +188,7 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
             text.push_str(&format!("  {name} {gaps}\n"));
         }
     }
-    if run.program.phi > 0 {
+    if run.generated.program.phi > 0 {
         text.push_str(&format!(
             "  max |phi|  {}\n",
             error(run.monitor.constraint())

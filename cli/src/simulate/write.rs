@@ -1,10 +1,9 @@
 //! Writes samples to files.
 
-use super::record::Run;
-use super::sample::Sample;
 use crate::failure::Failure;
 use crate::json::Json;
-use crate::number::exact;
+use hamel_engine::run::{Run, Sample};
+use hamel_files::number::exact;
 use std::path::Path;
 
 /// Format of a file, by its extension.

@@ -2,9 +2,9 @@
 
 use super::draws::Draws;
 use super::permutation::Permutation;
-use crate::text::Piece;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
+use hamel_engine::text::Piece;
 
 /// Largest number of points of one grid.
 const MOST: f64 = 1e9;
@@ -174,7 +174,7 @@ pub fn count(count: usize, word: &str) -> String {
 mod tests {
     use super::Distribution;
     use crate::sweep::draws::Draws;
-    use crate::text::Piece;
+    use hamel_engine::text::Piece;
 
     fn read(text: &str, entries: usize) -> Result<Vec<Distribution>, String> {
         let numbers = |text: &str| Err(format!("{text} is unknown"));

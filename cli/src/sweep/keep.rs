@@ -1,9 +1,9 @@
 //! `--keep`: the results kept of each member.
 
-use crate::added::{self, Added};
-use crate::text::Piece;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
+use hamel_engine::source::added::{self, Added};
+use hamel_engine::text::Piece;
 
 pub const OPTION: &str = "--keep";
 
@@ -159,12 +159,12 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
 mod tests {
     use super::{Item, OPTION, Of, read};
     use crate::sweep::distribution::Distribution;
-    use crate::text::{Piece, refused as refused_text};
+    use hamel_engine::text::{Piece, refused as refused_text};
 
     fn refused(text: &str) -> String {
         let (_, errors) = read(text, 10.0);
         assert!(!errors.is_empty(), "{text}");
-        refused_text(OPTION, text, &errors).text()
+        refused_text(OPTION, text, &errors).to_string()
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The file in a sweep's folder that specifies the sweep: everything on which a row depends.
 
 use crate::json::Json;
-use crate::state::strict;
+use hamel_engine::state::parse;
 use serde_json::{Map, Value};
 
 /// Version of the file's format.
@@ -35,7 +35,7 @@ impl Manifest {
 
     /// Reads the file.
     pub fn read(text: &str) -> Result<Self, String> {
-        let Value::Object(members) = strict::parse(text)? else {
+        let Value::Object(members) = parse(text).map_err(|error| error.to_string())? else {
             return Err("an object is expected".into());
         };
         if members

@@ -2,18 +2,12 @@
 
 use super::vary::Vary;
 use super::watch::{Keeping, Watch};
-use crate::failure::Failure;
-use crate::mechanism::{Instance, Mechanism};
-use crate::simulate::advance::advance;
-use crate::simulate::balance::Balance;
-use crate::simulate::events::Events;
-use crate::simulate::inputs::Inputs;
-use crate::simulate::plan::Plan;
-use crate::simulate::record::{Early, ended};
-use crate::simulate::steady::Steady;
-use crate::state;
 use hamel::{State, StepError};
 use hamel_codegen::generate::Generated;
+use hamel_engine::mechanism::{Instance, Mechanism};
+use hamel_engine::run::{Balance, EarlyEnd, Events, Inputs, Plan, Steady, advance};
+use hamel_engine::state::StateProblem;
+use hamel_engine::{Error, state};
 use serde_json::{Map, Value};
 use std::cell::Cell;
 use std::ops::Range;
@@ -56,6 +50,15 @@ pub struct Row {
     pub kept: Vec<Option<f64>>,
     /// Reason of the failure.
     pub error: Option<String>,
+}
+
+/// Why a member has no row.
+#[derive(Clone, Debug)]
+pub struct Failed {
+    /// Kind of failure, in a word or two.
+    pub kind: &'static str,
+    /// Message, in a sentence.
+    pub why: String,
 }
 
 /// A member at its start.
@@ -108,7 +111,7 @@ impl Sweep {
                 varied,
                 system,
             }),
-            Err(early) => Err(Row::new(index, varied, Err(early))),
+            Err(failed) => Err(Row::new(index, varied, Err(failed))),
         }
     }
 
@@ -171,21 +174,24 @@ impl<'a> Running<'a> {
             system,
             plan,
         } = self.member;
-        let early = ended(system, plan, outcome, &self.state, self.balance.get());
+        let early = EarlyEnd::of(system, plan, outcome, &self.state, self.balance.get());
         let kept = match early {
             Ok(None) => Ok(self.watch.finish(&self.state)),
-            Ok(Some(early)) => Err(early),
-            Err(failure) => Err(of_start(&failure)),
+            Ok(Some(early)) => Err(Failed {
+                kind: early.kind(),
+                why: early.to_string(),
+            }),
+            Err(error) => Err(Failed::of("start", &error)),
         };
         Row::new(*index, varied.clone(), kept)
     }
 }
 
 impl Row {
-    fn new(index: u64, varied: Vec<f64>, kept: Result<Vec<Option<f64>>, Early>) -> Self {
+    fn new(index: u64, varied: Vec<f64>, kept: Result<Vec<Option<f64>>, Failed>) -> Self {
         let (kept, error) = match kept {
             Ok(kept) => (kept, None),
-            Err(Early { kind, why }) => (Vec::new(), Some(format!("{kind}: {why}"))),
+            Err(Failed { kind, why }) => (Vec::new(), Some(format!("{kind}: {why}"))),
         };
         Row {
             index,
@@ -198,52 +204,49 @@ impl Row {
 
 impl Family {
     /// The system of a member with this state: the only place where systems of members are made.
-    pub fn member(&self, state: &Value) -> Result<Instance, Early> {
+    pub fn member(&self, state: &Value) -> Result<Instance, Failed> {
         let state =
-            state::State::of(&self.generated, &self.text, state).map_err(|errors| Early {
+            state::State::of(&self.generated, &self.text, state).map_err(|errors| Failed {
                 kind: "start",
-                why: errors.join("; "),
+                why: joined(&errors),
             })?;
         let system = Instance::of(&self.mechanism, &state);
-        let system = system.map_err(|failure| of_start(&failure))?;
+        let system = system.map_err(|error| Failed::of("start", &error))?;
         let given = self.given.clone().map(|given| given.started(&state));
-        let given = given.transpose().map_err(|why| Early {
+        let given = given.transpose().map_err(|problem| Failed {
             kind: "start",
-            why: format!("--inputs: {why}"),
+            why: format!("--inputs: {problem}"),
         })?;
         let system = system.with(given);
-        let singular = |failure: Failure| Early {
-            kind: "singular",
-            why: said(&failure),
-        };
-        system.check_parameters(&state.x).map_err(singular)?;
+        let checked = system.check_parameters(&state.x);
+        checked.map_err(|error| Failed::of("singular", &error))?;
         Ok(system)
     }
 }
 
-fn of_start(failure: &Failure) -> Early {
-    Early {
-        kind: "start",
-        why: said(failure),
-    }
+/// All that is wrong with a start, in one line.
+fn joined(problems: &[StateProblem]) -> String {
+    let all: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    all.join("; ")
 }
 
-/// A failure in one line, without the formatting for a terminal.
-fn said(failure: &Failure) -> String {
-    let text = match failure {
-        Failure::Failed(text) | Failure::Usage(text) => text.as_str(),
-        Failure::Closed => "",
-    };
-    let plain = anstream::adapter::strip_str(text).to_string();
-    let line = plain.trim().trim_start_matches("error: ");
-    line.split_whitespace().collect::<Vec<&str>>().join(" ")
+impl Failed {
+    /// An error in one line.
+    fn of(kind: &'static str, error: &Error) -> Self {
+        let why = error.to_string();
+        let words: Vec<&str> = why.split_whitespace().collect();
+        Failed {
+            kind,
+            why: words.join(" "),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{Arguments, prepared};
     use super::{Row, Sweep};
-    use crate::source::Source;
+    use crate::source;
     use clap::Parser;
     use std::path::{Path, PathBuf};
 
@@ -258,11 +261,11 @@ mod tests {
         let words = ["sweep", &file, "--out", "nowhere"].into_iter();
         let words = words.chain(options.iter().copied());
         let arguments = Line::try_parse_from(words).expect("options").arguments;
-        let source = Source::open(path, &arguments.robot).expect("a description");
+        let source = source::open(path, &arguments.robot).expect("a description");
         let (Some(vary), Some(stepping)) = (&arguments.vary, &arguments.stepping) else {
             panic!("--vary and --until are needed");
         };
-        let sweep = prepared(&arguments, &source.in_numbers(), vary, stepping);
+        let sweep = prepared(&arguments, &source.in_numbers(), vary, &stepping.into());
         sweep.expect("a sweep").0
     }
 

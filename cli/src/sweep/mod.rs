@@ -25,26 +25,26 @@ mod vary;
 mod watch;
 mod work;
 
-use crate::added;
 use crate::failure::{Failure, print};
 use crate::json::Json;
-use crate::mechanism::Mechanism;
-use crate::method;
-use crate::number::grouped;
 use crate::outputs;
 use crate::robot::RobotOptions;
-use crate::simulate::inputs::{self, Inputs};
-use crate::simulate::plan::Spacing;
-use crate::simulate::stepping::Stepping;
-use crate::simulate::stop::Stop;
-use crate::source::Source;
-use crate::state::State;
-use crate::state::file::File;
-use crate::text;
+use crate::simulate::{InputArguments, SteppingArguments};
+use crate::source;
 use clap::Args;
 use folder::{Folder, Part};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::count;
+use hamel_engine::State;
+use hamel_engine::Stop;
+use hamel_engine::mechanism::Mechanism;
+use hamel_engine::method;
+use hamel_engine::run::{Inputs, Spacing};
+use hamel_engine::source::added;
+use hamel_engine::state::File;
+use hamel_engine::text;
+use hamel_engine::{Error, Source, Stepping};
+use hamel_files::number::grouped;
 use manifest::Manifest;
 use member::{Family, Sweep};
 use serde_json::{Map, Value};
@@ -93,7 +93,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = members, allow_negative_numbers = true)]
     members: Option<u64>,
     #[command(flatten)]
-    stepping: Option<Stepping>,
+    stepping: Option<SteppingArguments>,
     /// Results to keep of each member; see --help for the syntax.
     #[arg(
         long,
@@ -112,7 +112,7 @@ pub struct Arguments {
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     #[command(flatten)]
-    inputs: inputs::Asked,
+    inputs: InputArguments,
     /// Threads that run members; default: one for each core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     threads: Option<u16>,
@@ -186,7 +186,8 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     ) else {
         return Err(Failure::usage("FILE, --vary, --until and --out are needed"));
     };
-    stepping.check()?;
+    let stepping = &Stepping::from(stepping);
+    stepping.check().map_err(Error::from)?;
     let plot = arguments.plot.as_deref();
     outputs::svg("--plot", plot)?;
     outputs::apart(
@@ -197,7 +198,7 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
             arguments.inputs.inputs.as_deref(),
         ],
     )?;
-    let source = Source::open(file, &arguments.robot)?.in_numbers();
+    let source = source::open(file, &arguments.robot)?.in_numbers();
     if arguments.submit.is_some() && source.is_stdin() {
         return Err(Failure::usage(
             "--submit takes a description in a file: tasks read it, too",
@@ -276,24 +277,31 @@ fn prepared(
         Ok((base, state, vary))
     };
     // Report errors in --vary together with those in --keep.
-    let both = |failure: Failure, generated: &Generated| match varied(generated) {
-        Err(more) => failure.and(more),
-        Ok(_) => failure,
+    let both = |error: Error, generated: &Generated| match varied(generated) {
+        Err(more) => Failure::from(error).and(more),
+        Ok(_) => error.into(),
     };
     let (kept, wrong) = keep::read(&arguments.keep, stepping.until);
     let option = (keep::OPTION, arguments.keep.as_str());
-    let generated = added::derive(source, option, &keep::added(&kept), wrong).map_err(
-        |failure| match source.try_derive_all() {
-            Ok(generated) => both(failure, &generated),
-            Err(_) => failure,
-        },
-    )?;
+    let generated =
+        added::derive(source, option, &keep::added(&kept), wrong).map_err(|error| match source
+            .try_derive_all()
+        {
+            Ok(generated) => both(error, &generated),
+            Err(_) => error.into(),
+        })?;
     let keeping = Keeping::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
         both(text::refused(option.0, option.1, &[error]), &generated)
     })?;
     let (base, state, vary) = varied(&generated)?;
-    let given = Inputs::new(&arguments.inputs, stepping.until, &generated, &state)?;
+    let given = Inputs::new(
+        &(&arguments.inputs).into(),
+        stepping.until,
+        &generated,
+        &state,
+    )
+    .map_err(Error::from)?;
     let both = vary.inputs(&generated);
     if let Some((_, name)) = both
         .iter()
@@ -319,9 +327,9 @@ fn prepared(
         given,
         generated,
     };
-    let system = family.member(&unvaried).map_err(|early| {
+    let system = family.member(&unvaried).map_err(|failed| {
         let message = "where nothing is varied, no member can start";
-        Failure::failed(format!("{message}: {}", early.why))
+        Failure::failed(format!("{message}: {}", failed.why))
     })?;
     let mut plan = stepping.plan(&family.generated, &system, None)?;
     if !keeping.looks_within() {

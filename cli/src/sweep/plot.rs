@@ -3,7 +3,7 @@
 use super::folder::{Folder, There};
 use super::shard::{Columns, numbers};
 use crate::failure::{self, Failure};
-use crate::number::grouped;
+use hamel_files::number::grouped;
 use hamel_report::plot::{Scatter, scatter};
 use std::path::Path;
 

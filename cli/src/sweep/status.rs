@@ -3,7 +3,7 @@
 use super::folder::{known, there};
 use crate::columns::aligned;
 use crate::failure::{Failure, print};
-use crate::number::grouped;
+use hamel_files::number::grouped;
 use std::path::Path;
 
 /// Largest number of ranges of missing shards listed.

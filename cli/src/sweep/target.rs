@@ -1,14 +1,14 @@
 //! Variable targets: parameters, starts and inputs, by their names or those of their entries; written as states in
 //! JSON.
 
-use crate::names;
-use crate::state::State;
 use hamel::{s3, so3};
 use hamel_codegen::model::layout::entry_names;
 use hamel_codegen::model::{Coordinate, Group, Model};
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::path::plain;
 use hamel_codegen::syntax::suggest::closest;
+use hamel_engine::State;
+use hamel_engine::names;
 use serde_json::{Map, Value};
 
 /// The kind of symbol that a name refers to.

@@ -5,11 +5,11 @@ use super::draws::Draws;
 use super::permutation::Permutation;
 use super::target::{Part, Target};
 use crate::failure::Failure;
-use crate::simulate::inputs;
-use crate::state::State;
-use crate::text::{Piece, refused};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::Generated;
+use hamel_engine::State;
+use hamel_engine::run::constant;
+use hamel_engine::text::{Piece, refused};
 use serde_json::{Map, Value};
 
 const OPTION: &str = "--vary";
@@ -52,7 +52,7 @@ impl Vary {
         seed: u64,
         members: Option<u64>,
     ) -> Result<Self, Failure> {
-        let wrong = |errors: Vec<Diagnostic>| refused(OPTION, text, &errors);
+        let wrong = |errors: Vec<Diagnostic>| Failure::from(refused(OPTION, text, &errors));
         let whole = Piece::of(text).map_err(|error| wrong(vec![error]))?;
         let mut vary = Vary {
             targets: Vec::new(),
@@ -125,7 +125,10 @@ impl Vary {
                 "arguments are numbers, and expressions of parameters that other items do not vary";
             return Err(vec![right.wrong(message).help(help)]);
         }
-        let numbers = |text: &str| inputs::constant(text, generated, &state.params);
+        let numbers = |text: &str| {
+            let numbers = constant(text, generated, &state.params);
+            numbers.map_err(|problem| problem.to_string())
+        };
         let distributions = Distribution::read(*right, places.len(), &numbers)?;
         for (place, distribution) in places.into_iter().zip(distributions) {
             self.entries.push(Entry {

@@ -1,15 +1,15 @@
 //! Collects the kept results of a member while it runs.
 
 use super::keep::{Item, Kept, Of};
-use crate::added;
-use crate::mechanism::{Instance, Output};
-use crate::method::Stepper;
-use crate::names::{self, Time};
-use crate::simulate::advance::{Observer, Place};
-use crate::simulate::events;
 use hamel::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
+use hamel_engine::mechanism::{Instance, Output};
+use hamel_engine::method::Stepper;
+use hamel_engine::names::{self, Time};
+use hamel_engine::run::first;
+use hamel_engine::run::{Observer, Place};
+use hamel_engine::source::added;
 
 /// The kind of an item, without its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,7 +189,7 @@ impl<'a> Watch<'a> {
                         && !holds(&known.last)
                     {
                         let at = |state: &State<Instance>| holds(&value(known.output, state));
-                        let first = events::first(self.system, self.stepper, (before, state), &at);
+                        let first = first(self.system, self.stepper, (before, state), &at);
                         known.values = vec![first.t];
                     }
                 }

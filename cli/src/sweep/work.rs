@@ -6,7 +6,7 @@ use super::member::{Row, Sweep};
 use super::shard::Columns;
 use crate::failure::Failure;
 use crate::progress;
-use crate::simulate::stop::Stop;
+use hamel_engine::Stop;
 use std::collections::BTreeMap;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,8 +1,9 @@
 //! Systems without M⁻¹: the functions that remain, and the errors about the others.
 
 use crate::common::{hamel, text};
-use hamel_cli::{RobotOptions, Session};
+use hamel_engine::{OpenOptions, Quiet, Session};
 use serde_json::Value;
+use std::sync::Arc;
 
 /// A pendulum with a massless second link.
 const MASSLESS: &str = "system Arm {
@@ -152,13 +153,18 @@ fn claims_of_a_singular_system_are_named() {
 fn functions_that_a_session_lists_are_there() {
     let described = "system Pendulum { param m = 1; coord q; velocity v; rate q = v; frame f = pose(rotz(q), [cos(q), sin(q), 0]);
          particle mass m at [cos(q), sin(q), 0]; gravity [0, -9.81, 0]; output height = sin(q); }";
-    let read = Session::read(described.into(), "p.eom", &RobotOptions::default());
-    let (session, _) = read.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let read = Session::read(
+        described.into(),
+        "p.eom",
+        &OpenOptions::default(),
+        Arc::new(Quiet),
+    );
+    let session = read.unwrap_or_else(|error| panic!("{error}"));
     let missing: Vec<String> = session
         .functions()
         .iter()
         .filter_map(|name| session.function(name).err())
-        .map(|failure| failure.text())
+        .map(|error| error.to_string())
         .collect();
     assert!(missing.is_empty(), "{missing:?}");
 }

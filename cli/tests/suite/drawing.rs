@@ -1,18 +1,24 @@
 //! Drawn parts are placed as the mechanism's functions compute them.
 
-use hamel_cli::drawing::{Acts, Scene, Vector};
-use hamel_cli::{Asked, Grip, RobotOptions, Session, Stepping};
+use hamel_engine::drawing::{Acts, Scene, Vector};
+use hamel_engine::{Grip, Motion, OpenOptions, Quiet, Session, Simulation, Stepping};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 fn session(path: &Path) -> Session {
-    let opened = Session::open(path, &RobotOptions::default());
-    let (session, _) = opened.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let opened = Session::open(path, &OpenOptions::default(), Arc::new(Quiet));
+    let session = opened.unwrap_or_else(|error| panic!("{error}"));
     session
 }
 
 fn read(text: &str) -> Session {
-    let read = Session::read(text.into(), "text.eom", &RobotOptions::default());
-    let (session, _) = read.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let read = Session::read(
+        text.into(),
+        "text.eom",
+        &OpenOptions::default(),
+        Arc::new(Quiet),
+    );
+    let session = read.unwrap_or_else(|error| panic!("{error}"));
     session
 }
 
@@ -24,16 +30,16 @@ fn models() -> PathBuf {
 fn scene(session: &Session, state: &str) -> (Scene, Vec<f64>) {
     let start = session.start();
     let state = session.state(&start.params, state, "state.json");
-    let state = state.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let state = state.unwrap_or_else(|error| panic!("{error}"));
     let drawing = session.drawing();
-    let drawing = drawing.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let drawing = drawing.unwrap_or_else(|error| panic!("{error}"));
     (drawing.with(&state.params).scene(&state.x), state.x)
 }
 
 /// The value of a function at the start's parameters, with u = 0 and ξ = 0.
 fn value(session: &Session, name: &str, x: &[f64]) -> Vec<f64> {
     let function = session.function(name);
-    let function = function.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let function = function.unwrap_or_else(|error| panic!("{error}"));
     let constants = function
         .constants(&session.start().params)
         .expect("constants");
@@ -254,7 +260,7 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
         let session = session(&models().join(format!("../../examples/gallery/{name}.eom")));
         let start = session.start();
         let drawing = session.drawing();
-        let drawing = drawing.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let drawing = drawing.unwrap_or_else(|error| panic!("{error}"));
         let drawn = drawing.with(&start.params);
         let scene = drawn.scene(&start.x);
         let grip = match scene.bodies.last() {
@@ -265,20 +271,12 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
             Grip::Frame(frame, point) => at(scene, frame, point),
             Grip::Particle(particle) => scene.particles[particle].position,
         };
-        let stepping = Stepping {
-            until: 0.1,
-            step: None,
-            method: "auto".into(),
-            tol: None,
-            lambda: None,
-        };
-        let inputs = (&Asked::default(), None);
-        let run = session.simulate(&start, &stepping, (None, None), inputs, &[], None);
-        let run = run.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let run = session.simulate(&start, &Simulation::new(Stepping::until(0.1)));
+        let run = Motion::of(&run.unwrap_or_else(|error| panic!("{error}")));
         let end = &run.x[run.x.len() - start.x.len()..];
         let target = place(&drawn.scene(end));
         let pulled = session.pulled(&start, grip, (target, None));
-        let pulled = pulled.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let pulled = pulled.unwrap_or_else(|error| panic!("{error}"));
         let there = drawn.scene(&pulled.x);
         let before = distance(place(&scene), target);
         let after = distance(place(&there), target);

@@ -12,6 +12,7 @@
 //! Only regular files are replaced. Devices, descriptors such as `/dev/stdout`, and pipes that have a reader are
 //! written to; folders and everything else are refused.
 
+pub mod number;
 mod replace;
 mod stream;
 mod target;

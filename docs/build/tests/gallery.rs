@@ -3,10 +3,11 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use hamel_book::gallery::{Exhibit, exhibits, for_all};
 use hamel_book::shell::Shell;
-use hamel_cli::{Asked, Motion, RobotOptions, Session, Stepping};
+use hamel_engine::{Motion, OpenOptions, Session, Simulation, Stepping, WarningTexts};
 
 /// Smallest number of mechanisms.
 const LEAST: usize = 24;
@@ -64,35 +65,23 @@ fn run(exhibit: &Exhibit) -> Vec<String> {
         )];
     };
     let path = root().join(exhibit.file());
-    let (session, warnings) = match Session::open(&path, &RobotOptions::default()) {
-        Ok(opened) => opened,
-        Err(failure) => return vec![failure.text()],
+    let warnings = Arc::new(WarningTexts::default());
+    let session = match Session::open(&path, &OpenOptions::default(), warnings.clone()) {
+        Ok(session) => session,
+        Err(error) => return vec![error.to_string()],
     };
+    let warnings = warnings.take();
     let mut wrong = Vec::new();
     if !warnings.is_empty() {
         wrong.push(warnings);
     }
-    let stepping = Stepping {
-        until,
-        step: None,
-        method: "auto".into(),
-        tol: None,
-        lambda: None,
-    };
     let start = session.start();
-    let motion = session.simulate(
-        &start,
-        &stepping,
-        (None, None),
-        (&Asked::default(), None),
-        &[],
-        None,
-    );
-    let motion = match motion {
-        Ok(motion) => motion,
-        Err(failure) => return vec![failure.text()],
+    let simulation = Simulation::new(Stepping::until(until));
+    let motion = match session.simulate(&start, &simulation) {
+        Ok(run) => Motion::of(&run),
+        Err(error) => return vec![error.to_string()],
     };
-    wrong.extend(motion.failure.clone());
+    wrong.extend(motion.failure.as_ref().map(ToString::to_string));
     for (name, most) in &exhibit.keeps {
         match change(&motion, name) {
             None => wrong.push(format!("`{name}` is no quantity of the run")),

@@ -6,7 +6,7 @@ use hamel::methods::{
     Splitting, free,
 };
 use hamel::{Canonical, Split, System};
-use hamel_report::baselines::{Buss, ForwardEuler, Rk4Added, Rk4Projected, Slide};
+use hamel_engine::baselines::{Buss, ForwardEuler, Rk4Added, Rk4Projected, Slide};
 use hamel_report::data::Kind;
 use hamel_report::entry::{Entry, Outcome, Watch};
 use hamel_report::problem::Problem;

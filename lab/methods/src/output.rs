@@ -3,8 +3,8 @@
 use crate::cases::ALL;
 use crate::pictures::motions;
 use crate::runner::BenchError;
+use hamel_files::number::grouped;
 use hamel_report::data::{Case, Drift, Report};
-use hamel_report::number::grouped;
 use hamel_report::page::{self, Picture};
 use hamel_report::plot::{Figure, PlotError, drifts, precision};
 use hamel_report::summary::summary;

@@ -1,7 +1,9 @@
 //! JSON of an open description: names, the start, and diagnostics with their places.
 
-use hamel_cli::{Mark, Names, Said, Session};
+use hamel_codegen::diagnostics::Diagnostic;
+use hamel_engine::{Names, Reporter, Session, Warning, method};
 use serde_json::{Value, json};
+use std::sync::{Mutex, PoisonError};
 
 /// Returns names and the start of a description.
 pub fn described(session: &Session) -> Value {
@@ -18,25 +20,64 @@ pub fn described(session: &Session) -> Value {
         "velocities": names(session.velocities()),
         "inputs": names(session.inputs()),
         "parameters": names(session.parameters()),
-        "methods": Session::methods(),
+        "methods": method::names(),
         "start": { "params": start.params, "x": start.x, "xi": start.xi, "u": start.u },
     })
 }
 
-/// Returns errors and warnings with their ranges in a text, in UTF-16 units.
-pub fn marks(said: &Said, text: &str) -> Vec<Value> {
-    said.marks.iter().map(|mark| marked(mark, text)).collect()
+/// Keeps what is said of a description.
+#[derive(Default)]
+pub struct Said {
+    kept: Mutex<Kept>,
 }
 
-fn marked(mark: &Mark, text: &str) -> Value {
+/// Warnings as a text, and where they are about.
+#[derive(Clone, Default)]
+struct Kept {
+    text: String,
+    warnings: Vec<Diagnostic>,
+}
+
+impl Reporter for Said {
+    fn warn(&self, warning: &Warning<'_>) {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.text.push_str(&warning.to_string());
+        if let Warning::Description { diagnostics, .. } = warning {
+            kept.warnings.extend_from_slice(diagnostics);
+        }
+    }
+}
+
+impl Said {
+    fn kept(&self) -> Kept {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.clone()
+    }
+
+    /// The warnings as a text.
+    pub fn text(&self) -> String {
+        self.kept().text
+    }
+
+    /// Warnings and errors at their places in a text, counted as JavaScript counts.
+    pub fn marks(&self, errors: &[Diagnostic], text: &str) -> Vec<Value> {
+        let warnings = self.kept().warnings;
+        let warnings = warnings
+            .iter()
+            .map(|warning| mark("warning", warning, text));
+        let errors = errors.iter().map(|error| mark("error", error, text));
+        warnings.chain(errors).collect()
+    }
+}
+
+fn mark(severity: &str, said: &Diagnostic, text: &str) -> Value {
     let place = |span: std::ops::Range<usize>| [span.start, span.end].map(|at| units(text, at));
-    let said = &mark.diagnostic;
     let notes = said.notes.iter().map(|(span, label)| {
         let range = span.range().map(place);
         json!({ "range": range, "label": label })
     });
     json!({
-        "severity": if mark.is_error { "error" } else { "warning" },
+        "severity": severity,
         "range": said.span.range().map(place),
         "message": said.message,
         "help": said.help,

@@ -1,13 +1,19 @@
 //! Requests and their answers. A description is opened once; later requests derive or run it with the code behind the
 //! commands of `hamel`.
 
-use crate::described::{described, marks};
+use crate::described::{Said, described};
 use crate::scenes::scenes;
-use hamel_cli::{
-    Asked, Comparison, Failure, Grip, RobotOptions, Session, State, Stepping, imported,
+use hamel_cli::{Comparison, Failure, reports};
+use hamel_codegen::program::Shape;
+use hamel_codegen::tables;
+use hamel_engine::{
+    Drive, Error, Grip, InputOptions, Motion, OpenOptions, Samples, Session, Simulation, Source,
+    State, Stepping,
 };
 use serde_json::{Value, json};
 use std::cell::RefCell;
+use std::fmt;
+use std::sync::Arc;
 
 thread_local! {
     /// The open description.
@@ -20,16 +26,54 @@ pub fn answer(request: &str) -> (String, Vec<f32>) {
     let mut numbers = Vec::new();
     let answer = match serde_json::from_str::<Value>(request) {
         Ok(request) => answered(&request, &mut numbers),
-        Err(error) => Err(format!("the request is not JSON: {error}")),
+        Err(error) => Err(Refused(format!("the request is not JSON: {error}"))),
     };
     let text = match answer {
         Ok(done) => json!({ "done": done }),
-        Err(error) => json!({ "error": error }),
+        Err(error) => json!({ "error": error.to_string() }),
     };
     (text.to_string(), numbers)
 }
 
-fn answered(request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
+/// Why a request has no answer, as the page shows it.
+struct Refused(String);
+
+impl From<Error> for Refused {
+    fn from(error: Error) -> Self {
+        Refused(shown(&error))
+    }
+}
+
+impl From<Failure> for Refused {
+    fn from(failure: Failure) -> Self {
+        Refused(failure.render(false))
+    }
+}
+
+impl From<serde_json::Error> for Refused {
+    fn from(error: serde_json::Error) -> Self {
+        Refused(error.to_string())
+    }
+}
+
+impl From<&str> for Refused {
+    fn from(message: &str) -> Self {
+        Refused(message.into())
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// An error as the command line shows it, without colours.
+fn shown(error: &Error) -> String {
+    format!("error: {error}\n")
+}
+
+fn answered(request: &Value, numbers: &mut Vec<f32>) -> Result<Value, Refused> {
     let what = text(request, "do");
     match what.as_str() {
         "open" => return Ok(open(request)),
@@ -47,28 +91,32 @@ fn open(request: &Value) -> Value {
     let (text, name) = (text(request, "text"), text(request, "name"));
     // The memory of the old description is freed first.
     OPEN.replace(None);
-    let (read, said) = Session::marked(text.clone(), &name, &RobotOptions::default());
-    let marks = marks(&said, &text);
+    let said = Arc::new(Said::default());
+    let read = Session::read(text.clone(), &name, &OpenOptions::default(), said.clone());
     match read {
         Ok(session) => {
             let system = described(&session);
             OPEN.replace(Some(session));
-            json!({ "system": system, "marks": marks, "said": said.warnings })
+            json!({ "system": system, "marks": said.marks(&[], &text), "said": said.text() })
         }
-        Err(failure) => json!({ "system": null, "marks": marks, "said": failure.text() }),
+        Err(error) => {
+            let marks = said.marks(error.diagnostics(), &text);
+            json!({ "system": null, "marks": marks, "said": shown(&error) })
+        }
     }
 }
 
 /// Converts a robot in URDF to a description.
 fn import(request: &Value) -> Value {
-    let options = RobotOptions {
+    let options = OpenOptions {
         floating: request["floating"] == true,
-        ..RobotOptions::default()
+        ..OpenOptions::default()
     };
-    let (read, said) = imported(text(request, "text"), &text(request, "name"), &options);
-    match read {
-        Ok(text) => json!({ "text": text, "said": said.warnings }),
-        Err(failure) => json!({ "text": null, "said": failure.text() }),
+    let said = Arc::new(Said::default());
+    let source = Source::new(text(request, "name"), text(request, "text"), said.clone());
+    match source.robot(&options) {
+        Ok(source) => json!({ "text": source.text, "said": said.text() }),
+        Err(error) => json!({ "text": null, "said": shown(&error) }),
     }
 }
 
@@ -77,20 +125,20 @@ fn asked(
     what: &str,
     request: &Value,
     numbers: &mut Vec<f32>,
-) -> Result<Value, String> {
+) -> Result<Value, Refused> {
     let name = text(request, "name");
     Ok(match what {
-        "tables" => parsed(session.typeset(&texts(request, "of")))?,
+        "tables" => tables::typeset(&session.tables(&texts(request, "of"))?),
         "check" => check(session),
-        "operations" => parsed(session.operations())?,
-        "advice" => parsed(session.advice())?,
-        "rust" => json!(session.rust(&name).map_err(said)?),
+        "operations" => serde_json::from_str(&reports::operations(session)?)?,
+        "advice" => serde_json::from_str(&reports::advice(session)?)?,
+        "rust" => json!(reports::rust(session, &name)?),
         "c" => {
             let stem = name.strip_suffix(".eom").unwrap_or(&name);
-            let files = session.c(&name, stem).map_err(said)?;
+            let files = reports::c(session, &name, stem)?;
             json!({ "header": files.header, "source": files.source })
         }
-        "evaluate" => parsed(session.evaluate(&state(session, request)?))?,
+        "evaluate" => serde_json::to_value(session.evaluate(&state(session, request)?)?)?,
         "simulate" => simulate(session, request, numbers)?,
         "pull" => pull(session, request, numbers)?,
         "compare" => {
@@ -102,14 +150,17 @@ fn asked(
                 steps: steps.unwrap_or_default(),
                 repeats: 0,
             };
-            parsed(session.compare(&state(session, request)?, &asked))?
+            {
+                let state = state(session, request)?;
+                serde_json::from_str(&reports::compare(session, &state, &asked)?)?
+            }
         }
-        _ => return Err(format!("there is no request `{what}`")),
+        _ => return Err(Refused(format!("nothing is called `{what}`"))),
     })
 }
 
 fn check(session: &Session) -> Value {
-    let (identities, remarks) = session.check();
+    let (identities, remarks) = reports::check(session);
     let identities = identities.iter().map(|identity| {
         json!({
             "label": identity.label,
@@ -122,7 +173,7 @@ fn check(session: &Session) -> Value {
 }
 
 /// Returns the start, with x and ξ of the request if given, and the changes of the request.
-fn state(session: &Session, request: &Value) -> Result<State, String> {
+fn state(session: &Session, request: &Value) -> Result<State, Refused> {
     let mut start = session.start();
     for (entries, key) in [(&mut start.x, "x"), (&mut start.xi, "xi")] {
         let given = list(request, key);
@@ -134,16 +185,16 @@ fn state(session: &Session, request: &Value) -> Result<State, String> {
         Value::Null => Ok(start),
         changes => {
             let changes = changes.to_string();
-            session.changed(start, &changes, "the start").map_err(said)
+            Ok(session.changed(start, &changes, "the start")?)
         }
     }
 }
 
 /// Returns the start after a point is pulled towards a target, with its scene.
-fn pull(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
+fn pull(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, Refused> {
     let vector = |key: &str| {
         <[f64; 3]>::try_from(list(request, key))
-            .map_err(|_| format!("`{key}` must have three numbers"))
+            .map_err(|_| Refused(format!("`{key}` has to have three numbers")))
     };
     let index = |key: &str| {
         request[key]
@@ -157,16 +208,14 @@ fn pull(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Va
     };
     let state = state(session, request)?;
     let sight = vector("sight").ok();
-    let pulled = session
-        .pulled(&state, grip, (vector("target")?, sight))
-        .map_err(said)?;
+    let pulled = session.pulled(&state, grip, (vector("target")?, sight))?;
     if let Some(drawn) = scenes(session, &pulled.params, &pulled.x) {
         *numbers = drawn.numbers;
     }
     Ok(json!({ "x": pulled.x, "xi": pulled.xi }))
 }
 
-fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
+fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, Refused> {
     let stepping = Stepping {
         until: number(request, "until").unwrap_or(10.0),
         step: number(request, "step"),
@@ -178,22 +227,23 @@ fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Resul
         lambda: None,
     };
     let state = state(session, request)?;
-    let inputs = Asked {
-        input: texts(request, "inputs"),
-        ..Asked::default()
+    let inputs = InputOptions {
+        expressions: texts(request, "inputs"),
+        ..InputOptions::default()
     };
     let drawn = request["scenes"] == true;
-    let run = |times| {
-        let run = session.simulate(&state, &stepping, (None, times), (&inputs, None), &[], None);
-        run.map_err(said)
+    let mut simulation = Simulation {
+        drive: Drive::Options(inputs),
+        ..Simulation::new(stepping)
     };
-    let mut ran = run(None)?;
+    let mut run = Motion::of(&session.simulate(&state, &simulation)?);
     // Adaptive steps may be too long to be drawn; the dense output between them is as accurate.
-    if drawn && stepping.step.is_none() && ran.t.len() < MOMENTS && ran.failure.is_none() {
-        ran = run(Some(moments(stepping.until)))?;
+    let stepping = &simulation.stepping;
+    if drawn && stepping.step.is_none() && run.t.len() < MOMENTS && run.failure.is_none() {
+        simulation.samples = Samples::At(moments(stepping.until));
+        run = Motion::of(&session.simulate(&state, &simulation)?);
     }
-    let run = ran;
-    let named = |list: &[(String, hamel_cli::Shape, Vec<f64>)]| -> Vec<Value> {
+    let named = |list: &[(String, Shape, Vec<f64>)]| -> Vec<Value> {
         let parts = list.iter();
         parts
             .map(|(name, shape, values)| {
@@ -229,7 +279,7 @@ fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Resul
         "evaluations": run.evaluations,
         "drift": run.energy_deviation,
         "constraint": run.constraint,
-        "failure": run.failure,
+        "failure": run.failure.map(|why| why.to_string()),
     }))
 }
 
@@ -240,16 +290,6 @@ const MOMENTS: usize = 600;
 fn moments(until: f64) -> Vec<f64> {
     let inner = (0..MOMENTS).map(|k| until * k as f64 / MOMENTS as f64);
     inner.chain([until]).collect()
-}
-
-/// Parses a text that is JSON.
-fn parsed(written: Result<String, Failure>) -> Result<Value, String> {
-    let written = written.map_err(said)?;
-    serde_json::from_str(&written).map_err(|error| error.to_string())
-}
-
-fn said(failure: Failure) -> String {
-    failure.text()
 }
 
 fn text(request: &Value, key: &str) -> String {

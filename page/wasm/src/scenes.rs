@@ -1,6 +1,6 @@
 //! Scenes of a run: the drawable parts, and one list of numbers that places them at each sample.
 
-use hamel_cli::{Scene, Session};
+use hamel_engine::{Scene, Session};
 use serde_json::{Value, json};
 
 /// Scenes of a run.

@@ -11,7 +11,7 @@ use hamel::methods::{Cf4, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Rkmk8, Rkmk54, Sche
 use hamel::{Method, State, System, so3};
 use hamel_cases::bodies::benchmark_top;
 use hamel_cases::by_hand::{Body, QuaternionTop, Reference, Spin, Top};
-use hamel_report::baselines::{Buss, Slide};
+use hamel_engine::baselines::{Buss, Slide};
 
 /// Steps of one measurement: the state advances, so that nothing is hoisted out of the loop.
 const STEPS: usize = 64;

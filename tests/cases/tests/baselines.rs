@@ -3,7 +3,7 @@
 use hamel::methods::Rkmk4;
 use hamel::{Method, State, StepError, System, so3};
 use hamel_cases::by_hand::{QuaternionTop, Reference, Spin, Top, distance, run, slopes};
-use hamel_report::baselines::{Baseline, Buss, Rk4Added, Slide};
+use hamel_engine::baselines::{Baseline, Buss, Rk4Added, Slide};
 use std::cell::Cell;
 
 const BUSS: [Buss; 4] = [

@@ -7,7 +7,7 @@ use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, Lgvi, Scheme, Splitting, free};
 use hamel::{Method, State, StepError};
 use hamel_cases::by_hand::{Reference, Spin, Top, distance, run, slopes};
-use hamel_report::baselines::{Buss, Slide};
+use hamel_engine::baselines::{Buss, Slide};
 
 /// Relative tolerance of a measured error.
 const SIZE: f64 = 0.10;

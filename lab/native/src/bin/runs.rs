@@ -7,8 +7,9 @@ use cpu_time::ProcessTime;
 use hamel::methods::{Method, Rkmk4, Rkmk8, Scheme, Splitting};
 use hamel::wide::f64x8;
 use hamel::{State, System, ensemble, integrate};
-use hamel_cli::{Asked, RobotOptions, Session, Stepping};
+use hamel_engine::{Motion, OpenOptions, Quiet, Session, Simulation, Stepping};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 mod code {
@@ -54,30 +55,21 @@ fn compiled<M: Method<code::HeavyTop<f64>>>(method: &M) -> Vec<f64> {
 
 fn runs() {
     let path = Path::new("tests/models/heavy_top.eom");
-    let (session, _) = Session::open(path, &RobotOptions::default()).expect("a description");
+    let session = Session::open(path, &OpenOptions::default(), Arc::new(Quiet));
+    let session = session.expect("a description");
     let start = session.start();
     let system = code::HeavyTop::<f64>::default();
     println!("A million steps of the heavy top\n");
     println!("| method | generated Rust, s | `simulate`, s | ratio |\n|---|---|---|---|");
     for name in ["auto", "rkmk4", "rkmk8"] {
-        let stepping = Stepping {
-            until: H * f64::from(STEPS),
+        let simulation = Simulation::new(Stepping {
             step: Some(H),
             method: name.into(),
-            tol: None,
-            lambda: None,
-        };
+            ..Stepping::until(H * f64::from(STEPS))
+        });
         let simulate = || {
-            let nothing = (None, None);
-            let motion = session.simulate(
-                &start,
-                &stepping,
-                nothing,
-                (&Asked::default(), None),
-                &[],
-                None,
-            );
-            motion.expect("a run")
+            let run = session.simulate(&start, &simulation);
+            Motion::of(&run.expect("a run"))
         };
         let first = simulate();
         let own = || match first.method {
@@ -124,7 +116,7 @@ fn sweeps() {
         let words = words.chain([out.into_os_string()]);
         timed(|| {
             hamel_cli::asked(words, None)
-                .map_err(|why| why.text())
+                .map_err(|why| why.render(false))
                 .expect("a sweep");
         })
     };

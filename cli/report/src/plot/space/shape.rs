@@ -9,7 +9,7 @@ pub type Vector = [f64; 3];
 /// The colour of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ink {
-    /// The colour of the line with this index.
+    /// Returns the colour of the line with this index.
     Series(usize),
     /// The colour of headings.
     Dark,
@@ -70,6 +70,6 @@ pub enum Shape {
 pub struct Part {
     /// Its colour.
     pub ink: Ink,
-    /// Its shape.
+    /// Shape.
     pub shape: Shape,
 }

@@ -1,0 +1,82 @@
+//! What commands report of a description, for other front ends: identities, costs, generated code, tables, comparisons.
+
+use crate::check::{self, Checked};
+use crate::compare::{self, Comparison};
+use crate::failure::Failure;
+use crate::ops;
+use crate::tables::{Format, written};
+use hamel_codegen::builder;
+use hamel_codegen::emit::c::{Files, Precision};
+use hamel_engine::{Error, Session, State, method};
+
+/// The results of `hamel check`: the identities with their verdicts, and the lines below them.
+pub fn check(session: &Session) -> (Vec<Checked>, String) {
+    let remarks = check::remarks(session.generated(), session.source().shown());
+    (check::checked(session.generated()), remarks)
+}
+
+/// The output of `hamel ops --format json`.
+///
+/// # Errors
+/// Errors of the derivation.
+pub fn operations(session: &Session) -> Result<String, Failure> {
+    ops::counted(session.source())
+}
+
+/// The output of `hamel ops --advise --format json`.
+///
+/// # Errors
+/// If there are no velocities to compare.
+pub fn advice(session: &Session) -> Result<String, Failure> {
+    ops::advised(session.source())
+}
+
+/// The generated Rust, as for a description in a file of this name.
+///
+/// # Errors
+/// Errors of the derivation or of the generated code.
+pub fn rust(session: &Session, name: &str) -> Result<String, Error> {
+    let generated = session.source().derive()?;
+    builder::written(&generated, name).map_err(|errors| session.source().refused(&errors))
+}
+
+/// The generated C99, as for a description in a file of this name.
+///
+/// # Errors
+/// Errors of the derivation or of the generated code.
+pub fn c(session: &Session, name: &str, stem: &str) -> Result<Files, Error> {
+    let generated = session.source().derive()?;
+    builder::written_in_c(&generated, name, Some(stem), Precision::default())
+        .map_err(|errors| session.source().refused(&errors))
+}
+
+/// Tables by name, the most important ones if none is named; with `all`, every entry.
+///
+/// # Errors
+/// If a table is unknown, or does not exist.
+pub fn tables(
+    session: &Session,
+    of: &[String],
+    format: Format,
+    all: bool,
+) -> Result<String, Error> {
+    Ok(written(&session.tables(of)?, format, all))
+}
+
+/// Compares methods on a run from a state, as `hamel compare --format json` does for one description.
+///
+/// # Errors
+/// Unknown methods, and runs that cannot begin.
+pub fn compare(session: &Session, state: &State, asked: &Comparison) -> Result<String, Failure> {
+    method::known(&asked.methods)?;
+    let shown = session.source().shown();
+    let case = compare::case(
+        session.generated(),
+        shown,
+        state,
+        asked,
+        None,
+        &mut |_, _| {},
+    )?;
+    compare::one(&case)
+}

@@ -1,0 +1,56 @@
+//! A mechanical system that runs.
+//!
+#![doc = include_str!("../README.md")]
+//!
+//! # Modules
+//!
+//! | module | owns |
+//! |---|---|
+//! | [`source`] | descriptions and robots in URDF: reading and deriving them |
+//! | [`state`] | the numbers of a state: reading and completing them |
+//! | [`mechanism`] | a described system that the integrators can run, and why it has no motion where it has none |
+//! | [`method`] | the methods by their names, and which systems they are for |
+//! | [`baselines`] | methods that are measured to show what they lose |
+//! | [`run`] | runs in time: plans, steps, inputs, events, samples |
+//! | [`evaluate`], [`linearize`] | numbers at a state |
+//! | [`drawing`] | what of a mechanism can be drawn at a state, as numbers |
+//! | [`session`] | a description with everything that is asked of it |
+//! | [`reporter`] | warnings and progress, for a front end |
+//! | [`error`] | what cannot be done, as data |
+//! | [`names`] | names of single numbers |
+//! | [`text`] | arguments that are lists, with places for what is wrong with them |
+//!
+//! Machine code is made by `hamel-native`, which holds the only `unsafe` code.
+//!
+//! # Features
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `machine` | runs by machine code; without it functions are evaluated step by step, on any target |
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
+pub mod baselines;
+pub mod drawing;
+pub mod error;
+pub mod evaluate;
+pub mod linearize;
+pub mod mechanism;
+pub mod method;
+pub mod names;
+pub mod reporter;
+pub mod run;
+pub mod session;
+pub mod source;
+pub mod state;
+pub mod text;
+
+pub use drawing::{Drawing, Drawn, Scene};
+pub use error::Error;
+pub use evaluate::Evaluation;
+pub use linearize::Linearization;
+pub use reporter::{Quiet, Reporter, Warning, WarningTexts};
+pub use run::{Drive, InputOptions, Law, Motion, Run, Samples, Simulation, Stepping, Stop};
+pub use session::{Function, Grip, Names, Session};
+pub use source::{OpenOptions, Source};
+pub use state::State;

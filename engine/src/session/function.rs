@@ -1,0 +1,115 @@
+//! A single function of a description, compiled to machine code.
+
+use crate::error::Error;
+use crate::mechanism;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::{Argument, Cause, Shape};
+use hamel_native::{Compiled, Constants, Paired};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+/// Number of states whose evaluation takes about as long as compiling code for two states at once.
+const MANY: u64 = 1 << 15;
+
+/// A function of the description, compiled to machine code.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Name.
+    pub name: String,
+    /// Documentation of the result.
+    pub docs: String,
+    /// Arguments.
+    pub arguments: Vec<Argument>,
+    /// Shape of the result.
+    pub shape: Shape,
+    compiled: Compiled,
+    lanes: Arc<Lanes>,
+}
+
+/// Code for two states at once, and the number of states requested before it existed.
+#[derive(Debug, Default)]
+struct Lanes {
+    states: AtomicU64,
+    code: OnceLock<Option<Paired>>,
+}
+
+impl Function {
+    /// Number of entries of an argument.
+    pub fn length(&self, argument: Argument) -> usize {
+        let all = hamel_native::ARGUMENTS.iter();
+        let lengths = all.zip(self.compiled.tapes().lengths);
+        lengths
+            .filter(|(of, _)| **of == argument)
+            .map(|(_, length)| length)
+            .sum()
+    }
+
+    /// The parameters, with all values that depend on them alone.
+    ///
+    /// # Errors
+    /// If M is constant, and not positive definite with these parameters.
+    pub fn constants(&self, params: &[f64]) -> Result<Constants, Cause> {
+        let constants = self.compiled.constants(params);
+        match self.compiled.singular(&constants) {
+            Some(cause) => Err(cause),
+            None => Ok(constants),
+        }
+    }
+
+    /// The result for x, ξ and z, u, ξ̇ and p; only the arguments of the function are read.
+    ///
+    /// # Errors
+    /// The cause of a pivot that is not positive.
+    pub fn call(
+        &self,
+        constants: &Constants,
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> Result<(), Cause> {
+        self.compiled.call(0, constants, arguments, out)
+    }
+
+    /// The results for two states at once: all lists contain pairs, constants are those of [`Paired::constants`].
+    /// Returns whether both exist; otherwise `out` is unspecified.
+    pub fn both(
+        &self,
+        paired: &Paired,
+        constants: &[f64],
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> bool {
+        paired.call(0, constants, arguments, out)
+    }
+
+    /// Code for two states at once, if this many more states are worth it and the machine supports it.
+    pub fn paired(&self, states: u64) -> Option<&Paired> {
+        if self.lanes.code.get().is_none() {
+            let before = self.lanes.states.fetch_add(states, Ordering::Relaxed);
+            if before.saturating_add(states) < MANY {
+                return None;
+            }
+        }
+        let make = || Paired::new(&self.compiled);
+        self.lanes.code.get_or_init(make).as_ref()
+    }
+}
+
+/// Compiles a function of a program by its name.
+pub(super) fn compiled(generated: &Generated, name: &str) -> Result<Function, Error> {
+    let program = &generated.program;
+    let Some(function) = program.function(name) else {
+        return Err(Error::UnavailableFunction {
+            system: program.name.clone(),
+            name: name.into(),
+        });
+    };
+    let compiled = mechanism::compiled(program, &[name])?;
+    Ok(Function {
+        name: function.name.clone(),
+        docs: function.docs.join("\n"),
+        arguments: function.arguments.clone(),
+        shape: function.shape,
+        compiled,
+        lanes: Arc::default(),
+    })
+}

@@ -1,0 +1,99 @@
+//! Derives and compiles a description with the expressions of events as additional outputs.
+
+use crate::error::Error;
+use crate::mechanism::{Instance, Mechanism};
+use crate::run::Event;
+use crate::source::Source;
+use crate::source::added::{self, Added};
+use crate::state::State;
+use crate::text::{Piece, refused};
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::Shape;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Number of sets of expressions that are kept.
+const KEPT: usize = 8;
+
+/// Name of the texts of all events in messages.
+const EVENTS: &str = "events";
+
+/// The recent systems, by the texts of their events.
+#[derive(Default)]
+pub struct AllObserved(Mutex<Vec<(Vec<String>, Arc<Observed>)>>);
+
+impl AllObserved {
+    /// The system for these events; `None` if no event is an expression.
+    pub fn of(&self, source: &Source, events: &[Event]) -> Result<Option<Arc<Observed>>, Error> {
+        let texts: Vec<&str> = events.iter().filter_map(Event::expression).collect();
+        if texts.is_empty() {
+            return Ok(None);
+        }
+        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = known().iter().find(|(of, _)| *of == texts) {
+            return Ok(Some(Arc::clone(found)));
+        }
+        let made = Arc::new(Observed::new(source, &texts.join("; "), &texts)?);
+        let mut all = known();
+        if all.len() >= KEPT {
+            all.remove(0);
+        }
+        let own = texts.into_iter().map(str::to_owned).collect();
+        all.push((own, Arc::clone(&made)));
+        Ok(Some(made))
+    }
+}
+
+/// A description extended by expressions.
+pub struct Observed {
+    pub generated: Arc<Generated>,
+    mechanism: Arc<Mechanism>,
+}
+
+impl Observed {
+    /// Adds these expressions, which follow one another in the text `said`.
+    pub fn new(source: &Source, said: &str, expressions: &[&str]) -> Result<Self, Error> {
+        let mut errors = Vec::new();
+        let (mut outputs, mut start) = (Vec::new(), 0);
+        for (index, text) in expressions.iter().enumerate() {
+            let whole = Piece { text, start };
+            start += text.len() + "; ".len();
+            match Piece::of(text) {
+                Err(error) => errors.push(whole.moved(error)),
+                Ok(_) if text.trim().is_empty() => {
+                    errors.push(whole.wrong("an expression is needed"))
+                }
+                Ok(_) if whole.split(';').len() > 1 => {
+                    errors.push(whole.wrong("one expression is needed"));
+                }
+                Ok(_) => outputs.push(Added {
+                    name: added::name(index),
+                    whole,
+                    sides: vec![whole],
+                }),
+            }
+        }
+        let generated = added::derive(source, (EVENTS, said), &outputs, errors)?;
+        let mut errors = Vec::new();
+        for Added { name, whole, .. } in &outputs {
+            let function = generated.program.function(name);
+            if function.is_none_or(|function| function.shape != Shape::Scalar) {
+                errors.push(whole.wrong("an event is where one number is zero"));
+            }
+        }
+        if !errors.is_empty() {
+            return Err(refused(EVENTS, said, &errors));
+        }
+        let mechanism = Arc::new(Mechanism::new(&generated, source.shown())?);
+        Ok(Observed {
+            generated: Arc::new(generated),
+            mechanism,
+        })
+    }
+
+    /// The system of a run, with the values of a state.
+    pub fn instance(&self, state: &State) -> Result<Instance, Error> {
+        let instance = Instance::of(&self.mechanism, state)?;
+        instance.check_parameters(&state.x)?;
+        Ok(instance)
+    }
+}

@@ -1,0 +1,107 @@
+//! Robots in URDF as descriptions.
+
+use super::OpenOptions;
+use crate::error::Error;
+use crate::reporter::{Reporter, Warning};
+use hamel_codegen::syntax::suggest::closest;
+use hamel_codegen::urdf::{self, Imported};
+use std::fmt;
+
+/// A robot, with the text that it was read from.
+pub struct Robot {
+    /// The URDF.
+    pub urdf: String,
+    /// The result of the import.
+    pub imported: Imported,
+}
+
+/// A link that a robot does not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownLink {
+    /// The name that was asked for.
+    pub name: String,
+    /// The link whose name is closest to it.
+    pub closest: Option<String>,
+    /// All links.
+    pub known: Vec<String>,
+}
+
+impl fmt::Display for UnknownLink {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no link is called `{}`; ", self.name)?;
+        match &self.closest {
+            Some(near) => write!(f, "did you mean `{near}`?"),
+            None => write!(f, "the links are {}", self.known.join(", ")),
+        }
+    }
+}
+
+impl std::error::Error for UnknownLink {}
+
+impl Robot {
+    /// Reads a URDF text.
+    pub fn read(
+        urdf: String,
+        path: &str,
+        options: &OpenOptions,
+        reporter: &dyn Reporter,
+    ) -> Result<Self, Error> {
+        match urdf::read(&urdf, &options.import(path)) {
+            Ok(imported) => {
+                reporter.warn(&Warning::Robot {
+                    path,
+                    urdf: &urdf,
+                    imported: &imported,
+                });
+                Ok(Robot { urdf, imported })
+            }
+            Err(problems) => Err(Error::Import {
+                path: path.into(),
+                urdf,
+                problems,
+            }),
+        }
+    }
+
+    /// The frame of a link, by the link's name in the file or else in the description; a link that is fixed in the
+    /// world becomes a frame.
+    pub fn frame(&mut self, link: &str) -> Result<String, UnknownLink> {
+        let Imported { links, ground, .. } = &self.imported;
+        let all: Vec<&(String, String)> = links.iter().chain(ground).collect();
+        let written = all.iter().find(|(written, _)| written == link);
+        let found = written.or_else(|| all.iter().find(|(_, name)| name == link));
+        let Some((_, frame)) = found else {
+            let names = || all.iter().map(|(written, _)| written.as_str());
+            return Err(UnknownLink {
+                name: link.into(),
+                closest: closest(link, names()).map(String::from),
+                known: names().map(String::from).collect(),
+            });
+        };
+        let frame = frame.clone();
+        if ground.as_ref().is_some_and(|(_, name)| *name == frame) {
+            self.stand();
+        }
+        Ok(frame)
+    }
+
+    /// Makes the link that is fixed in the world a frame of the description.
+    fn stand(&mut self) {
+        let Imported {
+            text,
+            origins,
+            links,
+            ground,
+            ..
+        } = &mut self.imported;
+        let (Some(place), Some(link)) = (text.rfind('}'), ground.take()) else {
+            return;
+        };
+        text.insert_str(
+            place,
+            &format!("    frame {} = pose(identity(3), [0, 0, 0]);\n", link.1),
+        );
+        origins.insert(origins.len().saturating_sub(1), None);
+        links.push(link);
+    }
+}

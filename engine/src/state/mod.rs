@@ -1,0 +1,155 @@
+//! The values of a state: those of the description, changed by a JSON file.
+//!
+//! `{"param": {…}, "coord": {…}, "velocity": {…}, "state": {…}, "input": {…}}`, all optional, or, by joints,
+//! `{"configuration": {…}, "velocity": {…}, "param": {…}}`; or a list of samples, of which the last counts. Every mistake is reported with its path in the file, all at
+//! once. Values that a file does not give are completed like the start of a description, so that loops are closed and
+//! constraints on velocities are satisfied; given values are kept, and refused if they contradict these.
+
+mod complete;
+mod file;
+mod given;
+mod joints;
+mod problem;
+mod read;
+mod sample;
+mod samples;
+pub(crate) mod solved;
+mod strict;
+#[cfg(test)]
+mod tests;
+mod ties;
+mod values;
+mod written;
+
+pub use file::File;
+pub use joints::{Joint, joints, rows};
+pub use problem::StateProblem;
+pub use sample::{ORDER, Sample};
+pub use solved::lines as constraint_lines;
+pub use strict::{JsonError, parse};
+pub use values::State;
+
+use crate::error::Error;
+use crate::source::Source;
+use hamel_codegen::algebra::graph::{Edge, Graph};
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::algebra::sizes::relative;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::model::Model;
+use hamel_codegen::model::layout::Block;
+use read::Reader;
+use serde_json::Value;
+use std::path::Path;
+
+/// Largest |φ(x)| that counts as rounding in a state that was written down.
+const OFF: f64 = 1e-6;
+
+impl State {
+    /// Default parameters, start and zero input.
+    pub fn start(model: &Model) -> Self {
+        State {
+            params: model.defaults.clone(),
+            x: model.start_x.clone(),
+            xi: [&model.start_xi[..], &model.start_z].concat(),
+            u: vec![0.0; model.m()],
+        }
+    }
+
+    /// The start of a description, changed by a file if one is given.
+    pub fn read(source: &Source, generated: &Generated, at: Option<&Path>) -> Result<Self, Error> {
+        match at {
+            Some(path) => File::read(path, source)?.state(source, generated),
+            None => Ok(State::start(&generated.active)),
+        }
+    }
+
+    /// The start, changed by a JSON value with coordinates; `text` is that of the description.
+    pub fn of(generated: &Generated, text: &str, json: &Value) -> Result<Self, Vec<StateProblem>> {
+        State::start(&generated.active).changed((generated, text), &[], json)
+    }
+
+    /// Like [`of`](Self::of) for another state; `names` are those of joints in the robot's file, with those in the
+    /// description.
+    pub fn changed(
+        self,
+        (generated, text): (&Generated, &str),
+        names: &[(String, String)],
+        json: &Value,
+    ) -> Result<Self, Vec<StateProblem>> {
+        let mut state = self.clone();
+        let mut reader = Reader::new(generated, text);
+        reader.state(json, generated, names, &mut state);
+        reader.finish(generated, &mut state, &self)?;
+        Ok(state)
+    }
+
+    /// The violations of the configuration manifold, from the residuals.
+    fn violations(&self, model: &Model, residuals: &[f64]) -> Vec<StateProblem> {
+        let mut errors: Vec<StateProblem> = Vec::new();
+        let differences = self.phi(model, evaluate);
+        for (((_, text), residual), difference) in model.phi.iter().zip(residuals).zip(differences)
+        {
+            // NaN is a violation, too.
+            if residual.is_nan() || residual.abs() > OFF {
+                errors.push(StateProblem::new(
+                    self.place(model, text),
+                    format!("violates {text}, the difference is {difference:.2e}"),
+                ));
+            }
+        }
+        let mut offset = 0;
+        for &block in &model.blocks {
+            let entries = &self.x[offset..offset + block.len()];
+            if block == Block::Rotation && errors.is_empty() && determinant(entries) < 0.0 {
+                let name = model
+                    .coordinates
+                    .iter()
+                    .rfind(|c| c.offset <= offset)
+                    .map_or("", |c| c.name.as_str());
+                errors.push(StateProblem::new(
+                    format!("coord.{name}"),
+                    "a reflection, its determinant is -1",
+                ));
+            }
+            offset += block.len();
+        }
+        errors
+    }
+
+    /// φ(x) relative to its terms.
+    fn residuals(&self, model: &Model) -> Vec<f64> {
+        let places = model.points.places();
+        self.phi(model, |graph, phi, numbers| {
+            relative(graph, phi, numbers, places.clone())
+        })
+    }
+
+    fn phi(&self, model: &Model, of: impl Fn(&Graph, &[Edge], &[f64]) -> Vec<f64>) -> Vec<f64> {
+        let (xi, u) = (vec![0.0; model.n()], vec![0.0; model.u.len()]);
+        let numbers = model.numbers(&self.params, &self.x, &xi, &u, &xi);
+        let rows: Vec<_> = model.phi.iter().map(|(edge, _)| *edge).collect();
+        of(&model.points.free, &rows, &numbers)
+    }
+
+    /// The coordinates that a constraint mentions, as paths.
+    fn place(&self, model: &Model, text: &str) -> String {
+        let words: Vec<&str> = text
+            .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .collect();
+        let names = model
+            .coordinates
+            .iter()
+            .filter(|c| words.contains(&c.name.as_str()));
+        let paths: Vec<String> = names.map(|c| format!("coord.{}", c.name)).collect();
+        if paths.is_empty() {
+            "coord".into()
+        } else {
+            paths.join(", ")
+        }
+    }
+}
+
+fn determinant(r: &[f64]) -> f64 {
+    let minor = |a: usize, b: usize| r[3 + a] * r[6 + b] - r[3 + b] * r[6 + a];
+    r[0] * minor(1, 2) - r[1] * minor(0, 2) + r[2] * minor(0, 1)
+}
