@@ -144,7 +144,7 @@ impl Graph {
         })
     }
 
-    /// Returns what a lane needs to know about a function's argument in addition to its value. For
+    /// Returns what a `FieldPoint` needs to know about a function's argument in addition to its value. For
     /// functions with a group law, this is the linear form of the argument. For a square root, it is the
     /// rational factor of the argument, or nothing if the argument is a number that is not rational and
     /// positive.

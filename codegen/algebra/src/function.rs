@@ -1,7 +1,7 @@
 //! The elementary functions, with everything that is known of each in one table.
 //!
 //! To add a function, add a row to the table, with its values in numbers of every kind, and add its values
-//! modulo p to `Lane::function`. The latter must obey the laws by which expressions with the function are
+//! modulo p to `FieldPoint::function`. The latter must obey the laws by which expressions with the function are
 //! found equal.
 
 use Cost::{Choice, Other, Product, Quotient, Root, Turn};
@@ -40,7 +40,7 @@ pub enum Law {
     Hyperbola,
     /// √(a b) = √a √b for positive a, b.
     Radical,
-    /// f(a) is a multiple of f(1) that depends on the side of 0 on which a is (`Lane::positive`), as for
+    /// f(a) is a multiple of f(1) that depends on the side of 0 on which a is (`FieldPoint::positive`), as for
     /// sign and abs.
     Side,
     /// No law: any value will do.

@@ -3,7 +3,7 @@
 //! Every node carries its value at a point of the constraint variety X in each of two finite fields. Nodes
 //! with equal values are merged, so "equal on X" is node identity; zero and small rationals are recognised
 //! as constants. Where square roots are involved, real samples have to agree as well; numbers are compared
-//! with certainty (`shadow`). An edge is a node with a sign, so negation costs nothing, and a − b and b − a
+//! with certainty (`real_enclosure`). An edge is a node with a sign, so negation costs nothing, and a − b and b − a
 //! are one node. Children precede their parents.
 
 mod calls;
@@ -16,13 +16,13 @@ pub(crate) use merge::canonical;
 pub(crate) use powers::Power;
 
 use super::external::External;
+use super::field_point::{FieldPoint, Roots};
 use super::fp::Fp;
 use super::function::{Law, Parity};
-use super::lane::{Lane, Roots};
 pub use super::node::{Component, Edge, Function, Node, NodeId, Symbol};
 use super::prime::is_unfaithful;
+use super::real_enclosure::Shadow;
 use super::reals::Reals;
-use super::shadow::Shadow;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -39,7 +39,7 @@ pub struct Graph {
     by_value: FxHashMap<Fp, Edge>,
     constants: Vec<BigRational>,
     symbols: Vec<Symbol>,
-    lane: Lane,
+    point: FieldPoint,
     shadow: Shadow,
     /// Rational factors of the arguments of square roots, by the nodes of the arguments.
     contents: FxHashMap<NodeId, BigRational>,
@@ -65,7 +65,7 @@ impl Graph {
             by_value: FxHashMap::default(),
             constants: Vec::new(),
             symbols: Vec::new(),
-            lane: Lane::new(),
+            point: FieldPoint::new(),
             shadow: Shadow::default(),
             contents: FxHashMap::default(),
             copied: Fp::ZERO,
@@ -83,14 +83,14 @@ impl Graph {
     /// Creates an empty graph at the same points, to be filled with some of the symbols.
     pub fn fresh(&self) -> Self {
         let mut graph = Graph::new(self.free_class);
-        graph.lane = self.lane.fresh();
+        graph.point = self.point.fresh();
         graph.externals = self.externals.clone();
         graph
     }
 
     /// Sets which square roots have values, for use when no point has all of them.
     pub fn set_roots(&mut self, roots: Roots) {
-        self.lane.roots = roots;
+        self.point.roots = roots;
     }
 
     /// Gives the symbols real values, in order of creation. Without real values, square roots are
@@ -198,7 +198,7 @@ impl Graph {
 
     /// Whether a square root of a non-square was requested; then other points have to be chosen.
     pub fn is_stuck(&self) -> bool {
-        self.lane.is_stuck()
+        self.point.is_stuck()
     }
 
     /// Whether a number occurred that one of the primes divides, so that comparisons with it prove nothing.
@@ -218,7 +218,7 @@ impl Graph {
 
     /// Creates a symbol with its value at the point.
     pub fn symbol(&mut self, name: &str, class: u8, value: Fp) -> Edge {
-        self.lane.push_symbol(value);
+        self.point.push_symbol(value);
         let index = self.symbols.len() as u32;
         let edge = self.push(Node::Symbol(index), value, class);
         self.symbols.push(Symbol {
@@ -407,7 +407,7 @@ impl Graph {
             .iter()
             .map(|(atom, c)| (self.value(Edge::of(*atom)), c.clone()))
             .collect();
-        let value = self.lane.function(function, self.value(argument), &form);
+        let value = self.point.function(function, self.value(argument), &form);
         let value = match row.law {
             Law::Radical => self.apart_from_root(argument, value),
             _ => value,
@@ -427,7 +427,7 @@ impl Graph {
     /// atan2(y, x).
     pub fn atan2(&mut self, y: Edge, x: Edge) -> Edge {
         let value = self
-            .lane
+            .point
             .opaque(Function::Atan2, self.value(y), self.value(x));
         let class = self.class(y.node()) | self.class(x.node());
         let node = Node::Atan2(y, x);

@@ -6,8 +6,8 @@
 //! `f₁₂ = D²f [x₁, x₂] + Df(x₁₂)`.
 
 use super::dual::{Across, Duals};
+use super::field_point::FieldPoint;
 use super::fp::Fp;
-use super::lane::Lane;
 use super::tangent::{Dual, duals};
 use super::tape::Tape;
 
@@ -54,7 +54,7 @@ impl Jet {
 
 impl Tape {
     /// Computes the jets of the expressions at a point; `None` if something has no value there.
-    pub fn jets(&self, lane: &Lane, seeds: &Seeds) -> Option<Vec<Jet>> {
+    pub fn jets(&self, point: &FieldPoint, seeds: &Seeds) -> Option<Vec<Jet>> {
         // Numbers are f and f₁ along s, with the slopes of both along all t.
         let of_symbol = |index: usize| -> Vec<Dual> {
             let at = |row: Option<&Vec<Fp>>| row?.get(index).copied();
@@ -65,7 +65,7 @@ impl Tape {
             (0..seeds.across.len()).map(slope).collect()
         };
         let mut all = Duals {
-            numbers: duals(lane, &seeds.along),
+            numbers: duals(point, &seeds.along),
             slopes: Across(of_symbol),
         };
         let values = self.run(&mut all)?;

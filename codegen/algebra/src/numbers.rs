@@ -5,10 +5,10 @@
 //! | numbers | implementation |
 //! |---|---|
 //! | `f64` | `numeric::Floats` |
-//! | F_p(i) × F_q(i) | `lane::Lane` |
+//! | F_p(i) × F_q(i) | `field_point::FieldPoint` |
 //! | with slopes along one direction or many, or with a record for reverse mode | `dual::Duals` over others |
 //! | double-double with or without `f64`, with bounds of rounding errors | `rounding` |
-//! | real samples, certified bounds | `shadow` |
+//! | real samples, certified bounds | `real_enclosure` |
 
 use super::external::Component;
 use super::fp::Fp;

@@ -1,11 +1,11 @@
 //! Expressions as a list of steps, for evaluation modulo p at many points.
 //!
 //! The steps of an expression are found once. A point then costs one pass over them, whether values or
-//! derivatives (`jets`, `bend`) are wanted.
+//! derivatives (`jets`, `second_derivative`) are wanted.
 
+use super::field_point::FieldPoint;
 use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
-use super::lane::Lane;
 use super::numbers::{Form, Modular};
 use num_rational::BigRational;
 
@@ -84,9 +84,9 @@ impl Tape {
     }
 
     /// Evaluates the expressions at a point; `None` if something has no value there.
-    pub fn values(&self, lane: &Lane) -> Option<Vec<Fp>> {
-        let mut lane = lane.clone();
-        let values = self.run(&mut lane)?;
-        (!lane.is_stuck()).then_some(values)
+    pub fn values(&self, point: &FieldPoint) -> Option<Vec<Fp>> {
+        let mut point = point.clone();
+        let values = self.run(&mut point)?;
+        (!point.is_stuck()).then_some(values)
     }
 }

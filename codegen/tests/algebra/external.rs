@@ -3,9 +3,9 @@
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::dual::{Along, Duals};
 use hamel_algebra::external::{Component, External};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::walk::evaluate;
 
 fn graph() -> (Graph, [Edge; 2], [Fp; 2]) {
@@ -60,20 +60,22 @@ fn slopes_go_by_the_chain_rule() {
     let mut along = Derivation::new([(x.node(), one), (y.node(), three)]);
     let slope = along.of(&mut graph, whole);
     let bend = along.of(&mut graph, slope);
-    let mut lane = at(values);
+    let mut point = at(values);
     let seeds = [Fp::ONE, Fp::new(3)];
     let mut duals = Duals {
-        numbers: lane.clone(),
+        numbers: point.clone(),
         slopes: Along(|index: usize| seeds[index]),
     };
-    let expected = evaluate(&graph, &[slope, bend], &mut lane).expect("values");
+    let expected = evaluate(&graph, &[slope, bend], &mut point).expect("values");
     let found = evaluate(&graph, &[whole, slope], &mut duals).expect("slopes");
     assert_eq!([found[0].1, found[1].1], [expected[0], expected[1]]);
     assert_eq!(expected[0], graph.value(slope));
 }
 
-fn at(values: [Fp; 2]) -> Lane {
-    let mut lane = Lane::new();
-    values.into_iter().for_each(|value| lane.push_symbol(value));
-    lane
+fn at(values: [Fp; 2]) -> FieldPoint {
+    let mut point = FieldPoint::new();
+    values
+        .into_iter()
+        .for_each(|value| point.push_symbol(value));
+    point
 }

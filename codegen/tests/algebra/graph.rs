@@ -3,11 +3,11 @@
 use crate::common::functions;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::double::Double;
+use hamel_algebra::field_point::circle_point;
 use hamel_algebra::fp::Random;
 use hamel_algebra::function::Parity;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::interval::Interval;
-use hamel_algebra::lane::circle_point;
 use hamel_algebra::numeric::evaluate;
 use hamel_algebra::poly::monomial::Var;
 use hamel_algebra::reals::{Real, contradict};

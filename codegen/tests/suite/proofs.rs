@@ -52,9 +52,9 @@ fn the_numbers_are_those_of_the_symbolic_derivations() {
     let graph = &symbols.geometry.model.graph;
     let numbers = Numbers::new(&model).expect("Y");
     for seed in 1..4 {
-        let lane = model.points.lane(seed).expect("a point");
-        let values = numbers.at(&lane).expect("values").expect("Y A = I");
-        let at = |edges: &[Edge]| evaluate_at(graph, edges, &mut lane.clone()).expect("values");
+        let point = model.points.lane(seed).expect("a point");
+        let values = numbers.at(&point).expect("values").expect("Y A = I");
+        let at = |edges: &[Edge]| evaluate_at(graph, edges, &mut point.clone()).expect("values");
         assert_eq!(values.left[0], values.left[1], "(30a) = (30b)");
         assert_eq!(values.left[0], values.left[2], "(30a) = (30c)");
         assert_eq!(values.left[0], at(&symbols.hamel));

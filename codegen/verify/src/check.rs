@@ -405,8 +405,8 @@ fn at_points(model: &Model, graph: &Graph, sides: &Sides) -> Option<String> {
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
     let compared = at_fresh_points(
         |number| model.points.lane(0xc4ec + number),
-        |lane, _| {
-            let values = evaluate_at(graph, &roots, &mut lane.clone())?;
+        |point, _| {
+            let values = evaluate_at(graph, &roots, &mut point.clone())?;
             let (left, right) = values.split_at(sides.left.len());
             let differs = (0..left.len()).find(|&entry| left[entry] != right[entry]);
             Some(differs.map_or(Ok(()), Err))

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use hamel_algebra::lane::Lane;
+use hamel_algebra::field_point::FieldPoint;
 
 /// Number of points at which everything is compared.
 pub const POINTS: u64 = 4;
@@ -24,21 +24,21 @@ pub enum Unequal<E> {
 
 /// Compares at fresh points until both sides differ, or have had values at [`POINTS`] points.
 ///
-/// `lane` creates the point of a number, and `at` compares there; either returns `None` if there are no values.
+/// `point` creates the point of a number, and `at` compares there; either returns `None` if there are no values.
 pub fn at_fresh_points<E>(
-    lane: impl Fn(u64) -> Option<Lane>,
-    mut at: impl FnMut(&Lane, u64) -> Option<Result<(), E>>,
+    point: impl Fn(u64) -> Option<FieldPoint>,
+    mut at: impl FnMut(&FieldPoint, u64) -> Option<Result<(), E>>,
 ) -> Result<(), Unequal<E>> {
     let (mut compared, mut missing) = (0, 0);
     for number in 1..=TRIES {
-        let Some(lane) = lane(number) else {
+        let Some(point) = point(number) else {
             missing += 1;
             match missing {
                 MISSING => break,
                 _ => continue,
             }
         };
-        match at(&lane, number) {
+        match at(&point, number) {
             None => continue,
             Some(Ok(())) => compared += 1,
             Some(Err(what)) => return Err(Unequal::Differs(what)),

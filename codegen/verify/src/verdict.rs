@@ -1,8 +1,8 @@
 //! Results of proofs.
 
 use super::confidence::Confidence;
+use hamel_algebra::field_point::Roots;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Roots;
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 

@@ -29,7 +29,7 @@ impl Graph {
 
     /// Appends a number to a list; 0 is the empty list.
     pub(crate) fn listed(&mut self, rest: Edge, last: Edge) -> Edge {
-        let value = self.lane.listed(self.value(rest), self.value(last));
+        let value = self.point.listed(self.value(rest), self.value(last));
         let class = self.class(rest.node()) | self.class(last.node()) | LIST;
         let node = Node::Listed(rest, last);
         match self.known(node, value, class) {
@@ -41,7 +41,7 @@ impl Graph {
     /// Calls a component with a list of arguments. If all of them are numbers, the result is constant at
     /// run time, but it is not a number.
     pub(crate) fn external_of(&mut self, component: Component, list: Edge) -> Edge {
-        let value = self.lane.external(component, self.value(list));
+        let value = self.point.external(component, self.value(list));
         let given = self.list(list).into_iter();
         let class = given.fold(self.free_class, |class, a| class | self.class(a.node()));
         let node = Node::External(component, list);

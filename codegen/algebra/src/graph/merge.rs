@@ -2,7 +2,7 @@
 
 use super::{Edge, Function, Graph, Node, NodeId};
 use crate::fp::Fp;
-use crate::shadow::Shadow;
+use crate::real_enclosure::Shadow;
 
 impl Graph {
     /// Returns an existing node with this value, or the small rational that has it. An expression that is

@@ -19,7 +19,7 @@ impl Graph {
         };
         let (a, b) = (a.signed(negative), b.signed(negative));
         let other = self.value(b);
-        let value = other + self.lane.positive(self.value(c)) * (self.value(a) - other);
+        let value = other + self.point.positive(self.value(c)) * (self.value(a) - other);
         let node = Node::Select(c, a, b);
         let class = node
             .children()

@@ -12,7 +12,7 @@ use crate::fp::Fp;
 use crate::graph::{Graph, canonical};
 use crate::node::{Edge, Node, NodeId};
 use crate::prime::Residue;
-use crate::shadow::Shadow;
+use crate::real_enclosure::Shadow;
 use crate::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
 use sieve::Sieve;

@@ -12,7 +12,7 @@ use crate::algebra::dense::{
 };
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::evaluate;
-use crate::algebra::sizes::{beside, sizes};
+use crate::algebra::residual_scale::{relative_residual, residual_scales};
 use crate::algebra::slopes::slopes;
 
 /// Smallest pivot of M relative to its diagonal entry; a smaller one is replaced by this fraction of the largest
@@ -109,7 +109,7 @@ impl Equations for Loops<'_, '_> {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let mut residuals = self.closure.residuals(x);
         let sizes = residuals.iter_mut().zip(&self.sizes);
-        sizes.for_each(|(residual, &size)| *residual = beside(*residual, size));
+        sizes.for_each(|(residual, &size)| *residual = relative_residual(*residual, size));
         residuals.extend((self.given.iter()).map(|&alpha| kept(x[alpha], self.guess[alpha])));
         residuals
     }
@@ -125,7 +125,12 @@ impl Equations for Loops<'_, '_> {
             (self.given.iter()).map(|&alpha| (&a[alpha * n..][..n], length_of(self.guess[alpha])));
         let rows = b.chunks(n.max(1)).zip(self.sizes.iter().copied());
         rows.chain(given)
-            .map(|(row, size)| self.free.iter().map(|&i| beside(row[i], size)).collect())
+            .map(|(row, size)| {
+                self.free
+                    .iter()
+                    .map(|&i| relative_residual(row[i], size))
+                    .collect()
+            })
             .collect()
     }
 
@@ -200,7 +205,7 @@ impl Constraints<'_> {
     pub fn measured(self) -> Self {
         let places = self.first..self.first + self.guess.len();
         Constraints {
-            sizes: sizes(self.graph, &self.phi, &self.at(self.guess), places),
+            sizes: residual_scales(self.graph, &self.phi, &self.at(self.guess), places),
             ..self
         }
     }
@@ -220,7 +225,7 @@ impl Equations for Constraints<'_> {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let mut residuals = evaluate(self.graph, &self.phi, &self.at(x));
         let sizes = residuals.iter_mut().zip(&self.sizes);
-        sizes.for_each(|(residual, &size)| *residual = beside(*residual, size));
+        sizes.for_each(|(residual, &size)| *residual = relative_residual(*residual, size));
         residuals.extend((self.given.iter()).map(|&alpha| kept(x[alpha], self.guess[alpha])));
         residuals
     }
@@ -237,7 +242,7 @@ impl Equations for Constraints<'_> {
         let mut rows: Vec<Vec<f64>> = rows.collect();
         for (row, size) in rows.iter_mut().zip(&self.sizes) {
             row.iter_mut()
-                .for_each(|slope| *slope = beside(*slope, *size));
+                .for_each(|slope| *slope = relative_residual(*slope, *size));
         }
         rows.extend(self.given.iter().map(|&alpha| {
             let mut row = vec![0.0; x.len()];

@@ -2,9 +2,9 @@
 
 use super::class;
 use super::layout::{Block, sample};
+use crate::algebra::field_point::{FieldPoint, Roots};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::lane::{Lane, Roots};
 use crate::algebra::newton::Newton;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
@@ -323,7 +323,12 @@ impl Points {
 
     /// Returns a lane at a fresh point where some symbols have the values of expressions of `graph`; `None` if no
     /// point was found.
-    pub fn lane_where(&self, seed: u64, graph: &Graph, set: &[(usize, Edge)]) -> Option<Lane> {
+    pub fn lane_where(
+        &self,
+        seed: u64,
+        graph: &Graph,
+        set: &[(usize, Edge)],
+    ) -> Option<FieldPoint> {
         self.lane_moved(seed, graph, set, &|_| Some(Vec::new()))
     }
 
@@ -334,8 +339,8 @@ impl Points {
         seed: u64,
         graph: &Graph,
         set: &[(usize, Edge)],
-        moved: &dyn Fn(Lane) -> Option<Moved>,
-    ) -> Option<Lane> {
+        moved: &dyn Fn(FieldPoint) -> Option<Moved>,
+    ) -> Option<FieldPoint> {
         let move_in = |values: &mut Vec<Fp>, moved: Moved| {
             for (symbol, value) in moved {
                 *values.get_mut(symbol)? = value;
@@ -356,13 +361,13 @@ impl Points {
     }
 
     /// Returns a lane at a fresh point.
-    pub fn lane(&self, seed: u64) -> Option<Lane> {
+    pub fn lane(&self, seed: u64) -> Option<FieldPoint> {
         let values = self.choose(&mut Random::new(seed ^ 0x0b5e))?;
         Some(self.lane_of(&values))
     }
 
-    fn lane_of(&self, values: &[Fp]) -> Lane {
-        let mut lane = Lane::new();
+    fn lane_of(&self, values: &[Fp]) -> FieldPoint {
+        let mut lane = FieldPoint::new();
         // Values derived from others may lie outside F_p; then sums with them are not squares of F_p.
         let outside = |value: &Fp| !(value.0.is_prime() && value.1.is_prime());
         lane.roots = match self.roots {
@@ -383,7 +388,7 @@ type Change<'a> = dyn Fn(&mut Vec<Fp>) -> Option<()> + 'a;
 pub type Moved = Vec<(usize, Fp)>;
 
 /// Evaluates expressions to the values of the symbols that they are assigned to.
-pub fn imposed(mut lane: Lane, graph: &Graph, set: &[(usize, Edge)]) -> Option<Moved> {
+pub fn imposed(mut lane: FieldPoint, graph: &Graph, set: &[(usize, Edge)]) -> Option<Moved> {
     let edges: Vec<Edge> = set.iter().map(|(_, edge)| *edge).collect();
     let values = evaluate_at(graph, &edges, &mut lane)?;
     let symbols = set.iter().map(|(symbol, _)| *symbol);

@@ -222,11 +222,11 @@ fn compare_at(
         |number| {
             // Roots of velocities that constraints determine need values, too.
             let graph = &full.reference.model.graph;
-            let solved = |lane| imposed(lane, graph, &full.solved);
+            let solved = |point| imposed(point, graph, &full.solved);
             points.lane_moved(0xb0d5 + number, graph, &given, &solved)
         },
-        |lane, _| {
-            let seen = Seen::new(full, reduction, (program, &charts), lane)?;
+        |point, _| {
+            let seen = Seen::new(full, reduction, (program, &charts), point)?;
             for claim in Claim::ALL {
                 if !seen.holds(claim)? {
                     failed.push(claim);
@@ -246,11 +246,11 @@ fn compare_at(
     let still = at_fresh_points(
         |number| {
             let model = &full.reference.model;
-            let moved = |lane| rows_at_rest(model, &rows, lane);
+            let moved = |point| rows_at_rest(model, &rows, point);
             points.lane_moved(0x50_0e4 + number, &model.graph, &given, &moved)
         },
-        |lane, _| {
-            let balanced = At::new(full, reduction, program, lane)?.power()?;
+        |point, _| {
+            let balanced = At::new(full, reduction, program, point)?.power()?;
             Some(if balanced { Ok(()) } else { Err(()) })
         },
     );

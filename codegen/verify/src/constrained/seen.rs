@@ -6,9 +6,9 @@ use super::point::{At, Values};
 use crate::charts::Charts;
 use crate::kernel::{dot, virtual_velocity};
 use crate::{centroidal, derivatives, frames, outputs, states};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_dynamics::accel::saddle::{self, Solved};
 use hamel_dynamics::reduction::Reduction;
@@ -39,17 +39,17 @@ pub(super) struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
-    /// Evaluates the numbers at the point of a lane; `None` if something has no value there.
+    /// Evaluates the numbers at a point; `None` if something has no value there.
     pub(super) fn new(
         full: &'a Full,
         reduction: &'a Reduction,
         (program, charts): (&'a Program, &'a Charts),
-        lane: &Lane,
+        point: &FieldPoint,
     ) -> Option<Self> {
         let (n, na) = (full.reference.model.n(), reduction.active.len());
-        let at = At::new(full, reduction, program, lane)?;
+        let at = At::new(full, reduction, program, point)?;
         let values = at.values()?;
-        let rows = evaluate_at(&full.reference.model.graph, &full.rows, &mut lane.clone())?;
+        let rows = evaluate_at(&full.reference.model.graph, &full.rows, &mut point.clone())?;
         let reduced = &full.reduced;
         let inner = |edges: &[Edge]| evaluate_at(&reduced.graph, edges, &mut at.inner.clone());
         let constraints = reduced.constraints.iter();

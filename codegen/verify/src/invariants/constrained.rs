@@ -5,9 +5,9 @@ use crate::confidence::Confidence;
 use crate::kernel::at_rest;
 use crate::points::{POINTS, Unequal, at_fresh_points};
 use crate::verdict::{Identity, Verdict};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::calculus::Calculus;
@@ -104,12 +104,12 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
     let entries = value.entries();
     let compared = at_fresh_points(
         |number| {
-            let moved = |lane| at_rest(&own, lane);
+            let moved = |point| at_rest(&own, point);
             own.points
                 .lane_moved(0x1a7f + number, &own.graph, &claim.set, &moved)
         },
-        |lane, _| {
-            let slopes = slopes(&own, program, &entries, lane)?;
+        |point, _| {
+            let slopes = slopes(&own, program, &entries, point)?;
             let changes = slopes.iter().position(|slope| !slope.is_zero());
             Some(changes.map_or(Ok(()), Err))
         },
@@ -118,11 +118,16 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
 }
 
 /// Returns d/dt of the entries at a point with B ξ = 0.
-fn slopes(model: &Model, program: &Program, entries: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
+fn slopes(
+    model: &Model,
+    program: &Program,
+    entries: &[Edge],
+    point: &FieldPoint,
+) -> Option<Vec<Fp>> {
     let graph = &model.graph;
-    let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut lane.clone())?;
-    let rate = evaluate_at(graph, &model.rate, &mut lane.clone())?;
+    let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut point.clone())?;
+    let rate = evaluate_at(graph, &model.rate, &mut point.clone())?;
     let direction = super::direction(model, &rate, &xi_dot);
-    let duals = tangent_at(graph, entries, &mut lane.clone(), &direction)?;
+    let duals = tangent_at(graph, entries, &mut point.clone(), &direction)?;
     Some(duals.into_iter().map(|dual| dual.1).collect())
 }

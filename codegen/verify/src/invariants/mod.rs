@@ -19,9 +19,9 @@ use super::confidence::Confidence;
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph, Node};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::linear::matrix;
 use hamel_algebra::numeric::{evaluate_at, solve};
 use hamel_algebra::tangent::tangent_at;
@@ -197,8 +197,8 @@ impl Equations {
                 let points = &model.points;
                 points.lane_where(0x1a7e + number, &model.graph, &claim.set)
             },
-            |lane, _| {
-                let slopes = self.slopes(entries, &force, lane)?;
+            |point, _| {
+                let slopes = self.slopes(entries, &force, point)?;
                 let changes = slopes.iter().position(|slope| !slope.is_zero());
                 Some(changes.map_or(Ok(()), Err))
             },
@@ -207,19 +207,19 @@ impl Equations {
     }
 
     /// Returns d/dt of the entries at a point.
-    fn slopes(&self, entries: &[Edge], force: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
+    fn slopes(&self, entries: &[Edge], force: &[Edge], point: &FieldPoint) -> Option<Vec<Fp>> {
         let model = &self.reference.model;
         let graph = &model.graph;
         let n = model.n();
         let mut roots = self.reference.mass.concat();
         roots.extend(force.iter().chain(&model.rate));
-        let values = evaluate_at(graph, &roots, &mut lane.clone())?;
+        let values = evaluate_at(graph, &roots, &mut point.clone())?;
         let (mass, rest) = values.split_at(n * n);
         let (force, rate) = rest.split_at(n);
         let rows = matrix(mass, n);
         let xi_dot = solve(rows, force.to_vec())?;
         let direction = direction(model, rate, &xi_dot);
-        let duals = tangent_at(graph, entries, &mut lane.clone(), &direction)?;
+        let duals = tangent_at(graph, entries, &mut point.clone(), &direction)?;
         Some(duals.into_iter().map(|dual| dual.1).collect())
     }
 

@@ -1,15 +1,16 @@
 //! Tests of fresh points: agreement requires all of them.
 
 use super::{MISSING, POINTS, Unequal, at_fresh_points};
-use hamel_algebra::lane::Lane;
+use hamel_algebra::field_point::FieldPoint;
 
 #[test]
 fn too_few_points_are_no_agreement() {
-    let lane = |_| Some(Lane::new());
-    let some = |most: u64| move |_: &Lane, number| (number <= most).then_some(Ok::<(), ()>(()));
-    assert_eq!(at_fresh_points(lane, some(POINTS)), Ok(()));
+    let point = |_| Some(FieldPoint::new());
+    let some =
+        |most: u64| move |_: &FieldPoint, number| (number <= most).then_some(Ok::<(), ()>(()));
+    assert_eq!(at_fresh_points(point, some(POINTS)), Ok(()));
     assert_eq!(
-        at_fresh_points(lane, some(POINTS - 1)),
+        at_fresh_points(point, some(POINTS - 1)),
         Err(Unequal::Nowhere)
     );
     let looked = std::cell::Cell::new(0);
@@ -22,6 +23,6 @@ fn too_few_points_are_no_agreement() {
         Err(Unequal::Nowhere)
     );
     assert_eq!(looked.get(), MISSING);
-    let last = |_: &Lane, number| Some(if number < POINTS { Ok(()) } else { Err(number) });
-    assert_eq!(at_fresh_points(lane, last), Err(Unequal::Differs(POINTS)));
+    let last = |_: &FieldPoint, number| Some(if number < POINTS { Ok(()) } else { Err(number) });
+    assert_eq!(at_fresh_points(point, last), Err(Unequal::Differs(POINTS)));
 }

@@ -34,7 +34,12 @@ impl Graph {
     /// Finds an expression at whose zeros the expressions may jump: the first c for which they were not
     /// found to be equal on both sides. Whatever is written in `still` classes only never changes, and
     /// symbols that are not `free` cannot be moved alone.
-    pub fn jump(&self, edges: &[Edge], still: u8, free: &dyn Fn(NodeId) -> bool) -> Option<Edge> {
+    pub fn find_discontinuity(
+        &self,
+        edges: &[Edge],
+        still: u8,
+        free: &dyn Fn(NodeId) -> bool,
+    ) -> Option<Edge> {
         let chosen = |&id: &NodeId| match self.node(id) {
             // |c| is continuous.
             Node::Apply(Function::Abs, _) => None,

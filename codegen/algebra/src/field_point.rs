@@ -1,4 +1,4 @@
-//! A lane: one point of the variety in each of the two fields, with the values of all symbols, and of sin,
+//! One point of the variety in each of the two fields, with the values of all symbols, and of sin,
 //! cos, exp, √.
 //!
 //! The value of a function depends only on the value of its argument, in the same way at every point: two
@@ -54,7 +54,7 @@ pub enum Roots {
 /// arguments, so that two graphs agree at the same point. Values in one field do not depend on those in the
 /// other.
 #[derive(Clone, Debug, Default)]
-pub struct Lane {
+pub struct FieldPoint {
     symbols: Vec<Fp>,
     /// Whether a square root of a non-square was requested, for each field; the point should be chosen anew
     /// there.
@@ -65,17 +65,17 @@ pub struct Lane {
     written: FxHashMap<Fp, LinearForm>,
 }
 
-impl Lane {
+impl FieldPoint {
     /// Creates a point that has no symbols yet.
     pub fn new() -> Self {
-        Lane::default()
+        FieldPoint::default()
     }
 
     /// Creates a point with the same functions, but without symbols.
     pub fn fresh(&self) -> Self {
-        Lane {
+        FieldPoint {
             roots: self.roots,
-            ..Lane::new()
+            ..FieldPoint::new()
         }
     }
 
@@ -183,7 +183,7 @@ impl Lane {
     ) -> Option<Residue<K>> {
         let anything = || {
             (self.roots == Roots::Anything)
-                .then(|| Lane::draw(Function::Sqrt as u64, argument, Residue::ZERO).residue())
+                .then(|| FieldPoint::draw(Function::Sqrt as u64, argument, Residue::ZERO).residue())
         };
         let Some((_, factor)) = form.first() else {
             return argument.sqrt().or_else(anything);
@@ -199,8 +199,8 @@ impl Lane {
     pub fn opaque(&self, function: Function, a: Fp, b: Fp) -> Fp {
         let tag = function as u64;
         Fp(
-            Lane::draw(tag, a.0, b.0).residue(),
-            Lane::draw(tag, a.1, b.1).residue(),
+            FieldPoint::draw(tag, a.0, b.0).residue(),
+            FieldPoint::draw(tag, a.1, b.1).residue(),
         )
     }
 
@@ -226,8 +226,8 @@ impl Lane {
             return if n > 0 { Fp::ONE } else { Fp::ZERO };
         }
         Fp(
-            Lane::draw(POSITIVE, a.0, Residue::ONE).residue(),
-            Lane::draw(POSITIVE, a.1, Residue::ONE).residue(),
+            FieldPoint::draw(POSITIVE, a.0, Residue::ONE).residue(),
+            FieldPoint::draw(POSITIVE, a.1, Residue::ONE).residue(),
         )
     }
 
@@ -259,7 +259,7 @@ impl Lane {
                     1 if base == pi => (twelfth(), count),
                     1 if base == -pi => (twelfth(), -count),
                     _ => {
-                        let mut random = Lane::draw(64 + parts, base, Residue::ONE);
+                        let mut random = FieldPoint::draw(64 + parts, base, Residue::ONE);
                         (circle_residue(&mut random), count)
                     }
                 };
@@ -275,7 +275,7 @@ impl Lane {
                 if base.is_zero() {
                     return total;
                 }
-                let magnitude = Lane::draw(96 + parts, base, Residue::ONE)
+                let magnitude = FieldPoint::draw(96 + parts, base, Residue::ONE)
                     .residue::<K>()
                     .pow(count.unsigned_abs());
                 total
@@ -288,7 +288,7 @@ impl Lane {
     }
 }
 
-impl Numbers for Lane {
+impl Numbers for FieldPoint {
     type Number = Fp;
 
     /// Missing square roots are noted (`is_stuck`).
@@ -325,7 +325,7 @@ impl Numbers for Lane {
     }
 }
 
-impl Modular for Lane {
+impl Modular for FieldPoint {
     fn residue(&mut self, value: Fp) -> Option<Fp> {
         Some(value)
     }

@@ -13,7 +13,7 @@ fn made() -> (Graph, [Edge; 4]) {
 
 fn jumps(g: &Graph, edge: Edge) -> bool {
     let every = |_: NodeId| true;
-    g.jump(&[edge], 1, &every).is_some()
+    g.find_discontinuity(&[edge], 1, &every).is_some()
 }
 
 #[test]
@@ -46,8 +46,8 @@ fn what_jumps_is_found() {
     assert_eq!(found, [false, false, false, false, false, true]);
     assert!(jumps(&g, sign) && jumps(&g, step) && jumps(&g, curved) && !jumps(&g, product));
     // A symbol that cannot be moved alone is what c = 0 says all the same.
-    assert!(g.jump(&[inner], 1, &|_| false).is_none());
-    assert!(g.jump(&[step], 1, &|_| false).is_some());
+    assert!(g.find_discontinuity(&[inner], 1, &|_| false).is_none());
+    assert!(g.find_discontinuity(&[step], 1, &|_| false).is_some());
 }
 
 /// The greater of two is continuous whatever the two are; so is what is made of it.
