@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::json::Json;
 use crate::state::State;
 use hamel_codegen::algebra::graph::{Edge, Graph};
-use hamel_codegen::algebra::slopes::{Sloped, slopes};
+use hamel_codegen::algebra::slopes::{ValueWithSlopes, slopes};
 use hamel_codegen::derive::calculus::Calculus;
 use hamel_codegen::derive::{inertia, kinematics};
 use hamel_codegen::generate::Generated;
@@ -100,7 +100,7 @@ fn mass(
     generated: &Generated,
     state: &State,
     directions: &[Vec<f64>],
-) -> Result<Vec<Sloped>, Failure> {
+) -> Result<Vec<ValueWithSlopes>, Failure> {
     let full = &generated.model;
     let of =
         |graph: &Graph, roots: &[Edge]| slopes(graph, roots, &numbers(full, state), directions);
@@ -116,7 +116,7 @@ fn mass(
 }
 
 /// γᵢⱼᵏ = (∂ᵢAⱼ^β − ∂ⱼAᵢ^β) Y_β^k, KR18 (12).
-fn gamma(model: &Model, numbers: &[f64], a: &[Sloped]) -> Result<Cube, Failure> {
+fn gamma(model: &Model, numbers: &[f64], a: &[ValueWithSlopes]) -> Result<Cube, Failure> {
     let (n, nu) = (model.n(), model.nu());
     let mut model = model.clone();
     let rows = kinematics::left_inverse(&mut model).ok_or_else(|| {
@@ -149,7 +149,7 @@ fn gamma(model: &Model, numbers: &[f64], a: &[Sloped]) -> Result<Cube, Failure> 
 }
 
 /// Γᵢⱼₖ = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si), KR18 (23).
-fn connection(n: usize, mass: &[Sloped], gamma: &Cube) -> Cube {
+fn connection(n: usize, mass: &[ValueWithSlopes], gamma: &Cube) -> Cube {
     let change = |k: usize, i: usize, j: usize| mass[i * n + j].slope(k);
     let lowered: Cube = gamma
         .iter()
@@ -173,7 +173,7 @@ fn connection(n: usize, mass: &[Sloped], gamma: &Cube) -> Cube {
 }
 
 /// γˢ M_sk for all k.
-fn lower(n: usize, gamma: &[f64], mass: &[Sloped]) -> Vec<f64> {
+fn lower(n: usize, gamma: &[f64], mass: &[ValueWithSlopes]) -> Vec<f64> {
     let entries = gamma.iter().enumerate().filter(|(_, entry)| **entry != 0.0);
     let entries: Vec<(usize, f64)> = entries.map(|(s, &entry)| (s, entry)).collect();
     let product = |k: usize| {

@@ -178,11 +178,11 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
             Node::Mul(..) => Some(1),
             Node::Div(..) => Some(2),
             Node::Apply(function, _) => Some(match function.row().cost {
-                Cost::Choice => 0,
+                Cost::Comparison => 0,
                 Cost::Product => 1,
                 Cost::Quotient => 2,
                 Cost::Root => 3,
-                Cost::Turn => 4,
+                Cost::SineOrCosine => 4,
                 Cost::Other => 5,
             }),
             Node::Atan2(..) | Node::External(..) => Some(5),

@@ -6,8 +6,8 @@
 use super::State;
 use super::given::{Given, places};
 use super::ties::{Ties, symbols};
-use hamel_codegen::algebra::closest::closest;
 use hamel_codegen::algebra::graph::Edge;
+use hamel_codegen::algebra::nearest_solution::find_nearest;
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::residual_scale::relative_residuals;
 use hamel_codegen::generate::Generated;
@@ -307,7 +307,7 @@ impl Completion<'_> {
             sizes: Vec::new(),
         }
         .measured();
-        let mut found = closest(&problem, x)?;
+        let mut found = find_nearest(&problem, x)?;
         for &alpha in &problem.given {
             found[alpha] = x[alpha];
         }

@@ -5,7 +5,7 @@
 //! For symbols x(s, t) with ∂x/∂s = x₁, ∂x/∂t = x₂ and ∂²x/∂s∂t = x₁₂,
 //! `f₁₂ = D²f [x₁, x₂] + Df(x₁₂)`.
 
-use super::dual::{Across, Duals};
+use super::dual::{Duals, VectorForwardMode};
 use super::field_point::FieldPoint;
 use super::fp::Fp;
 use super::tangent::{Dual, duals};
@@ -47,7 +47,7 @@ impl Jet {
     }
 
     /// Whether the expression is constant along all directions.
-    pub fn is_still(&self) -> bool {
+    pub fn is_constant(&self) -> bool {
         self.across.is_empty() && self.along.is_zero()
     }
 }
@@ -66,7 +66,7 @@ impl Tape {
         };
         let mut all = Duals {
             numbers: duals(point, &seeds.along),
-            slopes: Across(of_symbol),
+            slopes: VectorForwardMode(of_symbol),
         };
         let values = self.run(&mut all)?;
         let jet = |((value, along), columns): (Dual, Vec<Dual>)| {
@@ -79,6 +79,6 @@ impl Tape {
             }
         };
         let jets = values.into_iter().map(jet);
-        (!all.numbers.numbers.is_stuck()).then(|| jets.collect())
+        (!all.numbers.numbers.has_missing_root()).then(|| jets.collect())
     }
 }

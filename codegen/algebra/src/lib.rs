@@ -3,7 +3,6 @@
 #![doc = include_str!("../README.md")]
 
 pub mod blocks;
-pub mod closest;
 mod continuity;
 pub mod degree;
 pub mod dense;
@@ -20,6 +19,7 @@ pub mod graph;
 pub mod interval;
 pub mod jets;
 pub mod linear;
+pub mod nearest_solution;
 pub mod newton;
 pub mod node;
 pub mod numbers;

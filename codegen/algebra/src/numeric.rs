@@ -57,7 +57,7 @@ pub fn evaluate(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<f64> {
 /// if a denominator vanishes or a square root has no value there.
 pub fn evaluate_at(graph: &Graph, roots: &[Edge], point: &mut FieldPoint) -> Option<Vec<Fp>> {
     let values = walk::evaluate(graph, roots, point)?;
-    (!point.is_stuck()).then_some(values)
+    (!point.has_missing_root()).then_some(values)
 }
 
 /// Solves a square linear system over F_p; `None` if it is singular.

@@ -19,7 +19,8 @@ impl Tape {
         let place = self.run(&mut all)?.first()?.1;
         let row = all
             .slopes
-            .backwards(&mut all.numbers, place, direction.len())?;
-        (!all.numbers.numbers.is_stuck()).then(|| row.into_iter().map(|(_, bent)| bent).collect())
+            .gradient(&mut all.numbers, place, direction.len())?;
+        (!all.numbers.numbers.has_missing_root())
+            .then(|| row.into_iter().map(|(_, bent)| bent).collect())
     }
 }

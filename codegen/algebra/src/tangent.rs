@@ -1,7 +1,7 @@
 //! Directional derivatives modulo p by dual numbers: value and slope of every node, without ever writing a
 //! derivative as an expression.
 
-use super::dual::{Along, Duals};
+use super::dual::{Duals, ForwardMode};
 use super::field_point::FieldPoint;
 use super::fp::Fp;
 use super::graph::{Edge, Graph};
@@ -14,10 +14,10 @@ pub type Dual = (Fp, Fp);
 pub(super) fn duals(
     point: &FieldPoint,
     direction: &[Fp],
-) -> Duals<FieldPoint, Along<impl Fn(usize) -> Fp>> {
+) -> Duals<FieldPoint, ForwardMode<impl Fn(usize) -> Fp>> {
     Duals {
         numbers: point.clone(),
-        slopes: Along(|index: usize| direction.get(index).copied().unwrap_or(Fp::ZERO)),
+        slopes: ForwardMode(|index: usize| direction.get(index).copied().unwrap_or(Fp::ZERO)),
     }
 }
 
@@ -31,5 +31,5 @@ pub fn tangent_at(
 ) -> Option<Vec<Dual>> {
     let mut duals = duals(point, direction);
     let values = evaluate(graph, roots, &mut duals)?;
-    (!duals.numbers.is_stuck()).then_some(values)
+    (!duals.numbers.has_missing_root()).then_some(values)
 }

@@ -48,19 +48,19 @@ impl Tape {
                     form = graph.form(function, a);
                     form.iter_mut()
                         .for_each(|(atom, _)| *atom = places[*atom as usize]);
-                    Node::Apply(function, a.moved(&places))
+                    Node::Apply(function, a.renumber(&places))
                 }
                 Node::External(component, list) => {
                     form = graph.signed_list(list);
                     form.iter_mut()
                         .for_each(|(atom, _)| *atom = places[*atom as usize]);
-                    Node::External(component, list.moved(&places))
+                    Node::External(component, list.renumber(&places))
                 }
-                node => node.over(|edge| edge.moved(&places)),
+                node => node.map_children(|edge| edge.renumber(&places)),
             };
             tape.steps.push(Step { node, form });
         }
-        tape.roots = roots.iter().map(|root| root.moved(&places)).collect();
+        tape.roots = roots.iter().map(|root| root.renumber(&places)).collect();
         Some(tape)
     }
 
@@ -87,6 +87,6 @@ impl Tape {
     pub fn values(&self, point: &FieldPoint) -> Option<Vec<Fp>> {
         let mut point = point.clone();
         let values = self.run(&mut point)?;
-        (!point.is_stuck()).then_some(values)
+        (!point.has_missing_root()).then_some(values)
     }
 }

@@ -53,7 +53,7 @@ impl Simplifier {
     pub fn free(points: &Points) -> Self {
         let numbered = points.blocks.iter().enumerate();
         Simplifier {
-            expander: Expander::default().of_terms(MAX_EXPANDED_TERMS),
+            expander: Expander::default().with_term_limit(MAX_EXPANDED_TERMS),
             forms: None,
             failures: 0,
             first: points.first as NodeId,

@@ -198,7 +198,7 @@ impl<'a> Writer<'a> {
             // Read only by the call that it belongs to.
             Node::Listed(..) => Term::number(BigRational::one()),
             Node::External(component, list) => {
-                let name = self.graph.called(component, "");
+                let name = self.graph.external_call_text(component, "");
                 let (head, part) = name.split_once("()").unwrap_or((&name, ""));
                 let given = self.graph.list(list).into_iter();
                 Term::atom(Atom::External {

@@ -6,7 +6,7 @@ use hamel_algebra::graph::{Edge, Function, Graph};
 /// Every function of one argument.
 pub(crate) fn functions() -> impl Iterator<Item = Function> {
     let all = Function::ALL.iter().copied();
-    all.filter(|function| function.row().slope != Slope::Two)
+    all.filter(|function| function.row().slope != Slope::SeveralArguments)
 }
 
 /// All of them of an argument, over what is not 0.

@@ -1,7 +1,7 @@
 //! Functions given elsewhere: what is equal, and slopes by the chain rule.
 
 use hamel_algebra::derivation::Derivation;
-use hamel_algebra::dual::{Along, Duals};
+use hamel_algebra::dual::{Duals, ForwardMode};
 use hamel_algebra::external::{Component, External};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
@@ -40,13 +40,19 @@ fn values_belong_to_component_and_arguments() {
     }
     assert_ne!(graph.external(second, &[x, y]), one);
     assert_ne!(
-        graph.external(first.by(0), &[x, y]),
-        graph.external(first.by(1), &[x, y])
+        graph.external(first.differentiate(0), &[x, y]),
+        graph.external(first.differentiate(1), &[x, y])
     );
-    assert_eq!(first.by(0).by(1), first.by(1).by(0));
+    assert_eq!(
+        first.differentiate(0).differentiate(1),
+        first.differentiate(1).differentiate(0)
+    );
     let number = graph.external(first, &[two, two]);
     assert!(graph.is_free(number.node()) && graph.as_rational(number).is_none());
-    assert_eq!(graph.called(first.by(1), "x, y"), "f_by_b(x, y)[1]");
+    assert_eq!(
+        graph.external_call_text(first.differentiate(1), "x, y"),
+        "f_by_b(x, y)[1]"
+    );
 }
 
 /// Derivatives as expressions are those of numbers with slopes, the second ones, too.
@@ -64,7 +70,7 @@ fn slopes_go_by_the_chain_rule() {
     let seeds = [Fp::ONE, Fp::new(3)];
     let mut duals = Duals {
         numbers: point.clone(),
-        slopes: Along(|index: usize| seeds[index]),
+        slopes: ForwardMode(|index: usize| seeds[index]),
     };
     let expected = evaluate(&graph, &[slope, bend], &mut point).expect("values");
     let found = evaluate(&graph, &[whole, slope], &mut duals).expect("slopes");

@@ -12,7 +12,7 @@ fn forms_are_collected() {
     let [a, b, zero] = [Fp::new(7), Fp::new(5), Fp::ZERO];
     let rational = |n: i64, d: i64| BigRational::new(n.into(), d.into());
     // b = −2/3 a, so that a/3 − b/3 = 5/9 a.
-    point.write_out(b, vec![(a, rational(-2, 3))]);
+    point.set_linear_form(b, vec![(a, rational(-2, 3))]);
     for function in [Function::Sin, Function::Exp, Function::Tanh] {
         let mut at = |form: &[(Fp, i64, i64)]| {
             let form = form.iter().map(|&(atom, n, d)| (atom, rational(n, d)));

@@ -275,7 +275,7 @@ fn the_table_of_functions_is_true() {
             match row.parity {
                 Parity::Even => assert_eq!(negative, (row.value)(at), "{function:?}"),
                 Parity::Odd => assert_eq!(negative, -(row.value)(at), "{function:?}"),
-                Parity::Plain => assert!(negative.abs() != (row.value)(at).abs(), "{function:?}"),
+                Parity::Neither => assert!(negative.abs() != (row.value)(at).abs(), "{function:?}"),
             }
             let expected = (row.value)(at);
             let near = |found: f64| (found - expected).abs() < 1e-14 * (1.0 + expected.abs());

@@ -1,7 +1,6 @@
 //! Laws of the graph, of its numbers and of polynomials, one module for each file of `src`; a module alone: `cargo test -p hamel-algebra --test suite poly::`.
 
 mod blocks;
-mod closest;
 mod common;
 mod continuity;
 mod degree;
@@ -14,6 +13,7 @@ mod fp;
 mod graph;
 mod interval;
 mod jets;
+mod nearest_solution;
 mod poly;
 mod prime;
 mod reals;

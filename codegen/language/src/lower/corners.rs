@@ -64,7 +64,7 @@ fn corner(model: &Model, edges: &[Edge], time: NodeId) -> Option<String> {
     let reached = model.graph.reachable(edges);
     let chosen = reached
         .iter()
-        .any(|&id| model.graph.chosen_by(id).is_some());
+        .any(|&id| model.graph.condition_of(id).is_some());
     if !chosen || !reached.contains(&time) {
         return None;
     }

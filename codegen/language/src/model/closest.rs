@@ -6,11 +6,11 @@
 use super::closure::{Closure, normalise};
 use super::layout::Block;
 use super::way::{chart_rate, way};
-use crate::algebra::closest::Equations;
 use crate::algebra::dense::{
     apply, backward, cholesky, cholesky_with, dot, forward, gram, least_norm, product,
 };
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::nearest_solution::Equations;
 use crate::algebra::numeric::evaluate;
 use crate::algebra::residual_scale::{relative_residual, residual_scales};
 use crate::algebra::slopes::slopes;
@@ -114,7 +114,7 @@ impl Equations for Loops<'_, '_> {
         residuals
     }
 
-    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+    fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let n = self.closure.n;
         let loops = self.closure.loops().into_iter();
         let rows = loops.flat_map(|place| self.closure.constraints[place].row.iter().copied());
@@ -134,7 +134,7 @@ impl Equations for Loops<'_, '_> {
             .collect()
     }
 
-    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let (mut apart, mut slopes): (Vec<f64>, Vec<Vec<f64>>) = Default::default();
         let rates = self.chart_rates(x);
         let mut place = 0;
@@ -155,7 +155,7 @@ impl Equations for Loops<'_, '_> {
         (apply(weight, &apart), product(weight, &slopes))
     }
 
-    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+    fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         let (a, n) = (self.a(x), self.closure.n);
         let mut moved = x.to_vec();
         for (entry, row) in moved.iter_mut().zip(a.chunks(n.max(1))) {
@@ -230,7 +230,7 @@ impl Equations for Constraints<'_> {
         residuals
     }
 
-    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+    fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let unit = |alpha: usize| {
             let mut direction = vec![0.0; self.first + alpha + 1];
             direction[self.first + alpha] = 1.0;
@@ -252,13 +252,13 @@ impl Equations for Constraints<'_> {
         rows
     }
 
-    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let apart = x.iter().zip(self.guess).map(|(a, b)| a - b).collect();
         let row = |alpha: usize| (0..x.len()).map(|beta| f64::from(alpha == beta)).collect();
         (apart, (0..x.len()).map(row).collect())
     }
 
-    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+    fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         let mut moved: Vec<f64> = x.iter().zip(step).map(|(x, h)| x + h).collect();
         normalise(self.blocks, &mut moved);
         moved

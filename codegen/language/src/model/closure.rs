@@ -8,10 +8,10 @@ use super::closest::{Loops, velocities};
 use super::layout::{Block, blocks};
 use super::pfaffian::{Kind, Pfaffian};
 use super::{Clock, Coordinate, Model};
-use crate::algebra::closest::closest;
 use crate::algebra::dense::{dot, least_norm};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
+use crate::algebra::nearest_solution::find_nearest;
 use crate::algebra::numeric::evaluate;
 use crate::algebra::residual_scale::{relative_residual, residual_scales};
 use crate::algebra::slopes::slopes;
@@ -145,7 +145,7 @@ impl<'a> Closure<'a> {
         let mut found = None;
         for _ in 0..JUDGED {
             let loops = Loops::new(self, mass, x, given, &sizes);
-            found = closest(&loops, x);
+            found = find_nearest(&loops, x);
             let Some(there) = found.as_ref().filter(|x| !self.is_closed(x)) else {
                 break;
             };

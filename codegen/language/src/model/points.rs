@@ -161,7 +161,7 @@ impl Points {
         let mut lane = self.lane_of(values);
         match evaluate_at(&self.free, &self.radicals, &mut lane) {
             Some(_) => [false; 2],
-            None if lane.is_stuck() => lane.stuck(),
+            None if lane.has_missing_root() => lane.missing_roots(),
             None => [true; 2],
         }
     }
@@ -175,16 +175,17 @@ impl Points {
             .collect();
         let radicals = copy(graph, &mut self.free, &roots);
         // The same roots are stuck once more: to tell |e| from e, a graph takes another sign, which is no square.
-        let again = !self.radicals.is_empty() && graph.is_stuck();
+        let again = !self.radicals.is_empty() && graph.has_missing_root();
         self.radicals = radicals;
         let (varying, fixed): (Vec<Edge>, Vec<Edge>) =
             (self.radicals.iter()).partition(|root| self.free.class(root.node()) != 0);
         let many = varying.len() > MOST_STRICT;
         let mut random = Random::new(0x5_71c7);
-        for roots in [Roots::OfSquares, Roots::Extended] {
-            let skipped = self.roots == Roots::Anything
-                || roots == Roots::Extended && again && self.roots == Roots::Extended
-                || roots == Roots::OfSquares && (many || again || self.roots == Roots::Extended);
+        for roots in [Roots::BaseField, Roots::ExtensionField] {
+            let skipped = self.roots == Roots::Arbitrary
+                || roots == Roots::ExtensionField && again && self.roots == Roots::ExtensionField
+                || roots == Roots::BaseField
+                    && (many || again || self.roots == Roots::ExtensionField);
             if skipped {
                 continue;
             }
@@ -199,7 +200,7 @@ impl Points {
                 return;
             }
         }
-        self.roots = Roots::Anything;
+        self.roots = Roots::Arbitrary;
     }
 
     /// Returns whether the roots of constants have values. If log 9, say, is not a square, no choice of a point
@@ -209,14 +210,14 @@ impl Points {
         let mut lane = self.lane_of(&values);
         let inside = |value: &Fp| value.0.is_prime() && value.1.is_prime();
         let found = evaluate_at(&self.free, fixed, &mut lane);
-        found.is_some_and(|found| self.roots != Roots::OfSquares || found.iter().all(inside))
+        found.is_some_and(|found| self.roots != Roots::BaseField || found.iter().all(inside))
     }
 
     /// Returns the same variety with roots in F_p(i), where every number of F_p is a square; `None` if it has these
     /// already.
     pub fn extended(&self) -> Option<Self> {
-        (self.roots == Roots::OfSquares).then(|| Points {
-            roots: Roots::Extended,
+        (self.roots == Roots::BaseField).then(|| Points {
+            roots: Roots::ExtensionField,
             ..self.clone()
         })
     }
@@ -371,7 +372,7 @@ impl Points {
         // Values derived from others may lie outside F_p; then sums with them are not squares of F_p.
         let outside = |value: &Fp| !(value.0.is_prime() && value.1.is_prime());
         lane.roots = match self.roots {
-            Roots::OfSquares if values.iter().any(outside) => Roots::Extended,
+            Roots::BaseField if values.iter().any(outside) => Roots::ExtensionField,
             roots => roots,
         };
         for &value in values {

@@ -83,7 +83,7 @@ impl<'a> At<'a> {
         for (i, (&symbol, &shift)) in velocities.iter().zip(&shift).enumerate() {
             point.set_symbol(symbol, dot(&c[i * na..][..na], &active) + shift);
         }
-        let mut inner = point.fresh();
+        let mut inner = point.without_symbols();
         for index in 0..graph.symbols().len() {
             let solved = others.iter().chain([&velocities]).any(|list| {
                 let found = list.iter().position(|&symbol| symbol == index);
@@ -98,7 +98,7 @@ impl<'a> At<'a> {
             let atoms = evaluate_at(&full.reduced.graph, &atoms, &mut inner.clone())?;
             let coefficients = form.iter().map(|(_, c)| c.clone());
             let form = atoms.into_iter().zip(coefficients).collect();
-            point.write_out(point.symbol(*symbol), form);
+            point.set_linear_form(point.symbol(*symbol), form);
         }
         Some(At {
             full,

@@ -130,7 +130,7 @@ impl Kinematics {
         // Entries Y_α^k that are not constant, weighted by p_k ẋ^α; in large frames there are few of them.
         let mut moving: Vec<(&Jet, Fp)> = Vec::new();
         for (row, &p) in self.rows().zip(p) {
-            let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_still());
+            let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_constant());
             moving.extend(entries.map(|(jet, &rate)| (jet, p * rate)));
         }
         let turn = |i: usize| {

@@ -344,7 +344,7 @@ fn no_model_is_left_out() {
             let generated = model.generated();
             // Nor is what bends or jumps a matter of differences: see `physics_functions.rs`.
             let graph = &generated.program.graph;
-            let bends = (0..graph.len() as u32).any(|id| graph.chosen_by(id).is_some());
+            let bends = (0..graph.len() as u32).any(|id| graph.condition_of(id).is_some());
             // Air forces by angles of a velocity have no slopes near none: see `physics_flight.rs`.
             let steep = model.text.contains("asin(");
             // States of first order stand behind the velocities: see `states.rs`.

@@ -1,6 +1,6 @@
 //! Points nearest to a guess: found where there is one, and nowhere else.
 
-use hamel_algebra::closest::{Equations, closest};
+use hamel_algebra::nearest_solution::{Equations, find_nearest};
 
 /// A point on the circle of radius r about the origin, with its distance in a diagonal metric.
 struct Circle {
@@ -16,15 +16,15 @@ impl Equations for Circle {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         vec![x[0] * x[0] + x[1] * x[1] - self.radius * self.radius]
     }
-    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+    fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
         vec![vec![2.0 * x[0], 2.0 * x[1]]]
     }
-    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let entry = |k: usize| self.weights[k] * (x[k] - self.guess[k]);
         let slopes = vec![vec![self.weights[0], 0.0], vec![0.0, self.weights[1]]];
         (vec![entry(0), entry(1)], slopes)
     }
-    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+    fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         vec![x[0] + step[0], x[1] + step[1]]
     }
 }
@@ -40,8 +40,8 @@ fn the_nearest_point_of_a_circle_is_found() {
             guess: [2.0 * number(), 2.0 * number()],
             weights: [1.0 + number().abs(), 1.0 + 2.0 * number().abs()],
         };
-        let x = closest(&circle, &circle.guess).expect("a point");
-        let distance = |x: &[f64]| circle.apart(x).0.iter().map(|e| e * e).sum::<f64>().sqrt();
+        let x = find_nearest(&circle, &circle.guess).expect("a point");
+        let distance = |x: &[f64]| circle.error(x).0.iter().map(|e| e * e).sum::<f64>().sqrt();
         let least = (0..5_000)
             .map(|k| {
                 let angle = k as f64 * std::f64::consts::TAU / 5_000.0;
@@ -52,8 +52,8 @@ fn the_nearest_point_of_a_circle_is_found() {
         // The points are 1e-3 apart, and the distance is flat at the least.
         assert!(distance(&x) < least + 1e-7, "{} {least}", distance(&x));
         // The distance does not change along the circle.
-        let (apart, slopes) = circle.apart(&x);
-        let slope = apart[1] * slopes[1][1] * x[0] - apart[0] * slopes[0][0] * x[1];
+        let (error, slopes) = circle.error(&x);
+        let slope = error[1] * slopes[1][1] * x[0] - error[0] * slopes[0][0] * x[1];
         assert!(slope.abs() < 1e-12, "{slope}");
     }
 }
@@ -68,15 +68,15 @@ fn where_there_is_no_solution_none_is_found() {
         fn residuals(&self, x: &[f64]) -> Vec<f64> {
             vec![x[0] * x[0] + 1.0]
         }
-        fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
             vec![vec![2.0 * x[0]]]
         }
-        fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
             (vec![x[0] - 0.4], vec![vec![1.0]])
         }
-        fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+        fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
             vec![x[0] + step[0]]
         }
     }
-    assert_eq!(closest(&Nowhere, &[0.4]), None);
+    assert_eq!(find_nearest(&Nowhere, &[0.4]), None);
 }
