@@ -15,7 +15,7 @@ use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
 /// Name of the centre of mass and centroidal momentum in messages.
-pub(super) const WHAT: &str = "the centre of mass, or the momentum about it";
+pub(super) const SUBJECT: &str = "the centre of mass, or the momentum about it";
 
 type V = [Fp; 3];
 
@@ -41,7 +41,7 @@ pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Opt
     let mut along = vec![Fp::ZERO; xi];
     along[x..xi].copy_from_slice(&rate);
     let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut point.clone());
-    let (centre, momentum) = described(model, point, &along)?;
+    let (centre, momentum) = sum_over_bodies(model, point, &along)?;
     let found = emitted(FunctionId::CentreOfMass);
     let mut holds = match found {
         Some(found) => value(found)? == centre,
@@ -68,7 +68,7 @@ pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Opt
 }
 
 /// Returns c, and (P, L) about it, by the sums over bodies and particles that move.
-fn described(model: &Model, point: &FieldPoint, along: &[Fp]) -> Option<(Vec<Fp>, Vec<Fp>)> {
+fn sum_over_bodies(model: &Model, point: &FieldPoint, along: &[Fp]) -> Option<(Vec<Fp>, Vec<Fp>)> {
     let mut places = Vec::new();
     let mut fixed = Vec::new();
     for body in &model.bodies {

@@ -12,7 +12,7 @@ use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
 /// Name of these derivatives in messages.
-pub(super) const WHAT: &str = "the slopes of inverse dynamics, or of ξ̇ by parameters";
+pub(super) const SUBJECT: &str = "the slopes of inverse dynamics, or of ξ̇ by parameters";
 
 /// Returns whether the emitted derivatives hold. A of the full model is evaluated at `point`, the emitted functions at
 /// `inner`.

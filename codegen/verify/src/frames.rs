@@ -15,7 +15,7 @@ use hamel_language::model::{Frame, Model};
 use hamel_program::Program;
 
 /// Name of the functions of frames in messages.
-pub(super) const WHAT: &str = "pose, twist, Jacobian or bias acceleration of a frame";
+pub(super) const SUBJECT: &str = "pose, twist, Jacobian or bias acceleration of a frame";
 
 /// Returns whether the emitted functions of frames hold; `point` assigns values to the symbols of model and program.
 pub(super) fn hold(model: &Model, program: &Program, point: &FieldPoint) -> Option<bool> {

@@ -10,7 +10,7 @@ use hamel_language::model::Model;
 use hamel_program::Program;
 
 /// Name of the derivatives of outputs in messages.
-pub(super) const WHAT: &str = "the slopes of an output";
+pub(super) const SUBJECT: &str = "the slopes of an output";
 
 /// Returns whether the emitted outputs have the values of the description; `point` assigns values to the model's
 /// symbols.

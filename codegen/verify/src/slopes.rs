@@ -140,13 +140,13 @@ impl Slopes {
             return Some(Err(MEASURE.into()));
         }
         if !derivatives::hold(&self.model, program, [point, point])? {
-            return Some(Err(derivatives::WHAT.into()));
+            return Some(Err(derivatives::SUBJECT.into()));
         }
         if !frames::hold(&self.model, program, point)? {
-            return Some(Err(frames::WHAT.into()));
+            return Some(Err(frames::SUBJECT.into()));
         }
         if !centroidal::holds(&self.model, program, point)? {
-            return Some(Err(centroidal::WHAT.into()));
+            return Some(Err(centroidal::SUBJECT.into()));
         }
         if !rates_at(program, point)? {
             return Some(Err("ξ̇ beside its slopes".into()));
@@ -213,11 +213,11 @@ impl Slopes {
             return Some(Err(DYNAMIC.into()));
         }
         if states::slopes(model, (&xi_dot, changed), point, &moved)? != state_rates {
-            return Some(Err(states::WHAT.into()));
+            return Some(Err(states::SUBJECT.into()));
         }
         let along = (&moved[..], &displaced.columns[..]);
         if !outputs::slopes_hold(model, program, (&xi_dot, changed), point, along)? {
-            return Some(Err(outputs::WHAT.into()));
+            return Some(Err(outputs::SUBJECT.into()));
         }
         Some(Ok(()))
     }
@@ -354,11 +354,11 @@ fn derived_at(
     }
     let moved = displaced.moved(model, &here.a.concat());
     if states::slopes(model, (&xi_dot, changed_rates), point, &moved)? != state_rates {
-        return Some(Err(states::WHAT.into()));
+        return Some(Err(states::SUBJECT.into()));
     }
     let along = (&moved[..], &displaced.columns[..]);
     if !outputs::slopes_hold(model, program, (&xi_dot, changed_rates), point, along)? {
-        return Some(Err(outputs::WHAT.into()));
+        return Some(Err(outputs::SUBJECT.into()));
     }
     Some(Ok(()))
 }

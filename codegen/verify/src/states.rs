@@ -10,7 +10,7 @@ use hamel_language::model::{Model, class};
 use hamel_program::{FunctionId, Program};
 
 /// Name of the rates of states in messages.
-pub(super) const WHAT: &str = "ż of the states";
+pub(super) const SUBJECT: &str = "ż of the states";
 
 /// Returns the model with the emitted ξ̇ substituted for its symbols in the rates of states and in outputs.
 ///

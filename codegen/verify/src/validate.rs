@@ -38,7 +38,7 @@ use hamel_program::Program;
 use rustc_hash::FxHashMap;
 
 /// Largest number of velocities of a model for which a failure is explained by the identities that are broken.
-const MOST_EXPLAINED: usize = 8;
+const MAX_EXPLAINED_VELOCITIES: usize = 8;
 
 /// Validates the functions of a program.
 ///
@@ -51,7 +51,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             return nowhere(model);
         };
         let mut broken = vec![what];
-        if model.n() <= MOST_EXPLAINED
+        if model.n() <= MAX_EXPLAINED_VELOCITIES
             && let Some(symbols) = Symbols::new(model)
         {
             let identities = failures(model, program, symbols);
@@ -227,7 +227,7 @@ fn compare(
             return Some(Err("(30c) for the emitted ξ̇".into()));
         }
         if state_rates != states::rates(with_rates, xi_dot, point)? {
-            return Some(Err(states::WHAT.into()));
+            return Some(Err(states::SUBJECT.into()));
         }
     }
     // d/dt (M ξ) = Ṁ ξ + f − h − ∂V.

@@ -15,7 +15,7 @@ use hamel_language::model::class;
 use hamel_program::{FunctionId, Program};
 
 /// A point with ξ = C ξₐ + c, as a point of the full model and of the reduced one.
-pub(super) struct At<'a> {
+pub(super) struct ConstrainedPoint<'a> {
     full: &'a Full,
     program: &'a Program,
     /// C, by rows.
@@ -63,7 +63,7 @@ impl Values {
     }
 }
 
-impl<'a> At<'a> {
+impl<'a> ConstrainedPoint<'a> {
     /// Creates the point with the active velocities of a point of the full model.
     pub(super) fn new(
         full: &'a Full,
@@ -100,7 +100,7 @@ impl<'a> At<'a> {
             let form = atoms.into_iter().zip(coefficients).collect();
             point.set_linear_form(point.symbol(*symbol), form);
         }
-        Some(At {
+        Some(ConstrainedPoint {
             full,
             program,
             c,

@@ -3,7 +3,7 @@
 
 use crate::confidence::Confidence;
 use crate::kernel::at_rest;
-use crate::points::{POINTS, Unequal, at_fresh_points};
+use crate::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use crate::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
@@ -25,7 +25,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
         .any(|c| c.residual != model.graph.zero());
     let mut errors = Vec::new();
     for claim in &model.invariants {
-        let message = match refuted(model, program, claim) {
+        let message = match find_refutation(model, program, claim) {
             None => continue,
             Some(Unequal::Nowhere) => format!(
                 "the claim `{}` cannot be checked: the motion has no value where it is claimed",
@@ -54,7 +54,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
 
 /// Returns the claims with their verdicts.
 pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
-    let verdict = |claim: &Invariant| match refuted(model, program, claim) {
+    let verdict = |claim: &Invariant| match find_refutation(model, program, claim) {
         None => Verdict::Checked(confidence(model, program)),
         Some(_) => Verdict::Failed("d/dt is not zero where the constraints hold".into()),
     };
@@ -80,7 +80,7 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
     let accel = program.xi_dot().unwrap_or_default();
     let expressions = [(&own.graph, &roots[..]), (&program.graph, accel)];
     let terms = 4 * (model.n() + 1);
-    Confidence::new(model, &expressions, terms, POINTS, 9)
+    Confidence::new(model, &expressions, terms, COMPARED_POINTS, 9)
 }
 
 /// Returns T and V.
@@ -96,7 +96,7 @@ fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
 }
 
 /// Returns how the claim fails, with the index of the entry that changes; `None` if it does not fail.
-fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
+fn find_refutation(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
     let energies = energies(&mut own, &mut calculus);

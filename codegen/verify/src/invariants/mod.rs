@@ -16,7 +16,7 @@ mod proof;
 mod remainder;
 
 use super::confidence::Confidence;
-use super::points::{POINTS, Unequal, at_fresh_points};
+use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
@@ -47,7 +47,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
     let mut prover: Option<Option<Prover>> = None;
     for claim in &model.invariants {
         let entries = motion.entries(claim);
-        match motion.refuted(claim, &entries) {
+        match motion.find_refutation(claim, &entries) {
             None => {}
             Some(Unequal::Nowhere) => {
                 let message = format!(
@@ -105,7 +105,7 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     let mut all = Vec::new();
     for claim in &model.invariants {
         let entries = motion.entries(claim);
-        let verdict = match motion.refuted(claim, &entries) {
+        let verdict = match motion.find_refutation(claim, &entries) {
             Some(Unequal::Nowhere) => Verdict::Failed("no point was found to check it at".into()),
             Some(Unequal::Differs(entry)) => Verdict::Failed(format!(
                 "entry {} of {} is not constant",
@@ -185,11 +185,17 @@ impl Equations {
         roots.extend(force.iter().chain(&reference.model.rate).chain(entries));
         let graph = &reference.model.graph;
         let terms = 2 * (model.n() + 1);
-        Confidence::new(model, &[(graph, &roots)], terms, POINTS, entries.len())
+        Confidence::new(
+            model,
+            &[(graph, &roots)],
+            terms,
+            COMPARED_POINTS,
+            entries.len(),
+        )
     }
 
     /// Returns how the claim fails; `None` if it does not.
-    fn refuted(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Unequal<usize>> {
+    fn find_refutation(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Unequal<usize>> {
         let force = self.force();
         let model = &self.reference.model;
         let compared = at_fresh_points(
