@@ -1,9 +1,9 @@
 //! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`, each
 //! with its linearisation.
 
-use hamel_lab::described::{imported, linearised};
 use hamel_codegen::Builder;
 use hamel_codegen::emit::c::Precision;
+use hamel_lab::described::{imported, linearised};
 use std::error::Error;
 use std::path::PathBuf;
 

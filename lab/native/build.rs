@@ -13,7 +13,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut builder = Builder::new();
     let models = ["free_body", "heavy_top", "double_pendulum_angles"];
     let models = models.map(|model| format!("../../tests/models/{model}.eom"));
-    for model in models.into_iter().chain(["../../examples/dzhanibekov.eom".into()]) {
+    for model in models
+        .into_iter()
+        .chain(["../../examples/dzhanibekov.eom".into()])
+    {
         println!("cargo:rerun-if-changed={model}");
         builder = builder.file(keep(
             &folder,

@@ -1,7 +1,7 @@
 //! Generates two robots below `HAMEL_ROBOTS` with their linearisation.
 
-use hamel_lab::described::{imported, linearised};
 use hamel_codegen::Builder;
+use hamel_lab::described::{imported, linearised};
 use std::error::Error;
 use std::path::PathBuf;
 

@@ -19,7 +19,7 @@ fn parts(text: &str) -> Vec<(&str, bool)> {
 }
 
 /// The text in HTML.
-pub fn marked(text: &str) -> Markup {
+pub fn mark_up(text: &str) -> Markup {
     html! {
         @for (part, code) in parts(text) {
             @if code { code { (part) } } @else { (part) }
@@ -34,7 +34,7 @@ pub fn plain(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{marked, plain};
+    use super::{mark_up, plain};
 
     #[test]
     fn code_stands_between_pairs_of_backticks() {
@@ -50,7 +50,7 @@ mod tests {
             ("`` is none", "`` is none", "`` is none"),
             ("`<b>`", "<code>&lt;b&gt;</code>", "<b>"),
         ] {
-            assert_eq!(marked(text).into_string(), html);
+            assert_eq!(mark_up(text).into_string(), html);
             assert_eq!(plain(text), bare);
         }
     }

@@ -1,10 +1,10 @@
 //! Runs whose steps are chosen by their error, as a table: what a tolerance leads to.
 
 use crate::data::{Case, MethodRun, MethodRuns};
-use crate::number::{error, grouped};
+use crate::number::{error, group_thousands};
 
 /// The tolerances of the table, as far as they were measured.
-const SHOWN: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
+const TABLE_TOLERANCES: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
 
 /// Heading and rows: for every method error, steps and refused attempts at each tolerance; `None` where no
 /// method of the case chooses its steps.
@@ -23,15 +23,15 @@ pub fn table(case: &Case) -> Option<(Vec<String>, Vec<Vec<String>>)> {
         let mut cells = vec![format!("{tolerance:.0e}")];
         for method in &methods {
             let with = |run: &&MethodRun| run.tolerance == Some(tolerance);
-            cells.extend(counts(method.runs.iter().find(with)));
+            cells.extend(count(method.runs.iter().find(with)));
         }
         cells
     };
-    Some((head, SHOWN.map(row).to_vec()))
+    Some((head, TABLE_TOLERANCES.map(row).to_vec()))
 }
 
 /// Error, steps, refused attempts.
-fn counts(run: Option<&MethodRun>) -> [String; 3] {
+fn count(run: Option<&MethodRun>) -> [String; 3] {
     let none = || "-".to_string();
     let Some(run) = run else {
         return [none(), none(), none()];
@@ -41,8 +41,8 @@ fn counts(run: Option<&MethodRun>) -> [String; 3] {
     }
     [
         run.error.map_or_else(none, error),
-        grouped(run.steps),
-        run.rejected.map_or_else(none, grouped),
+        group_thousands(run.steps),
+        run.rejected.map_or_else(none, group_thousands),
     ]
 }
 

@@ -1,15 +1,15 @@
 //! Long runs: whether what is conserved drifts away, or only swings.
 
-use crate::data::{Drift, kept};
+use crate::data::{Drift, round_to_three_digits};
 use crate::entry::{Division, Entry, Worst};
 
 /// Windows of a run.
-pub const WINDOWS: u64 = 100;
+pub const WINDOWS_PER_RUN: u64 = 100;
 
 /// Runs so many steps of one length, and keeps the largest deviations of each window; `None` for a method
 /// that chooses its steps.
 pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> {
-    let length = (steps / WINDOWS).max(1);
+    let length = (steps / WINDOWS_PER_RUN).max(1);
     let mut worst = Worst::default();
     let mut window = Worst::default();
     let mut energy = Vec::new();
@@ -22,7 +22,7 @@ pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> 
             worst.take(deviation);
             window.take(deviation);
             if count > 0 && count.is_multiple_of(length) {
-                energy.extend(kept(window.energy));
+                energy.extend(round_to_three_digits(window.energy));
                 window = Worst::default();
             }
             count += 1;
@@ -34,8 +34,8 @@ pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> 
         step,
         steps,
         energy,
-        momentum: kept(worst.momentum),
-        defect: kept(worst.defect),
+        momentum: round_to_three_digits(worst.momentum),
+        defect: round_to_three_digits(worst.defect),
         failure: outcome.failure,
     })
 }

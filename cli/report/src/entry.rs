@@ -55,7 +55,7 @@ type Controlled<'a> = Box<dyn Fn(f64, f64, Watch) -> Outcome + 'a>;
 /// unwatched, in s, and the evaluations in it.
 type ControlledClock<'a> = Box<dyn Fn(f64, f64) -> Option<(f64, u64)> + 'a>;
 
-enum Way<'a> {
+enum Stepping<'a> {
     Equal {
         run: Run<'a>,
         clock: Clock<'a>,
@@ -74,7 +74,7 @@ pub struct Entry<'a> {
     pub kind: Kind,
     /// Its order, where it has one.
     pub order: Option<u32>,
-    way: Way<'a>,
+    stepping: Stepping<'a>,
 }
 
 impl<'a> Entry<'a> {
@@ -91,7 +91,7 @@ impl<'a> Entry<'a> {
             method: method.to_string(),
             kind,
             order,
-            way: Way::Equal { run, clock },
+            stepping: Stepping::Equal { run, clock },
         }
     }
 
@@ -107,15 +107,15 @@ impl<'a> Entry<'a> {
             method: method.to_string(),
             kind: Kind::Method,
             order: Some(order),
-            way: Way::Controlled { run, clock },
+            stepping: Stepping::Controlled { run, clock },
         }
     }
 
     /// Which of these divisions it can be run with.
     pub fn divisions(&self, steps: &[u64], tolerances: &[f64]) -> Vec<Division> {
-        match self.way {
-            Way::Equal { .. } => steps.iter().copied().map(Division::Steps).collect(),
-            Way::Controlled { .. } => {
+        match self.stepping {
+            Stepping::Equal { .. } => steps.iter().copied().map(Division::Steps).collect(),
+            Stepping::Controlled { .. } => {
                 let tolerances = tolerances.iter().copied();
                 tolerances.map(Division::Tolerance).collect()
             }
@@ -124,9 +124,9 @@ impl<'a> Entry<'a> {
 
     /// Runs up to a time, and shows every state; `None` for a division that is none of its own.
     pub fn run(&self, division: Division, until: f64, watch: Watch) -> Option<Outcome> {
-        match (&self.way, division) {
-            (Way::Equal { run, .. }, Division::Steps(steps)) => Some(run(steps, until, watch)),
-            (Way::Controlled { run, .. }, Division::Tolerance(tolerance)) => {
+        match (&self.stepping, division) {
+            (Stepping::Equal { run, .. }, Division::Steps(steps)) => Some(run(steps, until, watch)),
+            (Stepping::Controlled { run, .. }, Division::Tolerance(tolerance)) => {
                 Some(run(tolerance, until, watch))
             }
             _ => None,
@@ -138,12 +138,12 @@ impl<'a> Entry<'a> {
     pub fn clock(&self, measured: &MethodRun, part: u64) -> Option<(f64, f64)> {
         let steps = measured.steps;
         let part = steps.min(part);
-        match (&self.way, measured.division()) {
-            (Way::Equal { clock, .. }, Division::Steps(steps)) => {
+        match (&self.stepping, measured.division()) {
+            (Stepping::Equal { clock, .. }, Division::Steps(steps)) => {
                 let seconds = clock(steps, part)?;
                 Some((seconds, seconds * (steps as f64 / part as f64)))
             }
-            (Way::Controlled { clock, .. }, Division::Tolerance(tolerance)) => {
+            (Stepping::Controlled { clock, .. }, Division::Tolerance(tolerance)) => {
                 let (seconds, evaluations) = clock(tolerance, part as f64 / steps as f64)?;
                 let all = measured.evaluations? as f64;
                 Some((seconds, seconds * (all / evaluations as f64)))

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 
 /// Members of objects nested deeper than this stand on one line: the runs of the methods of the cases
 /// of a report.
-const DEPTH: usize = 6;
+const MAX_BROKEN_DEPTH: usize = 6;
 
 /// The text of a report, with a final line break.
 ///
@@ -50,7 +50,7 @@ impl Lines {
     /// What parts a value from what stands before it in a list.
     fn part<W: ?Sized + Write>(&mut self, writer: &mut W, object: bool) -> io::Result<()> {
         match self.item.take() {
-            Some(_) if object && self.open.len() <= DEPTH => self.break_line(writer),
+            Some(_) if object && self.open.len() <= MAX_BROKEN_DEPTH => self.break_line(writer),
             Some(false) => writer.write_all(b" "),
             _ => Ok(()),
         }
@@ -117,7 +117,7 @@ impl Formatter for Lines {
         first: bool,
     ) -> io::Result<()> {
         writer.write_all(if first { b"" } else { b"," })?;
-        if self.open.len() <= DEPTH {
+        if self.open.len() <= MAX_BROKEN_DEPTH {
             self.break_line(writer)
         } else {
             writer.write_all(if first { b"" } else { b" " })

@@ -3,11 +3,11 @@
 //! Errors, drifts and evaluations are exact: one watched run gives them. Times are not: machines are
 //! noisy, in phases longer than a run. Every method is therefore timed once at every step before any
 //! is timed again, and the median of the repeats is kept; ratios of such medians are steadier than
-//! the times themselves. What is timed is the first steps of a run, at most [`PART`] of them, and the
+//! the times themselves. What is timed is the first steps of a run, at most [`MAX_TIMED_STEPS`] of them, and the
 //! time of the run is that in proportion (of steps, or of evaluations where steps differ): a long run would
 //! be interrupted too often to be timed.
 
-use crate::data::{Case, MethodRun, MethodRuns, kept};
+use crate::data::{Case, MethodRun, MethodRuns, round_to_three_digits};
 use crate::entry::{Division, Entry, Worst};
 
 /// How to measure.
@@ -34,10 +34,10 @@ impl Plan {
 }
 
 /// No more steps are timed at once.
-pub const PART: u64 = 1000;
+pub const MAX_TIMED_STEPS: u64 = 1000;
 
 /// Fewer than this times the last error is a reduction.
-const REDUCED: f64 = 0.7;
+const ERROR_REDUCTION: f64 = 0.7;
 
 /// Measures every entry and adds the results to the case. `tick` is called before each piece of work with
 /// what is done and what there is in all.
@@ -74,7 +74,7 @@ pub fn measure(case: &mut Case, entries: &[Entry], plan: &Plan, tick: &mut dyn F
     }
     for (method, times) in methods.iter_mut().zip(times) {
         for (run, times) in method.runs.iter_mut().zip(times) {
-            run.seconds = median(times).and_then(kept);
+            run.seconds = median(times).and_then(round_to_three_digits);
         }
     }
     case.methods.extend(methods);
@@ -103,16 +103,16 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
             tolerance,
             rejected: outcome.statistics.map(|counts| counts.rejected),
             evaluations: outcome.evaluations.filter(|_| outcome.failure.is_none()),
-            error: kept(outcome.error),
-            energy: kept(worst.energy),
-            momentum: kept(worst.momentum),
-            defect: kept(worst.defect),
+            error: round_to_three_digits(outcome.error),
+            energy: round_to_three_digits(worst.energy),
+            momentum: round_to_three_digits(worst.momentum),
+            defect: round_to_three_digits(worst.defect),
             seconds: None,
             failure: outcome.failure,
         });
         // Before a method converges its error may stay the same for long.
         let small = outcome.error < 1e-3;
-        stalled = if small && outcome.error > REDUCED * last {
+        stalled = if small && outcome.error > ERROR_REDUCTION * last {
             stalled + 1
         } else {
             0
@@ -129,7 +129,7 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
 fn time(entry: &Entry, run: &MethodRun, least: f64) -> Option<f64> {
     let (mut sum, mut whole, mut count) = (0.0, 0.0, 0.0);
     while sum < least {
-        let (seconds, all) = entry.clock(run, PART)?;
+        let (seconds, all) = entry.clock(run, MAX_TIMED_STEPS)?;
         (sum, whole, count) = (sum + seconds, whole + all, count + 1.0);
         // A clock that does not advance must not hold up the rest.
         if count > 1e5 {

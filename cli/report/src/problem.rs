@@ -27,7 +27,7 @@ pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
     /// Constants of the motion but the energy, of (x, ξ); none where there are none.
     pub momenta: Quantities<'a>,
     /// What is said of a step that was not taken.
-    pub said: Told<'a>,
+    pub error_text: ErrorText<'a>,
     /// Whether T + V is constant.
     pub conservative: bool,
 }
@@ -36,7 +36,7 @@ pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
 pub type Judge<'a> = Box<dyn Fn(&[f64], &[f64]) -> f64 + 'a>;
 
 /// The words for an error.
-pub type Told<'a> = Box<dyn Fn(&StepError) -> String + 'a>;
+pub type ErrorText<'a> = Box<dyn Fn(&StepError) -> String + 'a>;
 
 /// Numbers of (x, ξ).
 pub type Quantities<'a> = Box<dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a>;
@@ -71,7 +71,7 @@ where
             name,
             kind,
             order,
-            move |steps, until, watch| self.watched(&method, steps, until, watch),
+            move |steps, until, watch| self.watch_run(&method, steps, until, watch),
             move |steps, part| {
                 let until = self.until * (part as f64 / steps as f64);
                 let begin = Instant::now();
@@ -134,7 +134,7 @@ where
         }
     }
 
-    fn watched<M>(&self, method: &M, steps: u64, until: f64, watch: Watch) -> Outcome
+    fn watch_run<M>(&self, method: &M, steps: u64, until: f64, watch: Watch) -> Outcome
     where
         M: Method<Counted<'a, Sys>>,
     {
@@ -151,7 +151,7 @@ where
             } else {
                 f64::NAN
             },
-            failure: result.err().map(|error| (self.said)(&error)),
+            failure: result.err().map(|error| (self.error_text)(&error)),
             statistics: None,
         }
     }
@@ -182,7 +182,7 @@ where
             } else {
                 f64::NAN
             },
-            failure: result.as_ref().err().map(|error| (self.said)(error)),
+            failure: result.as_ref().err().map(|error| (self.error_text)(error)),
             statistics: result.ok(),
         }
     }

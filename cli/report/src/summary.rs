@@ -1,6 +1,6 @@
 //! The few runs of a report that its part of the book is made of: small enough to be kept.
 
-use crate::auto::{TARGET, fastest};
+use crate::auto::{TARGET_ERROR, fastest};
 use crate::data::{Case, MethodRun, MethodRuns, Report};
 
 /// The report without what [`crate::excerpt::block`] does not read: of every case the fastest method, that of
@@ -20,15 +20,15 @@ fn case(case: &Case) -> Case {
     let methods = case.methods.iter();
     let methods = methods.filter(|method| read.contains(&Some(method.method.as_str())));
     Case {
-        methods: methods.map(around).collect(),
+        methods: methods.map(runs_around).collect(),
         missing: Vec::new(),
         ..case.clone()
     }
 }
 
 /// The first run that reaches the error and the one before it, or the last one where none does.
-fn around(method: &MethodRuns) -> MethodRuns {
-    let reaches = |run: &MethodRun| run.error.is_some_and(|error| error <= TARGET);
+fn runs_around(method: &MethodRuns) -> MethodRuns {
+    let reaches = |run: &MethodRun| run.error.is_some_and(|error| error <= TARGET_ERROR);
     let last = method.runs.len().saturating_sub(1);
     let range = match method.runs.iter().position(reaches) {
         Some(index) => index.saturating_sub(1)..=index,

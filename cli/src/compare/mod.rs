@@ -210,7 +210,7 @@ pub fn case(
         inputs,
         error: Box::new(|_, _| f64::NAN),
         momenta: Box::new(momenta),
-        said: Box::new(|error| system.said(error)),
+        error_text: Box::new(|error| system.said(error)),
         conservative: true,
     };
     let mut steps = asked.steps.clone();
@@ -254,8 +254,9 @@ pub fn case(
             let difference = relative(&x2, &x).max(relative(&xi2, &xi));
             let order = Method::<Instance>::order(&best.stepper);
             case.reference = format!("{} with {finest} steps", best.name);
-            case.reference_error =
-                hamel_report::data::kept(difference / (f64::from(order).exp2() - 1.0));
+            case.reference_error = hamel_report::data::round_to_three_digits(
+                difference / (f64::from(order).exp2() - 1.0),
+            );
             problem.error = Box::new(move |a, b| relative(a, &x).max(relative(b, &xi)));
         }
     }

@@ -3,7 +3,7 @@
 use super::record::Run;
 use super::sample::Sample;
 use crate::columns::aligned;
-use crate::number::{digits, error, grouped, short};
+use crate::number::{digits, error, group_thousands, short};
 use hamel_codegen::syntax::ast::CoordKind;
 
 /// Number of rows of the table.
@@ -50,7 +50,7 @@ pub fn text(run: &Run, default_step: bool) -> String {
     let plural = |count: u64, word: &str| {
         format!(
             "{} {word}{}",
-            grouped(count),
+            group_thousands(count),
             if count == 1 { "" } else { "s" }
         )
     };
@@ -199,8 +199,8 @@ fn gaps(run: &Run, of: impl Fn(&Sample) -> f64) -> Option<String> {
     let first = missing.clone().next()?;
     Some(format!(
         "has no finite value at {} of {} samples, first at {} = {}",
-        grouped(missing.count() as u64),
-        grouped(run.samples.len() as u64),
+        group_thousands(missing.count() as u64),
+        group_thousands(run.samples.len() as u64),
         run.time.name,
         short(run.time.at(first.t, &first.x))
     ))

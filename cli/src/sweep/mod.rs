@@ -30,7 +30,7 @@ use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::mechanism::Mechanism;
 use crate::method;
-use crate::number::grouped;
+use crate::number::group_thousands;
 use crate::outputs;
 use crate::robot::RobotOptions;
 use crate::simulate::inputs::{self, Inputs};
@@ -383,8 +383,8 @@ fn fixed(
     if members.div_ceil(size) > MOST_SHARDS {
         return Err(Failure::usage(format!(
             "{} members make more than {} files: a larger --shard-size is needed",
-            grouped(members),
-            grouped(MOST_SHARDS)
+            group_thousands(members),
+            group_thousands(MOST_SHARDS)
         )));
     }
     let step = match sweep.plan.tolerance {
@@ -441,16 +441,16 @@ fn summary(out: &Path, done: Done, before: u64) -> String {
     let mut text = format!(
         "{}: {} {} computed, {} of them failed",
         out.display(),
-        grouped(done.members),
+        group_thousands(done.members),
         if done.members == 1 {
             "member"
         } else {
             "members"
         },
-        grouped(done.failed)
+        group_thousands(done.failed)
     );
     if before > 0 {
-        text.push_str(&format!("; {} were there before", grouped(before)));
+        text.push_str(&format!("; {} were there before", group_thousands(before)));
     }
     text.push('\n');
     text

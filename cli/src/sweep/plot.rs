@@ -3,7 +3,7 @@
 use super::folder::{Folder, There};
 use super::shard::{Columns, numbers};
 use crate::failure::{self, Failure};
-use crate::number::grouped;
+use crate::number::group_thousands;
 use hamel_report::plot::{Scatter, scatter};
 use std::path::Path;
 
@@ -40,9 +40,9 @@ pub fn run(
     let results = results.map(|(index, name)| (name.clone(), column(columns.varied.len() + index)));
     let results = results.filter(|(_, values)| differ(values));
     let drawn = there.members.div_ceil(step as u64);
-    let mut subtitle = format!("{} members", grouped(there.members));
+    let mut subtitle = format!("{} members", group_thousands(there.members));
     if drawn < there.members {
-        subtitle = format!("{} of {subtitle}", grouped(drawn));
+        subtitle = format!("{} of {subtitle}", group_thousands(drawn));
     }
     let picture = Scatter {
         title: name.into(),

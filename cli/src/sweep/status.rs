@@ -3,7 +3,7 @@
 use super::folder::{known, there};
 use crate::columns::aligned;
 use crate::failure::{Failure, print};
-use crate::number::grouped;
+use crate::number::group_thousands;
 use std::path::Path;
 
 /// Largest number of ranges of missing shards listed.
@@ -19,11 +19,11 @@ pub fn run(path: &Path) -> Result<(), Failure> {
     };
     let there = there(path, &manifest)?;
     let row = |name: &str, value: String| vec![name.to_string(), value];
-    let of = |done: u64, all: u64| format!("{} of {}", grouped(done), grouped(all));
+    let of = |done: u64, all: u64| format!("{} of {}", group_thousands(done), group_thousands(all));
     let mut rows = vec![
         row("shards", of(there.shards.len() as u64, manifest.shards())),
         row("members", of(there.members, manifest.count)),
-        row("failed", grouped(there.failed)),
+        row("failed", group_thousands(there.failed)),
     ];
     let missing = missing(&there.shards, manifest.shards());
     if !missing.is_empty() {

@@ -3,12 +3,11 @@
 //! Started by `lab/c/run.sh`; inputs, rounds and medians are those of `lab/casadi`. Both have to agree before they are
 //! timed. Ends with 1 where the C takes more than 1.05 times as long as the Rust.
 
-
-use hamel_lab::{input, measure};
 use hamel::{Singular, System, Table, Tangent};
 use hamel_lab::input::{Input, input};
-use libloading::Library;
 use hamel_lab::measure::INPUTS;
+use hamel_lab::{input, measure};
+use libloading::Library;
 use std::cell::RefCell;
 use std::error::Error;
 use std::ffi::{c_int, c_void};

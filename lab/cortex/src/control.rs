@@ -9,7 +9,7 @@
 use core::array::from_fn;
 
 use hamel::methods::SemiImplicitEuler;
-use hamel::{TangentSystem, Scalar, State, StepError, System, manifold, step, step_slopes_into};
+use hamel::{Scalar, State, StepError, System, TangentSystem, manifold, step, step_slopes_into};
 
 use crate::matrix::{
     Matrix, add_diagonal, add_scaled, add_symmetric_product, add_transposed_product, dot, solve,
@@ -244,7 +244,14 @@ impl<S: Scalar> Regulator<S> {
         let nodes = self.plan.states.iter().zip(&self.plan.inputs);
         let mut slopes = [[S::default(); N + M]; N];
         for ((place, u), answer) in nodes.zip(&mut self.answers).rev() {
-            step_slopes_into(&SemiImplicitEuler, &self.tangent, place, u, STEP, &mut slopes)?;
+            step_slopes_into(
+                &SemiImplicitEuler,
+                &self.tangent,
+                place,
+                u,
+                STEP,
+                &mut slopes,
+            )?;
             if !before(place, u, &slopes, &mut value, &mut slope, answer) {
                 return Ok(false);
             }

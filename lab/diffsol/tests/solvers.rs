@@ -1,8 +1,6 @@
 //! Generated systems in the solvers of diffsol: a heavy top against `Rkmk8`, and a stiff system.
 
-use diffsol::{
-    DenseMatrix, MatrixCommon, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod,
-};
+use diffsol::{DenseMatrix, MatrixCommon, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod};
 use hamel::adapter::Equations;
 use hamel::adaptive::Adaptive;
 use hamel::{State, StepError, System};
@@ -56,15 +54,14 @@ where
             |y, _, t, rates| equations.rates(t, y, rates),
             |y, _, t, v, product| equations.jacobian_product(t, y, v, product),
         )
-        .init(
-            |_, _, y| equations.write(&start, y),
-            equations.unknowns(),
-        )
+        .init(|_, _, y| equations.write(&start, y), equations.unknowns())
         .build()?;
     let mut solver = problem.bdf::<NalgebraLU<f64>>()?;
     let (path, times, _) = solver.solve(until)?;
     let last = path.ncols() - 1;
-    let y: Vec<f64> = (0..path.nrows()).map(|row| path.get_index(row, last)).collect();
+    let y: Vec<f64> = (0..path.nrows())
+        .map(|row| path.get_index(row, last))
+        .collect();
     Ok((equations.state(until, &y)?, times.len()))
 }
 

@@ -72,7 +72,9 @@ fn run(arguments: &Arguments) -> Result<(), BenchError> {
     };
     let mut report = Report {
         title: "Speed against error".into(),
-        command: "cargo run --release --manifest-path lab/Cargo.toml -p hamel-bench -- --out docs/report".into(),
+        command:
+            "cargo run --release --manifest-path lab/Cargo.toml -p hamel-bench -- --out docs/report"
+                .into(),
         machine: machine(arguments.repeats),
         peers: peers.list.clone(),
         ..Report::default()

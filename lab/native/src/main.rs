@@ -3,15 +3,14 @@
 //!
 //! Started by `lab/native/run.sh`; rounds and medians are those of `lab/casadi`.
 
-
-use hamel_lab::measure;
 use hamel::manifold;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::program::Program;
 use hamel_codegen::program::interpret::Interpreter;
-use hamel_native::{Compiled, Constants, Tapes};
+use hamel_lab::measure;
 use hamel_lab::measure::INPUTS;
+use hamel_native::{Compiled, Constants, Tapes};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -233,7 +232,9 @@ fn humanoid() {
     let taken = start.elapsed().as_secs_f64();
     let most = HEAP.peak_usage().saturating_sub(before) as f64 / 1e6;
     assert_eq!(compiled.interpreted_because(), None);
-    println!("\nTalos, [A B], {steps} steps: made in {taken:.2} s, with at most {most:.0} MB of the heap");
+    println!(
+        "\nTalos, [A B], {steps} steps: made in {taken:.2} s, with at most {most:.0} MB of the heap"
+    );
 }
 
 fn main() {

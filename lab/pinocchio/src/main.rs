@@ -18,13 +18,13 @@
 
 mod peer;
 
-use hamel_lab::{input, measure, robots};
 use hamel::{System, Table, Tangent};
 use hamel_lab::input::{Input, input};
-use libloading::Library;
 use hamel_lab::measure::INPUTS;
-use peer::{Description, Peer};
 use hamel_lab::robots::Robot;
+use hamel_lab::{input, measure, robots};
+use libloading::Library;
+use peer::{Description, Peer};
 use std::cell::RefCell;
 use std::error::Error;
 use std::hint::black_box;

@@ -5,11 +5,11 @@
 
 mod operations;
 
-use hamel_lab::{input, measure};
 use hamel::methods::{InChart, Rkmk4, SemiImplicitEuler};
-use hamel::{Method, TangentSystem, State, System, Table, Tangent, step_slopes_into};
+use hamel::{Method, State, System, Table, Tangent, TangentSystem, step_slopes_into};
 use hamel_lab::input::{Input, input};
 use hamel_lab::measure::INPUTS;
+use hamel_lab::{input, measure};
 use operations::{Counted, counted};
 use std::hint::black_box;
 
@@ -72,7 +72,14 @@ where
         for _ in 0..count {
             for (state, u) in &inputs {
                 let tangent = black_box(&tangent);
-                let _ = black_box(step_slopes_into(method, tangent, state, u, STEP, &mut slopes));
+                let _ = black_box(step_slopes_into(
+                    method,
+                    tangent,
+                    state,
+                    u,
+                    STEP,
+                    &mut slopes,
+                ));
                 black_box(&slopes);
             }
         }

@@ -2,7 +2,7 @@
 
 use super::line::Point;
 use super::theme;
-use super::width::fitted;
+use super::width::fit;
 use crate::code::plain;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
@@ -14,7 +14,7 @@ use std::error::Error;
 use std::fmt;
 
 /// `plotters` knows whole pixels only: drawings are this many times as large.
-pub const FINE: f64 = 10.0;
+pub const SUBPIXELS: f64 = 10.0;
 
 /// Where is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -32,10 +32,10 @@ impl fmt::Display for PlotError {
 impl Error for PlotError {}
 
 /// The result of drawing.
-pub type Drawn = Result<(), PlotError>;
+pub type DrawResult = Result<(), PlotError>;
 
 /// Turns an error of `plotters` into one of ours.
-pub fn failed(error: impl fmt::Display) -> PlotError {
+pub fn draw_error(error: impl fmt::Display) -> PlotError {
     PlotError(error.to_string())
 }
 
@@ -57,14 +57,14 @@ impl Figure {
         width: f64,
         height: f64,
         title: &str,
-        draw: impl FnOnce(&Area) -> Drawn,
+        draw: impl FnOnce(&Area) -> DrawResult,
     ) -> Result<Self, PlotError> {
         let mut text = String::new();
         {
-            let size = ((width * FINE) as u32, (height * FINE) as u32);
+            let size = ((width * SUBPIXELS) as u32, (height * SUBPIXELS) as u32);
             let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
             draw(&root)?;
-            root.present().map_err(failed)?;
+            root.present().map_err(draw_error)?;
         }
         // The frame is ours.
         let elements = text.split_once(">\n").map_or("", |(_, rest)| rest);
@@ -108,8 +108,8 @@ impl Figure {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{title}\">\n\
              <title>{title}</title>\n{style}{elements}</svg>\n",
-            width * FINE,
-            height * FINE,
+            width * SUBPIXELS,
+            height * SUBPIXELS,
         )
     }
 }
@@ -177,7 +177,7 @@ pub fn escape(text: &str) -> String {
 
 /// A length or place in units of the drawing.
 pub fn unit(pixels: f64) -> i32 {
-    (pixels * FINE).round() as i32
+    (pixels * SUBPIXELS).round() as i32
 }
 
 /// A point in units of the drawing.
@@ -190,7 +190,7 @@ pub fn stroke(colour: impl Color, width: f64) -> ShapeStyle {
     ShapeStyle {
         color: colour.to_rgba(),
         filled: false,
-        stroke_width: (width * FINE).round() as u32,
+        stroke_width: (width * SUBPIXELS).round() as u32,
     }
 }
 
@@ -218,7 +218,7 @@ pub fn letters(size: f64, colour: RGBColor, anchor: Anchor, bold: bool) -> TextS
         Anchor::End => HPos::Right,
     };
     // `plotters` writes sizes over 1.24.
-    let size = size * FINE * 1.24;
+    let size = size * SUBPIXELS * 1.24;
     let mut style = TextStyle::from(("sans-serif", size, weight).into_font());
     style.color = colour.to_backend_color();
     style.pos = Pos::new(across, VPos::Center);
@@ -226,39 +226,40 @@ pub fn letters(size: f64, colour: RGBColor, anchor: Anchor, bold: bool) -> TextS
 }
 
 /// Writes a text.
-pub fn write(area: &Area, text: &str, at: Point, style: &TextStyle) -> Drawn {
+pub fn write(area: &Area, text: &str, at: Point, style: &TextStyle) -> DrawResult {
     let element = Text::new(text.to_string(), place(at), style.clone());
-    area.draw(&element).map_err(failed)
+    area.draw(&element).map_err(draw_error)
 }
 
 /// Draws a polyline.
-pub fn line(area: &Area, points: &[Point], style: ShapeStyle) -> Drawn {
+pub fn line(area: &Area, points: &[Point], style: ShapeStyle) -> DrawResult {
     let points: Vec<(i32, i32)> = points.iter().copied().map(place).collect();
-    area.draw(&PathElement::new(points, style)).map_err(failed)
+    area.draw(&PathElement::new(points, style))
+        .map_err(draw_error)
 }
 
 /// Draws a disk, or a circle.
-pub fn circle(area: &Area, at: Point, radius: f64, style: ShapeStyle) -> Drawn {
+pub fn circle(area: &Area, at: Point, radius: f64, style: ShapeStyle) -> DrawResult {
     area.draw(&Circle::new(place(at), unit(radius), style))
-        .map_err(failed)
+        .map_err(draw_error)
 }
 
 /// Fills a polygon.
-pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> Drawn {
+pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> DrawResult {
     let points: Vec<(i32, i32)> = points.iter().copied().map(place).collect();
-    area.draw(&Polygon::new(points, colour)).map_err(failed)
+    area.draw(&Polygon::new(points, colour)).map_err(draw_error)
 }
 
 /// Fills all and writes a heading and a sentence below it, as far as there is room.
-pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
-    const LEFT: f64 = 24.0;
-    const RIGHT: f64 = 10.0;
-    area.fill(&theme::GROUND.0).map_err(failed)?;
-    let widest = f64::from(area.dim_in_pixel().0) / FINE - LEFT - RIGHT;
+pub fn draw_heading(area: &Area, title: &str, subtitle: &str) -> DrawResult {
+    const LEFT_MARGIN: f64 = 24.0;
+    const RIGHT_MARGIN: f64 = 10.0;
+    area.fill(&theme::GROUND.0).map_err(draw_error)?;
+    let widest = f64::from(area.dim_in_pixel().0) / SUBPIXELS - LEFT_MARGIN - RIGHT_MARGIN;
     let head = letters(18.0, theme::INK.0, Anchor::Start, true);
-    let title = fitted(&plain(title), 18.0, true, widest);
-    write(area, &title, (LEFT, 28.0), &head)?;
+    let title = fit(&plain(title), 18.0, true, widest);
+    write(area, &title, (LEFT_MARGIN, 28.0), &head)?;
     let sub = letters(13.0, theme::SOFT.0, Anchor::Start, false);
-    let subtitle = fitted(&plain(subtitle), 13.0, false, widest);
-    write(area, &subtitle, (LEFT, 50.0), &sub)
+    let subtitle = fit(&plain(subtitle), 13.0, false, widest);
+    write(area, &subtitle, (LEFT_MARGIN, 50.0), &sub)
 }

@@ -5,22 +5,22 @@
 //! the curves, polhodes, in which a sphere and an ellipsoid meet.
 
 use super::Path;
-use super::figure::{Anchor, Area, Drawn, circle, fill, letters, line, stroke, write};
+use super::figure::{Anchor, Area, DrawResult, circle, fill, letters, line, stroke, write};
 use super::line::{Point, simplify};
 use super::theme::{self, ramp};
 use crate::number::short;
 use plotters::style::{Color, ShapeStyle};
 
 /// Azimuth and elevation of the eye (rad).
-const EYE: (f64, f64) = (0.6, 0.36);
+const EYE_DIRECTION: (f64, f64) = (0.6, 0.36);
 /// Pieces of one colour.
-const PIECES: usize = 60;
+const MAX_PATH_PIECES: usize = 60;
 /// Points of a circle of the mesh.
-const CIRCLE: u32 = 72;
+const CIRCLE_POINTS: u32 = 72;
 /// Where the names of axes stand, over the radius of the sphere.
-const NAMES: f64 = 0.22;
+const NAME_DISTANCE: f64 = 0.22;
 /// The ellipsoid with its names reaches no farther, over the radius of the place.
-const REACH: f64 = 1.27;
+const MAX_REACH: f64 = 1.27;
 
 type Vector = [f64; 3];
 
@@ -43,7 +43,7 @@ struct View {
 impl View {
     /// Place in the drawing, and distance in front of the sphere's centre.
     fn project(&self, p: Vector) -> (Point, f64) {
-        let ((sa, ca), (se, ce)) = (EYE.0.sin_cos(), EYE.1.sin_cos());
+        let ((sa, ca), (se, ce)) = (EYE_DIRECTION.0.sin_cos(), EYE_DIRECTION.1.sin_cos());
         let right = ca * p[1] - sa * p[0];
         let up = ce * p[2] - se * (ca * p[0] + sa * p[1]);
         let depth = se * p[2] + ce * (ca * p[0] + sa * p[1]);
@@ -76,14 +76,14 @@ fn in_front(_: Vector, depth: f64) -> bool {
     depth >= 0.0
 }
 
-fn lines(area: &Area, parts: &[Vec<Point>], style: ShapeStyle) -> Drawn {
+fn lines(area: &Area, parts: &[Vec<Point>], style: ShapeStyle) -> DrawResult {
     parts
         .iter()
         .try_for_each(|part| line(area, &simplify(part, 0.1), style))
 }
 
 /// The sphere with the path of a body axis in the world, and the scale of time.
-pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> Drawn {
+pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> DrawResult {
     let view = View {
         x: at.0,
         y: at.1,
@@ -97,7 +97,7 @@ pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> Drawn
 }
 
 /// Poinsot's construction, and the scale of time.
-pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64) -> Drawn {
+pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64) -> DrawResult {
     heading(area, "Poinsot: P in body axes", at, radius)?;
     let size = |p: &Vector| p.iter().map(|v| v * v).sum::<f64>().sqrt();
     let first = poinsot.momenta.iter().map(size).find(|size| *size > 0.0);
@@ -128,7 +128,7 @@ pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64)
     let view = View {
         x: at.0,
         y: at.1,
-        radius: radius * (REACH / (most + NAMES)).min(1.0),
+        radius: radius * (MAX_REACH / (most + NAME_DISTANCE)).min(1.0),
     };
     let ends = |i: usize| reach(&unit(i)).max(1.0);
     let names = ["1", "2", "3"];
@@ -151,7 +151,7 @@ pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64)
     scale(area, end, (at.0, below + 34.0))
 }
 
-fn heading(area: &Area, text: &str, at: Point, radius: f64) -> Drawn {
+fn heading(area: &Area, text: &str, at: Point, radius: f64) -> DrawResult {
     let style = letters(12.0, theme::INK.0, Anchor::Middle, true);
     write(area, text, (at.0, at.1 - radius - 50.0), &style)
 }
@@ -162,7 +162,12 @@ fn unit(axis: usize) -> Vector {
 
 /// A ball with its mesh and a curve on it; `between` draws what stands before the parts of the curve that
 /// are behind, and behind those that are in front.
-fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> Drawn) -> Drawn {
+fn curve(
+    area: &Area,
+    view: &View,
+    points: &[Vector],
+    between: impl FnOnce() -> DrawResult,
+) -> DrawResult {
     let middle = (view.x, view.y);
     let ball = ShapeStyle::from(theme::BALL.0).filled();
     circle(area, middle, view.radius, ball)?;
@@ -200,7 +205,9 @@ fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> 
 
 /// Circles of longitude and latitude every 30 degrees.
 fn circles() -> Vec<Vec<Vector>> {
-    let turns = || (0..=CIRCLE).map(|i| (f64::from(i) * 360.0 / f64::from(CIRCLE)).to_radians());
+    let turns = || {
+        (0..=CIRCLE_POINTS).map(|i| (f64::from(i) * 360.0 / f64::from(CIRCLE_POINTS)).to_radians())
+    };
     let mut circles: Vec<Vec<Vector>> = Vec::new();
     for longitude in 0..6 {
         let (s, k) = (f64::from(longitude) * 30.0).to_radians().sin_cos();
@@ -228,12 +235,12 @@ fn axes(
     names: [&str; 3],
     reach: impl Fn(usize) -> f64,
     front: bool,
-) -> Drawn {
+) -> DrawResult {
     let style = letters(12.0, theme::SOFT.0, Anchor::Middle, false);
     for (axis, name) in names.into_iter().enumerate() {
         let out = reach(axis);
         let at = |length: f64| view.project(unit(axis).map(|v| v * (out + length)));
-        let ((from, depth), (to, _), (label, _)) = (at(0.0), at(0.13), at(NAMES));
+        let ((from, depth), (to, _), (label, _)) = (at(0.0), at(0.13), at(NAME_DISTANCE));
         if (depth >= 0.0) == front {
             line(area, &[from, to], stroke(theme::SOFT.0, 1.4))?;
             write(area, name, label, &style)?;
@@ -245,7 +252,7 @@ fn axes(
 /// A curve in pieces of one colour, in front and behind.
 fn pieces(view: &View, points: &[Vector]) -> Vec<(f64, [Vec<Vec<Point>>; 2])> {
     let steps = points.len().saturating_sub(1);
-    let count = PIECES.min(steps);
+    let count = MAX_PATH_PIECES.min(steps);
     (0..count)
         .filter_map(|piece| {
             let (from, to) = (piece * steps / count, (piece + 1) * steps / count);
@@ -257,7 +264,7 @@ fn pieces(view: &View, points: &[Vector]) -> Vec<(f64, [Vec<Vec<Point>>; 2])> {
 }
 
 /// The first or the last point, named above or below, towards the middle.
-fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bool) -> Drawn {
+fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bool) -> DrawResult {
     let ((x, y), depth) = view.project(point);
     let colour = ramp(time).mix(if depth < 0.0 { 0.55 } else { 1.0 });
     circle(area, (x, y), 4.5, ShapeStyle::from(colour).filled())?;
@@ -272,7 +279,7 @@ fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bo
 }
 
 /// Colours and the times that they stand for.
-fn scale(area: &Area, end: f64, at: Point) -> Drawn {
+fn scale(area: &Area, end: f64, at: Point) -> DrawResult {
     const WIDTH: f64 = 140.0;
     const PARTS: usize = 28;
     let left = at.0 - 0.5 * WIDTH;

@@ -69,7 +69,14 @@ fn runs() {
         };
         let simulate = || {
             let nothing = (None, None);
-            let motion = session.simulate(&start, &stepping, nothing, (&Asked::default(), None), &[], None);
+            let motion = session.simulate(
+                &start,
+                &stepping,
+                nothing,
+                (&Asked::default(), None),
+                &[],
+                None,
+            );
             motion.expect("a run")
         };
         let first = simulate();

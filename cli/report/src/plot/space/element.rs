@@ -10,20 +10,20 @@ use plotters::style::RGBColor;
 use std::fmt::Write;
 
 /// The style of lines, and the light on ellipsoids, from above on the left.
-pub const LIGHT: &str = "<style>svg .line{fill:none;stroke-linejoin:round;stroke-linecap:round}</style>\n<defs><radialGradient id=\"light\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".32\" fy=\".26\">\
+pub const STYLE_AND_LIGHT: &str = "<style>svg .line{fill:none;stroke-linejoin:round;stroke-linecap:round}</style>\n<defs><radialGradient id=\"light\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".32\" fy=\".26\">\
 <stop offset=\"0\" stop-color=\"#fff\" stop-opacity=\".55\"/><stop offset=\".55\" stop-color=\"#fff\" stop-opacity=\".08\"/>\
 <stop offset=\".75\" stop-color=\"#000\" stop-opacity=\".02\"/><stop offset=\"1\" stop-color=\"#000\" stop-opacity=\".3\"/>\
 </radialGradient></defs>\n";
 
 /// Teeth of a spring, and how far they stand out (pixels).
-const TEETH: u32 = 7;
-const TOOTH: f64 = 5.0;
+const SPRING_TEETH: u32 = 7;
+const TOOTH_HEIGHT: f64 = 5.0;
 /// The part of a spring or damper that is straight, at each end.
-const LEAD: f64 = 0.18;
+const STRAIGHT_PART: f64 = 0.18;
 /// Pieces of a path that have one colour.
-const PIECES: usize = 48;
+const PATH_PIECES: usize = 48;
 /// Shorter half axes are lines (pixels).
-const THIN: f64 = 0.2;
+const MIN_DRAWN_RADIUS: f64 = 0.2;
 
 /// Where points of space are in the drawing.
 pub struct Sheet {
@@ -149,7 +149,7 @@ impl Sheet {
             written(at(nearest + quarter)),
         );
         let whole = Ellipse::of(&flat);
-        if whole.short < THIN {
+        if whole.short < MIN_DRAWN_RADIUS {
             return format!("M{from}L{to}");
         }
         let turns = flat[0].0 * flat[1].1 - flat[0].1 * flat[1].0;
@@ -174,7 +174,7 @@ impl Sheet {
     pub fn path(&self, path: &[Vector]) -> String {
         let points: Vec<Point> = path.iter().map(|point| self.place(*point)).collect();
         let steps = points.len().saturating_sub(1);
-        let pieces = PIECES.min(steps.max(1));
+        let pieces = PATH_PIECES.min(steps.max(1));
         let mut text = String::new();
         for piece in 0..pieces {
             let (from, to) = (piece * steps / pieces, (piece + 1) * steps / pieces);
@@ -189,13 +189,16 @@ impl Sheet {
 
     /// The directions of the axes of the world, below on the left.
     pub fn compass(&self, height: f64) -> String {
-        const LENGTH: f64 = 22.0;
-        const NAMED: f64 = LENGTH + 9.0;
+        const AXIS_LENGTH: f64 = 22.0;
+        const NAME_DISTANCE: f64 = AXIS_LENGTH + 9.0;
         // The farthest name to the left, and the lowest, have room.
         let ends = [0, 1, 2].map(|axis| self.view.place(along(axis)));
         let left = ends.iter().fold(0.0, |least: f64, end| least.min(end.0));
         let low = ends.iter().fold(0.0, |most: f64, end| most.max(end.1));
-        let origin = (18.0 - NAMED * left, height - 16.0 - NAMED * low);
+        let origin = (
+            18.0 - NAME_DISTANCE * left,
+            height - 16.0 - NAME_DISTANCE * low,
+        );
         let mut text = String::new();
         let mut axes: Vec<(f64, usize)> = (0..3)
             .map(|axis| (self.view.depth(along(axis)), axis))
@@ -203,9 +206,12 @@ impl Sheet {
         axes.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, axis) in axes {
             let (x, y) = self.view.place(along(axis));
-            let end = (origin.0 + LENGTH * x, origin.1 + LENGTH * y);
+            let end = (origin.0 + AXIS_LENGTH * x, origin.1 + AXIS_LENGTH * y);
             text += &polyline(&[origin, end], axis_colour(axis), 1.6, "");
-            let name = (origin.0 + NAMED * x - 3.0, origin.1 + NAMED * y + 4.0);
+            let name = (
+                origin.0 + NAME_DISTANCE * x - 3.0,
+                origin.1 + NAME_DISTANCE * y + 4.0,
+            );
             // An axis towards the eye has no room for a name.
             if x.hypot(y) > 0.3 {
                 let _ = writeln!(
@@ -254,12 +260,12 @@ fn ellipse((x, y): (i32, i32), of: Ellipse, style: &str) -> String {
 }
 
 /// The end of what [`polyline`] writes.
-const CLOSED: &str = "\"/>\n";
+const POLYLINE_END: &str = "\"/>\n";
 
 fn polyline(points: &[Point], colour: RGBColor, width: f64, more: &str) -> String {
     let points: Vec<String> = points.iter().map(|point| written(*point)).collect();
     format!(
-        "<path class=\"line\" stroke=\"{}\" stroke-width=\"{}\"{more} d=\"M{}{CLOSED}",
+        "<path class=\"line\" stroke=\"{}\" stroke-width=\"{}\"{more} d=\"M{}{POLYLINE_END}",
         code(colour),
         unit(width),
         points.join("L")
@@ -267,7 +273,7 @@ fn polyline(points: &[Point], colour: RGBColor, width: f64, more: &str) -> Strin
 }
 
 /// Elements one after the other; lines of one kind that follow each other are one element.
-pub fn joined(elements: impl Iterator<Item = String>) -> String {
+pub fn join_elements(elements: impl Iterator<Item = String>) -> String {
     let mut text = String::new();
     let mut open = String::new();
     for element in elements {
@@ -277,7 +283,7 @@ pub fn joined(elements: impl Iterator<Item = String>) -> String {
         let begin = head.map_or("", |end| &element[..end + 4]);
         // One line alone: several, as those of a damper, are left as they are.
         let one = !begin.is_empty() && element.matches('<').count() == 1;
-        match text.strip_suffix(CLOSED) {
+        match text.strip_suffix(POLYLINE_END) {
             Some(rest) if one && begin == open => {
                 let length = rest.len();
                 text.truncate(length);
@@ -291,7 +297,7 @@ pub fn joined(elements: impl Iterator<Item = String>) -> String {
 }
 
 /// A point so far along a line, and so many pixels beside it.
-fn beside(from: Point, to: Point, part: f64, aside: f64) -> Point {
+fn point_beside(from: Point, to: Point, part: f64, aside: f64) -> Point {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let length = x.hypot(y).max(f64::MIN_POSITIVE);
     (
@@ -301,24 +307,38 @@ fn beside(from: Point, to: Point, part: f64, aside: f64) -> Point {
 }
 
 fn zigzag(from: Point, to: Point) -> Vec<Point> {
-    let mut points = vec![from, beside(from, to, LEAD, 0.0)];
-    for tooth in 0..2 * TEETH {
-        let part = (f64::from(tooth) + 0.5) / f64::from(2 * TEETH);
-        let side = if tooth % 2 == 0 { TOOTH } else { -TOOTH };
-        points.push(beside(from, to, LEAD + (1.0 - 2.0 * LEAD) * part, side));
+    let mut points = vec![from, point_beside(from, to, STRAIGHT_PART, 0.0)];
+    for tooth in 0..2 * SPRING_TEETH {
+        let part = (f64::from(tooth) + 0.5) / f64::from(2 * SPRING_TEETH);
+        let side = if tooth % 2 == 0 {
+            TOOTH_HEIGHT
+        } else {
+            -TOOTH_HEIGHT
+        };
+        points.push(point_beside(
+            from,
+            to,
+            STRAIGHT_PART + (1.0 - 2.0 * STRAIGHT_PART) * part,
+            side,
+        ));
     }
-    points.extend([beside(from, to, 1.0 - LEAD, 0.0), to]);
+    points.extend([point_beside(from, to, 1.0 - STRAIGHT_PART, 0.0), to]);
     points
 }
 
 /// A rod with its piston, and the cylinder around it.
 fn piston(from: Point, to: Point) -> [Vec<Point>; 4] {
-    const HALF: f64 = 5.0;
-    let at = |part: f64, aside: f64| beside(from, to, part, aside);
+    const HALF_WIDTH: f64 = 5.0;
+    let at = |part: f64, aside: f64| point_beside(from, to, part, aside);
     [
         vec![from, at(0.55, 0.0)],
-        vec![at(0.55, HALF - 1.5), at(0.55, 1.5 - HALF)],
-        vec![at(0.4, HALF), at(0.7, HALF), at(0.7, -HALF), at(0.4, -HALF)],
+        vec![at(0.55, HALF_WIDTH - 1.5), at(0.55, 1.5 - HALF_WIDTH)],
+        vec![
+            at(0.4, HALF_WIDTH),
+            at(0.7, HALF_WIDTH),
+            at(0.7, -HALF_WIDTH),
+            at(0.4, -HALF_WIDTH),
+        ],
         vec![at(0.7, 0.0), to],
     ]
 }

@@ -1,7 +1,7 @@
 //! The floor below what is drawn: its height, its grid, and the shadows on it.
 
 use super::element::{self, Sheet};
-use super::shape::{Part, Shape, THICK, Vector};
+use super::shape::{MIN_SPLIT_WIDTH, Part, Shape, Vector};
 use super::view::{Base, dot};
 
 use crate::number::short;
@@ -10,15 +10,15 @@ use plotters::style::RGBColor;
 use std::fmt::Write;
 
 /// Room around what stands on it, and below what hangs above it, over the size of all.
-const ROOM: f64 = 0.12;
-const BELOW: f64 = 0.06;
+const MARGIN: f64 = 0.12;
+const GAP_BELOW: f64 = 0.06;
 /// It is at the height 0 where nothing is lower, and nothing so far above, over that size.
-const NEAR: f64 = 0.8;
+const MAX_HEIGHT_ABOVE_ZERO: f64 = 0.8;
 /// Squares of its grid along its longer side, about.
-const SQUARES: f64 = 7.0;
+const GRID_SQUARES: f64 = 7.0;
 
 /// As dark on dark ground.
-const SHADOW: RGBColor = RGBColor(0, 0, 0);
+const SHADOW_COLOR: RGBColor = RGBColor(0, 0, 0);
 
 /// A rectangle of a grid.
 pub struct Floor {
@@ -60,12 +60,16 @@ impl Floor {
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
-        let stands = least[2] > -0.02 * size && least[2] < NEAR * size;
-        let height = if stands { 0.0 } else { least[2] - BELOW * size };
-        let spacing = nice(size / SQUARES);
+        let stands = least[2] > -0.02 * size && least[2] < MAX_HEIGHT_ABOVE_ZERO * size;
+        let height = if stands {
+            0.0
+        } else {
+            least[2] - GAP_BELOW * size
+        };
+        let spacing = nice(size / GRID_SQUARES);
         let lines = [0, 1].map(|k| {
-            let first = ((least[k] - ROOM * size) / spacing).floor();
-            let last = ((most[k] + ROOM * size) / spacing).ceil();
+            let first = ((least[k] - MARGIN * size) / spacing).floor();
+            let last = ((most[k] + MARGIN * size) / spacing).ceil();
             (first as i64, last as i64)
         });
         Some(Floor {
@@ -90,12 +94,12 @@ impl Floor {
     }
 
     /// How large its squares are.
-    pub fn said(&self) -> String {
+    pub fn describe_grid(&self) -> String {
         format!("grid {}", short(self.spacing))
     }
 
     /// The rectangle and its lines.
-    pub fn drawn(&self, sheet: &Sheet) -> String {
+    pub fn draw(&self, sheet: &Sheet) -> String {
         let corners = self.corners().map(|corner| sheet.point(corner));
         let mut text = format!(
             "<polygon points=\"{}\" fill=\"{}\"/>\n<path stroke=\"{}\" stroke-width=\"7\" fill=\"none\" d=\"",
@@ -114,7 +118,7 @@ impl Floor {
     }
 
     /// A point or direction moved straight down to it.
-    fn dropped(&self, point: Vector, height: f64) -> Vector {
+    fn project_down(&self, point: Vector, height: f64) -> Vector {
         let up = self.base[2];
         let above = dot(up, point) - height;
         std::array::from_fn(|k| point[k] - above * up[k])
@@ -124,21 +128,21 @@ impl Floor {
     pub fn shadows(&self, sheet: &Sheet, parts: &[Part]) -> String {
         let mut elements = Vec::new();
         for part in parts {
-            let point = |at: Vector| self.dropped(at, self.height);
+            let point = |at: Vector| self.project_down(at, self.height);
             match &part.shape {
                 Shape::Ellipsoid { centre, arms } => {
-                    let arms = arms.map(|arm| self.dropped(arm, 0.0));
-                    elements.push(sheet.shade(point(*centre), &arms, SHADOW));
+                    let arms = arms.map(|arm| self.project_down(arm, 0.0));
+                    elements.push(sheet.shade(point(*centre), &arms, SHADOW_COLOR));
                 }
-                Shape::Bar { ends, width } if *width >= THICK => {
-                    elements.push(sheet.stroke(&ends.map(point), SHADOW, *width, ""));
+                Shape::Bar { ends, width } if *width >= MIN_SPLIT_WIDTH => {
+                    elements.push(sheet.stroke(&ends.map(point), SHADOW_COLOR, *width, ""));
                 }
                 _ => {}
             }
         }
         format!(
             "<g opacity=\"0.16\">\n{}</g>\n",
-            element::joined(elements.into_iter())
+            element::join_elements(elements.into_iter())
         )
     }
 }

@@ -1,7 +1,7 @@
 //! What there is to be drawn in space.
 
 /// The width from which on a bar has more than one piece, and a shadow (pixels).
-pub(super) const THICK: f64 = 3.0;
+pub(super) const MIN_SPLIT_WIDTH: f64 = 3.0;
 
 /// A point or a direction.
 pub type Vector = [f64; 3];
