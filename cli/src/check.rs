@@ -16,7 +16,7 @@ use hamel_codegen::tables::geometry::lines;
 use std::path::PathBuf;
 
 /// Functions that lose fewer decimal digits than this are not listed.
-const SOME: f64 = 1.0;
+const LISTED_FROM_DIGITS: f64 = 1.0;
 
 /// Proves the identities behind the equations of motion.
 ///
@@ -96,7 +96,7 @@ pub struct Checked {
     /// `proved`, `checked` or `failed`.
     pub verdict: &'static str,
     /// Explanation of the verdict; empty where it is proved.
-    pub told: String,
+    pub explanation: String,
 }
 
 /// The identities behind the equations, with their verdicts.
@@ -104,7 +104,7 @@ pub fn checked(generated: &Generated) -> Vec<Checked> {
     let identities = check(&generated.model, &generated.program).into_iter();
     identities
         .map(|identity| {
-            let (verdict, told) = match identity.verdict {
+            let (verdict, explanation) = match identity.verdict {
                 Verdict::Proved => ("proved", String::new()),
                 Verdict::Checked(confidence) => ("checked", confidence.to_string()),
                 Verdict::Failed(why) => ("failed", why),
@@ -113,7 +113,7 @@ pub fn checked(generated: &Generated) -> Vec<Checked> {
                 label: identity.label,
                 equation: identity.equation,
                 verdict,
-                told,
+                explanation,
             }
         })
         .collect()
@@ -168,7 +168,8 @@ fn rounding(generated: &Generated) -> String {
     let known = known
         .iter()
         .filter_map(|&(function, digits)| Some((function, digits?)));
-    let (lossy, exact): (Vec<_>, Vec<_>) = known.partition(|(_, digits)| *digits >= SOME);
+    let (lossy, exact): (Vec<_>, Vec<_>) =
+        known.partition(|(_, digits)| *digits >= LISTED_FROM_DIGITS);
     let rest = match (exact.len(), lossy.len()) {
         (0, _) => String::new(),
         (_, 0) => "  rounding       no function loses a digit\n".to_string(),

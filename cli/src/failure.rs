@@ -18,19 +18,19 @@ pub enum Failure {
 impl Failure {
     /// A failure of the request, in one message.
     pub fn failed(message: impl AsRef<str>) -> Self {
-        Failure::Failed(headed(message.as_ref()))
+        Failure::Failed(format_error(message.as_ref()))
     }
 
     /// Unusable input, in one message.
     pub fn usage(message: impl AsRef<str>) -> Self {
-        Failure::Usage(headed(message.as_ref()))
+        Failure::Usage(format_error(message.as_ref()))
     }
 
     /// Several messages about the same subject.
     pub fn usages(about: &str, messages: &[String]) -> Self {
         let mut text: String = messages
             .iter()
-            .map(|message| headed(&format!("{about}: {message}")))
+            .map(|message| format_error(&format!("{about}: {message}")))
             .collect();
         if messages.len() > 1 {
             text.push_str(&format!("{} errors\n", messages.len()));
@@ -71,7 +71,7 @@ impl Failure {
     }
 }
 
-fn headed(message: &str) -> String {
+fn format_error(message: &str) -> String {
     format!("\x1b[1;31merror\x1b[0m: {message}\n")
 }
 
@@ -81,11 +81,11 @@ pub fn print(text: &str) -> Result<(), Failure> {
     let written = stdout
         .write_all(text.as_bytes())
         .and_then(|()| stdout.flush());
-    printed(written)
+    check_written(written)
 }
 
 /// Converts an error of writing to standard output.
-fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
+fn check_written(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::Closed),
@@ -96,9 +96,9 @@ fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
 }
 
 /// Prints clap's answer, which is help, the version or a usage error, and returns the exit status.
-pub fn said(answer: &clap::Error) -> u8 {
+pub fn print_clap(answer: &clap::Error) -> u8 {
     let written = answer.print();
-    match (answer.use_stderr(), printed(written)) {
+    match (answer.use_stderr(), check_written(written)) {
         (true, _) => 2,
         (false, Ok(())) => 0,
         (false, Err(failure)) => failure.report(),
@@ -107,7 +107,7 @@ pub fn said(answer: &clap::Error) -> u8 {
 
 /// Messages in addition to a result: warnings as a text without colours, and the places of errors and warnings.
 #[derive(Clone, Debug, Default)]
-pub struct Said {
+pub struct Captured {
     /// The warnings, each with its source underlined.
     pub warnings: String,
     /// Errors and warnings with their places in the description.
@@ -124,42 +124,44 @@ pub struct Mark {
 }
 
 thread_local! {
-    /// Messages captured in this thread, while [`collected`] runs.
-    static SAID: RefCell<Option<Said>> = const { RefCell::new(None) };
+    /// Messages captured in this thread, while [`capture`] runs.
+    static CAPTURED: RefCell<Option<Captured>> = const { RefCell::new(None) };
 }
 
 /// Records the places of errors or warnings if messages are being captured.
 pub fn mark(diagnostics: &[Diagnostic], is_error: bool) {
-    SAID.with_borrow_mut(|said| {
-        let Some(said) = said else { return };
-        said.marks.extend(diagnostics.iter().map(|diagnostic| Mark {
-            is_error,
-            diagnostic: diagnostic.clone(),
-        }));
+    CAPTURED.with_borrow_mut(|captured| {
+        let Some(captured) = captured else { return };
+        captured
+            .marks
+            .extend(diagnostics.iter().map(|diagnostic| Mark {
+                is_error,
+                diagnostic: diagnostic.clone(),
+            }));
     });
 }
 
 /// Writes a warning to standard error, or to the captured messages.
 pub fn warn(text: &str) {
-    let collected = SAID.with_borrow_mut(|said| match said {
-        Some(said) => {
-            said.warnings.push_str(&plain(text));
+    let captured = CAPTURED.with_borrow_mut(|captured| match captured {
+        Some(captured) => {
+            captured.warnings.push_str(&plain(text));
             true
         }
         None => false,
     });
-    if !collected {
+    if !captured {
         // If standard error is closed, the warning cannot be delivered.
         let _ = anstream::stderr().write_all(text.as_bytes());
     }
 }
 
 /// Runs `act` and captures the messages that it emits.
-pub fn collected<T>(act: impl FnOnce() -> T) -> (T, Said) {
-    let outer = SAID.replace(Some(Said::default()));
+pub fn capture<T>(act: impl FnOnce() -> T) -> (T, Captured) {
+    let outer = CAPTURED.replace(Some(Captured::default()));
     let done = act();
-    let said = SAID.replace(outer).unwrap_or_default();
-    (done, said)
+    let captured = CAPTURED.replace(outer).unwrap_or_default();
+    (done, captured)
 }
 
 /// Removes the colours of a text.

@@ -76,7 +76,7 @@ pub use check::Checked;
 pub use command::{asked, command, described};
 pub use compare::Comparison;
 pub use drawing::{Drawing, Drawn, Scene};
-pub use failure::{Failure, Mark, Said};
+pub use failure::{Captured, Failure, Mark};
 pub use linearize::Linear;
 pub use mechanism::{End, Varied};
 pub use robot::{Mimic, RobotOptions};

@@ -15,10 +15,10 @@ use nalgebra::DMatrix;
 /// Pivots below this, relative to the original diagonal entry, are rounding errors of zero.
 const ROUNDING: f64 = 1e-12;
 /// Largest number of constraints listed.
-const LISTED: usize = 6;
+const MAX_LISTED: usize = 6;
 /// Messages for singular states at which every velocity has inertia.
 const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
-const DEPENDENT: &str = "the constraints on the velocities depend on one another";
+const DEPENDENT_CONSTRAINTS: &str = "the constraints on the velocities depend on one another";
 
 /// The function that had no value, with x.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub enum Failed {
 }
 
 /// Names of velocities for messages, with the lines on which they are declared.
-pub fn labels(model: &Model, text: &str) -> Vec<String> {
+pub fn velocity_labels(model: &Model, text: &str) -> Vec<String> {
     let names = names::velocities(model).into_iter();
     let label = |(place, name): (usize, String)| {
         let span = model.velocity_spans.get(place);
@@ -44,54 +44,61 @@ pub fn labels(model: &Model, text: &str) -> Vec<String> {
 }
 
 /// The message for dependent constraints that multipliers enforce.
-pub fn dependent(model: &Model, text: &str) -> String {
-    let rows = model.constraints.iter().take(LISTED);
+pub fn dependent_message(model: &Model, text: &str) -> String {
+    let rows = model.constraints.iter().take(MAX_LISTED);
     let rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
     match model.constraints.len() {
-        0 => DEPENDENT.into(),
-        count if count > LISTED => format!("{DEPENDENT}: {} and others", rows.join(", ")),
-        _ => format!("{DEPENDENT}: {}", rows.join(", ")),
+        0 => DEPENDENT_CONSTRAINTS.into(),
+        count if count > MAX_LISTED => {
+            format!("{DEPENDENT_CONSTRAINTS}: {} and others", rows.join(", "))
+        }
+        _ => format!("{DEPENDENT_CONSTRAINTS}: {}", rows.join(", ")),
     }
 }
 
 /// The message for a mass matrix that is not positive definite, with the labels of its rows.
-pub fn of_mass(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
+pub fn mass_message(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
     let (place, part) = weakest(mass)?;
-    (part <= ROUNDING).then(|| told(place, names))
+    (part <= ROUNDING).then(|| pivot_message(place, names))
 }
 
-fn told(place: usize, names: &[String]) -> String {
+fn pivot_message(place: usize, names: &[String]) -> String {
     let name = names.get(place).map_or("", String::as_str);
     let number = place + 1;
     format!("the mass matrix is not positive definite at pivot {number} ({name})")
 }
 
 /// The message for a pivot of a function that is not positive.
-pub fn meaning(cause: Cause, model: &Model, text: &str) -> String {
+pub fn cause_message(cause: Cause, model: &Model, text: &str) -> String {
     match cause {
         Cause::Velocity(place) => {
-            let names = labels(model, text);
+            let names = velocity_labels(model, text);
             let name = names.get(place).map_or("", String::as_str);
             format!("the mass matrix is not positive definite: {name} has no inertia")
         }
         Cause::Mass => "the mass matrix is not positive definite".into(),
-        Cause::Constraint(_) => dependent(model, text),
+        Cause::Constraint(_) => dependent_message(model, text),
         Cause::Kinematics(_) => CONFIGURATION.into(),
     }
 }
 
 /// The message for a state where ξ̇ has no value, from the mass matrix there.
-pub fn at(mass: &DMatrix<f64>, names: &[String]) -> String {
-    of_mass(mass, names).unwrap_or_else(|| CONFIGURATION.into())
+pub fn state_message(mass: &DMatrix<f64>, names: &[String]) -> String {
+    mass_message(mass, names).unwrap_or_else(|| CONFIGURATION.into())
 }
 
-/// Like [`at`], for a description with parameters: divisions by 0 are reported first.
-pub fn of(generated: &Generated, params: &[f64], mass: &DMatrix<f64>, text: &str) -> String {
+/// Like [`state_message`], for a description with parameters: divisions by 0 are reported first.
+pub fn description_message(
+    generated: &Generated,
+    params: &[f64],
+    mass: &DMatrix<f64>,
+    text: &str,
+) -> String {
     let divisors = Divisors::of(generated, text);
     let divided = divisors.as_ref().and_then(|all| all.zero(params));
     match divided {
         Some(divided) => divided.to_owned(),
-        None => at(mass, &labels(&generated.active, text)),
+        None => state_message(mass, &velocity_labels(&generated.active, text)),
     }
 }
 
@@ -126,7 +133,7 @@ impl Instance {
         match self.constant_singular() {
             true => Err(Failure::failed(format!(
                 "{} with these parameters",
-                self.at(x)
+                self.state_message(x)
             ))),
             false => Ok(()),
         }
@@ -135,14 +142,14 @@ impl Instance {
     /// ξ̇, or the reason why it has no value.
     pub fn motion(&self, x: &[f64], xi: &[f64], u: &[f64]) -> Result<Vec<f64>, String> {
         match self.accel(&x.into(), &xi.into(), &u.into()) {
-            Ok(_) if self.constant_singular() => Err(self.at(x)),
+            Ok(_) if self.constant_singular() => Err(self.state_message(x)),
             Ok(xi_dot) => Ok(xi_dot.to_vec()),
-            Err(cause) => Err(self.singular(cause)),
+            Err(cause) => Err(self.singular_message(cause)),
         }
     }
 
     /// The message for a failure of ξ̇, of a projection or of a change of velocities.
-    pub fn singular(&self, cause: Singular) -> String {
+    pub fn singular_message(&self, cause: Singular) -> String {
         if let Some(divided) = self.divided() {
             return divided.to_owned();
         }
@@ -152,11 +159,11 @@ impl Instance {
         match self.failed() {
             Some(Failed::Motion(x)) => {
                 let mass = self.mass(&x);
-                match (of_mass(&mass, self.velocity_labels()), weakest(&mass)) {
+                match (mass_message(&mass, self.velocity_labels()), weakest(&mass)) {
                     (Some(why), _) => why,
                     // Without constraints no other pivot can have failed.
                     (None, Some((place, _))) if !self.is_constrained() => {
-                        told(place, self.velocity_labels())
+                        pivot_message(place, self.velocity_labels())
                     }
                     _ => self.dependent().into(),
                 }
@@ -167,10 +174,10 @@ impl Instance {
     }
 
     /// The message for a failed step.
-    pub fn said(&self, error: &StepError) -> String {
+    pub fn step_message(&self, error: &StepError) -> String {
         match error {
             StepError::Singular { cause, time } => {
-                let why = self.singular(*cause);
+                let why = self.singular_message(*cause);
                 format!("{why}, in the step from t = {}", short(*time))
             }
             other => other.to_string(),
@@ -178,11 +185,11 @@ impl Instance {
     }
 
     /// The message for a state where ξ̇ has no value.
-    pub fn at(&self, x: &[f64]) -> String {
+    pub fn state_message(&self, x: &[f64]) -> String {
         if let Some(divided) = self.divided() {
             return divided.to_owned();
         }
-        at(&self.mass(x), self.velocity_labels())
+        state_message(&self.mass(x), self.velocity_labels())
     }
 
     /// M at x.
@@ -204,19 +211,20 @@ impl Instance {
 
 #[cfg(test)]
 mod tests {
-    use super::of_mass;
+    use super::mass_message;
     use nalgebra::DMatrix;
 
     #[test]
     fn the_velocity_without_inertia_is_named() {
         let names = ["`a`", "`w[1]`, line 3", "`w[2]`"].map(String::from);
-        let told = |entries: [f64; 9]| of_mass(&DMatrix::from_row_slice(3, 3, &entries), &names);
-        assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);
+        let message =
+            |entries: [f64; 9]| mass_message(&DMatrix::from_row_slice(3, 3, &entries), &names);
+        assert_eq!(message([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);
         // Row 2 is half of row 1: the rest is a rounding error.
-        let dependent = told([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
+        let dependent = message([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
         let expected = "the mass matrix is not positive definite at pivot 2 (`w[1]`, line 3)";
         assert_eq!(dependent.as_deref(), Some(expected));
-        let nowhere = told([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
+        let nowhere = message([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
         assert!(nowhere.is_some_and(|why| why.ends_with("pivot 3 (`w[2]`)")));
     }
 }

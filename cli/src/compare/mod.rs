@@ -29,20 +29,20 @@ use reference::Fields;
 use std::path::{Path, PathBuf};
 
 /// Length of a run without --until and --reference.
-const UNTIL: f64 = 10.0;
+const DEFAULT_DURATION: f64 = 10.0;
 /// Default of --steps.
-const STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
+const DEFAULT_STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
 /// Largest number of steps.
-const MOST: u64 = 100_000_000;
+const MAX_STEPS: u64 = 100_000_000;
 /// Tolerances of methods with step size control.
 const TOLERANCES: [f64; 8] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 /// Timings of each run, and the least duration of each (s).
-const REPEATS: u32 = 3;
-const LEAST: f64 = 1e-3;
+const TIMING_REPEATS: u32 = 3;
+const MIN_TIMING: f64 = 1e-3;
 /// Errors below this are rounding.
-const FLOOR: f64 = 1e-13;
+const ERROR_FLOOR: f64 = 1e-13;
 /// Ratio of the steps of the reference run to those of the finest run.
-const FINER: u64 = 4;
+const REFERENCE_REFINEMENT: u64 = 4;
 
 /// Compares methods: error at the end, evaluations of forces, drift, time.
 ///
@@ -109,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             processor: "the machine of the command".into(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
             code: "made into machine code at once".into(),
-            repeats: REPEATS,
+            repeats: TIMING_REPEATS,
         },
         ..Report::default()
     };
@@ -178,7 +178,7 @@ fn compare(
         methods: arguments.methods.clone(),
         until,
         steps: arguments.steps.clone(),
-        repeats: REPEATS,
+        repeats: TIMING_REPEATS,
     };
     case(&generated, source.shown(), &state, &asked, fields.as_ref())
 }
@@ -210,12 +210,12 @@ pub fn case(
         inputs,
         error: Box::new(|_, _| f64::NAN),
         momenta: Box::new(momenta),
-        error_text: Box::new(|error| system.said(error)),
+        error_text: Box::new(|error| system.step_message(error)),
         conservative: true,
     };
     let mut steps = asked.steps.clone();
     if steps.is_empty() {
-        steps.extend(STEPS);
+        steps.extend(DEFAULT_STEPS);
     }
     steps.sort_unstable();
     steps.dedup();
@@ -239,13 +239,13 @@ pub fn case(
             problem.error = Box::new(move |x, xi| end.error(x, xi));
         }
         None => {
-            let finest = steps.last().copied().unwrap_or(1) * FINER;
+            let finest = steps.last().copied().unwrap_or(1) * REFERENCE_REFINEMENT;
             let best = best(&methods);
             let failed = |error: hamel::StepError| {
                 Failure::failed(format!(
                     "the reference run of {} with {finest} steps failed: {}",
                     best.name,
-                    system.said(&error)
+                    system.step_message(&error)
                 ))
             };
             let (x, xi) = problem.end(&best.stepper, finest).map_err(failed)?;
@@ -283,8 +283,8 @@ pub fn case(
         steps,
         tolerances: TOLERANCES.to_vec(),
         repeats: asked.repeats,
-        least: LEAST,
-        floor: FLOOR,
+        least: MIN_TIMING,
+        floor: ERROR_FLOOR,
     };
     let bar = progress::named(&name);
     measure(&mut case, &entries, &plan, &mut |done, all| {
@@ -336,17 +336,20 @@ fn title(name: &str, docs: &[String]) -> String {
 /// Parses a number of steps.
 fn number_of_steps(text: &str) -> Result<u64, String> {
     let number = text.trim().parse::<u64>().ok();
-    let number = number.filter(|number| (1..=MOST).contains(number));
-    number.ok_or_else(|| format!("a whole number from 1 to {MOST} is needed"))
+    let number = number.filter(|number| (1..=MAX_STEPS).contains(number));
+    number.ok_or_else(|| format!("a whole number from 1 to {MAX_STEPS} is needed"))
 }
 
 /// The end time, which a reference has to list.
 fn until(arguments: &Arguments, solution: Option<&Solution>) -> Result<f64, Failure> {
     let Some(solution) = solution else {
-        return Ok(arguments.until.unwrap_or(UNTIL));
+        return Ok(arguments.until.unwrap_or(DEFAULT_DURATION));
     };
     let times = solution.times();
-    let until = arguments.until.or(times.last().copied()).unwrap_or(UNTIL);
+    let until = arguments
+        .until
+        .or(times.last().copied())
+        .unwrap_or(DEFAULT_DURATION);
     if times.contains(&until) && until > 0.0 {
         return Ok(until);
     }

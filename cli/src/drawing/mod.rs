@@ -37,15 +37,15 @@ use hamel_native::Compiled;
 use points::Points;
 
 /// The function of masses, centres of mass and inertias, which depend on parameters alone.
-const BODIES: &str = "drawn_bodies";
+const BODIES_FUNCTION: &str = "drawn_bodies";
 /// The function of poses and points, which depend on x as well.
-const POINTS: &str = "drawn_points";
+const POINTS_FUNCTION: &str = "drawn_points";
 
 /// The drawable parts of a mechanism, compiled, for any parameters.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     compiled: Compiled,
-    /// The functions [`BODIES`] and [`POINTS`].
+    /// The functions [`BODIES_FUNCTION`] and [`POINTS_FUNCTION`].
     places: [Place; 2],
     frames: Vec<Named>,
     /// The frame of each body.
@@ -99,15 +99,15 @@ impl Drawing {
             let shape = Shape::Vector(outputs.len());
             Function::described(name, String::new(), arguments, shape, outputs)
         };
-        let fixed = function(BODIES, &[], &points.masses);
-        let moving = function(POINTS, &[Argument::Coordinates], &points.moving);
+        let fixed = function(BODIES_FUNCTION, &[], &points.masses);
+        let moving = function(POINTS_FUNCTION, &[Argument::Coordinates], &points.moving);
         program.functions = vec![fixed, moving];
-        let compiled = compiled(&program, &[BODIES, POINTS])?;
+        let compiled = compiled(&program, &[BODIES_FUNCTION, POINTS_FUNCTION])?;
         let place = |name: &str| {
             let place = crate::mechanism::place(&compiled, name);
             place.ok_or_else(|| Failure::failed(format!("{} cannot be drawn", program.name)))
         };
-        let places = [place(BODIES)?, place(POINTS)?];
+        let places = [place(BODIES_FUNCTION)?, place(POINTS_FUNCTION)?];
         let moved = points.attached.into_iter().zip(points.turns);
         let frames = model.frames.iter().zip(moved);
         let frames = frames.map(|(frame, (attached, turns))| Named {

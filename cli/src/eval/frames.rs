@@ -20,7 +20,7 @@ fn both(frame: &str) -> [Jacobian; 2] {
 }
 
 /// The Jacobians of all requested frames.
-pub fn asked(frames: &[Named]) -> Vec<Jacobian> {
+pub fn requested_jacobians(frames: &[Named]) -> Vec<Jacobian> {
     frames.iter().flat_map(|(_, frame)| both(frame)).collect()
 }
 

@@ -12,7 +12,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 
 /// Bound on the rounding error of a sum, relative to its terms.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Entries of a table, `table[i][j][k]`.
 pub type Cube = Vec<Vec<Vec<f64>>>;
@@ -190,7 +190,7 @@ fn sum(terms: &[f64]) -> f64 {
     let (sum, size) = terms.iter().fold((0.0, 0.0), |(sum, size), term| {
         (sum + term, size + term.abs())
     });
-    if f64::abs(sum) <= ROUNDING * size {
+    if f64::abs(sum) <= SUM_ROUNDING * size {
         0.0
     } else {
         sum

@@ -23,7 +23,7 @@ use hamel_codegen::program::Shape;
 use std::path::PathBuf;
 
 /// Number of velocities above which γ and Γ, with n³ entries each, are printed only with --tables.
-const MOST_SHOWN: usize = 64;
+const MAX_SHOWN_VELOCITIES: usize = 64;
 
 /// Prints the values of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
 ///
@@ -85,12 +85,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
         return sample::run(&source, at, &frames);
     }
-    let generated = source.derive_available(&frames::asked(&frames))?;
+    let generated = source.derive_available(&frames::requested_jacobians(&frames))?;
     let state = match &at {
         Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
     };
-    let shown = arguments.tables || generated.model.n() <= MOST_SHOWN;
+    let shown = arguments.tables || generated.model.n() <= MAX_SHOWN_VELOCITIES;
     let (value, missing) = numbers((&generated, source.shown()), &state, &frames, shown)?;
     if !shown {
         warn(&format!(

@@ -1,7 +1,7 @@
 //! Evaluates states given by joints: M, bias and acceleration as other programs define them.
 
 use super::finite;
-use super::frames::{Named, asked, kinematics};
+use super::frames::{Named, kinematics, requested_jacobians};
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::mechanism::{constant_singular, function};
@@ -29,7 +29,7 @@ const FUNCTIONS: [FunctionId; 8] = [
     FunctionId::PotentialEnergy,
 ];
 /// Largest relative residual of a force that inputs produce.
-const REACHED: f64 = 1e-9;
+const FORCE_TOLERANCE: f64 = 1e-9;
 
 /// Evaluates and prints one state, or each state of a list `samples`.
 ///
@@ -37,7 +37,7 @@ const REACHED: f64 = 1e-9;
 /// and other loads of the description. Without a force the loads of the description act, with zero input.
 pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> {
     let File { path, json } = at;
-    let generated = source.derive_only(&FUNCTIONS, &asked(frames))?;
+    let generated = source.derive_only(&FUNCTIONS, &requested_jacobians(frames))?;
     let (list, several) = match json.get("samples") {
         Some(Value::Array(list)) => (list.as_slice(), true),
         _ => (std::slice::from_ref(json), false),
@@ -157,7 +157,7 @@ fn members(
     // A missing function has been reported before.
     let is_there = generated.program.function(FunctionId::Accel).is_some();
     if let (None, true, Some(mass)) = (&accel.value, is_there, &mass) {
-        let why = singular::of(generated, &state.params, mass, text);
+        let why = singular::description_message(generated, &state.params, mass, text);
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));
@@ -216,7 +216,7 @@ fn accel(
             let solved = reach.clone().svd(true, true).solve(&missing, f64::EPSILON);
             solved.ok().filter(|u| {
                 let short = (&reach * u - &missing).norm();
-                short <= REACHED * (wanted.norm() + own.norm())
+                short <= FORCE_TOLERANCE * (wanted.norm() + own.norm())
             })
         }
     };

@@ -19,7 +19,7 @@ use hamel_codegen::program::Shape;
 use std::path::PathBuf;
 
 /// Largest acceleration that counts as a rounding error of zero.
-const AT_REST: f64 = 1e-9;
+const REST_TOLERANCE: f64 = 1e-9;
 
 /// Prints the linearisation at a state: matrices A and B, and the eigenvalues of A.
 ///
@@ -59,11 +59,11 @@ enum Format {
 }
 
 /// Real or imaginary parts below this, relative to the largest entry of A, are shown as zero.
-const ROUNDING: f64 = 1e-14;
+const PART_TOLERANCE: f64 = 1e-14;
 
 /// Eigenvalues below this, relative to the largest entry of A, are zero to rounding: a rounding error ε moves a double
 /// zero of the characteristic polynomial by √ε.
-const ZERO: f64 = 1e-7;
+const EIGENVALUE_TOLERANCE: f64 = 1e-7;
 
 /// Numbers of a linearisation.
 #[derive(Clone, Debug)]
@@ -125,7 +125,7 @@ pub fn linear(
     let xi_dot = system.motion(x, xi, u).map_err(none)?;
     let flat = function(program, "linearize", params)?
         .call(x, xi, u, &[])
-        .map_err(|_| none(system.at(x)))?;
+        .map_err(|_| none(system.state_message(x)))?;
     let inputs: Vec<String> = generated
         .model
         .inputs
@@ -163,7 +163,7 @@ pub fn linear(
         slopes.extend(
             function
                 .call(x, xi, u, &[])
-                .map_err(|_| none(system.at(x)))?,
+                .map_err(|_| none(system.state_message(x)))?,
         );
         let shape = program.function(name).map_or(Shape::Scalar, |f| f.shape);
         outputs.extend(names::shaped(name, shape));
@@ -186,7 +186,7 @@ pub fn linear(
     if !full {
         let flat = function(program, "displacement_frame", params)?
             .call(x, &[], &[], &[])
-            .map_err(|_| none(system.at(x)))?;
+            .map_err(|_| none(system.state_message(x)))?;
         let columns = flat.len() / x.len().max(1);
         let rows: Vec<Vec<f64>> = flat.chunks(columns.max(1)).map(<[f64]>::to_vec).collect();
         if let Some(tangent) = minimal::tangent(generated, state, &rows) {
@@ -245,7 +245,7 @@ fn text(linear: &Linear) -> String {
         .flatten()
         .fold(0.0, |a: f64, b| a.max(b.abs()));
     let clean = |value: f64| {
-        if value.abs() < ROUNDING * size {
+        if value.abs() < PART_TOLERANCE * size {
             0.0
         } else {
             value
@@ -256,8 +256,8 @@ fn text(linear: &Linear) -> String {
     }
     let values = linear.eigenvalues.iter().flatten();
     let (zeros, others): (Vec<_>, Vec<_>) =
-        values.partition(|(re, im)| re.hypot(*im) <= ZERO * size);
-    let mut zeros = zeroes(&zeros, ROUNDING * size);
+        values.partition(|(re, im)| re.hypot(*im) <= EIGENVALUE_TOLERANCE * size);
+    let mut zeros = zeroes(&zeros, PART_TOLERANCE * size);
     for &&(re, im) in &others {
         let re = clean(re);
         // Zeros stand at their place in the order.
@@ -273,7 +273,7 @@ fn text(linear: &Linear) -> String {
     }
     text.push_str(&zeros);
     let largest = linear.xi_dot.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    if largest > AT_REST {
+    if largest > REST_TOLERANCE {
         text.push_str(&format!(
             "\nthe velocities change here, max |xi_dot| = {}: the matrices hold for this instant\n",
             short(largest)

@@ -14,7 +14,7 @@ pub use reports::imported;
 use crate::added;
 use crate::drawing::Drawing;
 use crate::eval::numbers;
-use crate::failure::{Failure, Said, collected};
+use crate::failure::{Captured, Failure, capture};
 use crate::linearize::{self, Linear};
 use crate::mechanism::{Instance, Mechanism, Varied};
 use crate::method::{self, AUTO, Chosen, Stepper};
@@ -91,7 +91,7 @@ impl Stepped {
         let held = u.into();
         let inputs = |_, _: &_, _: &_| Clone::clone(&held);
         step(&self.instance, &self.stepper, &mut state, h, &inputs)
-            .map_err(|error| self.instance.said(&error))?;
+            .map_err(|error| self.instance.step_message(&error))?;
         x.copy_from_slice(&state.x);
         xi.copy_from_slice(&state.xi);
         Ok(())
@@ -126,12 +126,12 @@ impl Session {
         text: String,
         name: &str,
         options: &RobotOptions,
-    ) -> (Result<Self, Failure>, Said) {
+    ) -> (Result<Self, Failure>, Captured) {
         Session::of(|| Source::new(name.into(), text).given(options))
     }
 
-    fn of(source: impl FnOnce() -> Result<Source, Failure>) -> (Result<Self, Failure>, Said) {
-        collected(|| {
+    fn of(source: impl FnOnce() -> Result<Source, Failure>) -> (Result<Self, Failure>, Captured) {
+        capture(|| {
             let source = source()?.in_numbers();
             let generated = source.derive_available(&[])?;
             Ok(Session {
@@ -330,7 +330,7 @@ impl Session {
     /// Explains a pivot that is not positive, in the names of the description.
     pub fn meaning(&self, cause: Cause) -> String {
         let shown = self.source.shown();
-        singular::meaning(cause, self.active(), shown)
+        singular::cause_message(cause, self.active(), shown)
     }
 
     fn mechanism(&self) -> Result<&Arc<Mechanism>, Failure> {

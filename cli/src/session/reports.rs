@@ -3,7 +3,7 @@
 use super::Session;
 use crate::check::{self, Checked};
 use crate::compare::{self, Comparison};
-use crate::failure::{Failure, Said, collected};
+use crate::failure::{Captured, Failure, capture};
 use crate::ops;
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -25,7 +25,7 @@ impl Session {
     /// # Errors
     /// Errors of the derivation.
     pub fn operations(&self) -> Result<String, Failure> {
-        ops::counted(&self.source)
+        ops::counts_json(&self.source)
     }
 
     /// The output of `hamel ops --advise --format json`.
@@ -33,7 +33,7 @@ impl Session {
     /// # Errors
     /// If there are no velocities to compare.
     pub fn advice(&self) -> Result<String, Failure> {
-        ops::advised(&self.source)
+        ops::advice_json(&self.source)
     }
 
     /// The generated Rust, as for a description in a file of this name.
@@ -96,8 +96,8 @@ pub fn imported(
     text: String,
     name: &str,
     options: &RobotOptions,
-) -> (Result<String, Failure>, Said) {
-    collected(|| {
+) -> (Result<String, Failure>, Captured) {
+    capture(|| {
         let source = Source::new(name.into(), text).robot(options)?;
         Ok(source.text)
     })

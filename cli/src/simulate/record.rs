@@ -167,7 +167,7 @@ pub fn ended(
             ("stiff", why)
         }
         Err(StepError::Singular { time, cause }) => {
-            let cause = system.singular(cause);
+            let cause = system.singular_message(cause);
             let why = format!("the run ends at t = {}: {cause}", short(time));
             ("singular", why)
         }

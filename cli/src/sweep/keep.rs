@@ -8,7 +8,7 @@ use hamel_codegen::syntax::suggest::closest;
 pub const OPTION: &str = "--keep";
 
 /// The possible items, as messages list them.
-const KNOWN: &str =
+const KNOWN_ITEMS: &str =
     "there are end, max(EXPR), min(EXPR), mean(EXPR), at(TIME, EXPR), event(EXPR < EXPR)";
 const NAMES: [&str; 6] = ["end", "max", "min", "mean", "at", "event"];
 
@@ -43,7 +43,7 @@ pub enum Item<'a> {
 pub type Kept<'a> = (Piece<'a>, Item<'a>);
 
 /// The outputs to add for the kept items.
-pub fn added<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
+pub fn outputs_to_add<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
     let of = |(index, (whole, item)): (usize, &Kept<'a>)| match item {
         Item::End => None,
         Item::Of(_, sides) => Some(Added {
@@ -77,7 +77,7 @@ pub fn read(text: &str, until: f64) -> (Vec<Kept<'_>>, Vec<Diagnostic>) {
         }
     }
     if kept.is_empty() && errors.is_empty() {
-        errors.push(whole.wrong("nothing is kept").help(KNOWN));
+        errors.push(whole.wrong("nothing is kept").help(KNOWN_ITEMS));
     }
     (kept, errors)
 }
@@ -88,7 +88,7 @@ fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
     }
     let Some((name, inner)) = piece.call() else {
         let message = format!("`{}` cannot be kept", piece.text);
-        return Err(piece.wrong(message).help(KNOWN));
+        return Err(piece.wrong(message).help(KNOWN_ITEMS));
     };
     let alone = |piece: Piece<'_>| match piece.split(',').as_slice() {
         [one] if !one.text.is_empty() => Ok(()),
@@ -113,7 +113,7 @@ fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
         other => {
             let help = match closest(other, NAMES) {
                 Some(close) => format!("did you mean `{close}`?"),
-                None => KNOWN.into(),
+                None => KNOWN_ITEMS.into(),
             };
             let message = format!("nothing that can be kept is called `{other}`");
             return Err(name.wrong(message).help(help));

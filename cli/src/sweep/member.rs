@@ -241,7 +241,7 @@ fn said(failure: &Failure) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Arguments, prepared};
+    use super::super::{Arguments, prepare};
     use super::{Row, Sweep};
     use crate::source::Source;
     use clap::Parser;
@@ -262,7 +262,7 @@ mod tests {
         let (Some(vary), Some(stepping)) = (&arguments.vary, &arguments.stepping) else {
             panic!("--vary and --until are needed");
         };
-        let sweep = prepared(&arguments, &source.in_numbers(), vary, stepping);
+        let sweep = prepare(&arguments, &source.in_numbers(), vary, stepping);
         sweep.expect("a sweep").0
     }
 

@@ -54,16 +54,16 @@ use std::sync::Arc;
 use submit::{Engine, Job};
 use vary::Vary;
 use watch::Keeping;
-use work::{Done, Stopping, Work};
+use work::{Cancellation, Done, Work};
 
 /// The default of --shard-size: this fraction of all members, within these limits.
-const SHARDS: u64 = 64;
-const FEWEST: u64 = 64;
-const MOST: u64 = 10_000;
+const DEFAULT_SHARDS: u64 = 64;
+const MIN_SHARD_SIZE: u64 = 64;
+const MAX_SHARD_SIZE: u64 = 10_000;
 /// Largest number of shards in a folder.
-const MOST_SHARDS: u64 = 1_000_000;
+const MAX_SHARDS: u64 = 1_000_000;
 /// Default of --tasks.
-const TASKS: u64 = 16;
+const DEFAULT_TASKS: u64 = 16;
 
 /// Runs a system many times, with parameters, starts and inputs that differ from run to run.
 ///
@@ -131,7 +131,7 @@ pub struct Arguments {
     #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
     submit: Option<Engine>,
     /// Number of tasks of --submit; default: 16.
-    #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MOST_SHARDS), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MAX_SHARDS), allow_negative_numbers = true)]
     tasks: Option<u64>,
     /// With --submit, return when all tasks have finished.
     #[arg(long, requires = "submit")]
@@ -203,14 +203,17 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
             "--submit takes a description in a file: tasks read it, too",
         ));
     }
-    let (mut sweep, columns) = prepared(arguments, &source, vary, stepping)?;
-    let manifest = fixed(arguments, &source, &sweep, vary, stepping)?;
-    let part = arguments.shard.unwrap_or(Part::WHOLE);
+    let (mut sweep, columns) = prepare(arguments, &source, vary, stepping)?;
+    let manifest = fix_manifest(arguments, &source, &sweep, vary, stepping)?;
+    let part = arguments.shard.unwrap_or(Part::ALL_SHARDS);
     let threads = arguments.threads.map(usize::from);
     if let Some(engine) = arguments.submit {
         // Create the folder here, and release its lock before tasks begin.
-        drop(Folder::take(out, &manifest, Part::WHOLE)?);
-        let tasks = arguments.tasks.unwrap_or(TASKS).min(manifest.shards());
+        drop(Folder::take(out, &manifest, Part::ALL_SHARDS)?);
+        let tasks = arguments
+            .tasks
+            .unwrap_or(DEFAULT_TASKS)
+            .min(manifest.shards());
         let job = Job {
             engine,
             folder: out,
@@ -225,13 +228,13 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
         };
     }
     let folder = Folder::take(out, &manifest, part)?;
-    let there = folder::there(out, &manifest)?;
+    let there = folder::find_finished(out, &manifest)?;
     let own = (0..manifest.shards()).filter(|shard| part.has(*shard));
     let missing = own.filter(|shard| there.shards.binary_search(shard).is_err());
-    let stopping = stop.map(Stopping::new);
-    sweep.plan.stop = stopping.as_ref().map(Stopping::of_members);
+    let cancellation = stop.map(Cancellation::new);
+    sweep.plan.stop = cancellation.as_ref().map(Cancellation::of_members);
     let work = Work {
-        stopping,
+        cancellation,
         sweep: &sweep,
         manifest: &manifest,
         columns: &columns,
@@ -242,7 +245,7 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     let done = work.on(missing.collect(), threads.unwrap_or_else(cores))?;
     print(&summary(out, done, there.members))?;
     if let Some(place) = &arguments.plot {
-        let there = folder::there(out, &manifest)?;
+        let there = folder::find_finished(out, &manifest)?;
         let name = &sweep.family.generated.model.name;
         plot::run(place, name, &columns, &folder, &there)?;
         print(&format!("wrote {}\n", place.display()))?;
@@ -264,7 +267,7 @@ fn seed(text: &str) -> Result<u64, String> {
 }
 
 /// Prepares the data that members share, and the columns of their rows.
-fn prepared(
+fn prepare(
     arguments: &Arguments,
     source: &Source,
     vary: &str,
@@ -282,12 +285,13 @@ fn prepared(
     };
     let (kept, wrong) = keep::read(&arguments.keep, stepping.until);
     let option = (keep::OPTION, arguments.keep.as_str());
-    let generated = added::derive(source, option, &keep::added(&kept), wrong).map_err(
-        |failure| match source.try_derive_all() {
-            Ok(generated) => both(failure, &generated),
-            Err(_) => failure,
-        },
-    )?;
+    let generated =
+        added::derive(source, option, &keep::outputs_to_add(&kept), wrong).map_err(|failure| {
+            match source.try_derive_all() {
+                Ok(generated) => both(failure, &generated),
+                Err(_) => failure,
+            }
+        })?;
     let keeping = Keeping::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
         both(text::refused(option.0, option.1, &[error]), &generated)
@@ -363,7 +367,7 @@ fn start(
 }
 
 /// The manifest: everything on which rows depend.
-fn fixed(
+fn fix_manifest(
     arguments: &Arguments,
     source: &Source,
     sweep: &Sweep,
@@ -377,14 +381,16 @@ fn fixed(
     let text = |text: Option<String>| text.map_or(Json::Null, Json::Text);
     let number = |number: Option<f64>| number.map_or(Json::Null, Json::Number);
     let members = sweep.vary.members();
-    let size = arguments
-        .shard_size
-        .unwrap_or_else(|| members.div_ceil(SHARDS).clamp(FEWEST, MOST));
-    if members.div_ceil(size) > MOST_SHARDS {
+    let size = arguments.shard_size.unwrap_or_else(|| {
+        members
+            .div_ceil(DEFAULT_SHARDS)
+            .clamp(MIN_SHARD_SIZE, MAX_SHARD_SIZE)
+    });
+    if members.div_ceil(size) > MAX_SHARDS {
         return Err(Failure::usage(format!(
             "{} members make more than {} files: a larger --shard-size is needed",
             group_thousands(members),
-            group_thousands(MOST_SHARDS)
+            group_thousands(MAX_SHARDS)
         )));
     }
     let step = match sweep.plan.tolerance {

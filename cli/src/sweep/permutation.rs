@@ -4,7 +4,7 @@
 //! (J. Black, P. Rogaway, *Ciphers with arbitrary finite domains*, 2002).
 
 /// Rounds of the network.
-const ROUNDS: usize = 8;
+const FEISTEL_ROUNDS: usize = 8;
 
 /// A permutation.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub struct Permutation {
     count: u64,
     /// Half the number of bits of the permuted numbers.
     half: u32,
-    keys: [u64; ROUNDS],
+    keys: [u64; FEISTEL_ROUNDS],
 }
 
 impl Permutation {
@@ -41,14 +41,14 @@ impl Permutation {
         let mask = (1 << self.half) - 1;
         let (mut left, mut right) = (place >> self.half, place & mask);
         for key in self.keys {
-            (left, right) = (right, left ^ (mixed(right ^ key) & mask));
+            (left, right) = (right, left ^ (mix(right ^ key) & mask));
         }
         left << self.half | right
     }
 }
 
 /// The finaliser of SplitMix64: every bit of the result depends on all bits of z.
-fn mixed(mut z: u64) -> u64 {
+fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)

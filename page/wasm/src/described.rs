@@ -1,6 +1,6 @@
 //! A description that was read, as the page shows it: names, the start, and what was said with its places.
 
-use hamel_cli::{Mark, Names, Said, Session};
+use hamel_cli::{Captured, Mark, Names, Session};
 use serde_json::{Value, json};
 
 /// Names and the start of a description.
@@ -24,7 +24,7 @@ pub fn described(session: &Session) -> Value {
 }
 
 /// Errors and warnings at their places in a text, counted as JavaScript counts.
-pub fn marks(said: &Said, text: &str) -> Vec<Value> {
+pub fn marks(said: &Captured, text: &str) -> Vec<Value> {
     said.marks.iter().map(|mark| marked(mark, text)).collect()
 }
 
