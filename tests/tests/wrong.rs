@@ -46,7 +46,7 @@ fn messages() {
             let place = format!("{name}:{}\n", place(&range, &text));
             assert!(rendered.contains(&place), "{rendered}\nhas no {place}");
         }
-        let whole = RENDERED.contains(&&*name);
+        let whole = RENDERED_DESCRIPTIONS.contains(&&*name);
         insta::with_settings!({omit_expression => true, snapshot_suffix => &*name, input_file => &path}, {
             insta::assert_snapshot!(if whole { rendered } else { listed });
         });
@@ -55,7 +55,7 @@ fn messages() {
 
 /// Descriptions whose messages are locked as users see them, underlined in the text: one and many, of one line and of
 /// several, with notes. Of all others the snapshots have the places and the words.
-const RENDERED: [&str; 8] = [
+const RENDERED_DESCRIPTIONS: [&str; 8] = [
     "01-unknown-name.eom",
     "08-shapes-of-statements.eom",
     "13-entries.eom",

@@ -60,8 +60,8 @@ fn the_nearest_point_of_a_circle_is_found() {
 
 #[test]
 fn where_there_is_no_solution_none_is_found() {
-    struct Nowhere;
-    impl Equations for Nowhere {
+    struct Unsolvable;
+    impl Equations for Unsolvable {
         fn directions(&self) -> usize {
             1
         }
@@ -78,5 +78,5 @@ fn where_there_is_no_solution_none_is_found() {
             vec![x[0] + step[0]]
         }
     }
-    assert_eq!(find_nearest(&Nowhere, &[0.4]), None);
+    assert_eq!(find_nearest(&Unsolvable, &[0.4]), None);
 }

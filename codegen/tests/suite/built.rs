@@ -8,7 +8,7 @@ use hamel_codegen::scene::{
 };
 
 /// Names that are legal: words of the language where it does not want them, words of generated code, other letters.
-const NAMES: [&str; 20] = [
+const LEGAL_NAMES: [&str; 20] = [
     "a",
     "m",
     "θ",
@@ -31,21 +31,21 @@ const NAMES: [&str; 20] = [
     "__",
 ];
 /// Names that a statement can declare.
-const DECLARED: usize = 16;
+const DECLARABLE_NAMES: usize = 16;
 
 /// Something built, and how the text has it.
-type Both<T> = (T, String);
+type BuiltAndWritten<T> = (T, String);
 
 fn name(random: &mut Random) -> &'static str {
-    NAMES[random.below(NAMES.len())]
+    LEGAL_NAMES[random.below(LEGAL_NAMES.len())]
 }
 
 fn word(random: &mut Random) -> &'static str {
-    NAMES[random.below(DECLARED)]
+    LEGAL_NAMES[random.below(DECLARABLE_NAMES)]
 }
 
 /// A number, exactly, in one of several spellings.
-fn number(random: &mut Random) -> Both<Expr> {
+fn number(random: &mut Random) -> BuiltAndWritten<Expr> {
     let whole = random.below(2000) as i32;
     let few = random.below(3) as i32;
     match random.below(6) {
@@ -65,7 +65,7 @@ fn number(random: &mut Random) -> Both<Expr> {
     }
 }
 
-fn expression(random: &mut Random, depth: usize) -> Both<Expr> {
+fn expression(random: &mut Random, depth: usize) -> BuiltAndWritten<Expr> {
     if depth == 0 {
         let name = name(random);
         return match random.below(2) {

@@ -10,7 +10,7 @@ use hamel_codegen::program::{FunctionId, Program};
 /// squares and products of such differences, and expanded it is cheaper: a x² + b x + c, the difference of large terms.
 /// The constraint is there because states are then measured near the start alone. Near the origin, where START is 0.1,
 /// nothing is lost.
-const TEXT: &str = "system Far {
+const FAR_POTENTIALS: &str = "system Far {
     coord x, y, z; velocity u, v; rate x = u; rate y = y * v; rate z = -z * v;
     constraint y * z = 1; kinetic (u^2 + v^2) / 2;
     potential ((x - 9999)^2 * (x - 10000)^2 + (x - 10001)^2 * (x - 10002)^2) / 2;
@@ -38,7 +38,7 @@ fn digits_and_cost(program: &Program, x: f64) -> (f64, usize) {
 }
 
 fn emitted(start: &str) -> Program {
-    let generated = from_text(&TEXT.replace("START", start));
+    let generated = from_text(&FAR_POTENTIALS.replace("START", start));
     generated
         .unwrap_or_else(|errors| panic!("{errors:?}"))
         .program

@@ -18,13 +18,13 @@ use pieces::{Piece, View};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Least pivot, relative to the diagonal, of a matrix that counts as regular here.
-const REGULAR: f64 = 1e-3;
+const MIN_PIVOT: f64 = 1e-3;
 /// Rates of change below this, relative to those of the terms, are 0.
-const ZERO: f64 = 1e-9;
+const ZERO_TOLERANCE: f64 = 1e-9;
 /// Rates of change above this are none of rounding.
-const CERTAIN: f64 = 1e-6;
+const CERTAIN_RATE: f64 = 1e-6;
 /// States at which claims are checked in numbers.
-const STATES: usize = 3;
+const STATES_PER_SYSTEM: usize = 3;
 
 /// How the text of a claim is made of its terms.
 #[derive(Clone, Copy)]
@@ -121,7 +121,7 @@ impl Claim {
 /// States at which the constraints hold.
 fn states(system: &System, random: &mut Random) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut all = Vec::new();
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_SYSTEM {
         let near = system
             .start()
             .into_iter()
@@ -131,7 +131,7 @@ fn states(system: &System, random: &mut Random) -> Vec<(Vec<f64>, Vec<f64>)> {
         };
         let v = system.moving(&q, random.numbers(system.own().len()));
         let (pivot, _, independent) = system.regularity(&q);
-        if pivot > REGULAR && independent > REGULAR {
+        if pivot > MIN_PIVOT && independent > MIN_PIVOT {
             all.push((q, v));
         }
     }
@@ -216,7 +216,7 @@ fn faults(seed: u64, count: &AtomicUsize) -> Vec<String> {
     for (i, claim) in kept.truths(random).iter().enumerate() {
         let largest = |claim: &Claim| largest(claim, &kept.system, &states);
         let text = claim.text(&format!("c{i}"));
-        if largest(claim) > ZERO {
+        if largest(claim) > ZERO_TOLERANCE {
             let text = kept.system.text(&[text]);
             return vec![format!(
                 "seed {seed}: not true in numbers: {}\n{text}",
@@ -225,12 +225,12 @@ fn faults(seed: u64, count: &AtomicUsize) -> Vec<String> {
         }
         truths.push(text);
         let twin = claim.twin(random);
-        if largest(&twin) > CERTAIN {
+        if largest(&twin) > CERTAIN_RATE {
             lies.push(twin.text(&format!("c{i}_false")));
         }
     }
     for (i, claim) in kept.doubtful(random).iter().enumerate() {
-        if largest(claim, &kept.system, &states) > CERTAIN {
+        if largest(claim, &kept.system, &states) > CERTAIN_RATE {
             lies.push(claim.text(&format!("w{i}")));
         }
     }

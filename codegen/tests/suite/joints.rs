@@ -7,12 +7,12 @@ use hamel_codegen::program::count::count;
 use hamel_codegen::proof::check::{Verdict, check};
 
 /// Two descriptions of one system in the same coordinates: roundings of a few hundred operations.
-const SAME: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-12;
 /// States tried per pair.
-const STATES: usize = 5;
+const STATES_PER_PAIR: usize = 5;
 
 /// What carries the joint, and what it carries.
-const REST: &str = "
+const SURROUNDINGS: &str = "
     joint ground: revolute [0, 0, 1] moves base { damping 0.3; };
     body on base { mass 2; com [0.1, 0, 0.2]; inertia diag(0.3, 0.2, 0.1) about com; }
     body on g { mass 1.5; com [0.1, 0.2, -0.3]; inertia diag(0.2, 0.3, 0.25) about com; }
@@ -118,7 +118,7 @@ const PAIRS: [(&str, &str); 17] = [
 ];
 
 fn system(text: &str) -> Generated {
-    generated(&format!("system S {{ {text} {REST} }}"))
+    generated(&format!("system S {{ {text} {SURROUNDINGS} }}"))
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn every_kind_is_what_is_written_by_hand() {
     for (joint, hand) in PAIRS {
         let (short, long) = (system(joint), system(hand));
         let program = &short.program;
-        for _ in 0..STATES {
+        for _ in 0..STATES_PER_PAIR {
             let x = random.configuration(&program.blocks);
             // Coordinates stand in the same order in both: those of `ground` are last.
             let (xi, u) = (random.numbers(program.n), random.numbers(program.m));
@@ -136,7 +136,7 @@ fn every_kind_is_what_is_written_by_hand() {
             for function in ["accel", "energy", "inverse_dynamics"] {
                 let (a, b) = (value(&short, function, at), value(&long, function, at));
                 let apart = difference(&a, &b);
-                assert!(apart < SAME, "{joint}: {function} {apart:e}");
+                assert!(apart < TOLERANCE, "{joint}: {function} {apart:e}");
             }
         }
     }

@@ -15,7 +15,7 @@ use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 
 /// Roundings of a program, relative to the size of what it adds up.
-const CLOSE: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-13;
 
 /// A number: its text in the language and its value.
 type Number = (String, Precise);
@@ -324,7 +324,7 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
                 .map(|(a, b)| (a - b).abs())
                 .fold(0.0, f64::max);
             // NaN is no small error.
-            if error <= CLOSE * scale {
+            if error <= TOLERANCE * scale {
                 return Ok(());
             }
             Err(format!(
@@ -349,7 +349,7 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
                 .map(|j| expected_mass[i * n + j] * accel[j])
                 .sum::<f64>();
             let rest = row + bias[i] + slope[i];
-            if rest.is_nan() || rest.abs() > 10.0 * CLOSE * force {
+            if rest.is_nan() || rest.abs() > 10.0 * TOLERANCE * force {
                 return Err(format!(
                     "accel at {x:?}, {xi:?}: {accel:?} leaves {rest:e} of {force:e}"
                 ));

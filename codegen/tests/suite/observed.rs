@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/models");
 /// Step of differences that are extrapolated to fourth order.
-const STEP: f64 = 2e-4;
+const DIFFERENCE_STEP: f64 = 2e-4;
 /// Of the largest entry: h⁴ with what derivatives there are, and roundings over h.
-const CLOSE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-8;
 
 struct Case {
     name: String,
@@ -70,7 +70,7 @@ impl Case {
         let pairs = found.iter().zip(wanted);
         let worst = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         assert!(
-            worst <= CLOSE * size,
+            worst <= TOLERANCE * size,
             "{}: {what} differs by {worst:.1e}: {found:?}, {wanted:?}",
             self.name
         );
@@ -84,7 +84,7 @@ fn slope(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         let pairs = ahead.iter().zip(&behind);
         pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect()
     };
-    let (near, far) = (central(STEP), central(2.0 * STEP));
+    let (near, far) = (central(DIFFERENCE_STEP), central(2.0 * DIFFERENCE_STEP));
     near.iter()
         .zip(&far)
         .map(|(n, f)| (4.0 * n - f) / 3.0)

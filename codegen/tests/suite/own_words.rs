@@ -12,15 +12,15 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 /// Names of fewer letters stand for anything in what messages propose, as in `rate q = v;`.
-const LETTERS: usize = 4;
+const MAX_PLACEHOLDER_LETTERS: usize = 4;
 
 /// What stands behind names that joints, functions and words of Rust become.
-const BEHIND: [&str; 13] = [
+const SUFFIXES: [&str; 13] = [
     "dot", "r", "R", "v", "w", "d", "p", "1", "2", "slopes", "twist", "body", "",
 ];
 
 /// Words of proposals that stand for what the user would write there, or for what a text has there.
-const PROPOSED: &str = "DEFAULT EXPRESSION LOWER NAME Name UPPER argument error f64 false file foot force from ground knee left link mat3
+const PROPOSAL_WORDS: &str = "DEFAULT EXPRESSION LOWER NAME Name UPPER argument error f64 false file foot force from ground knee left link mat3
     mount name number path pchip point rate sym2 sym3 system then torque true values vec2 vec3 vecN when with y_slopes";
 
 /// The identifiers of a text.
@@ -33,7 +33,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 fn vocabulary_words() -> &'static BTreeSet<String> {
     static ALL: OnceLock<BTreeSet<String>> = OnceLock::new();
     ALL.get_or_init(|| {
-        let mut texts = vec![PROPOSED.to_string()];
+        let mut texts = vec![PROPOSAL_WORDS.to_string()];
         let two = |(word, form): (&str, &str)| format!("{word} {form}");
         texts.extend(vocabulary::statements().map(two));
         texts.extend(vocabulary::kinds_of_joints().map(String::from));
@@ -56,7 +56,7 @@ fn foreign(error: &Diagnostic, text: &str) -> Vec<String> {
     let of_joint = |word: &str| {
         let mut rest = word;
         while let Some((front, back)) = rest.rsplit_once('_') {
-            if !BEHIND.contains(&back) {
+            if !SUFFIXES.contains(&back) {
                 return false;
             }
             if front.is_empty() || is_known(front) {
@@ -72,7 +72,7 @@ fn foreign(error: &Diagnostic, text: &str) -> Vec<String> {
     let quoted = said.flat_map(|text| text.split('`').skip(1).step_by(2));
     quoted
         .flat_map(words)
-        .filter(|word| word.len() >= LETTERS || word.contains('_') && *word != "_")
+        .filter(|word| word.len() >= MAX_PLACEHOLDER_LETTERS || word.contains('_') && *word != "_")
         .filter(|word| !is_known(word) && !of_joint(word))
         .map(|word| {
             format!(

@@ -17,7 +17,7 @@ use hamel_codegen::syntax::parse_text;
 
 /// Everything that has a route of its own: bodies with their centres beside the origin, a particle, a
 /// kinetic energy that was written, noncommuting velocities, loads and dampers of all kinds.
-const WHOLE: &str = "system Whole {
+const ALL_ROUTES: &str = "system Whole {
     param m = 1.3, g = 9.81, J = 0.02, k = 3, c = 0.4;
     param s: vec3 = [0.1, -0.2, 0.3];
     param Theta: sym3 = [[2.1, 0.1, -0.2], [0.1, 1.7, 0.15], [-0.2, 0.15, 1.2]];
@@ -46,7 +46,7 @@ const WHOLE: &str = "system Whole {
 
 #[test]
 fn the_numbers_are_those_of_the_symbolic_derivations() {
-    let system = parse_text(WHOLE).expect("a description");
+    let system = parse_text(ALL_ROUTES).expect("a description");
     let model = build(&system).expect("a model");
     let symbols = Symbols::new(&model).expect("Y");
     let graph = &symbols.geometry.model.graph;
@@ -69,7 +69,7 @@ fn the_numbers_are_those_of_the_symbolic_derivations() {
 #[test]
 fn a_wrong_term_of_any_function_is_refused() {
     let Generated { model, program, .. } =
-        from_text(WHOLE).unwrap_or_else(|errors| panic!("{errors:?}"));
+        from_text(ALL_ROUTES).unwrap_or_else(|errors| panic!("{errors:?}"));
     assert!(validate::validate(&model, &program).is_ok());
     let mut refused = 0;
     for index in 0..program.functions.len() {

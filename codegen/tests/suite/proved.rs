@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// The most that a model can be asked for, then less.
-const ASKED: [&str; 3] = [
+const REQUESTS: [&str; 3] = [
     "all, linearize, inverse_dynamics_slopes, parameter_slopes, centre_of_mass, centroidal_momentum, centroidal_map, centroidal_bias",
     "all, linearize",
     "all",
@@ -56,7 +56,7 @@ fn a_wrong_sign_in_any_function_is_refused() {
     let all: Vec<(String, Vec<String>, usize)> = (some(some(models(&folder))).par_iter())
         .map(|path| {
             let name = path.display().to_string();
-            let mut asked = ASKED.iter().map(|asked| asked_for(path, asked));
+            let mut asked = REQUESTS.iter().map(|asked| asked_for(path, asked));
             let generated = asked.find_map(Result::ok);
             let (found, tried) = unnoticed(&generated.unwrap_or_else(|| panic!("{name}")));
             (name, found, tried)

@@ -35,12 +35,12 @@ pub struct Example {
 }
 
 /// The folders that have examples.
-const FOLDERS: [&str; 2] = ["tests/wrong", "docs/book/errors"];
+const EXAMPLE_FOLDERS: [&str; 2] = ["tests/wrong", "docs/book/errors"];
 
 /// All examples, in the order of their files.
 pub fn examples(root: &Path) -> Vec<Example> {
     let mut files: Vec<PathBuf> = Vec::new();
-    for folder in FOLDERS {
+    for folder in EXAMPLE_FOLDERS {
         let entries = fs::read_dir(root.join(folder)).into_iter().flatten();
         files.extend(entries.filter_map(|entry| Some(entry.ok()?.path())));
     }
@@ -179,9 +179,9 @@ fn statement_at(text: &str, place: usize) -> &'static str {
 }
 
 /// Lines of the code around a place.
-const BEFORE: usize = 14;
+const LINES_BEFORE: usize = 14;
 /// Lines behind it.
-const BEHIND: usize = 5;
+const LINES_AFTER: usize = 5;
 
 /// The places where sources below a folder make messages, each with the code around it.
 pub fn sites(root: &Path, folder: &str) -> BTreeMap<Site, String> {
@@ -214,8 +214,12 @@ pub fn sites(root: &Path, folder: &str) -> BTreeMap<Site, String> {
             if line.trim_start().starts_with("//") {
                 continue;
             }
-            let first = (row as usize).saturating_sub(BEFORE);
-            let near: Vec<&str> = code.lines().skip(first).take(BEFORE + BEHIND).collect();
+            let first = (row as usize).saturating_sub(LINES_BEFORE);
+            let near: Vec<&str> = code
+                .lines()
+                .skip(first)
+                .take(LINES_BEFORE + LINES_AFTER)
+                .collect();
             let rest = near.join(" ");
             found.insert(
                 (path.display().to_string(), row, column as u32 + 1),

@@ -46,7 +46,7 @@ pub struct Exhibit {
 }
 
 /// An exhibit as it is shown.
-pub struct Shown {
+pub struct ShownExhibit {
     /// Its picture.
     pub picture: String,
     /// Names of functions with their operations and their pairs of sine and cosine.
@@ -54,7 +54,7 @@ pub struct Shown {
 }
 
 /// The functions whose operations are shown, with what they are called.
-const COUNTED: [(&str, &str); 4] = [
+const COUNTED_FUNCTIONS: [(&str, &str); 4] = [
     ("accel", "accelerations"),
     ("inverse_dynamics", "forces"),
     ("mass_matrix", "mass matrix"),
@@ -114,11 +114,11 @@ impl Exhibit {
     ///
     /// # Errors
     /// What the commands say.
-    pub fn shown(&self, shell: &Shell) -> Result<Shown> {
+    pub fn shown(&self, shell: &Shell) -> Result<ShownExhibit> {
         let file = self.file();
         let picture = shell.run(&format!("hamel draw {file} {}", self.draw))?;
         let table = shell.run(&format!("hamel ops {file}"))?;
-        let counts = COUNTED.iter().filter_map(|(function, name)| {
+        let counts = COUNTED_FUNCTIONS.iter().filter_map(|(function, name)| {
             let mut rows = table
                 .lines()
                 .map(|line| line.split_whitespace().collect::<Vec<_>>());
@@ -126,14 +126,14 @@ impl Exhibit {
             // add, mul, div, sqrt, sincos, other, flops, unshared.
             Some((*name, row.get(7)?.parse().ok()?, row.get(5)?.parse().ok()?))
         });
-        Ok(Shown {
+        Ok(ShownExhibit {
             picture,
             counts: counts.collect(),
         })
     }
 
     /// Its section of the page.
-    pub fn section(&self, shown: &Shown) -> String {
+    pub fn section(&self, shown: &ShownExhibit) -> String {
         let mut text = format!(
             "## {}\n\n![{}](gallery/{}.svg)\n\n{} {}\n\n",
             self.title, self.title, self.name, self.about, self.remark

@@ -10,7 +10,7 @@ use hamel_book::page::{CRATES, blocks, own};
 use hamel_book::shell::Shell;
 
 /// Lines of a README at most.
-const SHORT: usize = 150;
+const MAX_README_LINES: usize = 150;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -162,5 +162,5 @@ fn every_chapter_is_listed() {
 #[test]
 fn the_readme_is_short() {
     let text = fs::read_to_string(root().join("README.md")).expect("a README");
-    assert!(text.lines().count() <= SHORT);
+    assert!(text.lines().count() <= MAX_README_LINES);
 }

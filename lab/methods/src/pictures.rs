@@ -8,34 +8,34 @@ use hamel_report::page::Picture;
 use hamel_report::plot::{self, Panel, Path, PlotError, Poinsot};
 
 /// Moments of inertia of a plate, and its start near the middle axis.
-const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
-const START: [f64; 3] = [1e-3, 1.0, 0.0];
-const UNTIL: f64 = 100.0;
-const STEP: f64 = 0.01;
+const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
+const START_VELOCITY: [f64; 3] = [1e-3, 1.0, 0.0];
+const DURATION: f64 = 100.0;
+const STEP_LENGTH: f64 = 0.01;
 /// Steps between two points.
-const STRIDE: u32 = 10;
+const STEPS_PER_POINT: u32 = 10;
 
 /// Both pictures, with the names of their files.
 ///
 /// # Errors
 /// Where the motion or the drawing fails.
 pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
-    let [j1, j2, j3] = MOMENTS;
+    let [j1, j2, j3] = INERTIA;
     let body = PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 })
         .map_err(|error| BenchError(error.to_string()))?;
     let mut state: State<PrincipalAxes<f64>> = State::start(&body);
-    state.xi = START;
+    state.xi = START_VELOCITY;
     let mut track = Vec::new();
     let mut count = 0;
     integrate(
         &body,
         Rkmk4,
         &mut state,
-        STEP,
-        UNTIL,
+        STEP_LENGTH,
+        DURATION,
         |_, _: &_, _: &_| [],
         |state| {
-            if count % STRIDE == 0 {
+            if count % STEPS_PER_POINT == 0 {
                 track.push(state.clone());
             }
             count += 1;
@@ -50,7 +50,7 @@ pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
             .lines
             .push((format!("ω{}", ["₁", "₂", "₃"][axis]), values));
     }
-    let momentum = |w: &[f64; 3]| std::array::from_fn(|i| MOMENTS[i] * w[i]);
+    let momentum = |w: &[f64; 3]| std::array::from_fn(|i| INERTIA[i] * w[i]);
     let poinsot = Poinsot {
         momenta: track.iter().map(|state| momentum(&state.xi)).collect(),
         inertia: [[j1, 0.0, 0.0], [0.0, j2, 0.0], [0.0, 0.0, j3]],
@@ -74,7 +74,7 @@ pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
         "Poinsot's construction",
         "The same motion: P stays where sphere and ellipsoid meet.",
         &poinsot,
-        UNTIL,
+        DURATION,
     );
     Ok(vec![
         (

@@ -9,18 +9,18 @@ use hamel_report::solution::{Solution, SolutionError};
 use std::fmt;
 
 /// A number of steps that is doubled again and again.
-const COARSEST: u64 = 10;
-const DOUBLINGS: u32 = 14;
+const MIN_STEPS: u64 = 10;
+const STEP_DOUBLINGS: u32 = 14;
 /// Errors that steps may make where they are chosen by it.
-const TOLERANCES: [f64; 11] = [
+const STEP_TOLERANCES: [f64; 11] = [
     1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13,
 ];
 /// Every timing takes at least so long, in s.
-const LEAST: f64 = 3e-4;
+const MIN_TIMING: f64 = 3e-4;
 /// Errors below this are rounding.
-const FLOOR: f64 = 1e-12;
+const ERROR_FLOOR: f64 = 1e-12;
 /// Steps of a long run.
-const LONG: u64 = 1_000_000;
+const LONG_RUN_STEPS: u64 = 1_000_000;
 
 /// What went wrong before anything was measured.
 #[derive(Debug)]
@@ -69,11 +69,11 @@ impl Runner<'_> {
     /// Measures entries; and, where a step is given, a million of such steps of each of ours.
     pub fn entries(&mut self, entries: &[Entry], long: Option<f64>) {
         let plan = Plan {
-            steps: Plan::doublings(COARSEST, DOUBLINGS),
-            tolerances: TOLERANCES.to_vec(),
+            steps: Plan::doublings(MIN_STEPS, STEP_DOUBLINGS),
+            tolerances: STEP_TOLERANCES.to_vec(),
             repeats: self.effort.repeats,
-            least: LEAST,
-            floor: FLOOR,
+            least: MIN_TIMING,
+            floor: ERROR_FLOOR,
         };
         let tick = self.tick;
         measure(&mut self.case, entries, &plan, &mut |done, all| {
@@ -84,7 +84,7 @@ impl Runner<'_> {
             let ours = entries.iter().filter(|entry| entry.kind != Kind::Peer);
             for entry in ours {
                 self.drifts
-                    .extend(drift(&self.case.name, entry, step, LONG));
+                    .extend(drift(&self.case.name, entry, step, LONG_RUN_STEPS));
             }
         }
     }

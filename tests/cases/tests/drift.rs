@@ -17,17 +17,17 @@ fn steps() -> u32 {
 }
 
 /// Largest energy error of the last quarter over that of the first; an error that does not grow.
-const GROWTH: f64 = 1.05;
+const MAX_GROWTH: f64 = 1.05;
 /// Energy errors below are rounding, which may grow: a random walk of a million steps of ten
 /// operations each.
 const ENERGY_ROUNDING: f64 = 1e-11;
 /// Vertical or total momentum, relative.
-const MOMENTUM: f64 = 1e-10;
+const MOMENTUM_TOLERANCE: f64 = 1e-10;
 /// |RᵀR − I| after every step.
-const ORTHONORMAL: f64 = 1e-14;
+const ORTHONORMALITY_TOLERANCE: f64 = 1e-14;
 
 /// Largest energy error over that of the prototypes, which are known to two digits.
-const SEEN: f64 = 1.1;
+const PROTOTYPE_MARGIN: f64 = 1.1;
 
 /// What a run strays by; energies relative to T₀ + m |g| |s|, the most that a top's kinetic and potential
 /// energies are at its start.
@@ -40,13 +40,13 @@ struct Drift {
 }
 
 /// What differs between bodies.
-trait Watched: System<Scalar = f64> {
+trait WatchedBody: System<Scalar = f64> {
     fn body(&self) -> &Body<f64>;
     fn rotation(x: &Self::Coordinates) -> so3::Matrix<f64>;
     fn velocity(xi: &Self::Velocities) -> so3::Vector<f64>;
 }
 
-impl Watched for Top<f64> {
+impl WatchedBody for Top<f64> {
     fn body(&self) -> &Body<f64> {
         &self.0
     }
@@ -58,7 +58,7 @@ impl Watched for Top<f64> {
     }
 }
 
-impl Watched for Spin<Top<f64>> {
+impl WatchedBody for Spin<Top<f64>> {
     fn body(&self) -> &Body<f64> {
         &self.0.0
     }
@@ -70,7 +70,7 @@ impl Watched for Spin<Top<f64>> {
     }
 }
 
-impl Watched for QuaternionTop<f64> {
+impl WatchedBody for QuaternionTop<f64> {
     fn body(&self) -> &Body<f64> {
         &self.0
     }
@@ -82,7 +82,7 @@ impl Watched for QuaternionTop<f64> {
     }
 }
 
-fn run<Sys: Watched, M: Method<Sys>>(system: &Sys, method: M, h: f64, steps: u32) -> Drift {
+fn run<Sys: WatchedBody, M: Method<Sys>>(system: &Sys, method: M, h: f64, steps: u32) -> Drift {
     let body = system.body();
     let energy = |state: &State<Sys>| {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
@@ -130,15 +130,18 @@ fn assert_steady(what: &str, drift: &Drift, expected: Option<f64>) {
     println!("{what}: {drift:?}");
     let [first, .., last] = drift.energy;
     assert!(
-        last <= (GROWTH * first).max(ENERGY_ROUNDING),
+        last <= (MAX_GROWTH * first).max(ENERGY_ROUNDING),
         "{what}: {drift:?}"
     );
-    assert!(drift.momentum <= MOMENTUM, "{what}: {drift:?}");
-    assert!(drift.orthonormality <= ORTHONORMAL, "{what}: {drift:?}");
+    assert!(drift.momentum <= MOMENTUM_TOLERANCE, "{what}: {drift:?}");
+    assert!(
+        drift.orthonormality <= ORTHONORMALITY_TOLERANCE,
+        "{what}: {drift:?}"
+    );
     if let Some(expected) = expected {
         let largest = first.max(last);
         assert!(
-            (0.9..SEEN).contains(&(largest / expected)),
+            (0.9..PROTOTYPE_MARGIN).contains(&(largest / expected)),
             "{what}: {largest:e}"
         );
     }
@@ -166,7 +169,7 @@ fn splitting_by_the_exact_flow() {
     println!("{drift:?}");
     assert!(drift.energy.iter().all(|error| *error < 1e-10), "{drift:?}");
     assert!(
-        drift.momentum <= MOMENTUM && drift.orthonormality <= ORTHONORMAL,
+        drift.momentum <= MOMENTUM_TOLERANCE && drift.orthonormality <= ORTHONORMALITY_TOLERANCE,
         "{drift:?}"
     );
 }
@@ -218,11 +221,14 @@ fn collocation() {
         let drift = run(&top(case), Gauss4, h, steps);
         let [first, .., last] = drift.energy;
         assert!(
-            last <= GROWTH * first && first < 1.2e-9,
+            last <= MAX_GROWTH * first && first < 1.2e-9,
             "{case}: {drift:?}"
         );
         assert!(drift.momentum < momentum, "{case}: {drift:?}");
-        assert!(drift.orthonormality <= ORTHONORMAL, "{case}: {drift:?}");
+        assert!(
+            drift.orthonormality <= ORTHONORMALITY_TOLERANCE,
+            "{case}: {drift:?}"
+        );
         assert_steady(case, &run(&top(case), Gauss6, h, steps), None);
     }
 }

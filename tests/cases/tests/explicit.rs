@@ -6,12 +6,12 @@ use hamel::methods::{Cf4, Method, Rkmk4, Rkmk8, Rkmk54};
 use hamel_cases::{Case, bodies, mechanisms};
 
 /// How far a measured error may be from the expected one.
-const SIZE: f64 = 0.10;
-/// Errors below [`SMALL`] carry rounding that another order of operations changes: the factor allowed.
-const ROUNDED: f64 = 3.0;
-const SMALL: f64 = 1e-9;
+const ERROR_TOLERANCE: f64 = 0.10;
+/// Errors below [`ROUNDED_ERROR`] carry rounding that another order of operations changes: the factor allowed.
+const ROUNDING_FACTOR: f64 = 3.0;
+const ROUNDED_ERROR: f64 = 1e-9;
 /// Rounding alone, over a run of thousands of steps: expected errors below are bounds.
-const FLOOR: f64 = 1e-11;
+const ROUNDING_FLOOR: f64 = 1e-11;
 
 /// Expected errors after some numbers of steps.
 type Sizes<'a> = &'a [(u32, f64)];
@@ -24,12 +24,12 @@ where
     for &(n, expected) in sizes {
         let end = case.run(method, case.until, n).expect(case.name);
         let error = case.error(&end);
-        let holds = if expected <= FLOOR {
-            error <= ROUNDED * FLOOR
-        } else if expected < SMALL {
-            error <= ROUNDED * expected && error >= expected / ROUNDED
+        let holds = if expected <= ROUNDING_FLOOR {
+            error <= ROUNDING_FACTOR * ROUNDING_FLOOR
+        } else if expected < ROUNDED_ERROR {
+            error <= ROUNDING_FACTOR * expected && error >= expected / ROUNDING_FACTOR
         } else {
-            (error / expected - 1.0).abs() <= SIZE
+            (error / expected - 1.0).abs() <= ERROR_TOLERANCE
         };
         assert!(
             holds,

@@ -10,9 +10,9 @@ use hamel_cases::by_hand::{Reference, Spin, Top, distance, run, slopes};
 use hamel_report::baselines::{Buss, Slide};
 
 /// How far a measured error may be from the expected one.
-const SIZE: f64 = 0.10;
+const ERROR_TOLERANCE: f64 = 0.10;
 /// The same factor where the expected error is below 1e-9, near rounding.
-const SMALL: f64 = 3.0;
+const ROUNDING_FACTOR: f64 = 3.0;
 
 const TOPS: [(&str, f64, u32); 3] = [
     ("heavy-top-benchmark-150", 1.0, 2000),
@@ -71,11 +71,14 @@ fn compare(what: &str, case: &str, error: f64, expected: f64) {
     println!("{what}, {case}: {error:.3e}, expected {expected:.2e}");
     if expected >= 1e-9 {
         assert!(
-            (error / expected - 1.0).abs() <= SIZE,
+            (error / expected - 1.0).abs() <= ERROR_TOLERANCE,
             "{what}, {case}: {error:e}"
         );
     } else {
-        assert!(error <= SMALL * expected, "{what}, {case}: {error:e}");
+        assert!(
+            error <= ROUNDING_FACTOR * expected,
+            "{what}, {case}: {error:e}"
+        );
     }
 }
 
@@ -149,11 +152,15 @@ fn sizes_of_baselines() {
 }
 
 /// Below, rounding shows in the slopes.
-const CLEAN: f64 = 5e-13;
+const MIN_CLEAN_ERROR: f64 = 5e-13;
 
 /// Slopes of errors between halvings, as far as they are above rounding.
 fn assert_order(what: &str, errors: &[f64], order: f64, tolerance: f64) {
-    let clean: Vec<f64> = errors.iter().copied().filter(|e| *e > CLEAN).collect();
+    let clean: Vec<f64> = errors
+        .iter()
+        .copied()
+        .filter(|e| *e > MIN_CLEAN_ERROR)
+        .collect();
     assert!(clean.len() >= 3, "{what}: {errors:?}");
     let slopes = slopes(&clean);
     println!("{what}: errors {errors:?}, slopes {slopes:.3?}");

@@ -19,7 +19,7 @@ use std::path::Path;
 
 /// What a run of 2 s in steps of 0.5 ms may lose of an invariant, relative: h⁴ times the fifth power
 /// of rates of up to 20 / s.
-const DRIFT: f64 = 1e-7;
+const MAX_DRIFT: f64 = 1e-7;
 
 fn text(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));
@@ -140,7 +140,7 @@ fn driven<Sys>(
     };
     integrate(system, Rkmk4, &mut state, 5e-4, 2.0, inputs, observe).expect("a run");
     for worst in worst {
-        assert!(worst < DRIFT, "{worst:e}");
+        assert!(worst < MAX_DRIFT, "{worst:e}");
     }
 }
 

@@ -14,9 +14,9 @@ use std::path::{Path, PathBuf};
 
 /// Step of central differences, extrapolated once: truncation like h⁴/480 times fifth derivatives
 /// (rates reach 150 / s), rounding 1e-16 / h.
-const STEP: f64 = 1e-4;
+const DIFFERENCE_STEP: f64 = 1e-4;
 /// What they may be off by, relative to the largest entry.
-const DIFFERENCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-7;
 
 fn models() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
@@ -118,7 +118,7 @@ fn difference(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         let pairs = after.iter().zip(&before);
         pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect()
     };
-    let (coarse, fine) = (central(STEP), central(STEP / 2.0));
+    let (coarse, fine) = (central(DIFFERENCE_STEP), central(DIFFERENCE_STEP / 2.0));
     let pairs = coarse.iter().zip(&fine);
     pairs.map(|(c, f)| (4.0 * f - c) / 3.0).collect()
 }
@@ -165,7 +165,7 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
         let check = |what: &str, j: usize, found: &[f64], expected: &[f64]| {
             for (a, b) in found.iter().zip(expected) {
                 assert!(
-                    (a - b).abs() <= DIFFERENCE * size,
+                    (a - b).abs() <= TOLERANCE * size,
                     "{name}, {what}, column {}: {found:?} against {expected:?}",
                     j + 1
                 );

@@ -18,7 +18,7 @@ use hamel_tests::spherical_bob::SphericalBob;
 use hamel_tests::two_bodies::TwoBodies;
 
 /// Two methods of high order with steps at which both err by rounding.
-const SAME: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 
 fn end<Sys, M>(system: &Sys, method: M, steps: u32, until: f64, u: &Sys::Inputs) -> State<Sys>
 where
@@ -54,7 +54,7 @@ where
     for found in ends {
         let error = relative(found.x.as_ref(), expected.x.as_ref());
         let error = error.max(relative(found.xi.as_ref(), expected.xi.as_ref()));
-        assert!(error <= SAME, "{error:e}");
+        assert!(error <= TOLERANCE, "{error:e}");
     }
 }
 
@@ -90,7 +90,7 @@ fn chains_of_bodies_run_by_gauss() {
     let system = TwoBodies::default();
     let expected = end(&system, Rkmk8, 400, 0.5, &[]);
     let found = end(&system, Gauss6, 400, 0.5, &[]);
-    assert!(relative(&found.x, &expected.x) <= SAME);
+    assert!(relative(&found.x, &expected.x) <= TOLERANCE);
 }
 
 /// Constraints of coordinates that no chart keeps hold to rounding over long runs, and leading x back to them leaves

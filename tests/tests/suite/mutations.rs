@@ -19,13 +19,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Cases that go through the parser, and at full size.
-const PARSED: [u64; 2] = [10_000, 1_000_000];
+const PARSED_CASES: [u64; 2] = [10_000, 1_000_000];
 /// Cases that go through all stages, and at full size, unless `HAMEL_FUZZ_CASES` says otherwise.
-const GENERATED: [u64; 2] = [500, 100_000];
+const GENERATED_CASES: [u64; 2] = [500, 100_000];
 /// Time for one case, generous: the machine may be busy with other tests.
-const PATIENCE: Duration = Duration::from_secs(10);
+const CASE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Threads need as much stack as a program's main thread has.
-const STACK: usize = 8 << 20;
+const STACK_BYTES: usize = 8 << 20;
 
 fn number(variable: &str, otherwise: usize) -> usize {
     let text = std::env::var(variable).ok();
@@ -71,7 +71,7 @@ fn run(
                 *work.lock().expect("unpoisoned") = None;
                 done.fetch_add(1, Ordering::Relaxed);
             };
-            let thread = std::thread::Builder::new().stack_size(STACK);
+            let thread = std::thread::Builder::new().stack_size(STACK_BYTES);
             thread.spawn_scoped(scope, worker).expect("a thread");
         }
         while done.load(Ordering::Relaxed) < workers {
@@ -79,11 +79,11 @@ fn run(
             for work in &work {
                 let work = work.lock().expect("unpoisoned");
                 if let Some((text, since)) = work.as_ref()
-                    && since.elapsed() > PATIENCE
+                    && since.elapsed() > CASE_TIMEOUT
                     && failure.lock().expect("unpoisoned").is_none()
                 {
                     // The thread cannot be stopped, so the process is.
-                    eprintln!("more than {PATIENCE:?} for:\n{text}");
+                    eprintln!("more than {CASE_TIMEOUT:?} for:\n{text}");
                     std::process::exit(1);
                 }
             }
@@ -122,7 +122,7 @@ fn smallest(text: &str, fails: impl Fn(&str) -> bool) -> String {
 }
 
 /// Joints and coordinates of a description that takes its time by right.
-const LONG: usize = 24;
+const LONG_DESCRIPTION_JOINTS: usize = 24;
 
 /// Whether a description repeats so much that its equations of motion are long, not its derivation.
 fn is_long(text: &str) -> bool {
@@ -130,7 +130,9 @@ fn is_long(text: &str) -> bool {
         return false;
     };
     let moves = |item: &&Item| matches!(item.kind, ItemKind::Joint(_) | ItemKind::Coord(_));
-    expand(&system).is_ok_and(|written| written.system.items.iter().filter(moves).count() > LONG)
+    expand(&system).is_ok_and(|written| {
+        written.system.items.iter().filter(moves).count() > LONG_DESCRIPTION_JOINTS
+    })
 }
 
 /// All stages, and the text of the errors; whether the text is right.
@@ -151,7 +153,8 @@ fn generate(text: &str) -> bool {
 fn no_text_panics() {
     let corpus = Corpus::read();
     let seed = number("HAMEL_FUZZ_SEED", 0x4a6d) as u64;
-    let [parsed, generated] = [PARSED, GENERATED].map(|[few, many]| size(few, many) as usize);
+    let [parsed, generated] =
+        [PARSED_CASES, GENERATED_CASES].map(|[few, many]| size(few, many) as usize);
     let cases = number("HAMEL_FUZZ_CASES", generated);
     println!("seed {seed}, {parsed} parsed, {cases} generated");
     let mutate = |case: usize| corpus.mutate(&mut Random::new(seed + case as u64), false);

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Roundings of M and of its inverse.
-const CLOSE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-9;
 
 /// Guards of velocities, with their values at the start.
 fn pivots(program: &Program, params: &[f64]) -> Vec<(usize, f64)> {
@@ -59,7 +59,7 @@ fn pivots_lie_between_the_inertias_of_their_velocities() {
         for &(place, pivot) in &pivots {
             let (least, most) = (1.0 / inverse[(place, place)], mass[(place, place)]);
             assert!(
-                (1.0 - CLOSE) * least <= pivot && pivot <= (1.0 + CLOSE) * most,
+                (1.0 - TOLERANCE) * least <= pivot && pivot <= (1.0 + TOLERANCE) * most,
                 "{}: `{}`: {least} <= {pivot} <= {most}",
                 path.display(),
                 program.velocity(place)

@@ -14,12 +14,12 @@ use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::reference::{Reference, distance, relative, run};
 
 /// How far a measured error may be from the expected one.
-const SIZE: f64 = 0.10;
+const ERROR_TOLERANCE: f64 = 0.10;
 
 fn assert_size(what: &str, error: f64, expected: f64) {
     println!("{what}: {error:.3e}, expected {expected:.2e}");
     assert!(
-        (error / expected - 1.0).abs() <= SIZE,
+        (error / expected - 1.0).abs() <= ERROR_TOLERANCE,
         "{what}: error {error:e}, expected {expected:e}"
     );
 }
@@ -121,7 +121,7 @@ fn join<const A: usize, const B: usize, const C: usize>(a: [f64; A], b: [f64; B]
 
 /// Errors of the chaotic double pendulum: the coarse run has lost the motion, the fine one nearly so,
 /// and both do it in the same way as the independent implementation.
-const CHAOTIC: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
+const CHAOTIC_ERRORS: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
 
 #[test]
 fn chaotic_double_pendulum_on_circles() {
@@ -137,7 +137,7 @@ fn chaotic_double_pendulum_on_circles() {
     .expect("a pendulum");
     let [a, b] = reference.initial::<2>("theta").map(hamel::s1::exp);
     let (x, xi) = (join(a, b), reference.initial("thetadot"));
-    for (n, expected) in CHAOTIC {
+    for (n, expected) in CHAOTIC_ERRORS {
         let mut end = State { t: 0.0, x, xi };
         // The circle forgets the turns that the reference counts: unwind them step by step.
         let mut theta = reference.initial::<2>("theta");
@@ -170,7 +170,7 @@ fn planar_error(reference: &Reference, theta: &[f64], rates: &[f64]) -> f64 {
 #[test]
 fn flips_come_when_the_closed_form_says() {
     /// Error of the method at these steps, 1e-9, with margin.
-    const FLIP: f64 = 1e-8;
+    const FLIP_TOLERANCE: f64 = 1e-8;
     let reference = Reference::read("free-dzhanibekov-1e-3");
     let system = principal_axes(&reference);
     let (r0, w0) = (reference.initial("R"), reference.initial::<3>("omega"));
@@ -178,6 +178,10 @@ fn flips_come_when_the_closed_form_says() {
     let flipped = ends(&system, r0, w0, half, 2000);
     let back = ends(&system, r0, w0, 2.0 * half, 4000);
     println!("{:?} {:?}", flipped.xi, back.xi);
-    assert!((flipped.xi[1] + w0[1]).abs() < FLIP, "{:?}", flipped.xi);
-    assert!(distance(&back.xi, &w0) < FLIP, "{:?}", back.xi);
+    assert!(
+        (flipped.xi[1] + w0[1]).abs() < FLIP_TOLERANCE,
+        "{:?}",
+        flipped.xi
+    );
+    assert!(distance(&back.xi, &w0) < FLIP_TOLERANCE, "{:?}", back.xi);
 }

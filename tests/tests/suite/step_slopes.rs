@@ -44,15 +44,15 @@ hamel::rigid_eom! {
 }
 
 /// Differences over steps of 2⁻⁴ … 2⁻⁹, extrapolated: truncation like 2⁻³⁶ of derivatives of order 13, rounding 1e-13.
-const DIFFERENCE: f64 = 2e-10;
+const DIFFERENCE_TOLERANCE: f64 = 2e-10;
 /// States by the same sums in another order.
-const STATE: f64 = 1e-14;
+const STATE_TOLERANCE: f64 = 1e-14;
 /// States of steps that iterate.
-const CONVERGED: f64 = 1e-10;
+const ITERATED_STATE_TOLERANCE: f64 = 1e-10;
 /// Differences of such.
-const ITERATED: f64 = 1e-7;
+const ITERATED_DIFFERENCE_TOLERANCE: f64 = 1e-7;
 /// Sums of products of slopes.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING_TOLERANCE: f64 = 1e-12;
 
 /// Rows of numbers.
 type Rows = Vec<Vec<f64>>;
@@ -112,8 +112,8 @@ fn chart(blocks: &[Block], mut x: &[f64], mut dx: &[f64]) -> Vec<f64> {
 type Step<'a, Sys> = dyn Fn(&mut State<Sys>, &<Sys as System>::Inputs) + 'a;
 
 /// A step from the start with its slopes, at inputs.
-type Slopes<'a, Sys> = dyn Fn(&<Sys as System>::Inputs) -> Sloped<Sys> + 'a;
-type Sloped<Sys> = (State<Sys>, <Sys as Tangent>::Slopes);
+type Slopes<'a, Sys> = dyn Fn(&<Sys as System>::Inputs) -> StepWithSlopes<Sys> + 'a;
+type StepWithSlopes<Sys> = (State<Sys>, <Sys as Tangent>::Slopes);
 
 /// The same, with the slopes in a table of the caller's.
 type SlopesInto<'a, Sys> =
@@ -211,7 +211,11 @@ where
     Sys: Tangent<Scalar = f64>,
 {
     let exact = !name.ends_with("backward-euler");
-    let close = if exact { DIFFERENCE } else { ITERATED };
+    let close = if exact {
+        DIFFERENCE_TOLERANCE
+    } else {
+        ITERATED_DIFFERENCE_TOLERANCE
+    };
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
     let (end, slopes) = (steps.slopes)(&inputs);
@@ -226,7 +230,11 @@ where
     // Explicit methods add up in another order; implicit ones go on until slopes have converged, too.
     let numbers = |state: &State<Sys>| [state.x.as_ref(), state.xi.as_ref()].concat();
     for (found, expected) in numbers(&end).iter().zip(numbers(&alone)) {
-        let close = if exact { STATE } else { CONVERGED };
+        let close = if exact {
+            STATE_TOLERANCE
+        } else {
+            ITERATED_STATE_TOLERANCE
+        };
         assert!(
             (found - expected).abs() <= close * expected.abs().max(1.0),
             "{name}: {found} {expected}"
@@ -466,7 +474,7 @@ fn methods_for_long_runs_keep_the_symplectic_form() {
         let before = form(&start);
         let worst = pulled.iter().flatten().zip(before.iter().flatten());
         let worst = worst.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert_eq!(worst < ROUNDING * 10.0, kept, "{name}: {worst}");
+        assert_eq!(worst < ROUNDING_TOLERANCE * 10.0, kept, "{name}: {worst}");
     };
     for scheme in SCHEMES {
         let method = Splitting::new(&top, scheme);

@@ -1,12 +1,12 @@
 //! Random mechanisms with claims that are true by construction: some joints carry all others, and nothing but gravity acts on them.
 
 use super::pieces::{Piece, Rate, kinetic, moment, momentum, potential};
-use super::{Claim, Form, REGULAR};
+use super::{Claim, Form, MIN_PIVOT};
 use crate::common::Random;
 use crate::jointed::{Joint, Law, Load, Loop, Motion, Name, System, short};
 
 /// A mechanism with conserved quantities that are known by construction.
-pub struct Kept {
+pub struct ConservativeMechanism {
     /// The mechanism.
     pub system: System,
     /// The number of joints that carry the others and that nothing but gravity acts on.
@@ -38,7 +38,7 @@ fn root((axis, kind): ([f64; 3], &'static str), i: usize, random: &mut Random) -
     }
 }
 
-impl Kept {
+impl ConservativeMechanism {
     fn random(random: &mut Random) -> Self {
         let upright = ([0.0, 0.0, 1.0], "revolute");
         let kind = random.below(6);
@@ -91,7 +91,7 @@ impl Kept {
         constrain(&mut system, random, roots);
         act(&mut system, random);
         let lasting = !depends_on_time(&system);
-        Kept {
+        ConservativeMechanism {
             system,
             roots,
             free,
@@ -377,11 +377,11 @@ fn depends_on_time(system: &System) -> bool {
 }
 
 /// A system that moves, each spring with it.
-pub fn drawn(random: &mut Random) -> Kept {
+pub fn drawn(random: &mut Random) -> ConservativeMechanism {
     loop {
-        let kept = Kept::random(random);
+        let kept = ConservativeMechanism::random(random);
         let (pivot, left, independent) = kept.system.regularity(&kept.system.start());
-        let moves = pivot > REGULAR && left > 0 && independent > 0.05;
+        let moves = pivot > MIN_PIVOT && left > 0 && independent > 0.05;
         if moves && !kept.system.has_idle_spring() {
             return kept;
         }

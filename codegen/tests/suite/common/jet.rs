@@ -3,11 +3,11 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Variables at most, the time among them.
-pub const VARIABLES: usize = 8;
+pub const MAX_VARIABLES: usize = 8;
 
 /// A value, its gradient and its Hessian.
 #[derive(Clone, Copy)]
-pub struct Jet<const N: usize = VARIABLES> {
+pub struct Jet<const N: usize = MAX_VARIABLES> {
     /// The value.
     pub value: f64,
     /// Its first derivatives.

@@ -1,12 +1,13 @@
 //! MuJoCo, through `lab/peers/mujoco_peer.py`.
 
-use super::Foreign;
+use super::ForeignResults;
 use serde::Deserialize;
 use std::path::Path;
 use std::process::Command;
 
 /// How to have it.
-pub const START: &str = "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
+pub const SETUP_COMMAND: &str =
+    "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
 
 /// Where its Python is looked for.
 pub const PYTHON: &str = "target/mujoco/bin/python";
@@ -14,14 +15,14 @@ pub const PYTHON: &str = "target/mujoco/bin/python";
 #[derive(Deserialize)]
 struct Output {
     version: String,
-    cases: Vec<Foreign>,
+    cases: Vec<ForeignResults>,
 }
 
 /// Runs the script; its version and results, or why there are none.
 ///
 /// # Errors
 /// In plain words: no such Python, the script failed, or its output cannot be read.
-pub fn run(python: &Path) -> Result<(String, Vec<Foreign>), String> {
+pub fn run(python: &Path) -> Result<(String, Vec<ForeignResults>), String> {
     if !python.exists() {
         return Err(format!("no Python with it at {}", python.display()));
     }

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// States at random, besides those that the generator measures its programs at.
-const RANDOM: usize = 3;
+const RANDOM_STATES: usize = 3;
 /// The arguments in the order of states.
 const ARGUMENTS: [Argument; 5] = [
     Argument::Coordinates,
@@ -61,7 +61,7 @@ impl Case {
         let mut states = near(&generated);
         let program = &generated.program;
         let mut random = Random::new(program.nu as u64);
-        for _ in 0..RANDOM {
+        for _ in 0..RANDOM_STATES {
             let x = random.configuration(&program.blocks);
             let [xi, xi_dot] = [(); 2].map(|()| random.numbers(program.n + program.n_z));
             let (u, p) = (random.numbers(program.m), random.numbers(program.n));

@@ -7,13 +7,13 @@ use hamel::{Block, Singular, State, System, manifold};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// States tried per system and law.
-const STATES: u64 = 24;
+const STATES_PER_LAW: u64 = 24;
 /// Accelerations above this (SI units) halve the inputs, at most so often: motions are to be smooth at the
 /// steps of differences.
-const FASTEST: f64 = 1e3;
-const HALVINGS: usize = 12;
+const MAX_ACCELERATION: f64 = 1e3;
+const MAX_INPUT_HALVINGS: usize = 12;
 /// f32 against f64: 6e-8 of rounding times the operations and the condition of M.
-const SINGLE: f64 = 1e-4;
+const F32_TOLERANCE: f64 = 1e-4;
 
 /// A system at a state, lengths of its lists forgotten. Values are at the state but for arguments.
 pub trait Point {
@@ -96,9 +96,9 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
         let mut inputs = system.zero_inputs();
         random.fill(inputs.as_mut(), 2.0);
         // Light parts are pushed lightly.
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_INPUT_HALVINGS {
             let accel = system.accel(&state.x, &state.xi, &inputs);
-            if accel.is_ok_and(|accel| largest(accel.as_ref()) <= FASTEST) {
+            if accel.is_ok_and(|accel| largest(accel.as_ref()) <= MAX_ACCELERATION) {
                 break;
             }
             inputs.as_mut().iter_mut().for_each(|u| *u *= 0.5);
@@ -251,7 +251,7 @@ macro_rules! models {
             let mut failures = Vec::new();
             $(
                 let system = AssertUnwindSafe(|| {
-                    for seed in 1..=STATES {
+                    for seed in 1..=STATES_PER_LAW {
                         law(&At::<hamel_tests::$module::$name<f64>>::new(stringify!($module), seed));
                     }
                 });
@@ -264,7 +264,7 @@ macro_rules! models {
 
         #[test]
         fn single_precision_agrees_with_double() {
-            $(for seed in 1..=STATES {
+            $(for seed in 1..=STATES_PER_LAW {
                 let double = At::<hamel_tests::$module::$name<f64>>::new(stringify!($module), seed);
                 single(&double, &hamel_tests::$module::$name::<f32>::default());
             })+
@@ -378,5 +378,5 @@ where
     let narrow: Vec<f64> = narrow.as_ref().iter().map(|v| f64::from(*v)).collect();
     let wide = wide.expect(&double.label);
     let scale = largest(wide.as_ref()).max(1.0);
-    assert_close(&double.label, &narrow, wide.as_ref(), SINGLE * scale);
+    assert_close(&double.label, &narrow, wide.as_ref(), F32_TOLERANCE * scale);
 }

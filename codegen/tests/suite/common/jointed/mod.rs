@@ -9,7 +9,7 @@ use crate::dense::{kernel, least_pivot, shortest, solution};
 use crate::jet::{Jet, constant, sum, turned};
 
 /// Newton's steps towards a configuration that closes the loops.
-const STEPS: usize = 40;
+const MAX_NEWTON_STEPS: usize = 40;
 
 #[derive(Clone)]
 pub struct System {
@@ -191,7 +191,7 @@ impl System {
     pub fn assembled(&self, mut q: Vec<f64>) -> Option<Vec<f64>> {
         let n = self.own().len();
         self.prescribe(&mut q);
-        for _ in 0..STEPS {
+        for _ in 0..MAX_NEWTON_STEPS {
             let at = self.placed(&q);
             let residuals = self.residuals(&at);
             let size = residuals
