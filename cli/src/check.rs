@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// An identity with its verdict as text.
 #[derive(Clone, Debug)]
-pub struct Checked {
+pub struct CheckedIdentity {
     /// Subject of the identity.
     pub label: &'static str,
     /// The identity.
@@ -100,7 +100,7 @@ pub struct Checked {
 }
 
 /// The identities behind the equations, with their verdicts.
-pub fn checked(generated: &Generated) -> Vec<Checked> {
+pub fn check_identities(generated: &Generated) -> Vec<CheckedIdentity> {
     let identities = check(&generated.model, &generated.program).into_iter();
     identities
         .map(|identity| {
@@ -109,7 +109,7 @@ pub fn checked(generated: &Generated) -> Vec<Checked> {
                 Verdict::Checked(confidence) => ("checked", confidence.to_string()),
                 Verdict::Failed(why) => ("failed", why),
             };
-            Checked {
+            CheckedIdentity {
                 label: identity.label,
                 equation: identity.equation,
                 verdict,
@@ -122,9 +122,9 @@ pub fn checked(generated: &Generated) -> Vec<Checked> {
 /// The text below the identities: rounding, merging, constraints, geometry, methods.
 pub fn remarks(generated: &Generated, text: &str) -> String {
     [
-        rounding(generated),
-        merging(generated),
-        constrained(generated, text),
+        rounding_report(generated),
+        merging_report(generated),
+        constraints_report(generated, text),
         geometry(generated),
         methods(generated),
     ]
@@ -161,7 +161,7 @@ fn table(identities: &[Identity]) -> String {
 
 /// Reports the digits, of the sixteen of `f64`, that each function loses to rounding; functions that lose none share a
 /// line.
-fn rounding(generated: &Generated) -> String {
+fn rounding_report(generated: &Generated) -> String {
     let functions = &generated.program.functions;
     let losses = losses(&generated.active, &generated.program);
     let known: Vec<_> = functions.iter().zip(losses).collect();
@@ -193,7 +193,7 @@ fn rounding(generated: &Generated) -> String {
 }
 
 /// Reports the confidence that merged expressions are equal.
-fn merging(generated: &Generated) -> String {
+fn merging_report(generated: &Generated) -> String {
     let graph = &generated.program.graph;
     let confidence = Confidence::of_merging(&generated.model, graph);
     let count = graph.len();
@@ -201,7 +201,7 @@ fn merging(generated: &Generated) -> String {
 }
 
 /// Lists the velocities that constraints leave, and the constraints that determine the others.
-fn constrained(generated: &Generated, text: &str) -> String {
+fn constraints_report(generated: &Generated, text: &str) -> String {
     let lines = lines_of(generated, text);
     lines.iter().map(|line| format!("  {line}\n")).collect()
 }

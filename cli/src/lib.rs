@@ -71,11 +71,11 @@ mod sweep;
 mod tables;
 mod text;
 
-pub use check::Checked;
+pub use check::CheckedIdentity;
 #[cfg(feature = "command")]
 pub use command::{asked, command, described};
 pub use compare::Comparison;
-pub use drawing::{Drawing, Drawn, Scene};
+pub use drawing::{Drawing, ParametrizedDrawing, Scene};
 pub use failure::{Captured, Failure, Mark};
 pub use linearize::Linear;
 pub use mechanism::{End, Varied};

@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             path: Vec::new(),
         },
     };
-    let drawn = drawing.with(&state.params);
+    let drawn = drawing.with_parameters(&state.params);
     let scenes: Vec<Scene> = moments.poses.iter().map(|x| drawn.scene(x)).collect();
     let Some((last, before)) = scenes.split_last() else {
         return Ok(());

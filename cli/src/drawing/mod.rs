@@ -14,7 +14,7 @@
 //! let (session, _) = Session::read(text.into(), "pendulum.eom", &options).map_err(|failure| failure.text().to_string())?;
 //! let start = session.start();
 //! let drawing = session.drawing().map_err(|failure| failure.text().to_string())?;
-//! let scene = drawing.with(&start.params).scene(&start.x);
+//! let scene = drawing.with_parameters(&start.params).scene(&start.x);
 //! assert_eq!(scene.bodies[0].centre, [0.0, 0.0, -0.5]);
 //! # Ok::<(), String>(())
 //! ```
@@ -47,11 +47,11 @@ pub struct Drawing {
     compiled: Compiled,
     /// The functions [`BODIES_FUNCTION`] and [`POINTS_FUNCTION`].
     places: [Place; 2],
-    frames: Vec<Named>,
+    frames: Vec<DrawnFrame>,
     /// The frame of each body.
     bodies: Vec<usize>,
     particles: Vec<Option<usize>>,
-    joints: Vec<Jointed>,
+    joints: Vec<DrawnJoint>,
     lines: Vec<(Acts, [Option<usize>; 2])>,
     rods: usize,
     loops: usize,
@@ -59,7 +59,7 @@ pub struct Drawing {
 }
 
 #[derive(Clone, Debug)]
-struct Named {
+struct DrawnFrame {
     name: String,
     parent: Option<usize>,
     attached: bool,
@@ -67,7 +67,7 @@ struct Named {
 }
 
 #[derive(Clone, Debug)]
-struct Jointed {
+struct DrawnJoint {
     name: String,
     kind: &'static str,
     frame: usize,
@@ -79,7 +79,7 @@ struct Jointed {
 
 /// A [`Drawing`] with its parameters set.
 #[derive(Clone, Debug)]
-pub struct Drawn<'a> {
+pub struct ParametrizedDrawing<'a> {
     of: &'a Drawing,
     functions: Functions,
     /// Mass, centre of mass in the frame, ellipsoid in the frame's axes.
@@ -110,7 +110,7 @@ impl Drawing {
         let places = [place(BODIES_FUNCTION)?, place(POINTS_FUNCTION)?];
         let moved = points.attached.into_iter().zip(points.turns);
         let frames = model.frames.iter().zip(moved);
-        let frames = frames.map(|(frame, (attached, turns))| Named {
+        let frames = frames.map(|(frame, (attached, turns))| DrawnFrame {
             name: frame.name.clone(),
             parent: frame.parent,
             attached,
@@ -128,7 +128,7 @@ impl Drawing {
                 let mut all = model.coordinates.iter();
                 all.find(|coordinate| coordinate.name == *name)
             });
-            Some(Jointed {
+            Some(DrawnJoint {
                 name: joint.name.clone(),
                 kind: joint_kind(joint.kind),
                 frame: carried,
@@ -156,16 +156,16 @@ impl Drawing {
     }
 
     /// The drawing for these parameters; a missing parameter makes everything that depends on it NaN.
-    pub fn with(&self, params: &[f64]) -> Drawn<'_> {
+    pub fn with_parameters(&self, params: &[f64]) -> ParametrizedDrawing<'_> {
         let functions = Functions::new(&self.compiled, params);
-        let values = called(&functions, self.places[0], &[]);
+        let values = call(&functions, self.places[0], &[]);
         let (bodies, masses) = values.split_at((13 * self.bodies.len()).min(values.len()));
         let bodies = bodies.chunks_exact(13).map(|entries| {
             let (mass, com) = (entries[0], vector(&entries[1..4]));
             let inertia = [4, 7, 10].map(|first| vector(&entries[first..first + 3]));
             (mass, com, Ellipsoid::new(mass, inertia))
         });
-        Drawn {
+        ParametrizedDrawing {
             of: self,
             bodies: bodies.collect(),
             masses: masses.to_vec(),
@@ -174,11 +174,11 @@ impl Drawing {
     }
 }
 
-impl Drawn<'_> {
+impl ParametrizedDrawing<'_> {
     /// The scene at x.
     pub fn scene(&self, x: &[f64]) -> Scene {
         let of = self.of;
-        let values = called(&self.functions, of.places[1], x);
+        let values = call(&self.functions, of.places[1], x);
         let mut vectors = values.chunks_exact(3).map(vector);
         let mut next = || vectors.next().unwrap_or([f64::NAN; 3]);
         let frames = of.frames.iter().map(|frame| Frame {
@@ -276,7 +276,7 @@ fn centre(bodies: &[Body], particles: &[Particle]) -> Option<Vector> {
 }
 
 /// These functions have no pivots, and are defined wherever the description is.
-fn called(functions: &Functions, place: Place, x: &[f64]) -> Vec<f64> {
+fn call(functions: &Functions, place: Place, x: &[f64]) -> Vec<f64> {
     let value = functions.call(place, [x, &[], &[], &[], &[]]);
     value.map_or_else(|_| vec![f64::NAN; place.length()], |value| value.to_vec())
 }

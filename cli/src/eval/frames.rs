@@ -9,7 +9,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 
 /// A frame: its name as requested, and in the description.
-pub type Named = (String, String);
+pub type NamedFrame = (String, String);
 
 /// The Jacobians of a frame, in world axes and in the frame's axes.
 fn both(frame: &str) -> [Jacobian; 2] {
@@ -20,7 +20,7 @@ fn both(frame: &str) -> [Jacobian; 2] {
 }
 
 /// The Jacobians of all requested frames.
-pub fn requested_jacobians(frames: &[Named]) -> Vec<Jacobian> {
+pub fn requested_jacobians(frames: &[NamedFrame]) -> Vec<Jacobian> {
     frames.iter().flat_map(|(_, frame)| both(frame)).collect()
 }
 
@@ -29,7 +29,7 @@ pub fn requested_jacobians(frames: &[Named]) -> Vec<Jacobian> {
 pub fn kinematics(
     generated: &Generated,
     state: &State,
-    asked: &[Named],
+    asked: &[NamedFrame],
 ) -> Result<Option<Json>, Failure> {
     let mut frames: Vec<(&str, Json)> = Vec::new();
     for (written, frame) in asked {

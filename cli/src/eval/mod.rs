@@ -115,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub fn numbers(
     (generated, shown): (&Generated, &str),
     state: &State,
-    frames: &[frames::Named],
+    frames: &[frames::NamedFrame],
     with_tables: bool,
 ) -> Result<(Json, Vec<String>), Failure> {
     let states = generated.model.states.iter();

@@ -1,7 +1,7 @@
 //! Evaluates states given by joints: M, bias and acceleration as other programs define them.
 
 use super::finite;
-use super::frames::{Named, kinematics, requested_jacobians};
+use super::frames::{NamedFrame, kinematics, requested_jacobians};
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::mechanism::{constant_singular, function};
@@ -35,7 +35,7 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 ///
 /// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force: it includes friction
 /// and other loads of the description. Without a force the loads of the description act, with zero input.
-pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> {
+pub fn run(source: &Source, at: &File, frames: &[NamedFrame]) -> Result<(), Failure> {
     let File { path, json } = at;
     let generated = source.derive_only(&FUNCTIONS, &requested_jacobians(frames))?;
     let (list, several) = match json.get("samples") {
@@ -103,7 +103,7 @@ type Members = (Vec<(&'static str, Json)>, Vec<String>);
 fn members(
     (generated, text): (&Generated, &str),
     sample: &Sample,
-    frames: &[Named],
+    frames: &[NamedFrame],
 ) -> Result<Members, Failure> {
     let model = &generated.active;
     let state = &sample.state;

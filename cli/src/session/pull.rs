@@ -7,7 +7,7 @@
 //! suffices for dragging by hand.
 
 use super::Session;
-use crate::drawing::{Drawn, Scene, Vector};
+use crate::drawing::{ParametrizedDrawing, Scene, Vector};
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Numbers};
 use crate::state::State;
@@ -63,7 +63,7 @@ impl Session {
         grip: Grip,
         (target, sight): (Vector, Option<Vector>),
     ) -> Result<State, Failure> {
-        let drawn = self.drawing()?.with(&state.params);
+        let drawn = self.drawing()?.with_parameters(&state.params);
         let instance = self.instance(state)?;
         let n = self.active().n();
         let mut pulled = Pulled {
@@ -93,7 +93,7 @@ impl Session {
 /// A mechanism during a pull.
 struct Pulled<'a> {
     instance: &'a Instance,
-    drawn: Drawn<'a>,
+    drawn: ParametrizedDrawing<'a>,
     grip: Grip,
     /// The projection along the line of sight.
     seen: Matrix3<f64>,

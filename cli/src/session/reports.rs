@@ -1,7 +1,7 @@
 //! Reports of the commands about a description: identities, costs, generated code, comparisons; imports of robots.
 
 use super::Session;
-use crate::check::{self, Checked};
+use crate::check::{self, CheckedIdentity};
 use crate::compare::{self, Comparison};
 use crate::failure::{Captured, Failure, capture};
 use crate::ops;
@@ -15,9 +15,9 @@ use hamel_codegen::tables::{self, Table};
 
 impl Session {
     /// The results of `hamel check`: the identities with their verdicts, and the lines below them.
-    pub fn check(&self) -> (Vec<Checked>, String) {
+    pub fn check(&self) -> (Vec<CheckedIdentity>, String) {
         let remarks = check::remarks(&self.generated, self.source.shown());
-        (check::checked(&self.generated), remarks)
+        (check::check_identities(&self.generated), remarks)
     }
 
     /// The output of `hamel ops --format json`.

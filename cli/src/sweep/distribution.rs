@@ -39,7 +39,9 @@ impl Distribution {
     ) -> Result<Vec<Self>, Vec<Diagnostic>> {
         let Some((name, inner)) = piece.call() else {
             return Err(vec![
-                piece.wrong("a distribution is expected").help(written()),
+                piece
+                    .wrong("a distribution is expected")
+                    .help(known_distributions()),
             ]);
         };
         let Some((_, names)) = DISTRIBUTIONS.iter().find(|(known, _)| *known == name.text) else {
@@ -156,7 +158,7 @@ fn argument(
     }
 }
 
-fn written() -> String {
+fn known_distributions() -> String {
     let one = |(name, arguments): &(&str, &[&str])| format!("{name}({})", arguments.join(", "));
     let all: Vec<String> = DISTRIBUTIONS.iter().map(one).collect();
     format!("there are {}", all.join(", "))

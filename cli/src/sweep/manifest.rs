@@ -109,7 +109,11 @@ fn describe_difference(name: &str, old: Option<&Value>, new: Option<&Value>) -> 
                 (a, b) => {
                     let said =
                         |line: Option<&str>| line.map_or("nothing".into(), |l| format!("`{l}`"));
-                    return format!("{name}, line {line}: {} there, {} here", said(a), said(b));
+                    return format!(
+                        "{name}, line {line}: {} there, {} here",
+                        display_value(a),
+                        display_value(b)
+                    );
                 }
             }
         }
@@ -118,7 +122,11 @@ fn describe_difference(name: &str, old: Option<&Value>, new: Option<&Value>) -> 
         None | Some(Value::Null) => "nothing".into(),
         Some(value) => value.to_string(),
     };
-    format!("{name}: {} there, {} here", said(old), said(new))
+    format!(
+        "{name}: {} there, {} here",
+        display_value(old),
+        display_value(new)
+    )
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A member: its state, its run, and its row of results.
 
-use super::vary::Vary;
-use super::watch::{Keeping, Watch};
+use super::vary::Variations;
+use super::watch::{KeptColumns, MemberObserver};
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Mechanism};
 use crate::simulate::advance::advance;
@@ -36,9 +36,9 @@ pub struct Sweep {
     /// The source of their systems.
     pub family: Family,
     /// The varied entries.
-    pub vary: Vary,
+    pub vary: Variations,
     /// The kept items.
-    pub keeping: Keeping,
+    pub keeping: KeptColumns,
     /// The plan of runs, with the method of the first member.
     pub plan: Plan,
     /// The state that members modify, in JSON.
@@ -71,7 +71,7 @@ struct Running<'a> {
     member: &'a Member,
     state: State<Instance>,
     balance: Cell<Balance>,
-    watch: Watch<'a>,
+    watch: MemberObserver<'a>,
 }
 
 impl Sweep {
@@ -88,10 +88,10 @@ impl Sweep {
                 }
                 (Ok(member), Some(other)) => rows.extend(self.both(&other, &member)),
                 (Ok(member), None) if side_by_side => waiting = Some(member),
-                (Ok(member), None) => rows.push(self.alone(&member)),
+                (Ok(member), None) => rows.push(self.run_alone(&member)),
             }
         }
-        rows.extend(waiting.map(|member| self.alone(&member)));
+        rows.extend(waiting.map(|member| self.run_alone(&member)));
         rows
     }
 
@@ -112,7 +112,7 @@ impl Sweep {
         }
     }
 
-    fn alone(&self, member: &Member) -> Row {
+    fn run_alone(&self, member: &Member) -> Row {
         let mut running = Running::new(member, &self.keeping);
         let outcome = running.advance();
         running.row(outcome)
@@ -127,12 +127,12 @@ impl Sweep {
 }
 
 impl<'a> Running<'a> {
-    fn new(member: &'a Member, keeping: &'a Keeping) -> Self {
+    fn new(member: &'a Member, keeping: &'a KeptColumns) -> Self {
         let Member { system, plan, .. } = member;
         let state = State::start(system);
         Running {
             balance: Cell::new(Balance::new(system, &state)),
-            watch: Watch::new(keeping, system, &plan.method.stepper),
+            watch: MemberObserver::new(keeping, system, &plan.method.stepper),
             state,
             member,
         }
@@ -214,7 +214,7 @@ impl Family {
         let system = system.with(given);
         let singular = |failure: Failure| Early {
             kind: "singular",
-            why: said(&failure),
+            why: failure_line(&failure),
         };
         system.check_parameters(&state.x).map_err(singular)?;
         Ok(system)
@@ -224,12 +224,12 @@ impl Family {
 fn of_start(failure: &Failure) -> Early {
     Early {
         kind: "start",
-        why: said(failure),
+        why: failure_line(failure),
     }
 }
 
 /// A failure in one line, without the formatting for a terminal.
-fn said(failure: &Failure) -> String {
+fn failure_line(failure: &Failure) -> String {
     let text = match failure {
         Failure::Failed(text) | Failure::Usage(text) => text.as_str(),
         Failure::Closed => "",
@@ -271,7 +271,7 @@ mod tests {
     }
 
     /// Writes a description to a temporary file.
-    fn written(name: &str, text: &str) -> PathBuf {
+    fn write_temporary(name: &str, text: &str) -> PathBuf {
         let path = std::env::temp_dir().join(format!("hamel-{name}-{}.eom", std::process::id()));
         std::fs::write(&path, text).expect("a description");
         path
@@ -371,7 +371,7 @@ mod tests {
             kinetic m * (1 - q) * w^2 / 2;
             start w = 0;
         }";
-        let path = written("bead", text);
+        let path = write_temporary("bead", text);
         let mut kinds = Vec::new();
         for vary in [
             "m = grid(0, 1, 2); start w = grid(-1, 1, 3)",

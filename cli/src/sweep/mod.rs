@@ -52,9 +52,9 @@ use shard::Columns;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use submit::{Engine, Job};
-use vary::Vary;
-use watch::Keeping;
-use work::{Cancellation, Done, Work};
+use vary::Variations;
+use watch::KeptColumns;
+use work::{Cancellation, SweepResult, Work};
 
 /// The default of --shard-size: this fraction of all members, within these limits.
 const DEFAULT_SHARDS: u64 = 64;
@@ -76,7 +76,7 @@ const DEFAULT_TASKS: u64 = 16;
   hamel sweep cart_pole.eom --vary \"start theta = grid(-1, 1, 21); start w = grid(-2, 2, 41)\" --until 5 --out map
   hamel sweep --status runs
   hamel sweep drone.eom … --out runs --shard 3/16               one of 16 parts, on this machine
-  hamel sweep drone.eom … --out runs --submit slurm --tasks 16  all of them, on a cluster", after_long_help = format!("{LONG}\n\n{}", method::described()))]
+  hamel sweep drone.eom … --out runs --submit slurm --tasks 16  all of them, on a cluster", after_long_help = format!("{LONG_HELP}\n\n{}", method::described()))]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE", required_unless_present = "status")]
@@ -143,7 +143,7 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
-const LONG: &str = "\
+const LONG_HELP: &str = "\
 --vary takes items, `;` between them:
   m = normal(1.3, 0.1)                           a parameter, by mean and standard deviation
   start w = uniform([-1, -1, -1], [1, 1, 1])     coordinates or velocities, each entry between two numbers
@@ -242,7 +242,7 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
         folder: &folder,
     };
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let done = work.on(missing.collect(), threads.unwrap_or_else(cores))?;
+    let done = work.compute_shards(missing.collect(), threads.unwrap_or_else(cores))?;
     print(&summary(out, done, there.members))?;
     if let Some(place) = &arguments.plot {
         let there = folder::find_finished(out, &manifest)?;
@@ -273,11 +273,13 @@ fn prepare(
     vary: &str,
     stepping: &Stepping,
 ) -> Result<(Sweep, Columns), Failure> {
-    let varied = |generated: &Generated| -> Result<(Map<String, Value>, State, Vary), Failure> {
-        let (base, state) = start(arguments, source, generated)?;
-        let vary = Vary::read(vary, generated, &state, arguments.seed, arguments.members)?;
-        Ok((base, state, vary))
-    };
+    let varied =
+        |generated: &Generated| -> Result<(Map<String, Value>, State, Variations), Failure> {
+            let (base, state) = start(arguments, source, generated)?;
+            let vary =
+                Variations::read(vary, generated, &state, arguments.seed, arguments.members)?;
+            Ok((base, state, vary))
+        };
     // Report errors in --vary together with those in --keep.
     let both = |failure: Failure, generated: &Generated| match varied(generated) {
         Err(more) => failure.and(more),
@@ -292,7 +294,7 @@ fn prepare(
                 Err(_) => failure,
             }
         })?;
-    let keeping = Keeping::new(&kept, &generated).map_err(|(item, why)| {
+    let keeping = KeptColumns::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
         both(text::refused(option.0, option.1, &[error]), &generated)
     })?;
@@ -443,7 +445,7 @@ fn operations(generated: &Generated) -> Vec<(String, String)> {
 }
 
 /// Summarises the new and the earlier work.
-fn summary(out: &Path, done: Done, before: u64) -> String {
+fn summary(out: &Path, done: SweepResult, before: u64) -> String {
     let mut text = format!(
         "{}: {} {} computed, {} of them failed",
         out.display(),

@@ -31,12 +31,12 @@ struct Queue {
     open: BTreeMap<u64, Vec<Row>>,
     /// The first error; all threads stop then.
     failure: Option<Failure>,
-    done: Done,
+    done: SweepResult,
 }
 
 /// Finished work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Done {
+pub struct SweepResult {
     /// Number of members.
     pub members: u64,
     /// Number of failed members.
@@ -78,7 +78,7 @@ impl<'a> Cancellation<'a> {
         while !threads.iter().all(ScopedJoinHandle::is_finished) {
             if asked() {
                 self.cancelled.store(true, Ordering::Relaxed);
-                at(queue).failure.get_or_insert_with(|| {
+                lock(queue).failure.get_or_insert_with(|| {
                     Failure::failed(
                         "the sweep was given up; the same sweep computes what is missing",
                     )
@@ -108,7 +108,7 @@ pub struct Work<'a> {
 
 impl Work<'_> {
     /// Computes shards; completed ones remain even if others fail.
-    pub fn on(&self, shards: Vec<u64>, threads: usize) -> Result<Done, Failure> {
+    pub fn compute_shards(&self, shards: Vec<u64>, threads: usize) -> Result<SweepResult, Failure> {
         let size = |shard: &u64| {
             let range = self.manifest.range(*shard);
             range.end - range.start
@@ -119,7 +119,7 @@ impl Work<'_> {
             begun: None,
             open: BTreeMap::new(),
             failure: None,
-            done: Done::default(),
+            done: SweepResult::default(),
         });
         std::thread::scope(|scope| {
             let work = |_| {
@@ -176,7 +176,7 @@ impl Work<'_> {
     fn hand_in(&self, queue: &Mutex<Queue>, shard: u64, rows: Vec<Row>) {
         let range = self.manifest.range(shard);
         let mut whole = {
-            let mut queue = at(queue);
+            let mut queue = lock(queue);
             // Cancelled members have no result.
             if self
                 .cancellation
@@ -194,7 +194,7 @@ impl Work<'_> {
         };
         whole.sort_unstable_by_key(|row| row.index);
         let written = self.write(shard, &whole);
-        let mut queue = at(queue);
+        let mut queue = lock(queue);
         match written {
             Ok(()) => {
                 queue.done.shards += 1;
@@ -217,7 +217,7 @@ impl Work<'_> {
     }
 }
 
-fn at(queue: &Mutex<Queue>) -> MutexGuard<'_, Queue> {
+fn lock(queue: &Mutex<Queue>) -> MutexGuard<'_, Queue> {
     // A thread that panics leaves no inconsistent data.
     queue.lock().unwrap_or_else(PoisonError::into_inner)
 }
