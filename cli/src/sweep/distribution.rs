@@ -46,7 +46,9 @@ impl Distribution {
         };
         let Some((_, names)) = DISTRIBUTIONS.iter().find(|(known, _)| *known == name.text) else {
             let close = closest(name.text, DISTRIBUTIONS.iter().map(|(known, _)| *known));
-            let help = close.map_or_else(written, |close| format!("did you mean `{close}`?"));
+            let help = close.map_or_else(known_distributions, |close| {
+                format!("did you mean `{close}`?")
+            });
             let message = format!("no distribution is called `{}`", name.text);
             return Err(vec![name.wrong(message).help(help)]);
         };

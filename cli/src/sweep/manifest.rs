@@ -107,26 +107,22 @@ fn describe_difference(name: &str, old: Option<&Value>, new: Option<&Value>) -> 
                 (Some(a), Some(b)) if a == b => {}
                 (None, None) => return format!("{name}: ends of lines differ"),
                 (a, b) => {
-                    let said =
+                    let display =
                         |line: Option<&str>| line.map_or("nothing".into(), |l| format!("`{l}`"));
                     return format!(
                         "{name}, line {line}: {} there, {} here",
-                        display_value(a),
-                        display_value(b)
+                        display(a),
+                        display(b)
                     );
                 }
             }
         }
     }
-    let said = |value: Option<&Value>| match value {
+    let display = |value: Option<&Value>| match value {
         None | Some(Value::Null) => "nothing".into(),
         Some(value) => value.to_string(),
     };
-    format!(
-        "{name}: {} there, {} here",
-        display_value(old),
-        display_value(new)
-    )
+    format!("{name}: {} there, {} here", display(old), display(new))
 }
 
 #[cfg(test)]

@@ -318,7 +318,7 @@ fn prepare(
             "two columns would be called `{name}`: give what is varied another name in the description"
         )));
     }
-    let unvaried = vary.unvaried(&base);
+    let unvaried = vary.nominal_state(&base);
     let family = Family {
         mechanism: Arc::new(Mechanism::new(&generated, source.shown())?),
         text: source.text.clone(),

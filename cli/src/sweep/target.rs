@@ -104,7 +104,7 @@ impl Target {
             Part::Input => "input",
         };
         let message = format!("no {what} is called `{name}`");
-        let names: Vec<String> = all.iter().map(Target::written).collect();
+        let names: Vec<String> = all.iter().map(Target::qualified_name).collect();
         Err(
             match (
                 closest(name, names.iter().map(String::as_str)),

@@ -126,7 +126,7 @@ impl Work<'_> {
                 scope.spawn(|| {
                     loop {
                         // Release the lock before members run.
-                        let next = self.next(&mut at(&queue), threads);
+                        let next = self.next(&mut lock(&queue), threads);
                         let Some((shard, members)) = next else {
                             break;
                         };

@@ -199,7 +199,7 @@ impl Graph {
         let symbols: Vec<NodeId> = symbols.filter(|&id| (moving.free)(id)).collect();
         symbols.into_iter().any(|symbol| {
             let Some(slope) = self
-                .linear(symbol, factor)
+                .linear_slope(symbol, factor)
                 .filter(|slope| !self.is_moving(*slope, moving))
             else {
                 return false;
