@@ -16,7 +16,7 @@ use hamel_engine::state::constraint_lines;
 use std::path::PathBuf;
 
 /// Functions that lose fewer decimal digits than this are not listed.
-const SOME: f64 = 1.0;
+const LISTED_FROM_DIGITS: f64 = 1.0;
 
 /// Proves the identities behind the equations of motion.
 ///
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// An identity with its verdict as text.
 #[derive(Clone, Debug)]
-pub struct Checked {
+pub struct CheckedIdentity {
     /// Subject of the identity.
     pub label: &'static str,
     /// The identity.
@@ -96,24 +96,24 @@ pub struct Checked {
     /// `proved`, `checked` or `failed`.
     pub verdict: &'static str,
     /// Explanation of the verdict; empty where it is proved.
-    pub told: String,
+    pub explanation: String,
 }
 
 /// The identities behind the equations, with their verdicts.
-pub fn checked(generated: &Generated) -> Vec<Checked> {
+pub fn check_identities(generated: &Generated) -> Vec<CheckedIdentity> {
     let identities = check(&generated.model, &generated.program).into_iter();
     identities
         .map(|identity| {
-            let (verdict, told) = match identity.verdict {
+            let (verdict, explanation) = match identity.verdict {
                 Verdict::Proved => ("proved", String::new()),
                 Verdict::Checked(confidence) => ("checked", confidence.to_string()),
                 Verdict::Failed(why) => ("failed", why),
             };
-            Checked {
+            CheckedIdentity {
                 label: identity.label,
                 equation: identity.equation,
                 verdict,
-                told,
+                explanation,
             }
         })
         .collect()
@@ -122,9 +122,9 @@ pub fn checked(generated: &Generated) -> Vec<Checked> {
 /// The text below the identities: rounding, merging, constraints, geometry, methods.
 pub fn remarks(generated: &Generated, text: &str) -> String {
     [
-        rounding(generated),
-        merging(generated),
-        constrained(generated, text),
+        rounding_report(generated),
+        merging_report(generated),
+        constraints_report(generated, text),
         geometry(generated),
         methods(generated),
     ]
@@ -161,14 +161,15 @@ fn table(identities: &[Identity]) -> String {
 
 /// Reports the digits, of the sixteen of `f64`, that each function loses to rounding; functions that lose none share a
 /// line.
-fn rounding(generated: &Generated) -> String {
+fn rounding_report(generated: &Generated) -> String {
     let functions = &generated.program.functions;
     let losses = losses(&generated.active, &generated.program);
     let known: Vec<_> = functions.iter().zip(losses).collect();
     let known = known
         .iter()
         .filter_map(|&(function, digits)| Some((function, digits?)));
-    let (lossy, exact): (Vec<_>, Vec<_>) = known.partition(|(_, digits)| *digits >= SOME);
+    let (lossy, exact): (Vec<_>, Vec<_>) =
+        known.partition(|(_, digits)| *digits >= LISTED_FROM_DIGITS);
     let rest = match (exact.len(), lossy.len()) {
         (0, _) => String::new(),
         (_, 0) => "  rounding       no function loses a digit\n".to_string(),
@@ -192,7 +193,7 @@ fn rounding(generated: &Generated) -> String {
 }
 
 /// Reports the confidence that merged expressions are equal.
-fn merging(generated: &Generated) -> String {
+fn merging_report(generated: &Generated) -> String {
     let graph = &generated.program.graph;
     let confidence = Confidence::of_merging(&generated.model, graph);
     let count = graph.len();

@@ -57,7 +57,7 @@ pub fn described() -> clap::Command {
 pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
     let line = match Line::try_parse_from(words) {
         Ok(line) => line,
-        Err(said) => return failure::said(&said),
+        Err(said) => return failure::print_clap(&said),
     };
     line.command.run().map_or_else(Failure::report, |()| 0)
 }

@@ -168,11 +168,11 @@ pub fn print(text: &str) -> Result<(), Failure> {
     let written = stdout
         .write_all(text.as_bytes())
         .and_then(|()| stdout.flush());
-    printed(written)
+    check_written(written)
 }
 
 /// Converts an error of writing to standard output.
-fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
+fn check_written(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::Closed),
@@ -183,9 +183,9 @@ fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
 }
 
 /// Prints clap's answer, which is help, the version or a usage error, and returns the exit status.
-pub fn said(answer: &clap::Error) -> u8 {
+pub fn print_clap(answer: &clap::Error) -> u8 {
     let written = answer.print();
-    match (answer.use_stderr(), printed(written)) {
+    match (answer.use_stderr(), check_written(written)) {
         (true, _) => 2,
         (false, Ok(())) => 0,
         (false, Err(failure)) => failure.report(),

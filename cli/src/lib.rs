@@ -58,7 +58,7 @@ mod source;
 mod sweep;
 mod tables;
 
-pub use check::Checked;
+pub use check::CheckedIdentity;
 #[cfg(feature = "command")]
 pub use command::{asked, command, described};
 pub use compare::Comparison;

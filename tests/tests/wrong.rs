@@ -46,7 +46,7 @@ fn messages() {
             let place = format!("{name}:{}\n", place(&range, &text));
             assert!(rendered.contains(&place), "{rendered}\nhas no {place}");
         }
-        let whole = RENDERED.contains(&&*name);
+        let whole = RENDERED_DESCRIPTIONS.contains(&&*name);
         insta::with_settings!({omit_expression => true, snapshot_suffix => &*name, input_file => &path}, {
             insta::assert_snapshot!(if whole { rendered } else { listed });
         });

@@ -69,7 +69,7 @@ const CI: Task = &[
 ];
 
 /// The random attacks at full size, and the tests of `lab/`: some three hours. CI on GitHub runs it once a week.
-const ATTACK: Task = &[
+const ATTACK_TASKS: Task = &[
     "bash tests/emitted/install.sh",
     "HAMEL_ATTACK=more cargo test --workspace --locked",
     "HAMEL_ATTACK=more cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test built",
@@ -108,7 +108,7 @@ const ATTACK: Task = &[
 ];
 
 /// The book, by mdBook, into `target/book`; every link in it leads somewhere, and nothing comes from the network.
-const BOOK: Task = &[
+const BOOK_TASKS: Task = &[
     "bash docs/book/install.sh",
     "cargo run --locked -p hamel-book -- build",
     "target/tools/bin/mdbook build target/book-pages --dest-dir ../book",
@@ -116,10 +116,10 @@ const BOOK: Task = &[
 ];
 
 /// The page of the gallery with its pictures, into `target/gallery`.
-const GALLERY: Task = &["cargo run --locked -p hamel-book -- gallery"];
+const GALLERY_TASKS: Task = &["cargo run --locked -p hamel-book -- gallery"];
 
 /// Takes the snapshots as they are now; `git diff` shows what to review.
-const BLESS: Task = &[
+const BLESS_TASKS: Task = &[
     "INSTA_UPDATE=always INSTA_FORCE_PASS=1 cargo test --workspace --locked --no-fail-fast",
     // Snapshots inside of sources are not renewed by that: what differs there is edited by hand.
     "cargo test --workspace --locked --no-fail-fast",
@@ -129,26 +129,26 @@ const BLESS: Task = &[
 const TASKS: [(&str, Task, &str); 6] = [
     (
         "quick",
-        QUICK,
+        QUICK_TASKS,
         "format, tests of the algebra and the language, and the shape of the repository: seconds once built",
     ),
     (
         "ci",
-        CI,
+        CI_TASKS,
         "everything that has to hold before a change lands",
     ),
     (
         "attack",
-        ATTACK,
+        ATTACK_TASKS,
         "the random attacks at full size, the tests of lab, and all robots against Pinocchio: some three hours",
     ),
-    ("book", BOOK, "the book, into target/book"),
+    ("book", BOOK_TASKS, "the book, into target/book"),
     (
         "gallery",
-        GALLERY,
+        GALLERY_TASKS,
         "the mechanisms of examples/gallery with their pictures, into target/gallery",
     ),
-    ("bless", BLESS, "takes the snapshots as they are now"),
+    ("bless", BLESS_TASKS, "takes the snapshots as they are now"),
 ];
 
 fn main() -> ExitCode {

@@ -5,7 +5,7 @@ use crate::work::{Work, work};
 use std::fmt::Write;
 
 /// The error at which methods are compared.
-pub const TARGET: f64 = 1e-9;
+pub const TARGET_ERROR: f64 = 1e-9;
 
 /// Returns the name of the comparison's entry for the method that `auto` takes: with error control where the method has
 /// it.
@@ -18,7 +18,7 @@ pub fn entry(method: &str) -> String {
 
 /// Returns the wall time in µs in which a method reaches the [`TARGET`].
 pub fn micros(method: &MethodRuns) -> Work {
-    work(&method.runs, TARGET, |run: &MethodRun| {
+    work(&method.runs, TARGET_ERROR, |run: &MethodRun| {
         run.seconds.map(|seconds| 1e6 * seconds)
     })
 }
@@ -65,24 +65,29 @@ pub fn verdict(report: &Report) -> Option<String> {
         .collect();
     let mut text = match judged.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
         Some((worst, most)) => format!(
-            "To an error of {TARGET:.0e} the method that `auto` takes needs at most {most:.1} times the time of the \
+            "To an error of {TARGET_ERROR:.0e} the method that `auto` takes needs at most {most:.1} times the time of the \
              fastest method measured, over {} of {} cases; the most is that of {}.",
             judged.len(),
             chosen.len(),
             worst.name
         ),
         None => {
-            format!("In no case did the method that `auto` takes reach an error of {TARGET:.0e}.")
+            format!(
+                "In no case did the method that `auto` takes reach an error of {TARGET_ERROR:.0e}."
+            )
         }
     };
-    let beyond = judged.iter().filter(|(_, ratio)| *ratio > BAR);
+    let beyond = judged.iter().filter(|(_, ratio)| *ratio > MAX_TIME_RATIO);
     let beyond: Vec<&str> = beyond.map(|(case, _)| case.name.as_str()).collect();
     let _ = match beyond[..] {
         [] if judged.is_empty() => Ok(()),
-        [] => write!(text, " It is never more than {BAR} times slower."),
+        [] => write!(
+            text,
+            " It is never more than {MAX_TIME_RATIO} times slower."
+        ),
         _ => write!(
             text,
-            " It is more than {BAR} times slower in: {}.",
+            " It is more than {MAX_TIME_RATIO} times slower in: {}.",
             beyond.join(", ")
         ),
     };
@@ -93,7 +98,7 @@ pub fn verdict(report: &Report) -> Option<String> {
         };
         let _ = write!(
             text,
-            " {}: {why} reached {TARGET:.0e} where times were measured.",
+            " {}: {why} reached {TARGET_ERROR:.0e} where times were measured.",
             case.name
         );
     }

@@ -34,7 +34,7 @@ pub fn plain(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{marked, plain};
+    use super::{mark_up, plain};
 
     #[test]
     fn code_stands_between_pairs_of_backticks() {
@@ -50,7 +50,7 @@ mod tests {
             ("`` is none", "`` is none", "`` is none"),
             ("`<b>`", "<code>&lt;b&gt;</code>", "<b>"),
         ] {
-            assert_eq!(marked(text).into_string(), html);
+            assert_eq!(mark_up(text).into_string(), html);
             assert_eq!(plain(text), bare);
         }
     }

@@ -1,7 +1,7 @@
 //! A table of runs with error control: error and steps for each tolerance.
 
 use crate::data::{Case, MethodRun, MethodRuns};
-use crate::number::{error, grouped};
+use crate::number::{error, group_thousands};
 
 /// The tolerances of the table; a tolerance that was not measured is left out.
 const SHOWN: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
@@ -23,11 +23,11 @@ pub fn table(case: &Case) -> Option<(Vec<String>, Vec<Vec<String>>)> {
         let mut cells = vec![format!("{tolerance:.0e}")];
         for method in &methods {
             let with = |run: &&MethodRun| run.tolerance == Some(tolerance);
-            cells.extend(counts(method.runs.iter().find(with)));
+            cells.extend(count(method.runs.iter().find(with)));
         }
         cells
     };
-    Some((head, SHOWN.map(row).to_vec()))
+    Some((head, TABLE_TOLERANCES.map(row).to_vec()))
 }
 
 /// Returns error, steps and rejected attempts.
@@ -41,8 +41,8 @@ fn counts(run: Option<&MethodRun>) -> [String; 3] {
     }
     [
         run.error.map_or_else(none, error),
-        grouped(run.steps),
-        run.rejected.map_or_else(none, grouped),
+        group_thousands(run.steps),
+        run.rejected.map_or_else(none, group_thousands),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! Long runs, which show whether conserved quantities drift or only oscillate.
 
-use crate::data::{Drift, kept};
+use crate::data::{Drift, round_to_three_digits};
 use crate::entry::{Division, Entry, Worst};
 
 /// Number of windows of a run.
@@ -9,7 +9,7 @@ pub const WINDOWS: u64 = 100;
 /// Runs `steps` steps of one length, and keeps the largest deviations of each window; `None` for a method with error
 /// control.
 pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> {
-    let length = (steps / WINDOWS).max(1);
+    let length = (steps / WINDOWS_PER_RUN).max(1);
     let mut worst = Worst::default();
     let mut window = Worst::default();
     let mut energy = Vec::new();
@@ -22,7 +22,7 @@ pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> 
             worst.take(deviation);
             window.take(deviation);
             if count > 0 && count.is_multiple_of(length) {
-                energy.extend(kept(window.energy));
+                energy.extend(round_to_three_digits(window.energy));
                 window = Worst::default();
             }
             count += 1;
@@ -34,8 +34,8 @@ pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> 
         step,
         steps,
         energy,
-        momentum: kept(worst.momentum),
-        defect: kept(worst.defect),
+        momentum: round_to_three_digits(worst.momentum),
+        defect: round_to_three_digits(worst.defect),
         failure: outcome.failure,
     })
 }

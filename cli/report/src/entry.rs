@@ -54,7 +54,7 @@ type Controlled<'a> = Box<dyn Fn(f64, f64, Watch) -> Outcome + 'a>;
 /// tolerance (first argument).
 type ControlledClock<'a> = Box<dyn Fn(f64, f64) -> Option<(f64, u64)> + 'a>;
 
-enum Way<'a> {
+enum Stepping<'a> {
     Equal {
         run: Run<'a>,
         clock: Clock<'a>,
@@ -73,7 +73,7 @@ pub struct Entry<'a> {
     pub kind: Kind,
     /// Its order, if it has one.
     pub order: Option<u32>,
-    way: Way<'a>,
+    stepping: Stepping<'a>,
 }
 
 impl<'a> Entry<'a> {
@@ -90,7 +90,7 @@ impl<'a> Entry<'a> {
             method: method.to_string(),
             kind,
             order,
-            way: Way::Equal { run, clock },
+            stepping: Stepping::Equal { run, clock },
         }
     }
 
@@ -106,15 +106,15 @@ impl<'a> Entry<'a> {
             method: method.to_string(),
             kind: Kind::Method,
             order: Some(order),
-            way: Way::Controlled { run, clock },
+            stepping: Stepping::Controlled { run, clock },
         }
     }
 
     /// Returns the divisions that the method supports.
     pub fn divisions(&self, steps: &[u64], tolerances: &[f64]) -> Vec<Division> {
-        match self.way {
-            Way::Equal { .. } => steps.iter().copied().map(Division::Steps).collect(),
-            Way::Controlled { .. } => {
+        match self.stepping {
+            Stepping::Equal { .. } => steps.iter().copied().map(Division::Steps).collect(),
+            Stepping::Controlled { .. } => {
                 let tolerances = tolerances.iter().copied();
                 tolerances.map(Division::Tolerance).collect()
             }
@@ -123,9 +123,9 @@ impl<'a> Entry<'a> {
 
     /// Runs up to a time, and shows every state; `None` for a division that the method does not support.
     pub fn run(&self, division: Division, until: f64, watch: Watch) -> Option<Outcome> {
-        match (&self.way, division) {
-            (Way::Equal { run, .. }, Division::Steps(steps)) => Some(run(steps, until, watch)),
-            (Way::Controlled { run, .. }, Division::Tolerance(tolerance)) => {
+        match (&self.stepping, division) {
+            (Stepping::Equal { run, .. }, Division::Steps(steps)) => Some(run(steps, until, watch)),
+            (Stepping::Controlled { run, .. }, Division::Tolerance(tolerance)) => {
                 Some(run(tolerance, until, watch))
             }
             _ => None,
@@ -137,12 +137,12 @@ impl<'a> Entry<'a> {
     pub fn clock(&self, measured: &MethodRun, part: u64) -> Option<(f64, f64)> {
         let steps = measured.steps;
         let part = steps.min(part);
-        match (&self.way, measured.division()) {
-            (Way::Equal { clock, .. }, Division::Steps(steps)) => {
+        match (&self.stepping, measured.division()) {
+            (Stepping::Equal { clock, .. }, Division::Steps(steps)) => {
                 let seconds = clock(steps, part)?;
                 Some((seconds, seconds * (steps as f64 / part as f64)))
             }
-            (Way::Controlled { clock, .. }, Division::Tolerance(tolerance)) => {
+            (Stepping::Controlled { clock, .. }, Division::Tolerance(tolerance)) => {
                 let (seconds, evaluations) = clock(tolerance, part as f64 / steps as f64)?;
                 let all = measured.evaluations? as f64;
                 Some((seconds, seconds * (all / evaluations as f64)))

@@ -1,8 +1,8 @@
 //! The part of the book that is written from a report, between two comments.
 
-use crate::auto::{self, TARGET, fastest};
+use crate::auto::{self, TARGET_ERROR, fastest};
 use crate::data::{MethodRun, Report};
-use crate::markdown::worked;
+use crate::markdown::format_work;
 use crate::work::{Work, work};
 use std::fmt::Write;
 
@@ -26,7 +26,7 @@ pub fn block(report: &Report) -> String {
                 "| {} | `{}` | {} | {} | {} | {} | {} |",
                 case.title.replace('|', "\\|"),
                 method.method,
-                worked(work(&method.runs, TARGET, evaluations)),
+                format_work(work(&method.runs, TARGET_ERROR, evaluations)),
                 micros(Some(time)),
                 micros(usual.map(auto::micros)),
                 case.auto
@@ -42,9 +42,9 @@ pub fn block(report: &Report) -> String {
 fn micros(time: Option<Work>) -> String {
     match time {
         Some(Work::Reached(value)) if value >= 1e4 => {
-            format!("{} ms", worked(Work::Reached(1e-3 * value)))
+            format!("{} ms", format_work(Work::Reached(1e-3 * value)))
         }
-        Some(time @ (Work::Reached(_) | Work::AtMost(_))) => format!("{} µs", worked(time)),
+        Some(time @ (Work::Reached(_) | Work::AtMost(_))) => format!("{} µs", format_work(time)),
         _ => "not reached".into(),
     }
 }
@@ -58,7 +58,7 @@ pub fn replaced(text: &str, block: &str) -> Option<String> {
 
 /// Returns the block of a text; `None` if the comments are missing.
 pub fn present(text: &str) -> Option<&str> {
-    let (_, rest) = text.split_once(BEGIN)?;
-    let (block, _) = rest.split_once(END)?;
+    let (_, rest) = text.split_once(BEGIN_MARKER)?;
+    let (block, _) = rest.split_once(END_MARKER)?;
     Some(block.strip_prefix('\n').unwrap_or(block))
 }

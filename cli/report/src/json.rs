@@ -48,7 +48,7 @@ impl Lines {
     /// Separates a value from the previous one in a list.
     fn part<W: ?Sized + Write>(&mut self, writer: &mut W, object: bool) -> io::Result<()> {
         match self.item.take() {
-            Some(_) if object && self.open.len() <= DEPTH => self.break_line(writer),
+            Some(_) if object && self.open.len() <= MAX_BROKEN_DEPTH => self.break_line(writer),
             Some(false) => writer.write_all(b" "),
             _ => Ok(()),
         }
@@ -115,7 +115,7 @@ impl Formatter for Lines {
         first: bool,
     ) -> io::Result<()> {
         writer.write_all(if first { b"" } else { b"," })?;
-        if self.open.len() <= DEPTH {
+        if self.open.len() <= MAX_BROKEN_DEPTH {
             self.break_line(writer)
         } else {
             writer.write_all(if first { b"" } else { b" " })

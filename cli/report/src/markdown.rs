@@ -1,8 +1,8 @@
 //! Reports as Markdown tables.
 
 use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
-use crate::number::{digits, error, grouped, short};
-use crate::work::{TARGETS, Work, work};
+use crate::number::{digits, error, group_thousands, short};
+use crate::work::{TARGET_ERRORS, Work, work};
 use crate::{auto, controlled};
 use std::fmt::Write;
 
@@ -82,7 +82,7 @@ pub fn case(case: &Case) -> String {
                 let _ = write!(
                     text,
                     "; to {:.0e} it needs {ratio:.1} times the time of the fastest method.\n\n",
-                    auto::TARGET
+                    auto::TARGET_ERROR
                 );
             }
             None => text.push_str(".\n\n"),
@@ -95,12 +95,16 @@ pub fn case(case: &Case) -> String {
         .any(|run| run.seconds.is_some());
     let mut head = vec!["method".to_string(), "order".into()];
     head.extend(
-        TARGETS
+        TARGET_ERRORS
             .iter()
             .map(|target| format!("evaluations to {target:.0e}")),
     );
     if timed {
-        head.extend(TARGETS.iter().map(|target| format!("µs to {target:.0e}")));
+        head.extend(
+            TARGET_ERRORS
+                .iter()
+                .map(|target| format!("µs to {target:.0e}")),
+        );
     }
     table(&mut text, &head);
     for method in &case.methods {
@@ -109,10 +113,14 @@ pub fn case(case: &Case) -> String {
             method.order.map_or("-".into(), |p| p.to_string()),
         ];
         let evaluations = |run: &MethodRun| run.evaluations.map(|count| count as f64);
-        cells.extend(TARGETS.map(|target| worked(work(&method.runs, target, evaluations))));
+        cells.extend(
+            TARGET_ERRORS.map(|target| format_work(work(&method.runs, target, evaluations))),
+        );
         if timed {
             let micros = |run: &MethodRun| run.seconds.map(|seconds| 1e6 * seconds);
-            cells.extend(TARGETS.map(|target| worked(work(&method.runs, target, micros))));
+            cells.extend(
+                TARGET_ERRORS.map(|target| format_work(work(&method.runs, target, micros))),
+            );
         }
         row(&mut text, &cells);
     }
@@ -173,7 +181,7 @@ fn best(method: &MethodRuns, until: f64, timed: bool) -> Vec<String> {
     let value = |value: Option<f64>| value.map_or("-".into(), error);
     let mut cells = vec![
         name(method),
-        grouped(run.steps),
+        group_thousands(run.steps),
         value(run.error),
         value(run.energy),
         value(run.momentum),
@@ -213,7 +221,7 @@ fn drifts(report: &Report) -> String {
                 drift.case.clone(),
                 drift.method.clone(),
                 short(drift.step),
-                grouped(drift.steps),
+                group_thousands(drift.steps),
                 error(energy),
                 ended.or(growth).unwrap_or_else(|| "-".into()),
                 value(drift.momentum),

@@ -6,7 +6,7 @@
 //! steps of a run are timed, at most [`PART`] of them, and the time is scaled to the whole run (by steps, or by
 //! evaluations where steps differ): a long run would be interrupted too often to be timed.
 
-use crate::data::{Case, MethodRun, MethodRuns, kept};
+use crate::data::{Case, MethodRun, MethodRuns, round_to_three_digits};
 use crate::entry::{Division, Entry, Worst};
 
 /// A plan of measurements.
@@ -73,7 +73,7 @@ pub fn measure(case: &mut Case, entries: &[Entry], plan: &Plan, tick: &mut dyn F
     }
     for (method, times) in methods.iter_mut().zip(times) {
         for (run, times) in method.runs.iter_mut().zip(times) {
-            run.seconds = median(times).and_then(kept);
+            run.seconds = median(times).and_then(round_to_three_digits);
         }
     }
     case.methods.extend(methods);
@@ -102,16 +102,16 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
             tolerance,
             rejected: outcome.statistics.map(|counts| counts.rejected),
             evaluations: outcome.evaluations.filter(|_| outcome.failure.is_none()),
-            error: kept(outcome.error),
-            energy: kept(worst.energy),
-            momentum: kept(worst.momentum),
-            defect: kept(worst.defect),
+            error: round_to_three_digits(outcome.error),
+            energy: round_to_three_digits(worst.energy),
+            momentum: round_to_three_digits(worst.momentum),
+            defect: round_to_three_digits(worst.defect),
             seconds: None,
             failure: outcome.failure,
         });
         // Before a method converges, its error may be constant for many runs.
         let small = outcome.error < 1e-3;
-        stalled = if small && outcome.error > REDUCED * last {
+        stalled = if small && outcome.error > ERROR_REDUCTION * last {
             stalled + 1
         } else {
             0
@@ -128,7 +128,7 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
 fn time(entry: &Entry, run: &MethodRun, least: f64) -> Option<f64> {
     let (mut sum, mut whole, mut count) = (0.0, 0.0, 0.0);
     while sum < least {
-        let (seconds, all) = entry.clock(run, PART)?;
+        let (seconds, all) = entry.clock(run, MAX_TIMED_STEPS)?;
         (sum, whole, count) = (sum + seconds, whole + all, count + 1.0);
         // A clock that does not advance must not block the other measurements.
         if count > 1e5 {

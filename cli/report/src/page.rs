@@ -1,11 +1,11 @@
 //! Reports as one self-contained HTML page: pictures inline, light and dark.
 
-use crate::code::{marked, plain};
+use crate::code::{mark_up, plain};
 use crate::data::{Case, MethodRun, Report};
-use crate::markdown::{how, name, worked};
+use crate::markdown::{format_work, how, name};
 use crate::number::short;
 use crate::plot::{Figure, sheet};
-use crate::work::{TARGETS, work};
+use crate::work::{TARGET_ERRORS, work};
 use crate::{auto, controlled};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -42,28 +42,28 @@ pub fn write(report: &Report, figures: &[Option<Figure>], further: &[Picture]) -
             }
             body {
                 main {
-                    h1 { (marked(&report.title)) }
+                    h1 { (mark_up(&report.title)) }
                     @for paragraph in how(report).split("\n\n") {
-                        p.soft { (marked(paragraph)) }
+                        p.soft { (mark_up(paragraph)) }
                     }
                     nav aria-label="cases" {
                         ul {
                             @for case in &report.cases {
-                                li { a href=(format!("#{}", case.name)) { (marked(&case.title)) } }
+                                li { a href=(format!("#{}", case.name)) { (mark_up(&case.title)) } }
                             }
                         }
                     }
                     (peers(report))
                     @if let Some(verdict) = auto::verdict(report) {
-                        h2 { (marked("What `auto` takes")) }
-                        p { (marked(&verdict)) }
+                        h2 { (mark_up("What `auto` takes")) }
+                        p { (mark_up(&verdict)) }
                     }
                     @for (index, case) in report.cases.iter().enumerate() {
                         (section(case, figure(index)))
                     }
                     @for picture in further {
                         section {
-                            h2 { (marked(&picture.title)) }
+                            h2 { (mark_up(&picture.title)) }
                             (PreEscaped(picture.figure.inline()))
                         }
                     }
@@ -83,9 +83,9 @@ fn peers(report: &Report) -> Markup {
                 tbody {
                     @for peer in &report.peers {
                         tr {
-                            td { (marked(&peer.name)) }
+                            td { (mark_up(&peer.name)) }
                             td { @if peer.available { "yes" } @else { "not available" } }
-                            td { (marked(&peer.note)) }
+                            td { (mark_up(&peer.note)) }
                             td { code { (peer.start) } }
                         }
                     }
@@ -98,16 +98,16 @@ fn peers(report: &Report) -> Markup {
 fn section(case: &Case, figure: Option<&Figure>) -> Markup {
     html! {
         section id=(case.name) {
-            h2 { (marked(&case.title)) }
+            h2 { (mark_up(&case.title)) }
             p.soft {
-                "t = " (short(case.until)) "; error: " (marked(&case.error)) ", against " (marked(&case.reference))
+                "t = " (short(case.until)) "; error: " (mark_up(&case.error)) ", against " (mark_up(&case.reference))
                 @if let Some(error) = case.reference_error { " (itself off by " (format!("{error:.0e}")) ")" }
             }
             @if let Some(figure) = figure { (PreEscaped(figure.inline())) }
             (summary(case))
             (tolerances(case))
             @for missing in &case.missing {
-                p.soft { code { (missing.method) } " was not run: " (marked(&missing.why)) "." }
+                p.soft { code { (missing.method) } " was not run: " (mark_up(&missing.why)) "." }
             }
         }
     }
@@ -123,16 +123,16 @@ fn summary(case: &Case) -> Markup {
             thead {
                 tr {
                     th scope="col" { "method" }
-                    @for target in TARGETS { th scope="col" { (format!("{target:.0e}")) } }
-                    @for target in TARGETS { th scope="col" { (format!("µs, {target:.0e}")) } }
+                    @for target in TARGET_ERRORS { th scope="col" { (format!("{target:.0e}")) } }
+                    @for target in TARGET_ERRORS { th scope="col" { (format!("µs, {target:.0e}")) } }
                 }
             }
             tbody {
                 @for method in &case.methods {
                     tr {
                         td { (name(method)) }
-                        @for target in TARGETS { td { (worked(work(&method.runs, target, evaluations))) } }
-                        @for target in TARGETS { td { (worked(work(&method.runs, target, micros))) } }
+                        @for target in TARGET_ERRORS { td { (format_work(work(&method.runs, target, evaluations))) } }
+                        @for target in TARGET_ERRORS { td { (format_work(work(&method.runs, target, micros))) } }
                     }
                 }
             }
@@ -148,7 +148,7 @@ fn tolerances(case: &Case) -> Markup {
                 caption { "steps chosen by their error" }
                 thead { tr { @for cell in &head { th scope="col" { (cell) } } } }
                 tbody {
-                    @for row in &rows { tr { @for cell in row { td { (marked(cell)) } } } }
+                    @for row in &rows { tr { @for cell in row { td { (mark_up(cell)) } } } }
                 }
             }
         }

@@ -71,7 +71,7 @@ where
             name,
             kind,
             order,
-            move |steps, until, watch| self.watched(&method, steps, until, watch),
+            move |steps, until, watch| self.watch_run(&method, steps, until, watch),
             move |steps, part| {
                 let until = self.until * (part as f64 / steps as f64);
                 let begin = Instant::now();
@@ -134,7 +134,7 @@ where
         }
     }
 
-    fn watched<M>(&self, method: &M, steps: u64, until: f64, watch: Watch) -> Outcome
+    fn watch_run<M>(&self, method: &M, steps: u64, until: f64, watch: Watch) -> Outcome
     where
         M: Method<Counted<'a, Sys>>,
     {
@@ -151,7 +151,7 @@ where
             } else {
                 f64::NAN
             },
-            failure: result.err().map(|error| (self.said)(&error)),
+            failure: result.err().map(|error| (self.error_text)(&error)),
             statistics: None,
         }
     }
@@ -183,7 +183,7 @@ where
             } else {
                 f64::NAN
             },
-            failure: result.as_ref().err().map(|error| (self.said)(error)),
+            failure: result.as_ref().err().map(|error| (self.error_text)(error)),
             statistics: result.ok(),
         }
     }

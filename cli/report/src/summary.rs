@@ -1,6 +1,6 @@
 //! The few runs of a report from which its part of the book is made, small enough to be stored.
 
-use crate::auto::{TARGET, fastest};
+use crate::auto::{TARGET_ERROR, fastest};
 use crate::data::{Case, MethodRun, MethodRuns, Report};
 
 /// Reduces a report to the runs that [`crate::excerpt::block`] reads: of every case the fastest method, the one of
@@ -20,7 +20,7 @@ fn case(case: &Case) -> Case {
     let methods = case.methods.iter();
     let methods = methods.filter(|method| read.contains(&Some(method.method.as_str())));
     Case {
-        methods: methods.map(around).collect(),
+        methods: methods.map(runs_around).collect(),
         missing: Vec::new(),
         ..case.clone()
     }

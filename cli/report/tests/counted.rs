@@ -164,7 +164,7 @@ fn problem() -> Problem<'static, Pendulum, Inputs> {
         inputs: none,
         error: Box::new(|_, xi| (xi[0] - 7.0).abs()),
         momenta: Box::new(|_, _| Vec::new()),
-        said: Box::new(ToString::to_string),
+        error_text: Box::new(ToString::to_string),
         conservative: true,
     }
 }

@@ -227,9 +227,13 @@ fn the_book_names_the_fastest_method() {
         block.lines().last() == Some(&row.replace(" | <heavy>", " \\| <heavy>")),
         "{block}"
     );
-    let text = format!("a\n{}\nold\n{}\nb\n", excerpt::BEGIN, excerpt::END);
-    let new = excerpt::replaced(&text, &block).expect("a block");
+    let text = format!(
+        "a\n{}\nold\n{}\nb\n",
+        excerpt::BEGIN_MARKER,
+        excerpt::END_MARKER
+    );
+    let new = excerpt::replace_block(&text, &block).expect("a block");
     assert_eq!(excerpt::present(&new), Some(block.as_str()));
     assert!(new.starts_with("a\n") && new.ends_with("\nb\n") && !new.contains("old"));
-    assert_eq!(excerpt::replaced("nothing", &block), None);
+    assert_eq!(excerpt::replace_block("nothing", &block), None);
 }

@@ -30,11 +30,11 @@ use reference::Fields;
 use std::path::{Path, PathBuf};
 
 /// Length of a run without --until and --reference.
-const UNTIL: f64 = 10.0;
+const DEFAULT_DURATION: f64 = 10.0;
 /// Default of --steps.
-const STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
+const DEFAULT_STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
 /// Largest number of steps.
-const MOST: u64 = 100_000_000;
+const MAX_STEPS: u64 = 100_000_000;
 /// Tolerances of methods with step size control.
 const TOLERANCES: [f64; 8] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 /// Timings of each run, and the least duration of each (s).
@@ -43,7 +43,7 @@ const LEAST: f64 = 1e-3;
 /// Errors below this are taken for rounding.
 const FLOOR: f64 = 1e-13;
 /// Ratio of the steps of the reference run to those of the finest run.
-const FINER: u64 = 4;
+const REFERENCE_REFINEMENT: u64 = 4;
 
 /// Compares methods: error at the end, evaluations of forces, drift, time.
 ///
@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             processor: "the machine of the command".into(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
             code: "made into machine code at once".into(),
-            repeats: REPEATS,
+            repeats: TIMING_REPEATS,
         },
         ..Report::default()
     };
@@ -180,7 +180,7 @@ fn compare(
         methods: arguments.methods.clone(),
         until,
         steps: arguments.steps.clone(),
-        repeats: REPEATS,
+        repeats: TIMING_REPEATS,
     };
     let bar = progress::named(&generated.program.name);
     let mut show = |done, all| {
@@ -232,7 +232,7 @@ pub fn case(
     };
     let mut steps = asked.steps.clone();
     if steps.is_empty() {
-        steps.extend(STEPS);
+        steps.extend(DEFAULT_STEPS);
     }
     steps.sort_unstable();
     steps.dedup();
@@ -256,7 +256,7 @@ pub fn case(
             problem.error = Box::new(move |x, xi| end.error(x, xi));
         }
         None => {
-            let finest = steps.last().copied().unwrap_or(1) * FINER;
+            let finest = steps.last().copied().unwrap_or(1) * REFERENCE_REFINEMENT;
             let best = best(&methods);
             let failed = |error: hamel::StepError| {
                 Failure::failed(format!(
@@ -271,8 +271,9 @@ pub fn case(
             let difference = relative(&x2, &x).max(relative(&xi2, &xi));
             let order = Method::<Instance>::order(&best.stepper);
             case.reference = format!("{} with {finest} steps", best.name);
-            case.reference_error =
-                hamel_report::data::kept(difference / (f64::from(order).exp2() - 1.0));
+            case.reference_error = hamel_report::data::round_to_three_digits(
+                difference / (f64::from(order).exp2() - 1.0),
+            );
             problem.error = Box::new(move |a, b| relative(a, &x).max(relative(b, &xi)));
         }
     }
@@ -299,8 +300,8 @@ pub fn case(
         steps,
         tolerances: TOLERANCES.to_vec(),
         repeats: asked.repeats,
-        least: LEAST,
-        floor: FLOOR,
+        least: MIN_TIMING,
+        floor: ERROR_FLOOR,
     };
     measure(&mut case, &entries, &plan, show);
     Ok(case)
@@ -361,17 +362,20 @@ fn title(name: &str, docs: &[String]) -> String {
 /// Parses a number of steps.
 fn number_of_steps(text: &str) -> Result<u64, String> {
     let number = text.trim().parse::<u64>().ok();
-    let number = number.filter(|number| (1..=MOST).contains(number));
-    number.ok_or_else(|| format!("a whole number from 1 to {MOST} is needed"))
+    let number = number.filter(|number| (1..=MAX_STEPS).contains(number));
+    number.ok_or_else(|| format!("a whole number from 1 to {MAX_STEPS} is needed"))
 }
 
 /// The end time, which a reference has to list.
 fn until(arguments: &Arguments, solution: Option<&Solution>) -> Result<f64, Failure> {
     let Some(solution) = solution else {
-        return Ok(arguments.until.unwrap_or(UNTIL));
+        return Ok(arguments.until.unwrap_or(DEFAULT_DURATION));
     };
     let times = solution.times();
-    let until = arguments.until.or(times.last().copied()).unwrap_or(UNTIL);
+    let until = arguments
+        .until
+        .or(times.last().copied())
+        .unwrap_or(DEFAULT_DURATION);
     if times.contains(&until) && until > 0.0 {
         return Ok(until);
     }

@@ -16,9 +16,9 @@ use shapes::Shapes;
 use std::path::PathBuf;
 
 /// Number of points of a path.
-const POINTS: usize = 600;
+const PATH_POINTS: usize = 600;
 /// Name of the default view.
-const NAMED: &str = "isometric";
+const DEFAULT_VIEW: &str = "isometric";
 
 /// Draws the mechanism at a state, or in motion, as SVG.
 ///
@@ -54,7 +54,7 @@ pub struct Arguments {
     trace: Vec<String>,
     /// Direction of view: `isometric`, or azimuth and elevation in degrees. The azimuth is counted about the vertical
     /// from the first axis of the world; -90 looks along the second axis.
-    #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = NAMED, value_parser = view, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = DEFAULT_VIEW, value_parser = view, allow_hyphen_values = true)]
     view: (f64, f64),
     /// Output file; default: standard output.
     #[arg(long, value_name = "F.svg")]
@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             path: Vec::new(),
         },
     };
-    let drawn = drawing.with(&state.params);
+    let drawn = drawing.with_parameters(&state.params);
     let scenes: Vec<Scene> = moments.poses.iter().map(|x| drawn.scene(x)).collect();
     let Some((last, before)) = scenes.split_last() else {
         return Ok(());
@@ -129,7 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         floor,
         parts: shapes.of(last),
         poses: before.iter().map(|scene| shapes.faint(scene)).collect(),
-        paths: traced.into_iter().map(path).collect(),
+        paths: traced_frames.into_iter().map(path).collect(),
     };
     let text = space(&picture).standalone();
     match &arguments.out {
@@ -173,7 +173,7 @@ fn moments(
     let poses = equal(parts);
     let path = match arguments.trace.is_empty() {
         true => Vec::new(),
-        false => equal(POINTS),
+        false => equal(PATH_POINTS),
     };
     let mut times: Vec<f64> = poses.iter().chain(&path).copied().collect();
     times.sort_by(f64::total_cmp);
@@ -199,7 +199,7 @@ fn moments(
 }
 
 /// The indices of the frames whose paths are drawn.
-fn traced(generated: &Generated, names: &[String]) -> Result<Vec<usize>, Failure> {
+fn traced_frames(generated: &Generated, names: &[String]) -> Result<Vec<usize>, Failure> {
     let frames = &generated.active.frames;
     let mut unknown = Vec::new();
     let mut found = Vec::new();
@@ -224,7 +224,7 @@ fn traced(generated: &Generated, names: &[String]) -> Result<Vec<usize>, Failure
 }
 
 /// Describes the drawn time for the caption.
-fn said(arguments: &Arguments) -> String {
+fn caption(arguments: &Arguments) -> String {
     match (arguments.time, arguments.motion) {
         (None, None) if arguments.at.is_some() => "at the state given".into(),
         (None, None) => "at the start".into(),
@@ -237,7 +237,7 @@ fn said(arguments: &Arguments) -> String {
 }
 
 fn view(text: &str) -> Result<(f64, f64), String> {
-    if text == NAMED {
+    if text == DEFAULT_VIEW {
         return Ok(ISOMETRIC);
     }
     let number = |text: &str| {
@@ -247,5 +247,7 @@ fn view(text: &str) -> Result<(f64, f64), String> {
     let angles = text
         .split_once(',')
         .and_then(|(azimuth, elevation)| Some((number(azimuth)?, number(elevation)?)));
-    angles.ok_or_else(|| format!("`{NAMED}`, or two angles in degrees as in -60,20, are needed"))
+    angles.ok_or_else(|| {
+        format!("`{DEFAULT_VIEW}`, or two angles in degrees as in -60,20, are needed")
+    })
 }

@@ -4,25 +4,25 @@ use hamel_engine::drawing::{Acts, Frame, Joint, Scene, Vector};
 use hamel_report::plot::space::{Ink, Part, Shape};
 
 /// Widths of links, joint axes, rails and frame axes (pixels).
-const LINK: f64 = 3.4;
-const HINGE: f64 = 6.5;
-const RAIL: f64 = 2.2;
-const AXIS: f64 = 1.5;
+const LINK_WIDTH: f64 = 3.4;
+const HINGE_WIDTH: f64 = 6.5;
+const RAIL_WIDTH: f64 = 2.2;
+const AXIS_WIDTH: f64 = 1.5;
 /// Radii of balls and rings (pixels).
-const BALL: f64 = 7.0;
-const RING: f64 = 4.2;
+const BALL_RADIUS: f64 = 7.0;
+const RING_RADIUS: f64 = 4.2;
 /// Lengths relative to the size of the mechanism: half axes of joints, axes of few and of many frames, the least radius
 /// of a body.
-const HALF: f64 = 0.022;
-const FEW: f64 = 0.085;
-const MANY: f64 = 0.04;
-const THIN: f64 = 0.011;
+const HALF_JOINT_AXIS: f64 = 0.022;
+const AXIS_OF_FEW: f64 = 0.085;
+const AXIS_OF_MANY: f64 = 0.04;
+const MIN_LINK_RADIUS: f64 = 0.011;
 /// Largest number of frames that counts as few.
-const COUNT: usize = 4;
+const MAX_FEW_FRAMES: usize = 4;
 /// Lengths below this, relative to the size, count as zero.
-const NOTHING: f64 = 1e-6;
+const NEGLIGIBLE: f64 = 1e-6;
 /// The colours of the axes of a frame: red, green and blue.
-const AXES: [Ink; 3] = [Ink::Series(4), Ink::Series(2), Ink::Series(0)];
+const AXIS_COLORS: [Ink; 3] = [Ink::Series(4), Ink::Series(2), Ink::Series(0)];
 
 /// Sizes of symbols, relative to the scene for which it is made.
 pub struct Shapes {
@@ -86,18 +86,18 @@ impl Shapes {
     }
 
     fn axes(&self, scene: &Scene, parts: &mut Vec<Part>) {
-        let part = if scene.frames.len() > COUNT {
-            MANY
+        let part = if scene.frames.len() > MAX_FEW_FRAMES {
+            AXIS_OF_MANY
         } else {
-            FEW
+            AXIS_OF_FEW
         };
         for frame in &scene.frames {
-            for (axis, ink) in AXES.into_iter().enumerate() {
+            for (axis, ink) in AXIS_COLORS.into_iter().enumerate() {
                 let tip = std::array::from_fn(|k| {
                     frame.position[k] + part * self.size * frame.rotation[k][axis]
                 });
                 let ends = [frame.position, tip];
-                self.bar(ends, AXIS, ink, parts);
+                self.bar(ends, AXIS_WIDTH, ink, parts);
             }
         }
     }
@@ -115,22 +115,22 @@ impl Shapes {
             };
             if let Some(parent) = frame.parent {
                 let ends = [scene.frames[parent].position, place];
-                self.bar(ends, LINK, ink(scene, parent), parts);
+                self.bar(ends, LINK_WIDTH, ink(scene, parent), parts);
             }
-            self.bar([place, frame.position], RAIL, Ink::Soft, parts);
+            self.bar([place, frame.position], RAIL_WIDTH, Ink::Soft, parts);
         }
         for body in &scene.bodies {
             let ends = [scene.frames[body.frame].position, body.centre];
-            self.bar(ends, LINK, ink(scene, body.frame), parts);
+            self.bar(ends, LINK_WIDTH, ink(scene, body.frame), parts);
         }
         for particle in &scene.particles {
             if let Some(frame) = particle.frame {
                 let ends = [scene.frames[frame].position, particle.position];
-                self.bar(ends, LINK, ink(scene, frame), parts);
+                self.bar(ends, LINK_WIDTH, ink(scene, frame), parts);
             }
         }
         for rod in &scene.rods {
-            self.bar(*rod, LINK, Ink::Soft, parts);
+            self.bar(*rod, LINK_WIDTH, Ink::Soft, parts);
         }
     }
 
@@ -139,14 +139,24 @@ impl Shapes {
             match joint.kind {
                 "revolute" | "continuous" | "universal" | "cylindrical" => {
                     for axis in &joint.axes {
-                        let half = HALF * self.size;
-                        self.bar(along(joint.place, *axis, half), HINGE, Ink::Dark, parts);
+                        let half = HALF_JOINT_AXIS * self.size;
+                        self.bar(
+                            along(joint.place, *axis, half),
+                            HINGE_WIDTH,
+                            Ink::Dark,
+                            parts,
+                        );
                     }
                 }
                 "prismatic" => {
                     for axis in &joint.axes {
-                        let half = 5.0 * HALF * self.size;
-                        self.bar(along(joint.place, *axis, half), RAIL, Ink::Soft, parts);
+                        let half = 5.0 * HALF_JOINT_AXIS * self.size;
+                        self.bar(
+                            along(joint.place, *axis, half),
+                            RAIL_WIDTH,
+                            Ink::Soft,
+                            parts,
+                        );
                     }
                 }
                 "spherical" => parts.push(ring(joint.place, Ink::Dark)),
@@ -163,14 +173,15 @@ impl Shapes {
     fn masses(&self, scene: &Scene, parts: &mut Vec<Part>) {
         for (index, body) in scene.bodies.iter().enumerate() {
             let radii = body.radii;
-            let shape = if radii.iter().all(|radius| *radius <= NOTHING * self.size) {
+            let shape = if radii.iter().all(|radius| *radius <= NEGLIGIBLE * self.size) {
                 Shape::Ball {
                     at: body.centre,
-                    radius: BALL,
+                    radius: BALL_RADIUS,
                 }
             } else {
-                let arms =
-                    |i: usize| body.axes[i].map(|axis| axis * radii[i].max(THIN * self.size));
+                let arms = |i: usize| {
+                    body.axes[i].map(|axis| axis * radii[i].max(MIN_LINK_RADIUS * self.size))
+                };
                 Shape::Ellipsoid {
                     centre: body.centre,
                     arms: [arms(0), arms(1), arms(2)],
@@ -181,7 +192,7 @@ impl Shapes {
         }
         for (index, particle) in scene.particles.iter().enumerate() {
             let share = particle.mass / self.heaviest;
-            let radius = BALL * share.cbrt().clamp(0.5, 1.0);
+            let radius = BALL_RADIUS * share.cbrt().clamp(0.5, 1.0);
             parts.push(Part {
                 ink: Ink::Series(scene.bodies.len() + index),
                 shape: Shape::Ball {
@@ -205,7 +216,7 @@ impl Shapes {
         }
         for &ends in &scene.loops {
             parts.push(ring(ends[0], Ink::Series(4)));
-            if distance(ends[0], ends[1]) > NOTHING * self.size {
+            if distance(ends[0], ends[1]) > NEGLIGIBLE * self.size {
                 parts.push(ring(ends[1], Ink::Series(4)));
                 parts.push(Part {
                     ink: Ink::Series(4),
@@ -217,7 +228,7 @@ impl Shapes {
 
     /// Adds a bar, unless its length is zero.
     fn bar(&self, ends: [Vector; 2], width: f64, ink: Ink, parts: &mut Vec<Part>) {
-        if distance(ends[0], ends[1]) > NOTHING * self.size {
+        if distance(ends[0], ends[1]) > NEGLIGIBLE * self.size {
             let shape = Shape::Bar { ends, width };
             parts.push(Part { ink, shape });
         }
@@ -250,7 +261,10 @@ fn ink(scene: &Scene, frame: usize) -> Ink {
 fn ring(at: Vector, ink: Ink) -> Part {
     Part {
         ink,
-        shape: Shape::Ring { at, radius: RING },
+        shape: Shape::Ring {
+            at,
+            radius: RING_RADIUS,
+        },
     }
 }
 

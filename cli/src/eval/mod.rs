@@ -13,7 +13,7 @@ use hamel_engine::{Evaluation, State};
 use std::path::PathBuf;
 
 /// Number of velocities above which γ and Γ, with n³ entries each, are printed only with --tables.
-const MOST_SHOWN: usize = 64;
+const MAX_SHOWN_VELOCITIES: usize = 64;
 
 /// Prints the values of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
 ///

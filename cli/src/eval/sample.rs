@@ -25,7 +25,7 @@ const FUNCTIONS: [FunctionId; 8] = [
     FunctionId::PotentialEnergy,
 ];
 /// Largest relative residual of a force that inputs produce.
-const REACHED: f64 = 1e-9;
+const FORCE_TOLERANCE: f64 = 1e-9;
 
 /// Evaluates and prints one state, or each state of a list `samples`.
 ///
@@ -34,7 +34,7 @@ const REACHED: f64 = 1e-9;
 /// the loads of the description act, with zero input.
 pub fn run(source: &Source, at: &File, frames: &[NamedFrame]) -> Result<(), Failure> {
     let File { path, json } = at;
-    let generated = source.derive_only(&FUNCTIONS, &asked(frames))?;
+    let generated = source.derive_only(&FUNCTIONS, &requested_jacobians(frames))?;
     let (list, several) = match json.get("samples") {
         Some(Value::Array(list)) => (list.as_slice(), true),
         _ => (std::slice::from_ref(json), false),
@@ -214,7 +214,7 @@ fn accel(
             let solved = reach.clone().svd(true, true).solve(&missing, f64::EPSILON);
             solved.ok().filter(|u| {
                 let short = (&reach * u - &missing).norm();
-                short <= REACHED * (wanted.norm() + own.norm())
+                short <= FORCE_TOLERANCE * (wanted.norm() + own.norm())
             })
         }
     };

@@ -12,7 +12,7 @@ use hamel_files::number::short;
 use std::path::PathBuf;
 
 /// Largest acceleration that counts as a rounding error of zero.
-const AT_REST: f64 = 1e-9;
+const REST_TOLERANCE: f64 = 1e-9;
 
 /// Prints the linearisation at a state: matrices A and B, and the eigenvalues of A.
 ///
@@ -52,11 +52,11 @@ enum Format {
 }
 
 /// Real or imaginary parts below this, relative to the largest entry of A, are shown as zero.
-const ROUNDING: f64 = 1e-14;
+const PART_TOLERANCE: f64 = 1e-14;
 
 /// Eigenvalues below this, relative to the largest entry of A, are zero to rounding: a rounding error ε moves a double
 /// zero of the characteristic polynomial by √ε.
-const ZERO: f64 = 1e-7;
+const EIGENVALUE_TOLERANCE: f64 = 1e-7;
 
 /// Linearises and prints the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -115,7 +115,7 @@ fn text(linear: &Linearization) -> String {
         .flatten()
         .fold(0.0, |a: f64, b| a.max(b.abs()));
     let clean = |value: f64| {
-        if value.abs() < ROUNDING * size {
+        if value.abs() < PART_TOLERANCE * size {
             0.0
         } else {
             value
@@ -126,8 +126,8 @@ fn text(linear: &Linearization) -> String {
     }
     let values = linear.eigenvalues.iter().flatten();
     let (zeros, others): (Vec<_>, Vec<_>) =
-        values.partition(|(re, im)| re.hypot(*im) <= ZERO * size);
-    let mut zeros = zeroes(&zeros, ROUNDING * size);
+        values.partition(|(re, im)| re.hypot(*im) <= EIGENVALUE_TOLERANCE * size);
+    let mut zeros = zeroes(&zeros, PART_TOLERANCE * size);
     for &&(re, im) in &others {
         let re = clean(re);
         // Zeros stand at their place in the order.
@@ -143,7 +143,7 @@ fn text(linear: &Linearization) -> String {
     }
     text.push_str(&zeros);
     let largest = linear.xi_dot.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    if largest > AT_REST {
+    if largest > REST_TOLERANCE {
         text.push_str(&format!(
             "\nthe velocities change here, max |xi_dot| = {}: the matrices hold for this instant\n",
             short(largest)

@@ -9,7 +9,7 @@ use hamel_codegen::program::count::Count;
 use hamel_engine::Source;
 
 /// Compares the choices and writes them as a table or as JSON.
-pub fn written(source: &Source, model: &Model, as_json: bool) -> Result<String, Failure> {
+pub fn write(source: &Source, model: &Model, as_json: bool) -> Result<String, Failure> {
     let choices = advise(model).map_err(|why| {
         Failure::failed(format!(
             "{}: there is nothing to compare: {why}",

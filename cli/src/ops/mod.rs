@@ -62,14 +62,14 @@ struct Row {
 }
 
 /// The counts as JSON.
-pub fn counted(source: &Source) -> Result<String, Failure> {
+pub fn counts_json(source: &Source) -> Result<String, Failure> {
     Ok(Counts::of(source)?.json())
 }
 
 /// The counts of other velocity coordinates as JSON.
-pub fn advised(source: &Source) -> Result<String, Failure> {
+pub fn advice_json(source: &Source) -> Result<String, Failure> {
     let model = source.derive()?.model;
-    advice::written(source, &model, true)
+    advice::write(source, &model, true)
 }
 
 /// The counts of all functions of a description.
@@ -109,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.advise {
         let model = source.derive()?.model;
         let as_json = matches!(arguments.format, Format::Json);
-        return print(&advice::written(&source, &model, as_json)?);
+        return print(&advice::write(&source, &model, as_json)?);
     }
     let counts = Counts::of(&source)?;
     print(&match arguments.format {
@@ -166,24 +166,26 @@ fn sum(a: Written, b: Written) -> Written {
 
 /// Counts the operations of the roots as trees, each use of a node anew.
 fn tree(graph: &Graph, roots: &[Edge]) -> Written {
-    const NONE: Written = [Some(0); 6];
-    let mut costs = vec![NONE; graph.len()];
+    const NO_OPERATIONS: Written = [Some(0); 6];
+    let mut costs = vec![NO_OPERATIONS; graph.len()];
     for id in graph.reachable(roots) {
         let mut cost = graph
             .node(id)
             .children()
-            .fold(NONE, |cost, child| sum(cost, costs[child.node() as usize]));
+            .fold(NO_OPERATIONS, |cost, child| {
+                sum(cost, costs[child.node() as usize])
+            });
         let kind = match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) | Node::Listed(..) => None,
             Node::Add(..) | Node::Select(..) => Some(0),
             Node::Mul(..) => Some(1),
             Node::Div(..) => Some(2),
             Node::Apply(function, _) => Some(match function.row().cost {
-                Cost::Choice => 0,
+                Cost::Comparison => 0,
                 Cost::Product => 1,
                 Cost::Quotient => 2,
                 Cost::Root => 3,
-                Cost::Turn => 4,
+                Cost::SineOrCosine => 4,
                 Cost::Other => 5,
             }),
             Node::Atan2(..) | Node::External(..) => Some(5),
@@ -193,9 +195,9 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
         }
         costs[id as usize] = cost;
     }
-    roots
-        .iter()
-        .fold(NONE, |cost, root| sum(cost, costs[root.node() as usize]))
+    roots.iter().fold(NO_OPERATIONS, |cost, root| {
+        sum(cost, costs[root.node() as usize])
+    })
 }
 
 /// Formats a count in few characters: `123456`, `1.2e9`, `> 3.4e38`.

@@ -13,18 +13,18 @@ use hamel_codegen::tables;
 use nalgebra::{DMatrix, DVector, Matrix4, SMatrix, SVector};
 
 /// Parameters of a link: Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h, m.
-const TEN: usize = 10;
+const LINK_PARAMETERS: usize = 10;
 /// Iteration limit of Newton's method.
-const MOST: usize = 1000;
+const MAX_NEWTON_STEPS: usize = 1000;
 /// Square of the last step, in the norm of the second derivative: the remaining error is far below rounding.
-const CONVERGED: f64 = 1e-20;
+const STEP_TOLERANCE: f64 = 1e-20;
 /// Values of r relative to the squared scale of a base parameter (β and its terms in π₀), each warm-started from the
 /// last.
-const SLACK: [f64; 7] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+const SLACK_SCHEDULE: [f64; 7] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 /// Smallest scale of a base parameter, relative to the largest.
-const LEAST: f64 = 1e-6;
+const MIN_SCALE: f64 = 1e-6;
 /// Largest error of K π, relative to the largest sum of absolute terms.
-const KEPT: f64 = 1e-10;
+const CONSTRAINT_TOLERANCE: f64 = 1e-10;
 
 /// The map from standard to base parameters: the places and factors of the terms of each β.
 pub type Map = [Vec<(usize, f64)>];
@@ -65,9 +65,12 @@ fn inverse(ten: &[f64]) -> Option<Matrix4<f64>> {
 fn of_link(
     inverse: &Matrix4<f64>,
     nominal: &Matrix4<f64>,
-) -> (SVector<f64, TEN>, SMatrix<f64, TEN, TEN>) {
-    let units: [Matrix4<f64>; TEN] = std::array::from_fn(|k| {
-        let mut unit = [0.0; TEN];
+) -> (
+    SVector<f64, LINK_PARAMETERS>,
+    SMatrix<f64, LINK_PARAMETERS, LINK_PARAMETERS>,
+) {
+    let units: [Matrix4<f64>; LINK_PARAMETERS] = std::array::from_fn(|k| {
+        let mut unit = [0.0; LINK_PARAMETERS];
         unit[k] = 1.0;
         pseudo_inertia(&unit)
     });
@@ -100,8 +103,8 @@ struct Problem<'a> {
 /// # Errors
 /// See [`NoBodies`].
 pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result<Bodies, NoBodies> {
-    let (tens, _) = nominal.split_at(TEN * links);
-    let tens = tens.chunks(TEN).enumerate();
+    let (tens, _) = nominal.split_at(LINK_PARAMETERS * links);
+    let tens = tens.chunks(LINK_PARAMETERS).enumerate();
     let links = tens.map(|(link, ten)| inverse(ten).ok_or(NoBodies::Nominal(link)));
     let mut k = DMatrix::zeros(map.len(), nominal.len());
     for (row, terms) in map.iter().enumerate() {
@@ -117,12 +120,12 @@ pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result
     };
     let start = DVector::from_column_slice(nominal);
     let scales = problem.k.abs() * start.abs() + problem.beta.abs();
-    let least = scales.amax() * LEAST;
+    let least = scales.amax() * MIN_SCALE;
     let mut near = None;
-    for slack in SLACK {
+    for slack in SLACK_SCHEDULE {
         let r = scales.map(|scale| slack * scale.max(least).powi(2));
         let from = near.as_ref().unwrap_or(&start).clone();
-        match problem.solved(from, &r) {
+        match problem.minimize(from, &r) {
             Some(pi) => near = Some(pi),
             // Keep the previous result, for a larger r.
             None => break,
@@ -132,9 +135,9 @@ pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result
     let none = DVector::zeros(map.len());
     let kept = |pi: &DVector<f64>| {
         let missing = (&problem.beta - &problem.k * pi).amax();
-        missing <= KEPT * (problem.k.abs() * pi.abs()).amax()
+        missing <= CONSTRAINT_TOLERANCE * (problem.k.abs() * pi.abs()).amax()
     };
-    let exact = problem.solved(near.clone(), &none).filter(kept);
+    let exact = problem.minimize(near.clone(), &none).filter(kept);
     Ok(Bodies {
         exact: exact.is_some(),
         standard: exact.unwrap_or(near).as_slice().to_vec(),
@@ -143,25 +146,29 @@ pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result
 
 impl Problem<'_> {
     /// The minimum of D + ½ Σ (K π − β)²/r, with K π = β where r is 0; `None` if the method does not converge.
-    fn solved(&self, mut pi: DVector<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
+    fn minimize(&self, mut pi: DVector<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
         let (size, k) = (pi.len(), &self.k);
-        let joints = TEN * self.links.len()..size;
-        for _ in 0..MOST {
+        let joints = LINK_PARAMETERS * self.links.len()..size;
+        for _ in 0..MAX_NEWTON_STEPS {
             // H⁻¹ Kᵀ and H⁻¹ g, by blocks: H does not couple links.
             let mut carried = DMatrix::zeros(size, k.nrows());
             let mut downhill = DVector::zeros(size);
             let mut second = DMatrix::zeros(size, size);
             for (link, nominal) in self.links.iter().enumerate() {
-                let first = TEN * link;
-                let own = inverse(&pi.as_slice()[first..first + TEN])?;
+                let first = LINK_PARAMETERS * link;
+                let own = inverse(&pi.as_slice()[first..first + LINK_PARAMETERS])?;
                 let (g, h) = of_link(&own, nominal);
                 let factor = h.cholesky()?;
-                let columns: DMatrix<f64> = k.columns(first, TEN).transpose();
-                second.view_mut((first, first), (TEN, TEN)).copy_from(&h);
+                let columns: DMatrix<f64> = k.columns(first, LINK_PARAMETERS).transpose();
+                second
+                    .view_mut((first, first), (LINK_PARAMETERS, LINK_PARAMETERS))
+                    .copy_from(&h);
                 carried
-                    .rows_mut(first, TEN)
+                    .rows_mut(first, LINK_PARAMETERS)
                     .copy_from(&factor.solve(&columns));
-                downhill.rows_mut(first, TEN).copy_from(&factor.solve(&g));
+                downhill
+                    .rows_mut(first, LINK_PARAMETERS)
+                    .copy_from(&factor.solve(&g));
             }
             for place in joints.clone() {
                 let (g, h) = of_joint(pi[place], self.nominal[place]);
@@ -188,7 +195,7 @@ impl Problem<'_> {
                 false => 1.0 / (1.0 + length.sqrt()),
             };
             pi += fraction * step;
-            if length <= CONVERGED {
+            if length <= STEP_TOLERANCE {
                 return Some(pi);
             }
         }
@@ -198,11 +205,11 @@ impl Problem<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{NoBodies, TEN, inverse, nearest, pseudo_inertia};
+    use super::{LINK_PARAMETERS, NoBodies, inverse, nearest, pseudo_inertia};
 
     /// Θ about the frame's origin, h and m of point masses: a body, if there are four or more in general position.
     fn body(points: &[([f64; 3], f64)]) -> Vec<f64> {
-        let mut ten = vec![0.0; TEN];
+        let mut ten = vec![0.0; LINK_PARAMETERS];
         for &([x, y, z], m) in points {
             let terms = [
                 y * y + z * z,
@@ -265,7 +272,7 @@ mod tests {
     /// D of all links and joints, by its definition.
     fn distance(pi: &[f64], nominal: &[f64]) -> f64 {
         let link = |place: usize| {
-            let range = TEN * place..TEN * (place + 1);
+            let range = LINK_PARAMETERS * place..LINK_PARAMETERS * (place + 1);
             let ratio =
                 pseudo_inertia(&pi[range.clone()]) * inverse(&nominal[range]).expect("a body");
             ratio.trace() - ratio.determinant().ln() - 4.0
@@ -316,7 +323,7 @@ mod tests {
             reached[1] > 0.0 && reached[1] < 0.1 * nominal[15],
             "{reached:?}"
         );
-        for link in found.standard[..2 * TEN].chunks(TEN) {
+        for link in found.standard[..2 * LINK_PARAMETERS].chunks(LINK_PARAMETERS) {
             assert!(inverse(link).is_some());
         }
         let mut flat = nominal.clone();

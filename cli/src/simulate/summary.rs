@@ -49,7 +49,7 @@ pub fn text(run: &Run, default_step: bool) -> String {
     let plural = |count: u64, word: &str| {
         format!(
             "{} {word}{}",
-            grouped(count),
+            group_thousands(count),
             if count == 1 { "" } else { "s" }
         )
     };
@@ -203,8 +203,8 @@ fn gaps(run: &Run, of: impl Fn(&Sample) -> f64) -> Option<String> {
     let first = missing.clone().next()?;
     Some(format!(
         "has no finite value at {} of {} samples, first at {} = {}",
-        grouped(missing.count() as u64),
-        grouped(run.samples.len() as u64),
+        group_thousands(missing.count() as u64),
+        group_thousands(run.samples.len() as u64),
         run.time.name,
         short(run.time.at(first.t, &first.x))
     ))

@@ -7,10 +7,10 @@ use hamel_codegen::syntax::suggest::closest;
 use hamel_engine::text::Piece;
 
 /// Largest number of points of one grid.
-const MOST: f64 = 1e9;
+const MAX_GRID_POINTS: f64 = 1e9;
 
 /// The names with their arguments, for messages.
-const KNOWN: [(&str, &[&str]); 4] = [
+const DISTRIBUTIONS: [(&str, &[&str]); 4] = [
     ("normal", &["mean", "sd"]),
     ("uniform", &["a", "b"]),
     ("latin", &["a", "b"]),
@@ -39,12 +39,16 @@ impl Distribution {
     ) -> Result<Vec<Self>, Vec<Diagnostic>> {
         let Some((name, inner)) = piece.call() else {
             return Err(vec![
-                piece.wrong("a distribution is expected").help(written()),
+                piece
+                    .wrong("a distribution is expected")
+                    .help(known_distributions()),
             ]);
         };
-        let Some((_, names)) = KNOWN.iter().find(|(known, _)| *known == name.text) else {
-            let close = closest(name.text, KNOWN.iter().map(|(known, _)| *known));
-            let help = close.map_or_else(written, |close| format!("did you mean `{close}`?"));
+        let Some((_, names)) = DISTRIBUTIONS.iter().find(|(known, _)| *known == name.text) else {
+            let close = closest(name.text, DISTRIBUTIONS.iter().map(|(known, _)| *known));
+            let help = close.map_or_else(known_distributions, |close| {
+                format!("did you mean `{close}`?")
+            });
             let message = format!("no distribution is called `{}`", name.text);
             return Err(vec![name.wrong(message).help(help)]);
         };
@@ -87,7 +91,7 @@ impl Distribution {
                 "latin" => Distribution::Latin(a, b),
                 _ => {
                     let n = arguments[2][entry];
-                    if n.fract() != 0.0 || !(1.0..=MOST).contains(&n) {
+                    if n.fract() != 0.0 || !(1.0..=MAX_GRID_POINTS).contains(&n) {
                         let message = format!("a whole number from 1 to 1e9 is needed, not {n}");
                         return Err(vec![last.wrong(message)]);
                     }
@@ -156,9 +160,9 @@ fn argument(
     }
 }
 
-fn written() -> String {
+fn known_distributions() -> String {
     let one = |(name, arguments): &(&str, &[&str])| format!("{name}({})", arguments.join(", "));
-    let all: Vec<String> = KNOWN.iter().map(one).collect();
+    let all: Vec<String> = DISTRIBUTIONS.iter().map(one).collect();
     format!("there are {}", all.join(", "))
 }
 

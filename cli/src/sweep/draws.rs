@@ -9,10 +9,10 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
 
 /// Words of the stream reserved for each entry; no entry uses more.
-const WORDS: u128 = 16;
+const WORDS_PER_ENTRY: u128 = 16;
 /// Purposes of keys.
-const OF_MEMBERS: u8 = 1;
-const OF_PERMUTATIONS: u8 = 2;
+const MEMBER_KEYS: u8 = 1;
+const PERMUTATION_KEYS: u8 = 2;
 
 /// The draws of one sweep.
 #[derive(Clone, Debug)]
@@ -26,24 +26,24 @@ impl Draws {
         Draws { seed }
     }
 
-    fn at(&self, purpose: u8, stream: u64, entry: usize) -> ChaCha8Rng {
+    fn generator(&self, purpose: u8, stream: u64, entry: usize) -> ChaCha8Rng {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&self.seed.to_le_bytes());
         key[8] = purpose;
         let mut generator = ChaCha8Rng::from_seed(key);
         generator.set_stream(stream);
-        generator.set_word_pos(entry as u128 * WORDS);
+        generator.set_word_pos(entry as u128 * WORDS_PER_ENTRY);
         generator
     }
 
     /// A uniform number in 0 ≤ u < 1.
     pub fn uniform(&self, member: u64, entry: usize) -> f64 {
-        unit(&mut self.at(OF_MEMBERS, member, entry))
+        unit(&mut self.generator(MEMBER_KEYS, member, entry))
     }
 
     /// A normal number with mean 0 and standard deviation 1 (G. E. P. Box, M. E. Muller, 1958).
     pub fn normal(&self, member: u64, entry: usize) -> f64 {
-        let mut generator = self.at(OF_MEMBERS, member, entry);
+        let mut generator = self.generator(MEMBER_KEYS, member, entry);
         // Avoid the logarithm of 0.
         let (length, angle) = (1.0 - unit(&mut generator), unit(&mut generator));
         libm::sqrt(-2.0 * libm::log(length)) * libm::cos(TAU * angle)
@@ -51,7 +51,7 @@ impl Draws {
 
     /// The permutation of members for an entry.
     pub fn permutation(&self, entry: usize, members: u64) -> Permutation {
-        let mut generator = self.at(OF_PERMUTATIONS, 0, entry);
+        let mut generator = self.generator(PERMUTATION_KEYS, 0, entry);
         Permutation::new(members, || generator.next_u64())
     }
 }

@@ -25,7 +25,7 @@ pub struct Part {
 
 impl Part {
     /// All shards.
-    pub const WHOLE: Part = Part { number: 1, of: 1 };
+    pub const ALL_SHARDS: Part = Part { number: 1, of: 1 };
 
     /// Whether a shard belongs to this part.
     pub fn has(self, shard: u64) -> bool {
@@ -33,7 +33,7 @@ impl Part {
     }
 
     /// Whether both parts have a shard in common.
-    fn meets(self, other: Part) -> bool {
+    fn overlaps(self, other: Part) -> bool {
         let (mut a, mut b) = (self.of, other.of);
         while b > 0 {
             (a, b) = (b, a % b);
@@ -72,7 +72,7 @@ impl Folder {
             file
         };
         let place = path.join(MANIFEST);
-        match known(path)? {
+        match read_manifest(path)? {
             Some(there) => {
                 let differences = manifest.differences(&there);
                 if !differences.is_empty() {
@@ -91,8 +91,8 @@ impl Folder {
             }
             None => failure::write(&place, &manifest.text)?,
         }
-        if part == Part::WHOLE {
-            sweep_up(path);
+        if part == Part::ALL_SHARDS {
+            remove_unfinished(path);
         }
         Ok(Folder {
             path: path.to_path_buf(),
@@ -102,12 +102,12 @@ impl Folder {
 
     /// Path of the file of a shard.
     pub fn place(&self, shard: u64) -> PathBuf {
-        self.path.join(named(shard))
+        self.path.join(shard_name(shard))
     }
 }
 
 /// The manifest of a folder, if there is one.
-pub fn known(path: &Path) -> Result<Option<Manifest>, Failure> {
+pub fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     let place = path.join(MANIFEST);
     let text = match fs::read_to_string(&place) {
         Ok(text) => text,
@@ -124,7 +124,7 @@ pub fn known(path: &Path) -> Result<Option<Manifest>, Failure> {
 
 /// The finished work of a sweep.
 #[derive(Clone, Debug, Default)]
-pub struct There {
+pub struct Finished {
     /// Finished shards.
     pub shards: Vec<u64>,
     /// Number of their members.
@@ -134,11 +134,11 @@ pub struct There {
 }
 
 /// Inspects all shards of a folder; fails if one does not belong to the sweep.
-pub fn there(path: &Path, manifest: &Manifest) -> Result<There, Failure> {
-    let mut there = There::default();
+pub fn find_finished(path: &Path, manifest: &Manifest) -> Result<Finished, Failure> {
+    let mut finished = Finished::default();
     let mut wrong = Vec::new();
     for shard in shards(path)? {
-        let name = named(shard);
+        let name = shard_name(shard);
         let mut refuse = |why: String| {
             wrong.push(format!("{name}: {why}; without it, it is computed again"));
         };
@@ -158,20 +158,20 @@ pub fn there(path: &Path, manifest: &Manifest) -> Result<There, Failure> {
                 refuse(format!("it has {} members", footer.members));
             }
             Ok(footer) => {
-                there.shards.push(shard);
-                there.members += footer.members;
-                there.failed += footer.failed;
+                finished.shards.push(shard);
+                finished.members += footer.members;
+                finished.failed += footer.failed;
             }
         }
     }
     match wrong.is_empty() {
-        true => Ok(there),
+        true => Ok(finished),
         false => Err(Failure::usages(&path.display().to_string(), &wrong)),
     }
 }
 
 /// File name of a shard.
-fn named(shard: u64) -> String {
+fn shard_name(shard: u64) -> String {
     format!("shard-{shard:06}.parquet")
 }
 
@@ -184,7 +184,10 @@ fn shards(path: &Path) -> Result<Vec<u64>, Failure> {
         let name = entry.map_err(unreadable)?.file_name();
         let number = name.to_str().and_then(|name| {
             let number = name.strip_prefix("shard-")?.strip_suffix(".parquet")?;
-            number.parse().ok().filter(|number| named(*number) == name)
+            number
+                .parse()
+                .ok()
+                .filter(|number| shard_name(*number) == name)
         });
         numbers.extend(number);
     }
@@ -199,7 +202,7 @@ fn lock(path: &Path, part: Part) -> Result<Vec<File>, Failure> {
             "{}: another process computes {}",
             path.display(),
             match part {
-                Part::WHOLE => "this sweep, or a part of it".into(),
+                Part::ALL_SHARDS => "this sweep, or a part of it".into(),
                 Part { number, of } => format!("part {number}/{of} of this sweep, or all of it"),
             }
         ))
@@ -210,7 +213,7 @@ fn lock(path: &Path, part: Part) -> Result<Vec<File>, Failure> {
         Err(TryLockError::Error(error)) => Err(unwritable(place, &error)),
     };
     let all = lock_file(path, LOCK)?;
-    if part == Part::WHOLE {
+    if part == Part::ALL_SHARDS {
         tried(&path.join(LOCK), all.try_lock())?;
         return Ok(vec![all]);
     }
@@ -226,7 +229,7 @@ fn lock(path: &Path, part: Part) -> Result<Vec<File>, Failure> {
             let (number, of) = name.strip_prefix(LOCK_OF_PARTS)?.split_once('-')?;
             Part::read(&format!("{number}/{of}")).ok()
         });
-        if let Some(other) = other.filter(|other| *other != part && part.meets(*other)) {
+        if let Some(other) = other.filter(|other| *other != part && part.overlaps(*other)) {
             let name = format!("{LOCK_OF_PARTS}{}-{}", other.number, other.of);
             tried(&path.join(&name), lock_file(path, &name)?.try_lock())?;
         }
@@ -250,7 +253,7 @@ fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
 }
 
 /// Removes unfinished files: no other process writes to the folder now.
-fn sweep_up(path: &Path) {
+fn remove_unfinished(path: &Path) {
     let (before, behind) = UNFINISHED;
     for entry in fs::read_dir(path).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -272,12 +275,12 @@ mod tests {
             for (i, j) in (1..=a).flat_map(|i| (1..=b).map(move |j| (i, j))) {
                 let (one, other) = (Part { number: i, of: a }, Part { number: j, of: b });
                 let shared = (0..60).any(|shard| one.has(shard) && other.has(shard));
-                assert_eq!(one.meets(other), shared, "{one:?} {other:?}");
+                assert_eq!(one.overlaps(other), shared, "{one:?} {other:?}");
             }
         }
         for text in ["0/3", "4/3", "1", "a/b", "-1/2", "1/2/3"] {
             assert!(Part::read(text).is_err(), "{text}");
         }
-        assert_eq!(Part::read("1/1"), Ok(Part::WHOLE));
+        assert_eq!(Part::read("1/1"), Ok(Part::ALL_SHARDS));
     }
 }

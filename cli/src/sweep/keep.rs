@@ -8,13 +8,13 @@ use hamel_engine::text::Piece;
 pub const OPTION: &str = "--keep";
 
 /// The possible items, as messages list them.
-const KNOWN: &str =
+const KNOWN_ITEMS: &str =
     "there are end, max(EXPR), min(EXPR), mean(EXPR), at(TIME, EXPR), event(EXPR < EXPR)";
 const NAMES: [&str; 6] = ["end", "max", "min", "mean", "at", "event"];
 
 /// The quantity derived from an expression.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Of {
+pub enum Quantity {
     /// Maximum.
     Max,
     /// Minimum.
@@ -36,17 +36,17 @@ pub enum Item<'a> {
     /// The end time of a member, x and ξ.
     End,
     /// A quantity of an expression; for an event, of the difference of two.
-    Of(Of, Vec<Piece<'a>>),
+    Quantity(Quantity, Vec<Piece<'a>>),
 }
 
 /// An item with its text.
-pub type Kept<'a> = (Piece<'a>, Item<'a>);
+pub type KeptItem<'a> = (Piece<'a>, Item<'a>);
 
 /// The outputs to add for the kept items.
-pub fn added<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
-    let of = |(index, (whole, item)): (usize, &Kept<'a>)| match item {
+pub fn outputs_to_add<'a>(kept: &[KeptItem<'a>]) -> Vec<Added<'a>> {
+    let of = |(index, (whole, item)): (usize, &KeptItem<'a>)| match item {
         Item::End => None,
-        Item::Of(_, sides) => Some(Added {
+        Item::Quantity(_, sides) => Some(Added {
             name: added::name(index),
             whole: *whole,
             sides: sides.clone(),
@@ -56,8 +56,8 @@ pub fn added<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
 }
 
 /// Reads the option for runs of length `until`: items, and the errors of others.
-pub fn read(text: &str, until: f64) -> (Vec<Kept<'_>>, Vec<Diagnostic>) {
-    let (mut kept, mut errors): (Vec<Kept>, Vec<Diagnostic>) = Default::default();
+pub fn read(text: &str, until: f64) -> (Vec<KeptItem<'_>>, Vec<Diagnostic>) {
+    let (mut kept, mut errors): (Vec<KeptItem>, Vec<Diagnostic>) = Default::default();
     let whole = match Piece::of(text) {
         Ok(whole) => whole,
         Err(error) => return (kept, vec![error]),
@@ -77,7 +77,7 @@ pub fn read(text: &str, until: f64) -> (Vec<Kept<'_>>, Vec<Diagnostic>) {
         }
     }
     if kept.is_empty() && errors.is_empty() {
-        errors.push(whole.wrong("nothing is kept").help(KNOWN));
+        errors.push(whole.wrong("nothing is kept").help(KNOWN_ITEMS));
     }
     (kept, errors)
 }
@@ -88,16 +88,16 @@ fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
     }
     let Some((name, inner)) = piece.call() else {
         let message = format!("`{}` cannot be kept", piece.text);
-        return Err(piece.wrong(message).help(KNOWN));
+        return Err(piece.wrong(message).help(KNOWN_ITEMS));
     };
     let alone = |piece: Piece<'_>| match piece.split(',').as_slice() {
         [one] if !one.text.is_empty() => Ok(()),
         _ => Err(piece.wrong("one expression is needed")),
     };
     let of = match name.text {
-        "max" => Of::Max,
-        "min" => Of::Min,
-        "mean" => Of::Mean,
+        "max" => Quantity::Max,
+        "min" => Quantity::Min,
+        "mean" => Quantity::Mean,
         "event" => return event(inner),
         "at" => {
             let [time, expression] = inner.split(',')[..] else {
@@ -108,19 +108,19 @@ fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
             let Some(at) = at.filter(|at| (0.0..=until).contains(at)) else {
                 return Err(time.wrong(format!("a time from 0 to {until} is needed")));
             };
-            return Ok(Item::Of(Of::At(at), vec![expression]));
+            return Ok(Item::Quantity(Quantity::At(at), vec![expression]));
         }
         other => {
             let help = match closest(other, NAMES) {
                 Some(close) => format!("did you mean `{close}`?"),
-                None => KNOWN.into(),
+                None => KNOWN_ITEMS.into(),
             };
             let message = format!("nothing that can be kept is called `{other}`");
             return Err(name.wrong(message).help(help));
         }
     };
     alone(inner)?;
-    Ok(Item::Of(of, vec![inner]))
+    Ok(Item::Quantity(of, vec![inner]))
 }
 
 /// Parses `A < B`, which becomes A − B < 0; the other direction becomes B − A < 0.
@@ -152,12 +152,12 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
         b'<' => vec![left, right],
         _ => vec![right, left],
     };
-    Ok(Item::Of(Of::Event { equal }, sides))
+    Ok(Item::Quantity(Quantity::Event { equal }, sides))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Item, OPTION, Of, read};
+    use super::{Item, OPTION, Quantity, read};
     use crate::sweep::distribution::Distribution;
     use hamel_engine::text::{Piece, refused as refused_text};
 
@@ -185,11 +185,11 @@ mod tests {
                 "at(2.5,w)"
             ]
         );
-        let Item::Of(Of::Event { equal: true }, sides) = &kept[2].1 else {
+        let Item::Quantity(Quantity::Event { equal: true }, sides) = &kept[2].1 else {
             panic!("{kept:?}");
         };
         assert_eq!((sides[0].text, sides[1].text), ("[1, 2][1]", "r[3]"));
-        assert!(matches!(kept[3].1, Item::Of(Of::At(2.5), _)));
+        assert!(matches!(kept[3].1, Item::Quantity(Quantity::At(2.5), _)));
     }
 
     /// Random texts are read or refused, and their errors can be rendered.

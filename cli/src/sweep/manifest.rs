@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 /// Version of the file's format.
 const FORMAT: u128 = 1;
 /// Longer texts are compared by their first differing line.
-const SHORT: usize = 60;
+const MAX_INLINE_TEXT: usize = 60;
 
 /// The specification of a sweep.
 #[derive(Clone, Debug)]
@@ -87,16 +87,16 @@ impl Manifest {
         for name in names {
             let (old, new) = (there.members.get(name), self.members.get(name));
             if old != new {
-                all.push(told(name, old, new));
+                all.push(describe_difference(name, old, new));
             }
         }
         all
     }
 }
 
-fn told(name: &str, old: Option<&Value>, new: Option<&Value>) -> String {
+fn describe_difference(name: &str, old: Option<&Value>, new: Option<&Value>) -> String {
     if let (Some(Value::String(old)), Some(Value::String(new))) = (old, new)
-        && old.len().max(new.len()) > SHORT
+        && old.len().max(new.len()) > MAX_INLINE_TEXT
         && old.lines().count().max(new.lines().count()) > 1
     {
         let (mut old, mut new) = (old.lines(), new.lines());
@@ -107,18 +107,22 @@ fn told(name: &str, old: Option<&Value>, new: Option<&Value>) -> String {
                 (Some(a), Some(b)) if a == b => {}
                 (None, None) => return format!("{name}: ends of lines differ"),
                 (a, b) => {
-                    let said =
+                    let display =
                         |line: Option<&str>| line.map_or("nothing".into(), |l| format!("`{l}`"));
-                    return format!("{name}, line {line}: {} there, {} here", said(a), said(b));
+                    return format!(
+                        "{name}, line {line}: {} there, {} here",
+                        display(a),
+                        display(b)
+                    );
                 }
             }
         }
     }
-    let said = |value: Option<&Value>| match value {
+    let display = |value: Option<&Value>| match value {
         None | Some(Value::Null) => "nothing".into(),
         Some(value) => value.to_string(),
     };
-    format!("{name}: {} there, {} here", said(old), said(new))
+    format!("{name}: {} there, {} here", display(old), display(new))
 }
 
 #[cfg(test)]
@@ -142,9 +146,9 @@ mod tests {
         let (here, there) = (manifest(8, &other), manifest(7, &long));
         let again = Manifest::read(&there.text).expect("its own text");
         assert_eq!(there.differences(&again), Vec::<String>::new());
-        let told = here.differences(&there);
+        let differences = here.differences(&there);
         assert_eq!(
-            told,
+            differences,
             [
                 "description, line 2: `coord q;` there, `coord p;` here",
                 "seed: 7 there, 8 here"

@@ -30,9 +30,9 @@ pub struct Sweep {
     /// The source of their systems.
     pub family: Family,
     /// The varied entries.
-    pub vary: Vary,
+    pub vary: Variations,
     /// The kept items.
-    pub keeping: Keeping,
+    pub keeping: KeptColumns,
     /// The plan of runs, with the method of the first member.
     pub plan: Plan,
     /// The state that members modify, in JSON.
@@ -74,7 +74,7 @@ struct Running<'a> {
     member: &'a Member,
     state: State<Instance>,
     balance: Cell<Balance>,
-    watch: Watch<'a>,
+    watch: MemberObserver<'a>,
 }
 
 impl Sweep {
@@ -91,10 +91,10 @@ impl Sweep {
                 }
                 (Ok(member), Some(other)) => rows.extend(self.both(&other, &member)),
                 (Ok(member), None) if side_by_side => waiting = Some(member),
-                (Ok(member), None) => rows.push(self.alone(&member)),
+                (Ok(member), None) => rows.push(self.run_alone(&member)),
             }
         }
-        rows.extend(waiting.map(|member| self.alone(&member)));
+        rows.extend(waiting.map(|member| self.run_alone(&member)));
         rows
     }
 
@@ -115,7 +115,7 @@ impl Sweep {
         }
     }
 
-    fn alone(&self, member: &Member) -> Row {
+    fn run_alone(&self, member: &Member) -> Row {
         let mut running = Running::new(member, &self.keeping);
         let outcome = running.advance();
         running.row(outcome)
@@ -130,12 +130,12 @@ impl Sweep {
 }
 
 impl<'a> Running<'a> {
-    fn new(member: &'a Member, keeping: &'a Keeping) -> Self {
+    fn new(member: &'a Member, keeping: &'a KeptColumns) -> Self {
         let Member { system, plan, .. } = member;
         let state = State::start(system);
         Running {
             balance: Cell::new(Balance::new(system, &state)),
-            watch: Watch::new(keeping, system, &plan.method.stepper),
+            watch: MemberObserver::new(keeping, system, &plan.method.stepper),
             state,
             member,
         }
@@ -244,7 +244,7 @@ impl Failed {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Arguments, prepared};
+    use super::super::{Arguments, prepare};
     use super::{Row, Sweep};
     use crate::source;
     use clap::Parser;
@@ -274,7 +274,7 @@ mod tests {
     }
 
     /// Writes a description to a temporary file.
-    fn written(name: &str, text: &str) -> PathBuf {
+    fn write_temporary(name: &str, text: &str) -> PathBuf {
         let path = std::env::temp_dir().join(format!("hamel-{name}-{}.eom", std::process::id()));
         std::fs::write(&path, text).expect("a description");
         path
@@ -374,7 +374,7 @@ mod tests {
             kinetic m * (1 - q) * w^2 / 2;
             start w = 0;
         }";
-        let path = written("bead", text);
+        let path = write_temporary("bead", text);
         let mut kinds = Vec::new();
         for vary in [
             "m = grid(0, 1, 2); start w = grid(-1, 1, 3)",

@@ -52,18 +52,18 @@ use shard::Columns;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use submit::{Engine, Job};
-use vary::Vary;
-use watch::Keeping;
-use work::{Done, Stopping, Work};
+use vary::Variations;
+use watch::KeptColumns;
+use work::{Cancellation, SweepResult, Work};
 
 /// The default of --shard-size: this fraction of all members, within these limits.
-const SHARDS: u64 = 64;
-const FEWEST: u64 = 64;
-const MOST: u64 = 10_000;
+const DEFAULT_SHARDS: u64 = 64;
+const MIN_SHARD_SIZE: u64 = 64;
+const MAX_SHARD_SIZE: u64 = 10_000;
 /// Largest number of shards in a folder.
-const MOST_SHARDS: u64 = 1_000_000;
+const MAX_SHARDS: u64 = 1_000_000;
 /// Default of --tasks.
-const TASKS: u64 = 16;
+const DEFAULT_TASKS: u64 = 16;
 
 /// Runs a system many times, with parameters, starts and inputs that differ from run to run.
 ///
@@ -76,7 +76,7 @@ const TASKS: u64 = 16;
   hamel sweep cart_pole.eom --vary \"start theta = grid(-1, 1, 21); start w = grid(-2, 2, 41)\" --until 5 --out map
   hamel sweep --status runs
   hamel sweep drone.eom … --out runs --shard 3/16               one of 16 parts, on this machine
-  hamel sweep drone.eom … --out runs --submit slurm --tasks 16  all of them, on a cluster", after_long_help = format!("{LONG}\n\n{}", method::described()))]
+  hamel sweep drone.eom … --out runs --submit slurm --tasks 16  all of them, on a cluster", after_long_help = format!("{LONG_HELP}\n\n{}", method::described()))]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE", required_unless_present = "status")]
@@ -131,7 +131,7 @@ pub struct Arguments {
     #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
     submit: Option<Engine>,
     /// Number of tasks of --submit; default: 16.
-    #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MOST_SHARDS), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MAX_SHARDS), allow_negative_numbers = true)]
     tasks: Option<u64>,
     /// With --submit, return when all tasks have finished.
     #[arg(long, requires = "submit")]
@@ -143,7 +143,7 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
-const LONG: &str = "\
+const LONG_HELP: &str = "\
 --vary takes items, `;` between them:
   m = normal(1.3, 0.1)                           a parameter, by mean and standard deviation
   start w = uniform([-1, -1, -1], [1, 1, 1])     coordinates or velocities, each entry between two numbers
@@ -204,14 +204,17 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
             "--submit takes a description in a file: tasks read it, too",
         ));
     }
-    let (mut sweep, columns) = prepared(arguments, &source, vary, stepping)?;
-    let manifest = fixed(arguments, &source, &sweep, vary, stepping)?;
-    let part = arguments.shard.unwrap_or(Part::WHOLE);
+    let (mut sweep, columns) = prepare(arguments, &source, vary, stepping)?;
+    let manifest = fix_manifest(arguments, &source, &sweep, vary, stepping)?;
+    let part = arguments.shard.unwrap_or(Part::ALL_SHARDS);
     let threads = arguments.threads.map(usize::from);
     if let Some(engine) = arguments.submit {
         // Create the folder here, and release its lock before tasks begin.
-        drop(Folder::take(out, &manifest, Part::WHOLE)?);
-        let tasks = arguments.tasks.unwrap_or(TASKS).min(manifest.shards());
+        drop(Folder::take(out, &manifest, Part::ALL_SHARDS)?);
+        let tasks = arguments
+            .tasks
+            .unwrap_or(DEFAULT_TASKS)
+            .min(manifest.shards());
         let job = Job {
             engine,
             folder: out,
@@ -226,13 +229,13 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
         };
     }
     let folder = Folder::take(out, &manifest, part)?;
-    let there = folder::there(out, &manifest)?;
+    let there = folder::find_finished(out, &manifest)?;
     let own = (0..manifest.shards()).filter(|shard| part.has(*shard));
     let missing = own.filter(|shard| there.shards.binary_search(shard).is_err());
-    let stopping = stop.map(Stopping::new);
-    sweep.plan.stop = stopping.as_ref().map(Stopping::of_members);
+    let cancellation = stop.map(Cancellation::new);
+    sweep.plan.stop = cancellation.as_ref().map(Cancellation::of_members);
     let work = Work {
-        stopping,
+        cancellation,
         sweep: &sweep,
         manifest: &manifest,
         columns: &columns,
@@ -240,10 +243,10 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
         folder: &folder,
     };
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let done = work.on(missing.collect(), threads.unwrap_or_else(cores))?;
+    let done = work.compute_shards(missing.collect(), threads.unwrap_or_else(cores))?;
     print(&summary(out, done, there.members))?;
     if let Some(place) = &arguments.plot {
-        let there = folder::there(out, &manifest)?;
+        let there = folder::find_finished(out, &manifest)?;
         let name = &sweep.family.generated.model.name;
         plot::run(place, name, &columns, &folder, &there)?;
         print(&format!("wrote {}\n", place.display()))?;
@@ -265,17 +268,19 @@ fn seed(text: &str) -> Result<u64, String> {
 }
 
 /// Prepares the data that members share, and the columns of their rows.
-fn prepared(
+fn prepare(
     arguments: &Arguments,
     source: &Source,
     vary: &str,
     stepping: &Stepping,
 ) -> Result<(Sweep, Columns), Failure> {
-    let varied = |generated: &Generated| -> Result<(Map<String, Value>, State, Vary), Failure> {
-        let (base, state) = start(arguments, source, generated)?;
-        let vary = Vary::read(vary, generated, &state, arguments.seed, arguments.members)?;
-        Ok((base, state, vary))
-    };
+    let varied =
+        |generated: &Generated| -> Result<(Map<String, Value>, State, Variations), Failure> {
+            let (base, state) = start(arguments, source, generated)?;
+            let vary =
+                Variations::read(vary, generated, &state, arguments.seed, arguments.members)?;
+            Ok((base, state, vary))
+        };
     // Report errors in --vary together with those in --keep.
     let both = |error: Error, generated: &Generated| match varied(generated) {
         Err(more) => Failure::from(error).and(more),
@@ -320,7 +325,7 @@ fn prepared(
             "two columns would be called `{name}`: give what is varied another name in the description"
         )));
     }
-    let unvaried = vary.unvaried(&base);
+    let unvaried = vary.nominal_state(&base);
     let family = Family {
         mechanism: Arc::new(Mechanism::new(&generated, source.shown())?),
         text: source.text.clone(),
@@ -371,7 +376,7 @@ fn start(
 }
 
 /// The manifest: everything on which rows depend.
-fn fixed(
+fn fix_manifest(
     arguments: &Arguments,
     source: &Source,
     sweep: &Sweep,
@@ -385,14 +390,16 @@ fn fixed(
     let text = |text: Option<String>| text.map_or(Json::Null, Json::Text);
     let number = |number: Option<f64>| number.map_or(Json::Null, Json::Number);
     let members = sweep.vary.members();
-    let size = arguments
-        .shard_size
-        .unwrap_or_else(|| members.div_ceil(SHARDS).clamp(FEWEST, MOST));
-    if members.div_ceil(size) > MOST_SHARDS {
+    let size = arguments.shard_size.unwrap_or_else(|| {
+        members
+            .div_ceil(DEFAULT_SHARDS)
+            .clamp(MIN_SHARD_SIZE, MAX_SHARD_SIZE)
+    });
+    if members.div_ceil(size) > MAX_SHARDS {
         return Err(Failure::usage(format!(
             "{} members make more than {} files: a larger --shard-size is needed",
-            grouped(members),
-            grouped(MOST_SHARDS)
+            group_thousands(members),
+            group_thousands(MAX_SHARDS)
         )));
     }
     let step = match sweep.plan.tolerance {
@@ -445,20 +452,20 @@ fn operations(generated: &Generated) -> Vec<(String, String)> {
 }
 
 /// Summarises the new and the earlier work.
-fn summary(out: &Path, done: Done, before: u64) -> String {
+fn summary(out: &Path, done: SweepResult, before: u64) -> String {
     let mut text = format!(
         "{}: {} {} computed, {} of them failed",
         out.display(),
-        grouped(done.members),
+        group_thousands(done.members),
         if done.members == 1 {
             "member"
         } else {
             "members"
         },
-        grouped(done.failed)
+        group_thousands(done.failed)
     );
     if before > 0 {
-        text.push_str(&format!("; {} were there before", grouped(before)));
+        text.push_str(&format!("; {} were there before", group_thousands(before)));
     }
     text.push('\n');
     text

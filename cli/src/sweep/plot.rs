@@ -1,6 +1,6 @@
 //! `--plot`: draws the kept results over the varied entries.
 
-use super::folder::{Folder, There};
+use super::folder::{Finished, Folder};
 use super::shard::{Columns, numbers};
 use crate::failure::{self, Failure};
 use hamel_files::number::grouped;
@@ -8,10 +8,10 @@ use hamel_report::plot::{Scatter, scatter};
 use std::path::Path;
 
 /// Largest number of members drawn, evenly spread over all.
-const POINTS: u64 = 4000;
+const MAX_POINTS: u64 = 4000;
 /// Largest numbers of causes and results drawn; the title gives the totals.
-const CAUSES: usize = 3;
-const RESULTS: usize = 4;
+const MAX_CAUSES: usize = 3;
+const MAX_RESULTS: usize = 4;
 
 /// Draws the finished members of a folder.
 pub fn run(
@@ -19,9 +19,9 @@ pub fn run(
     name: &str,
     columns: &Columns,
     folder: &Folder,
-    there: &There,
+    there: &Finished,
 ) -> Result<(), Failure> {
-    let causes: Vec<&String> = columns.varied.iter().take(CAUSES).collect();
+    let causes: Vec<&String> = columns.varied.iter().take(MAX_CAUSES).collect();
     let mut read: Vec<Vec<f64>> = vec![Vec::new(); columns.varied.len() + columns.kept.len()];
     for shard in &there.shards {
         let path = folder.place(*shard);
@@ -32,7 +32,7 @@ pub fn run(
             .zip(all)
             .for_each(|(to, from)| to.extend(from));
     }
-    let step = there.members.div_ceil(POINTS).max(1) as usize;
+    let step = there.members.div_ceil(MAX_POINTS).max(1) as usize;
     let column = |index: usize| -> Vec<f64> { read[index].iter().copied().step_by(step).collect() };
     let across = causes.iter().enumerate();
     let across = across.map(|(index, name)| ((*name).clone(), column(index)));
@@ -40,15 +40,15 @@ pub fn run(
     let results = results.map(|(index, name)| (name.clone(), column(columns.varied.len() + index)));
     let results = results.filter(|(_, values)| differ(values));
     let drawn = there.members.div_ceil(step as u64);
-    let mut subtitle = format!("{} members", grouped(there.members));
+    let mut subtitle = format!("{} members", group_thousands(there.members));
     if drawn < there.members {
-        subtitle = format!("{} of {subtitle}", grouped(drawn));
+        subtitle = format!("{} of {subtitle}", group_thousands(drawn));
     }
     let picture = Scatter {
         title: name.into(),
         subtitle,
         across: across.collect(),
-        up: results.take(RESULTS).collect(),
+        up: results.take(MAX_RESULTS).collect(),
     };
     let figure = scatter(&picture).map_err(|why| Failure::failed(why.to_string()))?;
     failure::write(place, &figure.standalone())

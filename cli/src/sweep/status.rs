@@ -1,34 +1,42 @@
 //! `hamel sweep --status`: shows the progress of a sweep.
 
-use super::folder::{known, there};
+use super::folder::{find_finished, read_manifest};
 use crate::columns::aligned;
 use crate::failure::{Failure, print};
 use hamel_files::number::grouped;
 use std::path::Path;
 
 /// Largest number of ranges of missing shards listed.
-const LISTED: usize = 8;
+const MAX_LISTED_RANGES: usize = 8;
 
 /// Prints the finished and the missing parts of a folder.
 pub fn run(path: &Path) -> Result<(), Failure> {
-    let Some(manifest) = known(path)? else {
+    let Some(manifest) = read_manifest(path)? else {
         return Err(Failure::usage(format!(
             "{} is no folder of a sweep: it has no _sweep.json",
             path.display()
         )));
     };
-    let there = there(path, &manifest)?;
+    let there = find_finished(path, &manifest)?;
     let row = |name: &str, value: String| vec![name.to_string(), value];
-    let of = |done: u64, all: u64| format!("{} of {}", grouped(done), grouped(all));
+    let of = |done: u64, all: u64| format!("{} of {}", group_thousands(done), group_thousands(all));
     let mut rows = vec![
         row("shards", of(there.shards.len() as u64, manifest.shards())),
         row("members", of(there.members, manifest.count)),
-        row("failed", grouped(there.failed)),
+        row("failed", group_thousands(there.failed)),
     ];
     let missing = missing(&there.shards, manifest.shards());
     if !missing.is_empty() {
-        let listed: Vec<&str> = missing.iter().take(LISTED).map(String::as_str).collect();
-        let more = if missing.len() > LISTED { ", …" } else { "" };
+        let listed: Vec<&str> = missing
+            .iter()
+            .take(MAX_LISTED_RANGES)
+            .map(String::as_str)
+            .collect();
+        let more = if missing.len() > MAX_LISTED_RANGES {
+            ", …"
+        } else {
+            ""
+        };
         rows.push(row(
             "missing",
             format!("shards {}{more}", listed.join(", ")),

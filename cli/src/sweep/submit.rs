@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The script that each task runs, in the folder of the sweep.
-const SCRIPT: &str = "_task.sh";
+const TASK_SCRIPT: &str = "_task.sh";
 /// Options that are not passed to tasks, with whether they take a value.
-const OWN: [(&str, bool); 4] = [
+const OWN_OPTIONS: [(&str, bool); 4] = [
     ("--submit", true),
     ("--tasks", true),
     ("--wait", false),
@@ -43,7 +43,7 @@ pub struct Job<'a> {
 impl Job<'_> {
     /// Writes the script of a task and submits the array.
     pub fn submit(&self) -> Result<(), Failure> {
-        let script = self.folder.join(SCRIPT);
+        let script = self.folder.join(TASK_SCRIPT);
         let own: Vec<OsString> = std::env::args_os().skip(1).collect();
         let program = std::env::current_exe()
             .map_err(|error| Failure::usage(format!("cannot find this program: {error}")))?;
@@ -80,7 +80,7 @@ impl Job<'_> {
                 return Err(Failure::usage("--submit takes arguments in UTF-8"));
             };
             text.push(' ');
-            text.push_str(&quoted(word));
+            text.push_str(&quote(word));
         }
         let variable = match self.engine {
             Engine::Slurm => "SLURM_ARRAY_TASK_ID",
@@ -136,7 +136,7 @@ fn of_task(words: &[OsString]) -> Vec<OsString> {
     let mut words = words.iter();
     while let Some(word) = words.next() {
         let text = word.to_string_lossy();
-        let own = OWN.iter().find(|(name, _)| {
+        let own = OWN_OPTIONS.iter().find(|(name, _)| {
             text.strip_prefix(name)
                 .is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
         });
@@ -152,7 +152,7 @@ fn of_task(words: &[OsString]) -> Vec<OsString> {
 }
 
 /// A word, quoted for the shell.
-fn quoted(word: &str) -> String {
+fn quote(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 

@@ -73,7 +73,7 @@ impl Target {
         state: &State,
     ) -> Result<(Self, Vec<usize>), String> {
         let all = Target::all(part, model, state);
-        let called = |target: &&Target| plain(&target.written()) == plain(name);
+        let called = |target: &&Target| plain(&target.qualified_name()) == plain(name);
         if let Some(target) = all.iter().find(called) {
             if let Form::Matrix(_) | Form::Symmetric(_) = target.form {
                 return Err(format!(
@@ -104,7 +104,7 @@ impl Target {
             Part::Input => "input",
         };
         let message = format!("no {what} is called `{name}`");
-        let names: Vec<String> = all.iter().map(Target::written).collect();
+        let names: Vec<String> = all.iter().map(Target::qualified_name).collect();
         Err(
             match (
                 closest(name, names.iter().map(String::as_str)),
@@ -149,7 +149,7 @@ impl Target {
     }
 
     /// Name as in descriptions.
-    fn written(&self) -> String {
+    fn qualified_name(&self) -> String {
         match self.of_pose {
             Some(part) => format!("{}.{part}", self.name),
             None => self.name.clone(),
@@ -163,7 +163,7 @@ impl Target {
     }
 
     /// Puts values into a state in JSON.
-    pub fn put(&self, state: &mut Map<String, Value>, numbers: &[f64]) {
+    pub fn set_values(&self, state: &mut Map<String, Value>, numbers: &[f64]) {
         fn within<'a>(
             map: &'a mut Map<String, Value>,
             name: &str,

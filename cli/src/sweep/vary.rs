@@ -28,7 +28,7 @@ struct Entry {
 
 /// The varied entries and their distributions.
 #[derive(Clone, Debug)]
-pub struct Vary {
+pub struct Variations {
     targets: Vec<Target>,
     entries: Vec<Entry>,
     draws: Draws,
@@ -43,7 +43,7 @@ fn parameter<'a>(item: Piece<'a>) -> Option<&'a str> {
     (!name.is_empty() && !name.contains(char::is_whitespace)).then_some(name)
 }
 
-impl Vary {
+impl Variations {
     /// Reads the option; `members` is the requested number of members, if given.
     pub fn read(
         text: &str,
@@ -54,7 +54,7 @@ impl Vary {
     ) -> Result<Self, Failure> {
         let wrong = |errors: Vec<Diagnostic>| Failure::from(refused(OPTION, text, &errors));
         let whole = Piece::of(text).map_err(|error| wrong(vec![error]))?;
-        let mut vary = Vary {
+        let mut vary = Variations {
             targets: Vec::new(),
             entries: Vec::new(),
             draws: Draws::new(seed),
@@ -221,13 +221,13 @@ impl Vary {
         }
         let mut state = base.clone();
         for (target, numbers) in self.targets.iter().zip(&numbers) {
-            target.put(&mut state, numbers);
+            target.set_values(&mut state, numbers);
         }
         state.into()
     }
 
     /// The state with nothing varied.
-    pub fn unvaried(&self, base: &Map<String, Value>) -> Value {
+    pub fn nominal_state(&self, base: &Map<String, Value>) -> Value {
         let values: Vec<f64> = self
             .entries
             .iter()

@@ -15,21 +15,21 @@ use hamel_engine::source::added;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     End,
-    Of(Of),
+    Quantity(Quantity),
 }
 
 /// The columns of the kept results, and how to fill them.
 #[derive(Clone, Debug)]
-pub struct Keeping {
+pub struct KeptColumns {
     items: Vec<(Kind, String)>,
     columns: Vec<String>,
     /// Whether the end time has a separate column: not if the time is a coordinate.
     timed: bool,
 }
 
-impl Keeping {
+impl KeptColumns {
     /// Names the columns; fails if an event compares anything other than numbers.
-    pub fn new(kept: &[Kept], generated: &Generated) -> Result<Self, (usize, String)> {
+    pub fn new(kept: &[KeptItem], generated: &Generated) -> Result<Self, (usize, String)> {
         let (mut items, mut columns, mut timed) = (Vec::new(), Vec::new(), true);
         for (index, (piece, item)) in kept.iter().enumerate() {
             let name = added::name(index);
@@ -46,17 +46,17 @@ impl Keeping {
                     items.push((Kind::End, name));
                     continue;
                 }
-                Item::Of(of, _) => *of,
+                Item::Quantity(of, _) => *of,
             };
             let function = generated.program.function(&name);
             let shape = function.map_or(Shape::Scalar, |function| function.shape);
-            if matches!(of, Of::Event { .. }) && shape != Shape::Scalar {
+            if matches!(of, Quantity::Event { .. }) && shape != Shape::Scalar {
                 return Err((index, "an event compares numbers".into()));
             }
             columns.extend(names::shaped(piece.text, shape));
-            items.push((Kind::Of(of), name));
+            items.push((Kind::Quantity(of), name));
         }
-        Ok(Keeping {
+        Ok(KeptColumns {
             items,
             columns,
             timed,
@@ -74,7 +74,7 @@ impl Keeping {
             .items
             .iter()
             .filter_map(|(kind, _)| match kind {
-                Kind::Of(Of::At(time)) => Some(*time),
+                Kind::Quantity(Quantity::At(time)) => Some(*time),
                 _ => None,
             })
             .collect();
@@ -87,14 +87,14 @@ impl Keeping {
     pub fn looks_within(&self) -> bool {
         self.items
             .iter()
-            .any(|(kind, _)| !matches!(kind, Kind::End | Kind::Of(Of::At(_))))
+            .any(|(kind, _)| !matches!(kind, Kind::End | Kind::Quantity(Quantity::At(_))))
     }
 }
 
 /// Results of an item so far.
 #[derive(Clone, Debug)]
-struct Known {
-    of: Of,
+struct PartialResult {
+    of: Quantity,
     /// Index among the outputs of the system.
     output: usize,
     values: Vec<f64>,
@@ -103,33 +103,33 @@ struct Known {
 }
 
 /// The observer of a running member.
-pub struct Watch<'a> {
-    keeping: &'a Keeping,
+pub struct MemberObserver<'a> {
+    keeping: &'a KeptColumns,
     system: &'a Instance,
     stepper: &'a Stepper,
-    known: Vec<Known>,
+    known: Vec<PartialResult>,
     /// The time of the first, and the last observed state.
     begin: f64,
     last: Option<State<Instance>>,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> MemberObserver<'a> {
     /// The observer before the run.
-    pub fn new(keeping: &'a Keeping, system: &'a Instance, stepper: &'a Stepper) -> Self {
+    pub fn new(keeping: &'a KeptColumns, system: &'a Instance, stepper: &'a Stepper) -> Self {
         let known = keeping.items.iter().filter_map(|(kind, name)| {
-            let Kind::Of(of) = kind else {
+            let Kind::Quantity(of) = kind else {
                 return None;
             };
             let mut outputs = system.outputs().iter();
             let output = outputs.position(|output| output.name == *name)?;
-            Some(Known {
+            Some(PartialResult {
                 of: *of,
                 output,
                 values: Vec::new(),
                 last: Vec::new(),
             })
         });
-        Watch {
+        MemberObserver {
             keeping,
             system,
             stepper,
@@ -150,7 +150,7 @@ impl<'a> Watch<'a> {
             let asked = self
                 .known
                 .iter_mut()
-                .filter(|known| known.of == Of::At(state.t));
+                .filter(|known| known.of == Quantity::At(state.t));
             for known in asked {
                 known.values = value(known.output, state);
             }
@@ -158,19 +158,19 @@ impl<'a> Watch<'a> {
         }
         let before = self.last.as_ref();
         for known in &mut self.known {
-            if matches!(known.of, Of::At(_)) {
+            if matches!(known.of, Quantity::At(_)) {
                 continue;
             }
-            if matches!(known.of, Of::Event { .. }) && !known.values.is_empty() {
+            if matches!(known.of, Quantity::Event { .. }) && !known.values.is_empty() {
                 continue;
             }
             let now = value(known.output, state);
             let h = before.map_or(0.0, |before| state.t - before.t);
             match known.of {
-                Of::At(_) => {}
-                Of::Max => extreme(&mut known.values, &now, |new, old| new > old),
-                Of::Min => extreme(&mut known.values, &now, |new, old| new < old),
-                Of::Mean => {
+                Quantity::At(_) => {}
+                Quantity::Max => extreme(&mut known.values, &now, |new, old| new > old),
+                Quantity::Min => extreme(&mut known.values, &now, |new, old| new < old),
+                Quantity::Mean => {
                     known.values.resize(now.len(), 0.0);
                     // Trapezoidal rule.
                     let ends = now.iter().zip(&known.last);
@@ -178,7 +178,7 @@ impl<'a> Watch<'a> {
                         *sum += 0.5 * h * (a + b);
                     }
                 }
-                Of::Event { equal } => {
+                Quantity::Event { equal } => {
                     let holds = |values: &[f64]| match values.first() {
                         Some(value) if equal => *value <= 0.0,
                         Some(value) => *value < 0.0,
@@ -217,8 +217,8 @@ impl<'a> Watch<'a> {
                 continue;
             };
             match known.of {
-                Of::Event { .. } => row.push(known.values.first().copied()),
-                Of::Mean => row.extend(known.values.iter().map(|sum| Some(sum / elapsed))),
+                Quantity::Event { .. } => row.push(known.values.first().copied()),
+                Quantity::Mean => row.extend(known.values.iter().map(|sum| Some(sum / elapsed))),
                 _ => row.extend(known.values.into_iter().map(Some)),
             }
         }
@@ -226,7 +226,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-impl Observer for Watch<'_> {
+impl Observer for MemberObserver<'_> {
     fn look(&mut self, state: &State<Instance>, place: Place) {
         self.see(state, place);
     }

@@ -15,14 +15,14 @@ use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
 /// Largest number of members that a thread takes at once.
-const MOST: u64 = 64;
+const MAX_BATCH: u64 = 64;
 /// Interval at which the end of work, or a cancellation, is checked.
-const WAIT: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 /// Least number of portions of a shard for each thread.
-const PORTIONS: u64 = 4;
+const MIN_PORTIONS_PER_THREAD: u64 = 4;
 
 /// Data shared by the threads.
-struct Desk {
+struct Queue {
     /// Shards not yet begun.
     waiting: VecDeque<u64>,
     /// The shard from which members are taken, and the next member.
@@ -31,12 +31,12 @@ struct Desk {
     open: BTreeMap<u64, Vec<Row>>,
     /// The first error; all threads stop then.
     failure: Option<Failure>,
-    done: Done,
+    done: SweepResult,
 }
 
 /// Finished work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Done {
+pub struct SweepResult {
     /// Number of members.
     pub members: u64,
     /// Number of failed members.
@@ -46,46 +46,46 @@ pub struct Done {
 }
 
 /// Cancellation of the work.
-pub struct Stopping<'a> {
+pub struct Cancellation<'a> {
     /// Polled by the thread that started the work.
     asked: &'a Stop,
     /// Flag that the members check.
-    told: Arc<AtomicBool>,
+    cancelled: Arc<AtomicBool>,
 }
 
-impl<'a> Stopping<'a> {
+impl<'a> Cancellation<'a> {
     /// A cancellation by a program's callback.
     pub fn new(asked: &'a Stop) -> Self {
-        Stopping {
+        Cancellation {
             asked,
-            told: Arc::default(),
+            cancelled: Arc::default(),
         }
     }
 
     /// The cancellation as runs of members check it, on any thread.
     pub fn of_members(&self) -> Stop {
-        let told = Arc::clone(&self.told);
-        Stop(Arc::new(move || told.load(Ordering::Relaxed)))
+        let cancelled = Arc::clone(&self.cancelled);
+        Stop(Arc::new(move || cancelled.load(Ordering::Relaxed)))
     }
 
-    fn is_told(&self) -> bool {
-        self.told.load(Ordering::Relaxed)
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
     }
 
     /// Waits until the threads finish or the work is cancelled.
-    fn wait(&self, desk: &Mutex<Desk>, threads: &[ScopedJoinHandle<'_, ()>]) {
+    fn wait(&self, queue: &Mutex<Queue>, threads: &[ScopedJoinHandle<'_, ()>]) {
         let Stop(asked) = self.asked;
         while !threads.iter().all(ScopedJoinHandle::is_finished) {
             if asked() {
-                self.told.store(true, Ordering::Relaxed);
-                at(desk).failure.get_or_insert_with(|| {
+                self.cancelled.store(true, Ordering::Relaxed);
+                lock(queue).failure.get_or_insert_with(|| {
                     Failure::failed(
                         "the sweep was given up; the same sweep computes what is missing",
                     )
                 });
                 return;
             }
-            std::thread::sleep(WAIT);
+            std::thread::sleep(POLL_INTERVAL);
         }
     }
 }
@@ -93,7 +93,7 @@ impl<'a> Stopping<'a> {
 /// The work of all threads.
 pub struct Work<'a> {
     /// Cancellation, if possible.
-    pub stopping: Option<Stopping<'a>>,
+    pub cancellation: Option<Cancellation<'a>>,
     /// Data that members share.
     pub sweep: &'a Sweep,
     /// Manifest with their shards.
@@ -108,97 +108,101 @@ pub struct Work<'a> {
 
 impl Work<'_> {
     /// Computes shards; completed ones remain even if others fail.
-    pub fn on(&self, shards: Vec<u64>, threads: usize) -> Result<Done, Failure> {
+    pub fn compute_shards(&self, shards: Vec<u64>, threads: usize) -> Result<SweepResult, Failure> {
         let size = |shard: &u64| {
             let range = self.manifest.range(*shard);
             range.end - range.start
         };
         let bar = progress::rated(shards.iter().map(size).sum());
-        let desk = Mutex::new(Desk {
+        let queue = Mutex::new(Queue {
             waiting: shards.into(),
             begun: None,
             open: BTreeMap::new(),
             failure: None,
-            done: Done::default(),
+            done: SweepResult::default(),
         });
         std::thread::scope(|scope| {
             let work = |_| {
                 scope.spawn(|| {
                     loop {
                         // Release the lock before members run.
-                        let next = self.next(&mut at(&desk), threads);
+                        let next = self.next(&mut lock(&queue), threads);
                         let Some((shard, members)) = next else {
                             break;
                         };
                         let rows = self.sweep.rows(members);
                         bar.inc(rows.len() as u64);
-                        self.hand_in(&desk, shard, rows);
+                        self.hand_in(&queue, shard, rows);
                     }
                 })
             };
             let threads: Vec<_> = (0..threads).map(work).collect();
-            if let Some(stopping) = &self.stopping {
-                stopping.wait(&desk, &threads);
+            if let Some(cancellation) = &self.cancellation {
+                cancellation.wait(&queue, &threads);
             }
         });
         bar.finish_and_clear();
-        let desk = desk.into_inner().unwrap_or_else(PoisonError::into_inner);
-        match desk.failure {
+        let queue = queue.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match queue.failure {
             Some(failure) => Err(failure),
-            None => Ok(desk.done),
+            None => Ok(queue.done),
         }
     }
 
     /// The next members to run, and their shard.
-    fn next(&self, desk: &mut Desk, threads: usize) -> Option<(u64, std::ops::Range<u64>)> {
-        if desk.failure.is_some() {
+    fn next(&self, queue: &mut Queue, threads: usize) -> Option<(u64, std::ops::Range<u64>)> {
+        if queue.failure.is_some() {
             return None;
         }
-        let (shard, first) = match desk.begun.take() {
+        let (shard, first) = match queue.begun.take() {
             Some(begun) => begun,
             None => {
-                let shard = desk.waiting.pop_front()?;
-                desk.open.insert(shard, Vec::new());
+                let shard = queue.waiting.pop_front()?;
+                queue.open.insert(shard, Vec::new());
                 (shard, self.manifest.range(shard).start)
             }
         };
-        let portions = PORTIONS * threads as u64;
-        let portion = (self.manifest.size / portions).clamp(1, MOST);
+        let portions = MIN_PORTIONS_PER_THREAD * threads as u64;
+        let portion = (self.manifest.size / portions).clamp(1, MAX_BATCH);
         let end = self.manifest.range(shard).end;
         let last = (first + portion).min(end);
         if last < end {
-            desk.begun = Some((shard, last));
+            queue.begun = Some((shard, last));
         }
         Some((shard, first..last))
     }
 
     /// Takes rows, and writes their shard if it is complete.
-    fn hand_in(&self, desk: &Mutex<Desk>, shard: u64, rows: Vec<Row>) {
+    fn hand_in(&self, queue: &Mutex<Queue>, shard: u64, rows: Vec<Row>) {
         let range = self.manifest.range(shard);
         let mut whole = {
-            let mut desk = at(desk);
+            let mut queue = lock(queue);
             // Cancelled members have no result.
-            if self.stopping.as_ref().is_some_and(Stopping::is_told) {
+            if self
+                .cancellation
+                .as_ref()
+                .is_some_and(Cancellation::is_cancelled)
+            {
                 return;
             }
-            let open = desk.open.entry(shard).or_default();
+            let open = queue.open.entry(shard).or_default();
             open.extend(rows);
             if (open.len() as u64) < range.end - range.start {
                 return;
             }
-            desk.open.remove(&shard).unwrap_or_default()
+            queue.open.remove(&shard).unwrap_or_default()
         };
         whole.sort_unstable_by_key(|row| row.index);
         let written = self.write(shard, &whole);
-        let mut desk = at(desk);
+        let mut queue = lock(queue);
         match written {
             Ok(()) => {
-                desk.done.shards += 1;
-                desk.done.members += whole.len() as u64;
-                desk.done.failed += whole.iter().filter(|row| row.error.is_some()).count() as u64;
+                queue.done.shards += 1;
+                queue.done.members += whole.len() as u64;
+                queue.done.failed += whole.iter().filter(|row| row.error.is_some()).count() as u64;
             }
             Err(failure) => {
-                desk.failure.get_or_insert(failure);
+                queue.failure.get_or_insert(failure);
             }
         }
     }
@@ -213,7 +217,7 @@ impl Work<'_> {
     }
 }
 
-fn at(desk: &Mutex<Desk>) -> MutexGuard<'_, Desk> {
+fn lock(queue: &Mutex<Queue>) -> MutexGuard<'_, Queue> {
     // A thread that panics leaves no inconsistent data.
-    desk.lock().unwrap_or_else(PoisonError::into_inner)
+    queue.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -13,17 +13,17 @@ use super::linear::{multiply, solve_symmetric, transpose};
 use super::numeric::rank;
 
 /// Largest number of unknowns of a block that is solved by its adjugate.
-const LARGEST: usize = 4;
+const MAX_ADJUGATE_SIZE: usize = 4;
 /// Largest number of sets of unknowns considered as blocks.
-const MOST_SETS: usize = 6000;
+const MAX_COLUMN_SETS: usize = 6000;
 /// Largest number of choices of equations tried for a set of unknowns.
-const MOST_CHOICES: usize = 40;
+const MAX_ROW_CHOICES: usize = 40;
 /// Threshold below which a determinant, relative to the product of its row norms, counts as zero at the
 /// start.
-const SMALL: f64 = 1e-7;
+const DETERMINANT_TOLERANCE: f64 = 1e-7;
 
 /// Function that evaluates expressions at the start configuration.
-pub type AtStart<'a> = dyn Fn(&Graph, &[Edge]) -> Vec<f64> + 'a;
+pub type StartValues<'a> = dyn Fn(&Graph, &[Edge]) -> Vec<f64> + 'a;
 
 /// Solution X of a linear system, with the divisors that were used.
 #[derive(Clone, Debug)]
@@ -54,7 +54,7 @@ pub fn solve(
     graph: &mut Graph,
     m: &[Vec<Edge>],
     b: &[Vec<Edge>],
-    start: Option<&AtStart>,
+    start: Option<&StartValues>,
 ) -> Result<Solution, Failure> {
     let unknowns = m.first().map_or(0, Vec::len);
     let undetermined = undetermined(graph, m, unknowns);
@@ -105,7 +105,7 @@ struct System<'a> {
     graph: &'a mut Graph,
     m: &'a [Vec<Edge>],
     b: &'a [Vec<Edge>],
-    start: Option<&'a AtStart<'a>>,
+    start: Option<&'a StartValues<'a>>,
     solved: Vec<Option<Vec<Edge>>>,
     used: Vec<bool>,
     pivots: Vec<Edge>,
@@ -161,19 +161,19 @@ impl System<'_> {
         let mut supports: Vec<Vec<usize>> = (0..self.m.len())
             .filter(|&row| !self.used[row])
             .map(|row| self.support(row))
-            .filter(|support| (1..=LARGEST).contains(&support.len()))
+            .filter(|support| (1..=MAX_ADJUGATE_SIZE).contains(&support.len()))
             .collect();
         supports.sort_by_key(|support| (support.len(), support.clone()));
         supports.dedup();
         let mut sets = supports.clone();
         let mut next = 0;
-        while next < sets.len() && sets.len() < MOST_SETS {
+        while next < sets.len() && sets.len() < MAX_COLUMN_SETS {
             for support in &supports {
                 let mut union = sets[next].clone();
                 union.extend(support);
                 union.sort_unstable();
                 union.dedup();
-                if union.len() <= LARGEST && !sets.contains(&union) {
+                if union.len() <= MAX_ADJUGATE_SIZE && !sets.contains(&union) {
                     sets.push(union);
                 }
             }
@@ -248,7 +248,9 @@ impl System<'_> {
                     numbers.iter().map(|x| x * x).sum::<f64>().sqrt()
                 });
                 let relative = value / lengths.product::<f64>();
-                if relative > SMALL && best.as_ref().is_none_or(|(most, _)| relative > *most) {
+                if relative > DETERMINANT_TOLERANCE
+                    && best.as_ref().is_none_or(|(most, _)| relative > *most)
+                {
                     best = Some((relative, block));
                 }
             }
@@ -370,7 +372,7 @@ fn pick(row: &[Edge], columns: &[usize]) -> Vec<Edge> {
     columns.iter().map(|&j| row[j]).collect()
 }
 
-/// Returns the subsets of `rows` of this size, in order; at most `MOST_CHOICES` of them.
+/// Returns the subsets of `rows` of this size, in order; at most `MAX_ROW_CHOICES` of them.
 fn choices(rows: &[usize], size: usize) -> Vec<Vec<usize>> {
     let mut all: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..size {
@@ -385,10 +387,10 @@ fn choices(rows: &[usize], size: usize) -> Vec<Vec<usize>> {
                     .map(|&row| [head.as_slice(), &[row]].concat())
                     .collect::<Vec<_>>()
             })
-            .take(MOST_CHOICES * size)
+            .take(MAX_ROW_CHOICES * size)
             .collect();
     }
-    all.truncate(MOST_CHOICES);
+    all.truncate(MAX_ROW_CHOICES);
     all
 }
 

@@ -96,7 +96,7 @@ impl<'a> Degrees<'a> {
                 self.fractions.insert(id, fraction);
             }
         }
-        self.common(expressions) * 4f64.powi(roots)
+        self.common_degree(expressions) * 4f64.powi(roots)
     }
 
     fn read(&self, edge: Edge) -> Fraction {
@@ -110,7 +110,7 @@ impl<'a> Degrees<'a> {
         match self.graph.node(id) {
             Node::Constant(_) => Fraction::default(),
             Node::Symbol(index) => match self.groups.get(index as usize).copied().flatten() {
-                Some(group) => self.over([(Divisor::Group(group), 1.0)]),
+                Some(group) => self.norm_product([(Divisor::Group(group), 1.0)]),
                 None => Fraction::of_degree(1.0),
             },
             Node::Add(a, b) => self.sum(&self.read(a), &self.read(b)),
@@ -160,12 +160,12 @@ impl<'a> Degrees<'a> {
                 let angles = form().into_iter();
                 let angles = angles.map(|(atom, c)| (divisor(atom), count(&c)));
                 let angles: Vec<(Divisor, f64)> = angles.collect();
-                self.over(angles)
+                self.norm_product(angles)
             }
             Law::Power => Fraction::of_degree(form().iter().map(|(_, c)| count(c)).sum()),
             Law::Radical => {
                 let below = self.read(argument);
-                Fraction::of_degree((self.whole(&below) / 2.0).ceil())
+                Fraction::of_degree((self.degree_of(&below) / 2.0).ceil())
             }
             // The value is a random number that belongs to the value of a, possibly times a.
             Law::Side => {
@@ -189,7 +189,7 @@ impl<'a> Degrees<'a> {
     }
 
     /// Returns the fraction of a product of coordinates with norms, given by the norms and their powers.
-    fn over(&mut self, norms: impl IntoIterator<Item = (Divisor, f64)>) -> Fraction {
+    fn norm_product(&mut self, norms: impl IntoIterator<Item = (Divisor, f64)>) -> Fraction {
         let (mut degree, mut powers) = (0.0, Powers::new());
         for (divisor, power) in norms {
             let number = self.number(divisor, 2.0);
@@ -203,7 +203,7 @@ impl<'a> Degrees<'a> {
     }
 
     /// Σ |m| deg d.
-    fn below(&self, powers: &Powers) -> f64 {
+    fn norm_degree(&self, powers: &Powers) -> f64 {
         let degrees = powers
             .iter()
             .map(|&(d, m)| m.abs() * self.degrees[d as usize]);
@@ -211,8 +211,8 @@ impl<'a> Degrees<'a> {
     }
 
     /// Degree of N plus that of the powers, N + Σ |m| deg d.
-    fn whole(&self, fraction: &Fraction) -> f64 {
-        fraction.degree + self.below(&fraction.powers)
+    fn degree_of(&self, fraction: &Fraction) -> f64 {
+        fraction.degree + self.norm_degree(&fraction.powers)
     }
 
     fn sum(&self, a: &Fraction, b: &Fraction) -> Fraction {
@@ -244,15 +244,15 @@ impl<'a> Degrees<'a> {
 
     /// Largest degree of the numerators of the roots over their common denominator, plus the degree of that
     /// denominator.
-    fn common(&self, roots: &[Edge]) -> f64 {
+    fn common_degree(&self, roots: &[Edge]) -> f64 {
         let mut powers = Powers::new();
         let mut most: f64 = 0.0;
         for root in roots {
             let fraction = self.read(*root);
-            most = most.max(self.whole(&fraction));
+            most = most.max(self.degree_of(&fraction));
             powers = merged(&powers, &fraction.powers, |m, n| m.max(n.abs()));
         }
-        most + self.below(&powers)
+        most + self.norm_degree(&powers)
     }
 }
 

@@ -93,38 +93,38 @@ impl Derivation {
                     return zero;
                 }
                 match function.row().slope {
-                    Slope::Is(other) => {
+                    Slope::FunctionOfArgument(other) => {
                         let slope = graph.apply(other, a);
                         graph.mul(slope, da)
                     }
-                    Slope::IsMinus(other) => {
+                    Slope::MinusFunctionOfArgument(other) => {
                         let slope = graph.apply(other, a);
                         -graph.mul(slope, da)
                     }
-                    Slope::Itself => graph.mul(Edge::of(id), da),
-                    Slope::Inverse => graph.div(da, a).unwrap_or(zero),
-                    Slope::HalfInverse => {
+                    Slope::OwnValue => graph.mul(Edge::of(id), da),
+                    Slope::InverseOfArgument => graph.div(da, a).unwrap_or(zero),
+                    Slope::HalfInverseOfValue => {
                         let half = graph.ratio(1, 2);
                         let numerator = graph.mul(half, da);
                         graph.div(numerator, Edge::of(id)).unwrap_or(zero)
                     }
-                    Slope::Half(other) => {
+                    Slope::HalfFunctionOfValue(other) => {
                         let half = graph.ratio(1, 2);
                         let numerator = graph.mul(half, da);
                         let inverse = graph.apply(other, Edge::of(id));
                         graph.mul(numerator, inverse)
                     }
-                    Slope::MinusSquare => {
+                    Slope::MinusSquareOfValue => {
                         let square = graph.mul(Edge::of(id), Edge::of(id));
                         -graph.mul(square, da)
                     }
-                    Slope::OneMinusSquare => {
+                    Slope::OneMinusSquareOfValue => {
                         let square = graph.mul(Edge::of(id), Edge::of(id));
                         let slope = graph.sub(graph.one(), square);
                         graph.mul(slope, da)
                     }
-                    Slope::OfOne => graph.apply(function, da),
-                    Slope::Nothing | Slope::Two => zero,
+                    Slope::ValueAtOne => graph.apply(function, da),
+                    Slope::Zero | Slope::SeveralArguments => zero,
                 }
             }
             Node::Select(c, a, b) => {
@@ -140,7 +140,7 @@ impl Derivation {
                         if da == zero {
                             return zero;
                         }
-                        let slope = graph.external_of(component.by(place), list);
+                        let slope = graph.external_of(component.differentiate(place), list);
                         graph.mul(slope, da)
                     })
                     .collect();

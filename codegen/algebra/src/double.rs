@@ -13,7 +13,7 @@
 //! | log a | y + a exp(−y) − 1 |
 //! | atan2(y, x) | θ + (y cos θ − x sin θ) / √(x² + y²) |
 
-use super::function::SHORTEST;
+use super::function::MIN_DIVISOR;
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -37,11 +37,11 @@ const LOG_2: Double = Double {
     low: 2.319_046_813_846_3e-17,
 };
 /// Order at which the Taylor series of sine and cosine end: (π/4)³² / 32! < 2^-110.
-const TERMS: u32 = 32;
+const SERIES_ORDER: u32 = 32;
 /// Argument beyond which hyperbolic functions are computed in `f64`.
-const LARGEST: f64 = 300.0;
+const MAX_HYPERBOLIC_ARGUMENT: f64 = 300.0;
 /// Number of times that the argument of exp is halved.
-const HALVINGS: u32 = 6;
+const EXP_HALVINGS: u32 = 6;
 
 impl Double {
     /// 0.
@@ -91,10 +91,15 @@ impl Double {
         }
     }
 
-    /// 1/a, or 1/`SHORTEST` if |a| is below `SHORTEST`.
+    /// 1/a, or 1/`MIN_DIVISOR` if |a| is below `MIN_DIVISOR`.
     pub fn inverse_of_length(self) -> Self {
-        let short = self.high.abs() < SHORTEST;
-        Double::ONE / if short { Double::new(SHORTEST) } else { self }
+        let short = self.high.abs() < MIN_DIVISOR;
+        Double::ONE
+            / if short {
+                Double::new(MIN_DIVISOR)
+            } else {
+                self
+            }
     }
 
     /// Returns −a if `negative`, else a.
@@ -128,7 +133,7 @@ impl Double {
         let square = rest * rest;
         // Nested series 1 − x²/(k (k+1)) (1 − …): from k = 2 for sin x / x, from k = 1 for cos x.
         let series = |first: u32| {
-            let terms = (first..TERMS).step_by(2).rev();
+            let terms = (first..SERIES_ORDER).step_by(2).rev();
             terms.fold(Double::ONE, |inner, k| {
                 let divisor = Double::new(f64::from(k * (k + 1)));
                 Double::ONE - square / divisor * inner
@@ -150,13 +155,13 @@ impl Double {
             return Double::new(self.high.exp());
         }
         let rest = self - Double::new(powers) * LOG_2;
-        let small = rest.scaled(0.5_f64.powi(HALVINGS as i32));
+        let small = rest.scaled(0.5_f64.powi(EXP_HALVINGS as i32));
         // Squaring exp x − 1 keeps its relative precision: (1 + e)² − 1 = e (2 + e).
         let tail = (2..18).rev().fold(Double::ONE, |inner, k| {
             Double::ONE + small / Double::new(f64::from(k)) * inner
         });
         let mut less = small * tail;
-        for _ in 0..HALVINGS {
+        for _ in 0..EXP_HALVINGS {
             less = less * (Double::new(2.0) + less);
         }
         (Double::ONE + less).scaled(2.0_f64.powi(powers as i32))
@@ -192,7 +197,7 @@ impl Double {
 
     /// sinh a; near 0 by its Taylor series, which avoids cancellation.
     pub fn sinh(self) -> Self {
-        if self.high.abs() > LARGEST {
+        if self.high.abs() > MAX_HYPERBOLIC_ARGUMENT {
             return Double::new(self.high.sinh());
         }
         if self.high.abs() > 0.5 {
@@ -200,7 +205,7 @@ impl Double {
             return (power - Double::ONE / power).scaled(0.5);
         }
         let square = self * self;
-        let terms = (2..TERMS).step_by(2).rev();
+        let terms = (2..SERIES_ORDER).step_by(2).rev();
         let sum = terms.fold(Double::ONE, |inner, k| {
             Double::ONE + square / Double::new(f64::from(k * (k + 1))) * inner
         });
@@ -209,7 +214,7 @@ impl Double {
 
     /// cosh a.
     pub fn cosh(self) -> Self {
-        if self.high.abs() > LARGEST {
+        if self.high.abs() > MAX_HYPERBOLIC_ARGUMENT {
             return Double::new(self.high.cosh());
         }
         let power = self.exp();
@@ -218,7 +223,7 @@ impl Double {
 
     /// tanh a.
     pub fn tanh(self) -> Self {
-        if self.high.abs() > LARGEST {
+        if self.high.abs() > MAX_HYPERBOLIC_ARGUMENT {
             return Double::new(self.high.tanh());
         }
         self.sinh() / self.cosh()

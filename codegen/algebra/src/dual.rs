@@ -3,8 +3,8 @@
 //!
 //! | slopes | carried as | cost |
 //! |---|---|---|
-//! | ∂f along one direction | [`Along`]: a number | that of a value |
-//! | ∂f along many directions | [`Across`]: a number for each; empty if all are 0 | that of a value, times the directions |
+//! | ∂f along one direction | [`ForwardMode`]: a number | that of a value |
+//! | ∂f along many directions | [`VectorForwardMode`]: a number for each; empty if all are 0 | that of a value, times the directions |
 //! | ∂f/∂xₖ for all symbols | [`Record`]: an index into a record that is read backwards (reverse mode) | that of a value |
 //! | Σ \|∂f/∂a\| eₐ, bounds of errors | `rounding` | that of a value |
 //!
@@ -22,7 +22,7 @@ pub enum Partial<N> {
     /// −1.
     MinusOne,
     /// Any other value.
-    By(N),
+    Factor(N),
 }
 
 impl<N: Clone> Partial<N> {
@@ -31,7 +31,7 @@ impl<N: Clone> Partial<N> {
         match self {
             Partial::One => Some(slope.clone()),
             Partial::MinusOne => numbers.make(Step::Neg(slope)),
-            Partial::By(factor) => numbers.make(Step::Mul(factor, slope)),
+            Partial::Factor(factor) => numbers.make(Step::Mul(factor, slope)),
         }
     }
 }
@@ -50,7 +50,7 @@ pub trait Slopes<C: Numbers> {
         parts: &[(Partial<C::Number>, &Self::Slope)],
     ) -> Option<Self::Slope>;
     /// Whether a slope may differ from 0.
-    fn moves(&self, numbers: &C, slope: &Self::Slope) -> bool;
+    fn is_nonzero(&self, numbers: &C, slope: &Self::Slope) -> bool;
 }
 
 /// Numbers with slopes.
@@ -63,7 +63,7 @@ pub struct Duals<C, S> {
 }
 
 impl<C: Numbers, S: Slopes<C>> Duals<C, S> {
-    fn with(
+    fn with_slope(
         &mut self,
         value: C::Number,
         parts: &[(Partial<C::Number>, &S::Slope)],
@@ -78,15 +78,15 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
 
     fn make(&mut self, step: Step<Self::Number>) -> Option<Self::Number> {
         let numbers = &mut self.numbers;
-        let by = |factor: &C::Number| Partial::By(factor.clone());
+        let by = |factor: &C::Number| Partial::Factor(factor.clone());
         match step {
             Step::Whole(value) => {
                 let value = numbers.make(Step::Whole(value))?;
-                self.with(value, &[])
+                self.with_slope(value, &[])
             }
             Step::Constant(value) => {
                 let value = numbers.make(Step::Constant(value))?;
-                self.with(value, &[])
+                self.with_slope(value, &[])
             }
             Step::Symbol(index) => {
                 let value = numbers.make(Step::Symbol(index))?;
@@ -95,28 +95,28 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
             }
             Step::Neg(a) => {
                 let value = numbers.make(Step::Neg(&a.0))?;
-                self.with(value, &[(Partial::MinusOne, &a.1)])
+                self.with_slope(value, &[(Partial::MinusOne, &a.1)])
             }
             Step::Add(a, b) => {
                 let sum = numbers.make(Step::Add(&a.0, &b.0))?;
-                self.with(sum, &[(Partial::One, &a.1), (Partial::One, &b.1)])
+                self.with_slope(sum, &[(Partial::One, &a.1), (Partial::One, &b.1)])
             }
             Step::Sub(a, b) => {
                 let difference = numbers.make(Step::Sub(&a.0, &b.0))?;
-                self.with(
+                self.with_slope(
                     difference,
                     &[(Partial::One, &a.1), (Partial::MinusOne, &b.1)],
                 )
             }
             Step::Mul(a, b) => {
                 let product = numbers.make(Step::Mul(&a.0, &b.0))?;
-                self.with(product, &[(by(&b.0), &a.1), (by(&a.0), &b.1)])
+                self.with_slope(product, &[(by(&b.0), &a.1), (by(&a.0), &b.1)])
             }
             Step::Div(a, b) => {
                 let [quotient, by_a, by_b] = numbers.quotient(&a.0, &b.0)?;
-                self.with(
+                self.with_slope(
                     quotient,
-                    &[(Partial::By(by_a), &a.1), (Partial::By(by_b), &b.1)],
+                    &[(Partial::Factor(by_a), &a.1), (Partial::Factor(by_b), &b.1)],
                 )
             }
             Step::Apply(function, a, form) => {
@@ -125,11 +125,11 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                     atoms.map(|((value, _), c)| (value, c)).collect()
                 };
                 let value = numbers.make(Step::Apply(function, &a.0, &form))?;
-                if !self.slopes.moves(numbers, &a.1) {
-                    return self.with(value, &[]);
+                if !self.slopes.is_nonzero(numbers, &a.1) {
+                    return self.with_slope(value, &[]);
                 }
                 let factor = numbers.slope(function, (&a.0, &value), &form)?;
-                self.with(value, &[(Partial::By(factor), &a.1)])
+                self.with_slope(value, &[(Partial::Factor(factor), &a.1)])
             }
             // Each branch has its own slope. If it is not known which branch is taken, each contributes by
             // its weight.
@@ -142,9 +142,9 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                         (numbers.make(Step::Whole(0))?, numbers.make(Step::Whole(1))?);
                     let by_a = numbers.make(Step::Select(&c.0, &one, &zero))?;
                     let by_b = numbers.make(Step::Select(&c.0, &zero, &one))?;
-                    self.with(
+                    self.with_slope(
                         value,
-                        &[(Partial::By(by_a), &a.1), (Partial::By(by_b), &b.1)],
+                        &[(Partial::Factor(by_a), &a.1), (Partial::Factor(by_b), &b.1)],
                     )
                 }
             },
@@ -152,7 +152,7 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
             // entries.
             Step::Listed(rest, a) => {
                 let value = numbers.make(Step::Listed(&rest.0, &a.0))?;
-                self.with(value, &[])
+                self.with_slope(value, &[])
             }
             // Σ ∂f/∂aⱼ aⱼ′.
             Step::External(component, list, form) => {
@@ -162,27 +162,30 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                     values.collect()
                 };
                 let value = numbers.make(Step::External(component, &list.0, &values))?;
-                let mut total = self.with(value, &[])?;
+                let mut total = self.with_slope(value, &[])?;
                 for (place, ((_, slope), sign)) in listed.iter().enumerate() {
-                    if !self.slopes.moves(&self.numbers, slope) {
+                    if !self.slopes.is_nonzero(&self.numbers, slope) {
                         continue;
                     }
-                    let by = component.by(place);
+                    let by = component.differentiate(place);
                     let mut factor = self.numbers.make(Step::External(by, &list.0, &values))?;
                     if sign.is_negative() {
                         factor = self.numbers.make(Step::Neg(&factor))?;
                     }
                     let (value, before) = total;
-                    let parts = [(Partial::One, &before), (Partial::By(factor), slope)];
-                    total = self.with(value, &parts)?;
+                    let parts = [(Partial::One, &before), (Partial::Factor(factor), slope)];
+                    total = self.with_slope(value, &parts)?;
                 }
                 Some(total)
             }
             // (x y′ − y x′)/(x² + y²).
             Step::Atan2(y, x) => {
                 let value = numbers.make(Step::Atan2(&y.0, &x.0))?;
-                if [y, x].iter().all(|a| !self.slopes.moves(numbers, &a.1)) {
-                    return self.with(value, &[]);
+                if [y, x]
+                    .iter()
+                    .all(|a| !self.slopes.is_nonzero(numbers, &a.1))
+                {
+                    return self.with_slope(value, &[]);
                 }
                 let xx = numbers.make(Step::Mul(&x.0, &x.0))?;
                 let yy = numbers.make(Step::Mul(&y.0, &y.0))?;
@@ -190,16 +193,16 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                 let minus = numbers.make(Step::Neg(&y.0))?;
                 let by_y = numbers.make(Step::Div(&x.0, &square))?;
                 let by_x = numbers.make(Step::Div(&minus, &square))?;
-                self.with(
+                self.with_slope(
                     value,
-                    &[(Partial::By(by_y), &y.1), (Partial::By(by_x), &x.1)],
+                    &[(Partial::Factor(by_y), &y.1), (Partial::Factor(by_x), &x.1)],
                 )
             }
         }
     }
 
     fn is_zero(&self, a: &Self::Number) -> bool {
-        self.numbers.is_zero(&a.0) && !self.slopes.moves(&self.numbers, &a.1)
+        self.numbers.is_zero(&a.0) && !self.slopes.is_nonzero(&self.numbers, &a.1)
     }
 
     fn is_positive(&self, a: &Self::Number) -> Option<bool> {
@@ -219,15 +222,15 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
 impl<C: Modular, S: Slopes<C>> Modular for Duals<C, S> {
     fn residue(&mut self, value: Fp) -> Option<Self::Number> {
         let value = self.numbers.residue(value)?;
-        self.with(value, &[])
+        self.with_slope(value, &[])
     }
 }
 
 /// Slopes along one direction; the function gives the slope of each symbol.
 #[derive(Clone, Debug)]
-pub struct Along<F>(pub F);
+pub struct ForwardMode<F>(pub F);
 
-impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for Along<F> {
+impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for ForwardMode<F> {
     type Slope = C::Number;
 
     fn symbol(&mut self, _: &mut C, index: usize) -> C::Number {
@@ -253,7 +256,7 @@ impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for Along<F> {
         sum.or_else(|| numbers.make(Step::Whole(0)))
     }
 
-    fn moves(&self, numbers: &C, slope: &C::Number) -> bool {
+    fn is_nonzero(&self, numbers: &C, slope: &C::Number) -> bool {
         !numbers.is_zero(slope)
     }
 }
@@ -261,9 +264,9 @@ impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for Along<F> {
 /// Slopes along many directions; the function gives the slopes of each symbol. The list is empty if all are
 /// 0.
 #[derive(Clone, Debug)]
-pub struct Across<F>(pub F);
+pub struct VectorForwardMode<F>(pub F);
 
-impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
+impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for VectorForwardMode<F> {
     type Slope = Vec<C::Number>;
 
     fn symbol(&mut self, numbers: &mut C, index: usize) -> Vec<C::Number> {
@@ -292,7 +295,7 @@ impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
         Some(sums)
     }
 
-    fn moves(&self, _: &C, slopes: &Vec<C::Number>) -> bool {
+    fn is_nonzero(&self, _: &C, slopes: &Vec<C::Number>) -> bool {
         !slopes.is_empty()
     }
 }
@@ -319,7 +322,7 @@ impl<N> Default for Record<N> {
 
 impl<N: Clone> Record<N> {
     /// Computes ∂f/∂xₖ for the first `symbols` symbols by a reverse sweep, for f at a place of the record.
-    pub fn backwards<C: Numbers<Number = N>>(
+    pub fn gradient<C: Numbers<Number = N>>(
         &self,
         numbers: &mut C,
         place: Option<usize>,
@@ -377,7 +380,7 @@ impl<C: Numbers> Slopes<C> for Record<C::Number> {
         Some(Some(self.entries.len() - 1))
     }
 
-    fn moves(&self, _: &C, place: &Option<usize>) -> bool {
+    fn is_nonzero(&self, _: &C, place: &Option<usize>) -> bool {
         place.is_some()
     }
 }

@@ -32,7 +32,7 @@ pub struct Component {
 
 impl Component {
     /// Largest number of functions, of components, and of arguments.
-    pub const MOST: usize = 64;
+    pub const MAX_COUNT: usize = 64;
 
     /// Creates a component that is not differentiated.
     pub fn new(function: usize, component: usize, arity: usize) -> Self {
@@ -47,7 +47,7 @@ impl Component {
 
     /// Returns the derivative by an argument. Third derivatives are not distinguished from one another,
     /// since not even second derivatives occur in final results.
-    pub fn by(self, place: usize) -> Self {
+    pub fn differentiate(self, place: usize) -> Self {
         let place = place as u8 + 1;
         let mut by = match self.by {
             [0, 0] => [0, place],
@@ -69,7 +69,7 @@ impl Component {
     }
 
     /// Argument by which the component is differentiated, if it is differentiated exactly once.
-    pub fn first(self) -> Option<usize> {
+    pub fn differentiated_by(self) -> Option<usize> {
         (self.order() == 1).then(|| usize::from(self.by[1]) - 1)
     }
 
@@ -80,16 +80,16 @@ impl Component {
     }
 
     /// Coefficients `[c, d]` of a function that stands in for the unknown one in numerical evaluations: c +
-    /// d Σ wⁿ⁻ʲ aⱼ with the weight w = `WEIGHT`. The sum is the number that stands for the list, so the
+    /// d Σ wⁿ⁻ʲ aⱼ with the weight w = `STAND_IN_WEIGHT`. The sum is the number that stands for the list, so the
     /// stand-in is linear in it.
-    pub(super) fn likeness(self) -> [f64; 2] {
+    pub(super) fn stand_in(self) -> [f64; 2] {
         let own = f64::from(self.function) + 0.37 * f64::from(self.component);
         let (constant, factor) = (0.3 + 0.7 * own.sin(), 1.0 + 0.4 * own.cos());
-        match (self.order(), self.first()) {
+        match (self.order(), self.differentiated_by()) {
             (0, _) => [constant, factor],
             (_, Some(place)) => {
                 let above = i32::from(self.arity) - 1 - place as i32;
-                [factor * WEIGHT.powi(above), 0.0]
+                [factor * STAND_IN_WEIGHT.powi(above), 0.0]
             }
             _ => [0.0, 0.0],
         }
@@ -97,4 +97,4 @@ impl Component {
 }
 
 /// Weight of the number that stands for the rest of a list, relative to the last number in the list.
-pub(super) const WEIGHT: f64 = 0.618_033_988_749_894_9;
+pub(super) const STAND_IN_WEIGHT: f64 = 0.618_033_988_749_894_9;

@@ -35,7 +35,7 @@ impl Graph {
 
     /// Chooses the value of √(e²) = |e|. Modulo p, roots of both signs are roots; the value is chosen such
     /// that |e| is neither e nor −e, unless e is itself a root or a number.
-    pub(super) fn apart_from_root(&self, square: Edge, root: Fp) -> Fp {
+    pub(super) fn distinguish_from_root(&self, square: Edge, root: Fp) -> Fp {
         match self.lookup(root).map(|known| self.node(known.node())) {
             None | Some(Node::Constant(_)) => root,
             Some(node) if node.is_root() => root,
@@ -144,7 +144,7 @@ impl Graph {
         })
     }
 
-    /// Returns what a lane needs to know about a function's argument in addition to its value. For
+    /// Returns what a `FieldPoint` needs to know about a function's argument in addition to its value. For
     /// functions with a group law, this is the linear form of the argument. For a square root, it is the
     /// rational factor of the argument, or nothing if the argument is a number that is not rational and
     /// positive.

@@ -1,15 +1,16 @@
 //! The elementary functions, with everything that is known of each in one table.
 //!
 //! To add a function, add a row to the table, with its values in numbers of every kind, and add its values
-//! modulo p to `Lane::function`. The latter must obey the laws by which expressions with the function are
+//! modulo p to `FieldPoint::function`. The latter must obey the laws by which expressions with the function are
 //! found equal.
 
-use Cost::{Choice, Other, Product, Quotient, Root, Turn};
+use Cost::{Comparison, Other, Product, Quotient, Root, SineOrCosine};
 use Law::{Angle, Free, Hyperbola, Linear, Power, Radical, Side};
-use Parity::{Even, Odd, Plain};
+use Parity::{Even, Neither, Odd};
 use Slope::{
-    Half, HalfInverse, Inverse, Is, IsMinus, Itself, MinusSquare, Nothing, OfOne, OneMinusSquare,
-    Two,
+    FunctionOfArgument, HalfFunctionOfValue, HalfInverseOfValue, InverseOfArgument,
+    MinusFunctionOfArgument, MinusSquareOfValue, OneMinusSquareOfValue, OwnValue, SeveralArguments,
+    ValueAtOne, Zero,
 };
 
 use super::double::Double;
@@ -26,7 +27,7 @@ pub enum Parity {
     /// −f(a).
     Odd,
     /// Neither.
-    Plain,
+    Neither,
 }
 
 /// Law by which f(a + b) or f(a b) follows from values at simpler arguments.
@@ -40,7 +41,7 @@ pub enum Law {
     Hyperbola,
     /// √(a b) = √a √b for positive a, b.
     Radical,
-    /// f(a) is a multiple of f(1) that depends on the side of 0 on which a is (`Lane::positive`), as for
+    /// f(a) is a multiple of f(1) that depends on the side of 0 on which a is (`FieldPoint::positive`), as for
     /// sign and abs.
     Side,
     /// No law: any value will do.
@@ -60,27 +61,27 @@ impl Law {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slope {
     /// g(a).
-    Is(Function),
+    FunctionOfArgument(Function),
     /// −g(a).
-    IsMinus(Function),
+    MinusFunctionOfArgument(Function),
     /// f(a).
-    Itself,
+    OwnValue,
     /// 1/a.
-    Inverse,
+    InverseOfArgument,
     /// 1/(2 f(a)).
-    HalfInverse,
+    HalfInverseOfValue,
     /// ½ g(f(a)).
-    Half(Function),
+    HalfFunctionOfValue(Function),
     /// −f(a)².
-    MinusSquare,
+    MinusSquareOfValue,
     /// 1 − f(a)².
-    OneMinusSquare,
+    OneMinusSquareOfValue,
     /// f(1), because f is linear.
-    OfOne,
+    ValueAtOne,
     /// 0.
-    Nothing,
+    Zero,
     /// No entry: the node has several arguments, and rules of its own.
-    Two,
+    SeveralArguments,
 }
 
 /// Kind of operation that a function counts as.
@@ -89,13 +90,13 @@ pub enum Cost {
     /// A square root.
     Root,
     /// Half of a pair of sine and cosine.
-    Turn,
+    SineOrCosine,
     /// A division.
     Quotient,
     /// A product.
     Product,
     /// A comparison, as expensive as a sum.
-    Choice,
+    Comparison,
     /// Any other function.
     Other,
 }
@@ -166,8 +167,8 @@ macro_rules! table {
             }
 
             /// Finds the function of one argument that has this name in descriptions.
-            pub fn named(name: &str) -> Option<Function> {
-                let named = |function: &&Function| function.name() == name && function.row().slope != Two;
+            pub fn from_name(name: &str) -> Option<Function> {
+                let named = |function: &&Function| function.name() == name && function.row().slope != SeveralArguments;
                 let word = name.starts_with(|first: char| first.is_ascii_alphabetic());
                 Function::ALL.iter().find(named).copied().filter(|_| word)
             }
@@ -184,57 +185,57 @@ macro_rules! table {
 // identifier, documentation, names (in descriptions, Rust, LaTeX), cost, parity, law, exact value,
 // derivative; then values in `f64`, in double-double precision, with bounds of errors, and as intervals.
 table! {
-    Sin "sine" "sin" "sin_cos().0" r"\sin" Turn Odd Angle [Some([0, 0])] [Is(Function::Cos)]
+    Sin "sine" "sin" "sin_cos().0" r"\sin" SineOrCosine Odd Angle [Some([0, 0])] [FunctionOfArgument(Function::Cos)]
         f64::sin, Double::sin, Real::sin, Interval::sin;
-    Cos "cosine" "cos" "sin_cos().1" r"\cos" Turn Even Angle [Some([0, 1])] [IsMinus(Function::Sin)]
+    Cos "cosine" "cos" "sin_cos().1" r"\cos" SineOrCosine Even Angle [Some([0, 1])] [MinusFunctionOfArgument(Function::Sin)]
         f64::cos, Double::cos, Real::cos, Interval::cos;
-    Exp "exponential" "exp" "exp()" r"\exp" Other Plain Power [Some([0, 1])] [Itself]
+    Exp "exponential" "exp" "exp()" r"\exp" Other Neither Power [Some([0, 1])] [OwnValue]
         f64::exp, Double::exp, Real::exp, Interval::exp;
-    Log "natural logarithm" "log" "ln()" r"\ln" Other Plain Free [Some([1, 0])] [Inverse]
+    Log "natural logarithm" "log" "ln()" r"\ln" Other Neither Free [Some([1, 0])] [InverseOfArgument]
         f64::ln, Double::log, Real::log, Interval::log;
-    Sqrt "square root" "sqrt" "sqrt()" r"\sqrt" Root Plain Radical [None] [HalfInverse]
+    Sqrt "square root" "sqrt" "sqrt()" r"\sqrt" Root Neither Radical [None] [HalfInverseOfValue]
         f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
     Atan2 "angle of (x, y), arguments (y, x): a node of its own, without values of one argument"
-        "atan2" "atan2" r"\operatorname{atan2}" Other Plain Free [None] [Two]
+        "atan2" "atan2" r"\operatorname{atan2}" Other Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
-    Sinh "hyperbolic sine" "sinh" "sinh()" r"\sinh" Other Odd Hyperbola [Some([0, 0])] [Is(Function::Cosh)]
+    Sinh "hyperbolic sine" "sinh" "sinh()" r"\sinh" Other Odd Hyperbola [Some([0, 0])] [FunctionOfArgument(Function::Cosh)]
         f64::sinh, Double::sinh, Real::sinh, Interval::sinh;
-    Cosh "hyperbolic cosine" "cosh" "cosh()" r"\cosh" Other Even Hyperbola [Some([0, 1])] [Is(Function::Sinh)]
+    Cosh "hyperbolic cosine" "cosh" "cosh()" r"\cosh" Other Even Hyperbola [Some([0, 1])] [FunctionOfArgument(Function::Sinh)]
         f64::cosh, Double::cosh, Real::cosh, Interval::cosh;
-    Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquare]
+    Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquareOfValue]
         f64::tanh, Double::tanh, Real::tanh, Interval::tanh;
-    Sign "1 with the sign of its argument, 0 of 0" "sign" "sign()" r"\operatorname{sign}" Choice Odd Side
-        [Some([0, 0])] [Nothing]
+    Sign "1 with the sign of its argument, 0 of 0" "sign" "sign()" r"\operatorname{sign}" Comparison Odd Side
+        [Some([0, 0])] [Zero]
         |a| if a == 0.0 { a } else { a.signum() }, Double::sign, Real::sign, Interval::sign;
-    Abs "absolute value" "abs" "abs()" r"\operatorname{abs}" Choice Even Side [Some([0, 0])] [Is(Function::Sign)]
+    Abs "absolute value" "abs" "abs()" r"\operatorname{abs}" Comparison Even Side [Some([0, 0])] [FunctionOfArgument(Function::Sign)]
         f64::abs, Double::abs, Real::abs, Interval::abs;
     Select "a where c > 0, else b, arguments (c, a, b): a node of its own, without values of one argument"
-        "if" "select_positive" r"\operatorname{if}" Choice Plain Free [None] [Two]
+        "if" "select_positive" r"\operatorname{if}" Comparison Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     Norm "length, the root of a sum of squares: where that is 0, its derivative is 0"
-        "sqrt" "sqrt()" r"\sqrt" Root Plain Radical [None] [Half(Function::Inverse)]
+        "sqrt" "sqrt()" r"\sqrt" Root Neither Radical [None] [HalfFunctionOfValue(Function::Inverse)]
         f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
     Inverse "1/a, but a large number where a is nearly 0: times a sum of products that are 0 there it is 0"
-        "1/" "inverse_of_length()" r"1/" Quotient Odd Free [None] [MinusSquare]
-        |a| if a.abs() < SHORTEST { SHORTEST.recip() } else { a.recip() }, Double::inverse_of_length,
+        "1/" "inverse_of_length()" r"1/" Quotient Odd Free [None] [MinusSquareOfValue]
+        |a| if a.abs() < MIN_DIVISOR { MIN_DIVISOR.recip() } else { a.recip() }, Double::inverse_of_length,
         |a| Real::new(1.0, 0.0).over(a), Interval::inverse;
     Listed "a list of numbers, the rest and the last: a node of its own, which only what is called reads"
-        "[]" "" "" Choice Plain Free [None] [Two]
+        "[]" "" "" Comparison Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     External "a component of a function that is given elsewhere: a node of its own over a list"
-        "extern" "" "" Other Plain Free [None] [Two]
+        "extern" "" "" Other Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     Raised "a larger by a small part that rounding does not hide, 2⁻²⁶ of it in `f64`: a pivot that may be nothing but rounding becomes one that can be divided by"
-        "(1 + ε) " "raised()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [OfOne]
-        |a| a * RAISED, |a| a * Double::new(RAISED), |a| a.times(Real::new(RAISED, 0.0)),
-        |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISED)?)));
+        "(1 + ε) " "raised()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [ValueAtOne]
+        |a| a * RAISE_FACTOR, |a| a * Double::new(RAISE_FACTOR), |a| a.times(Real::new(RAISE_FACTOR, 0.0)),
+        |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISE_FACTOR)?)));
 }
 
 /// Factor by which `Raised` multiplies in `f64`.
-const RAISED: f64 = 1.0 + 1.0 / (1u32 << 26) as f64;
+const RAISE_FACTOR: f64 = 1.0 + 1.0 / (1u32 << 26) as f64;
 
 /// Smallest length that is divided by: shorter ones are treated as if they were this long.
-pub(super) const SHORTEST: f64 = 1e-100;
+pub(super) const MIN_DIVISOR: f64 = 1e-100;
 
 impl Interval {
     /// Applies a function of one argument; `None` if it has no value, or none is known.

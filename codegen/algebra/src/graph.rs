@@ -3,7 +3,7 @@
 //! Every node carries its value at a point of the constraint variety X in each of two finite fields. Nodes
 //! with equal values are merged, so "equal on X" is node identity; zero and small rationals are recognised
 //! as constants. Where square roots are involved, real samples have to agree as well; numbers are compared
-//! with certainty (`shadow`). An edge is a node with a sign, so negation costs nothing, and a − b and b − a
+//! with certainty (`real_enclosure`). An edge is a node with a sign, so negation costs nothing, and a − b and b − a
 //! are one node. Children precede their parents.
 
 mod calls;
@@ -16,13 +16,13 @@ pub(crate) use merge::canonical;
 pub(crate) use powers::Power;
 
 use super::external::External;
+use super::field_point::{FieldPoint, Roots};
 use super::fp::Fp;
 use super::function::{Law, Parity};
-use super::lane::{Lane, Roots};
 pub use super::node::{Component, Edge, Function, Node, NodeId, Symbol};
-use super::prime::is_unfaithful;
+use super::prime::has_bad_prime;
+use super::real_enclosure::RealValues;
 use super::reals::Reals;
-use super::shadow::Shadow;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -39,15 +39,15 @@ pub struct Graph {
     by_value: FxHashMap<Fp, Edge>,
     constants: Vec<BigRational>,
     symbols: Vec<Symbol>,
-    lane: Lane,
-    shadow: Shadow,
+    point: FieldPoint,
+    real_values: RealValues,
     /// Rational factors of the arguments of square roots, by the nodes of the arguments.
     contents: FxHashMap<NodeId, BigRational>,
     /// Value of the node of another graph, at the same points, that the next node is a copy of. That node
     /// is not a number, so a new node with this value is not a number either.
     copied: Fp,
     /// Whether some number has no faithful image, because a prime divides it.
-    unfaithful: bool,
+    bad_prime: bool,
     /// External functions, which are defined elsewhere.
     externals: Arc<Vec<External>>,
     /// Class of the symbols that are constant at run time. Products and sums of these are kept together so
@@ -65,11 +65,11 @@ impl Graph {
             by_value: FxHashMap::default(),
             constants: Vec::new(),
             symbols: Vec::new(),
-            lane: Lane::new(),
-            shadow: Shadow::default(),
+            point: FieldPoint::new(),
+            real_values: RealValues::default(),
             contents: FxHashMap::default(),
             copied: Fp::ZERO,
-            unfaithful: false,
+            bad_prime: false,
             externals: Arc::default(),
             free_class,
         };
@@ -81,58 +81,58 @@ impl Graph {
     }
 
     /// Creates an empty graph at the same points, to be filled with some of the symbols.
-    pub fn fresh(&self) -> Self {
+    pub fn empty_copy(&self) -> Self {
         let mut graph = Graph::new(self.free_class);
-        graph.lane = self.lane.fresh();
+        graph.point = self.point.without_symbols();
         graph.externals = self.externals.clone();
         graph
     }
 
     /// Sets which square roots have values, for use when no point has all of them.
     pub fn set_roots(&mut self, roots: Roots) {
-        self.lane.roots = roots;
+        self.point.roots = roots;
     }
 
     /// Gives the symbols real values, in order of creation. Without real values, square roots are
     /// distinguished only modulo p.
     pub fn set_reals(&mut self, reals: Vec<Reals>) {
-        self.shadow.set(reals);
+        self.real_values.set(reals);
     }
 
     /// Sets whether expressions that are equal at the point must also be equal at the first half of the
     /// real samples. These may lie on another branch of the constraints than the point.
-    pub fn watch(&mut self, watched: bool) {
-        self.shadow.watched = watched;
+    pub fn compare_samples(&mut self, watched: bool) {
+        self.real_values.watched = watched;
     }
 
     /// Whether expressions that are equal at the point were found to differ at real samples, which then lie
     /// on another branch of the constraints.
-    pub fn is_contradicted(&self) -> bool {
-        self.shadow.contradicted
+    pub fn has_contradicted_samples(&self) -> bool {
+        self.real_values.contradicted
     }
 
     /// From now on, an expression that contains a square root is merged only with the same expression, not
     /// with others of equal value.
-    pub fn keep_roots_apart(&mut self) {
-        self.shadow.apart = true;
+    pub fn forbid_root_merges(&mut self) {
+        self.real_values.separate_roots = true;
     }
 
     /// Whether some expression that contains a square root was merged with one that differs from it at one
     /// of these samples (real values of the symbols), or that has a value at too few of them.
-    pub fn is_doubtful(&self, samples: impl Iterator<Item = Vec<Reals>>) -> bool {
-        self.shadow
-            .is_doubtful(&self.nodes, &self.constants, samples)
+    pub fn has_doubtful_merges(&self, samples: impl Iterator<Item = Vec<Reals>>) -> bool {
+        self.real_values
+            .has_doubtful_merges(&self.nodes, &self.constants, samples)
     }
 
     /// Whether an expression contains a square root, so that a different number may have the same value
     /// modulo p.
     pub fn has_root_below(&self, edge: Edge) -> bool {
-        self.shadow.is_rooted(edge.node())
+        self.real_values.is_rooted(edge.node())
     }
 
     /// Real samples of a symbol.
     pub fn reals(&self, symbol: usize) -> Reals {
-        self.shadow.symbol(symbol)
+        self.real_values.symbol(symbol)
     }
 
     /// Records the rational factor of the argument of a square root, once for all points.
@@ -197,13 +197,13 @@ impl Graph {
     }
 
     /// Whether a square root of a non-square was requested; then other points have to be chosen.
-    pub fn is_stuck(&self) -> bool {
-        self.lane.is_stuck()
+    pub fn has_missing_root(&self) -> bool {
+        self.point.has_missing_root()
     }
 
     /// Whether a number occurred that one of the primes divides, so that comparisons with it prove nothing.
-    pub fn is_unfaithful(&self) -> bool {
-        self.unfaithful
+    pub fn has_bad_prime(&self) -> bool {
+        self.bad_prime
     }
 
     fn both_rational(&self, a: Edge, b: Edge) -> Option<(BigRational, BigRational)> {
@@ -218,7 +218,7 @@ impl Graph {
 
     /// Creates a symbol with its value at the point.
     pub fn symbol(&mut self, name: &str, class: u8, value: Fp) -> Edge {
-        self.lane.push_symbol(value);
+        self.point.push_symbol(value);
         let index = self.symbols.len() as u32;
         let edge = self.push(Node::Symbol(index), value, class);
         self.symbols.push(Symbol {
@@ -249,7 +249,7 @@ impl Graph {
     }
 
     fn new_number(&mut self, value: &BigRational, image: Fp) -> Edge {
-        self.unfaithful |= is_unfaithful(value);
+        self.bad_prime |= has_bad_prime(value);
         let index = self.constants.len() as u32;
         self.constants.push(value.clone());
         self.push(Node::Constant(index), image, 0)
@@ -280,7 +280,7 @@ impl Graph {
         }
         let value = self.value(a) + self.value(b);
         let class = self.class(a.node()) | self.class(b.node());
-        if let Some(known) = self.known(Node::Add(a, b), value, class) {
+        if let Some(known) = self.find_equal(Node::Add(a, b), value, class) {
             return known;
         }
         if let Some(factored) = self.factor(a, b) {
@@ -332,7 +332,7 @@ impl Graph {
         }
         let value = self.value(a) * self.value(b);
         let class = self.class(a.node()) | self.class(b.node());
-        if let Some(known) = self.known(Node::Mul(a, b), value, class) {
+        if let Some(known) = self.find_equal(Node::Mul(a, b), value, class) {
             return known.signed(negative);
         }
         if let Some(regrouped) = self.regroup(a, b, Node::Mul as fn(Edge, Edge) -> Node) {
@@ -357,7 +357,7 @@ impl Graph {
         }
         let value = self.value(a) * self.value(b).inv()?;
         let class = self.class(a.node()) | self.class(b.node());
-        if let Some(known) = self.known(Node::Div(a, b), value, class) {
+        if let Some(known) = self.find_equal(Node::Div(a, b), value, class) {
             return Some(known.signed(negative));
         }
         // Division by a run-time constant is done once: x / p = x · (1/p).
@@ -374,7 +374,7 @@ impl Graph {
         let (argument, negative) = match row.parity {
             Parity::Odd => (argument.abs(), argument.is_negative()),
             Parity::Even => (argument.abs(), false),
-            Parity::Plain => (argument, false),
+            Parity::Neither => (argument, false),
         };
         if let Some([a, value]) = row.at
             && argument == Edge::of(a)
@@ -407,14 +407,14 @@ impl Graph {
             .iter()
             .map(|(atom, c)| (self.value(Edge::of(*atom)), c.clone()))
             .collect();
-        let value = self.lane.function(function, self.value(argument), &form);
+        let value = self.point.function(function, self.value(argument), &form);
         let value = match row.law {
-            Law::Radical => self.apart_from_root(argument, value),
+            Law::Radical => self.distinguish_from_root(argument, value),
             _ => value,
         };
         let class = self.class(argument.node());
         let node = Node::Apply(function, argument);
-        let edge = match self.known(node, value, class) {
+        let edge = match self.find_equal(node, value, class) {
             Some(known) => known,
             None => match (function == Function::Sqrt).then(|| self.even_root(argument)) {
                 Some(Some(root)) => root,
@@ -427,11 +427,11 @@ impl Graph {
     /// atan2(y, x).
     pub fn atan2(&mut self, y: Edge, x: Edge) -> Edge {
         let value = self
-            .lane
+            .point
             .opaque(Function::Atan2, self.value(y), self.value(x));
         let class = self.class(y.node()) | self.class(x.node());
         let node = Node::Atan2(y, x);
-        match self.known(node, value, class) {
+        match self.find_equal(node, value, class) {
             Some(known) => known,
             None => self.push(node, value, class),
         }

@@ -13,11 +13,11 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 use std::cmp::Ordering;
 
 /// Number of bits that are kept.
-const BITS: u64 = 320;
+const MANTISSA_BITS: u64 = 320;
 /// Number of fractional bits within elementary functions.
-const FRACTION: u64 = BITS + 64;
+const FRACTION_BITS: u64 = MANTISSA_BITS + 64;
 /// Binary exponent beyond which arguments of elementary functions are rejected.
-const LARGEST: i64 = 64;
+const MAX_ARGUMENT_EXPONENT: i64 = 64;
 
 /// Bounds of a real number: lo 2^exponent ≤ value ≤ hi 2^exponent.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,10 +42,10 @@ impl Interval {
     /// bits that are kept.
     pub fn new(lo: BigInt, hi: BigInt, exponent: i64) -> Self {
         let bits = lo.bits().max(hi.bits());
-        if bits <= BITS {
+        if bits <= MANTISSA_BITS {
             return Interval { lo, hi, exponent };
         }
-        let excess = bits - BITS;
+        let excess = bits - MANTISSA_BITS;
         Interval {
             lo: lo >> excess,
             hi: shift_up(&hi, excess),
@@ -59,7 +59,7 @@ impl Interval {
         if d.is_one() {
             return Interval::new(n.clone(), n.clone(), 0);
         }
-        let shift = BITS + d.bits();
+        let shift = MANTISSA_BITS + d.bits();
         let scaled = n << shift;
         let lo = scaled.div_floor(d);
         let hi = -((-scaled).div_floor(d));
@@ -68,7 +68,7 @@ impl Interval {
 
     /// Returns bounds of π by Machin's formula, 16 arctan 1/5 − 4 arctan 1/239.
     pub fn pi() -> Self {
-        let unit = power_of_two(FRACTION);
+        let unit = power_of_two(FRACTION_BITS);
         let arctan = |n: u32| {
             let square = BigInt::from(n * n);
             let (mut power, mut sum, mut k) = (&unit / n, BigInt::zero(), 0u32);
@@ -83,7 +83,7 @@ impl Interval {
         let value: BigInt = BigInt::from(16) * arctan(5) - BigInt::from(4) * arctan(239);
         // Each of about 300 terms is truncated twice.
         let error = BigInt::from(1 << 16);
-        Interval::new(&value - &error, value + error, -(FRACTION as i64))
+        Interval::new(&value - &error, value + error, -(FRACTION_BITS as i64))
     }
 
     /// Returns −a if `negative`, else a.
@@ -107,7 +107,7 @@ impl Interval {
         };
         let shift = (high.exponent - low.exponent) as u64;
         // An operand far below the last bit of the other is rounded first, which limits the shift.
-        let most = 4 * BITS;
+        let most = 4 * MANTISSA_BITS;
         if shift > most {
             let excess = shift - most;
             let rounded = Interval {
@@ -142,7 +142,7 @@ impl Interval {
         if self.contains_zero() {
             return None;
         }
-        let shift = BITS + self.lo.bits().max(self.hi.bits());
+        let shift = MANTISSA_BITS + self.lo.bits().max(self.hi.bits());
         let unit = power_of_two(shift);
         let lo = unit.div_floor(&self.hi);
         let hi = -((-unit).div_floor(&self.lo));
@@ -162,7 +162,7 @@ impl Interval {
             return None;
         }
         // Scale to an even exponent and enough bits.
-        let mut shift = (2 * BITS).saturating_sub(self.hi.bits());
+        let mut shift = (2 * MANTISSA_BITS).saturating_sub(self.hi.bits());
         if (self.exponent - shift as i64).is_odd() {
             shift += 1;
         }
@@ -171,14 +171,14 @@ impl Interval {
         Some(Interval::new(lo, hi, (self.exponent - shift as i64) / 2))
     }
 
-    /// Returns the midpoint in multiples of 2^−FRACTION, and a bound on the distance of the bounds from it;
+    /// Returns the midpoint in multiples of 2^−FRACTION_BITS, and a bound on the distance of the bounds from it;
     /// `None` if the number is too large.
     fn middle(&self) -> Option<(BigInt, BigInt)> {
         let size = self.exponent + self.lo.bits().max(self.hi.bits()) as i64;
-        if size > LARGEST {
+        if size > MAX_ARGUMENT_EXPONENT {
             return None;
         }
-        let shift = self.exponent + FRACTION as i64;
+        let shift = self.exponent + FRACTION_BITS as i64;
         let (lo, hi) = if shift >= 0 {
             (&self.lo << shift as u64, &self.hi << shift as u64)
         } else {
@@ -189,7 +189,7 @@ impl Interval {
         Some((middle, radius))
     }
 
-    /// Sums a series whose terms follow by `next(term, k)`, in multiples of 2^−FRACTION.
+    /// Sums a series whose terms follow by `next(term, k)`, in multiples of 2^−FRACTION_BITS.
     fn series(first: BigInt, next: impl Fn(&BigInt, u32) -> BigInt) -> BigInt {
         let (mut term, mut sum) = (first, BigInt::zero());
         let mut k = 0;
@@ -211,38 +211,39 @@ impl Interval {
         let turns = x.div_floor(&turn);
         x -= &turns * &turn;
         radius += (turns.abs() + 1) * error;
-        let square = (&x * &x) >> FRACTION;
+        let square = (&x * &x) >> FRACTION_BITS;
         let next = |offset: u32| {
             let square = &square;
             move |term: &BigInt, k: u32| {
                 let divisor = (2 * k + 1 + offset) * (2 * k + 2 + offset);
-                -((term * square) >> FRACTION) / divisor
+                -((term * square) >> FRACTION_BITS) / divisor
             }
         };
-        let cos = Self::series(power_of_two(FRACTION), next(0));
+        let cos = Self::series(power_of_two(FRACTION_BITS), next(0));
         let sin = Self::series(x, next(1));
         // Each of about 100 terms is truncated twice, from sizes of up to 2⁶.
         radius += power_of_two(24);
-        let around =
-            |middle: BigInt| Interval::new(&middle - &radius, middle + &radius, -(FRACTION as i64));
+        let around = |middle: BigInt| {
+            Interval::new(&middle - &radius, middle + &radius, -(FRACTION_BITS as i64))
+        };
         Some((around(cos), around(sin)))
     }
 
     /// exp(x) = exp(x / 2^k)^(2^k).
     pub(super) fn exp(&self) -> Option<Self> {
-        const HALVINGS: u32 = 12;
+        const EXP_HALVINGS: u32 = 12;
         let (x, radius) = self.middle()?;
-        if (x.abs() + &radius).bits() > FRACTION + 10 {
+        if (x.abs() + &radius).bits() > FRACTION_BITS + 10 {
             return None;
         }
-        let small = &x >> HALVINGS;
-        let value = Self::series(power_of_two(FRACTION), |term, k| {
-            ((term * &small) >> FRACTION) / (k + 1)
+        let small = &x >> EXP_HALVINGS;
+        let value = Self::series(power_of_two(FRACTION_BITS), |term, k| {
+            ((term * &small) >> FRACTION_BITS) / (k + 1)
         });
         // |x / 2^k| < 1/4 between the bounds, where the slope of exp is below e^(1/4) < 3/2.
-        let radius = ((&radius + (&radius >> 1u32)) >> HALVINGS) + power_of_two(16);
-        let mut result = Interval::new(&value - &radius, value + radius, -(FRACTION as i64));
-        for _ in 0..HALVINGS {
+        let radius = ((&radius + (&radius >> 1u32)) >> EXP_HALVINGS) + power_of_two(16);
+        let mut result = Interval::new(&value - &radius, value + radius, -(FRACTION_BITS as i64));
+        for _ in 0..EXP_HALVINGS {
             result = result.times(&result);
         }
         Some(result)

@@ -5,9 +5,9 @@
 //! For symbols x(s, t) with ∂x/∂s = x₁, ∂x/∂t = x₂ and ∂²x/∂s∂t = x₁₂,
 //! `f₁₂ = D²f [x₁, x₂] + Df(x₁₂)`.
 
-use super::dual::{Across, Duals};
+use super::dual::{Duals, VectorForwardMode};
+use super::field_point::FieldPoint;
 use super::fp::Fp;
-use super::lane::Lane;
 use super::tangent::{Dual, duals};
 use super::tape::Tape;
 
@@ -47,14 +47,14 @@ impl Jet {
     }
 
     /// Whether the expression is constant along all directions.
-    pub fn is_still(&self) -> bool {
+    pub fn is_constant(&self) -> bool {
         self.across.is_empty() && self.along.is_zero()
     }
 }
 
 impl Tape {
     /// Computes the jets of the expressions at a point; `None` if something has no value there.
-    pub fn jets(&self, lane: &Lane, seeds: &Seeds) -> Option<Vec<Jet>> {
+    pub fn jets(&self, point: &FieldPoint, seeds: &Seeds) -> Option<Vec<Jet>> {
         // Numbers are f and f₁ along s, with the slopes of both along all t.
         let of_symbol = |index: usize| -> Vec<Dual> {
             let at = |row: Option<&Vec<Fp>>| row?.get(index).copied();
@@ -65,8 +65,8 @@ impl Tape {
             (0..seeds.across.len()).map(slope).collect()
         };
         let mut all = Duals {
-            numbers: duals(lane, &seeds.along),
-            slopes: Across(of_symbol),
+            numbers: duals(point, &seeds.along),
+            slopes: VectorForwardMode(of_symbol),
         };
         let values = self.run(&mut all)?;
         let jet = |((value, along), columns): (Dual, Vec<Dual>)| {
@@ -79,6 +79,6 @@ impl Tape {
             }
         };
         let jets = values.into_iter().map(jet);
-        (!all.numbers.numbers.is_stuck()).then(|| jets.collect())
+        (!all.numbers.numbers.has_missing_root()).then(|| jets.collect())
     }
 }

@@ -2,9 +2,8 @@
 //!
 #![doc = include_str!("../README.md")]
 
-pub mod bend;
 pub mod blocks;
-pub mod closest;
+mod continuity;
 pub mod degree;
 pub mod dense;
 pub mod derivation;
@@ -12,27 +11,28 @@ pub mod double;
 pub mod dual;
 pub mod echelon;
 pub mod external;
+pub mod field_point;
 mod fold;
 pub mod fp;
 pub mod function;
 pub mod graph;
 pub mod interval;
 pub mod jets;
-mod jumps;
-pub mod lane;
 pub mod linear;
+pub mod nearest_solution;
 pub mod newton;
 pub mod node;
 pub mod numbers;
 pub mod numeric;
 pub mod poly;
 pub mod prime;
+mod real_enclosure;
 pub mod reals;
+pub mod residual_scale;
 pub mod resubstitute;
 pub mod roots;
 pub mod rounding;
-mod shadow;
-pub mod sizes;
+pub mod second_derivative;
 pub mod slopes;
 pub mod tangent;
 pub mod tape;

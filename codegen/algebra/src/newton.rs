@@ -7,9 +7,9 @@ use super::linear::matrix;
 use super::numeric::evaluate;
 
 /// Largest |φᵢ| of a solution, relative to 1 or to max(1, Σⱼ |∂φᵢ/∂xⱼ xⱼ|).
-const CLOSE: f64 = 1e-12;
+const RESIDUAL_TOLERANCE: f64 = 1e-12;
 /// Largest number of steps of a search that can be repeated from another point.
-const FEW_STEPS: usize = 40;
+const MAX_RESTARTABLE_STEPS: usize = 40;
 
 /// Constraints φ and their Jacobian ∂φ/∂x, to be solved for x.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ pub struct Newton {
 
 /// Result of Newton's method.
 #[derive(Clone, Debug)]
-pub struct End {
+pub struct Outcome {
     /// Final value of x.
     pub x: Vec<f64>,
     /// max |φ| at the final x.
@@ -57,9 +57,9 @@ impl Newton {
     /// Returns x with φ(x) = 0 near the x in `numbers` (the values of all symbols), if Newton's method
     /// finds it soon. The method serves walks on the constraint variety with quantities of order 1: if φ is
     /// so large that its rounding errors exceed 1e-12, nothing is found.
-    pub fn near(&self, numbers: &[f64]) -> Option<Vec<f64>> {
+    pub fn solve_near(&self, numbers: &[f64]) -> Option<Vec<f64>> {
         let x = numbers.get(self.first..self.first + self.dimension)?;
-        let end = self.descend(x.to_vec(), numbers, FEW_STEPS, false);
+        let end = self.descend(x.to_vec(), numbers, MAX_RESTARTABLE_STEPS, false);
         end.is_close.then_some(end.x)
     }
 
@@ -92,7 +92,13 @@ impl Newton {
 
     /// Runs Newton's method from a guess. Residuals are compared with their sizes if `relative` is set, and
     /// with 1 otherwise.
-    pub fn descend(&self, mut x: Vec<f64>, numbers: &[f64], steps: usize, relative: bool) -> End {
+    pub fn descend(
+        &self,
+        mut x: Vec<f64>,
+        numbers: &[f64],
+        steps: usize,
+        relative: bool,
+    ) -> Outcome {
         let mut phi = self.at(&self.phi, numbers, &x);
         let mut damping = 1e-6;
         let mut is_close = false;
@@ -109,7 +115,7 @@ impl Newton {
             is_close = phi
                 .iter()
                 .zip(sizes)
-                .all(|(phi, size)| phi.abs() <= CLOSE * size);
+                .all(|(phi, size)| phi.abs() <= RESIDUAL_TOLERANCE * size);
             if is_close {
                 break;
             }
@@ -142,7 +148,7 @@ impl Newton {
                 }
             }
         }
-        End {
+        Outcome {
             x,
             residual: largest(&phi),
             is_close,

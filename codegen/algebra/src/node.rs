@@ -34,7 +34,7 @@ impl Edge {
     }
 
     /// Returns the same edge after nodes have been renumbered by `places`.
-    pub fn moved(self, places: &[NodeId]) -> Edge {
+    pub fn renumber(self, places: &[NodeId]) -> Edge {
         Edge::of(places[self.node() as usize]).signed(self.is_negative())
     }
 
@@ -103,7 +103,7 @@ impl Node {
     }
 
     /// Returns the same operation on other children, to which `child` maps the present ones.
-    pub fn over(self, mut child: impl FnMut(Edge) -> Edge) -> Node {
+    pub fn map_children(self, mut child: impl FnMut(Edge) -> Edge) -> Node {
         match self {
             Node::Constant(_) | Node::Symbol(_) => self,
             Node::Apply(function, a) => Node::Apply(function, child(a)),

@@ -5,10 +5,10 @@
 //! | numbers | implementation |
 //! |---|---|
 //! | `f64` | `numeric::Floats` |
-//! | F_p(i) × F_q(i) | `lane::Lane` |
+//! | F_p(i) × F_q(i) | `field_point::FieldPoint` |
 //! | with slopes along one direction or many, or with a record for reverse mode | `dual::Duals` over others |
 //! | double-double with or without `f64`, with bounds of rounding errors | `rounding` |
-//! | real samples, certified bounds | `shadow` |
+//! | real samples, certified bounds | `real_enclosure` |
 
 use super::external::Component;
 use super::fp::Fp;
@@ -21,7 +21,7 @@ use std::borrow::Cow;
 pub type Form<N> = Vec<(N, BigRational)>;
 
 /// Function that computes a form on demand.
-pub type Former<'a, N> = &'a dyn Fn() -> Form<N>;
+pub type LazyForm<'a, N> = &'a dyn Fn() -> Form<N>;
 
 /// An operation on numbers.
 pub enum Step<'a, N> {
@@ -42,7 +42,7 @@ pub enum Step<'a, N> {
     /// a / b.
     Div(&'a N, &'a N),
     /// A function of one argument.
-    Apply(Function, &'a N, Former<'a, N>),
+    Apply(Function, &'a N, LazyForm<'a, N>),
     /// The angle of (x, y), arguments (y, x).
     Atan2(&'a N, &'a N),
     /// (c, a, b): a where c > 0, else b.
@@ -51,7 +51,7 @@ pub enum Step<'a, N> {
     Listed(&'a N, &'a N),
     /// A component of an external function, applied to a list. In place of a form, it has the numbers in
     /// the list, each with its sign.
-    External(Component, &'a N, Former<'a, N>),
+    External(Component, &'a N, LazyForm<'a, N>),
 }
 
 /// Arithmetic at a point.
@@ -86,48 +86,48 @@ pub trait Numbers {
         &mut self,
         function: Function,
         (a, value): (&Self::Number, &Self::Number),
-        form: Former<Self::Number>,
+        form: LazyForm<Self::Number>,
     ) -> Option<Self::Number> {
         match function.row().slope {
-            Slope::Is(other) => self.make(Step::Apply(other, a, form)),
-            Slope::IsMinus(other) => {
+            Slope::FunctionOfArgument(other) => self.make(Step::Apply(other, a, form)),
+            Slope::MinusFunctionOfArgument(other) => {
                 let value = self.make(Step::Apply(other, a, form))?;
                 self.make(Step::Neg(&value))
             }
-            Slope::Itself => Some(value.clone()),
-            Slope::Inverse => {
+            Slope::OwnValue => Some(value.clone()),
+            Slope::InverseOfArgument => {
                 let one = self.make(Step::Whole(1))?;
                 self.make(Step::Div(&one, a))
             }
-            Slope::HalfInverse => {
+            Slope::HalfInverseOfValue => {
                 let (one, twice) = (
                     self.make(Step::Whole(1))?,
                     self.make(Step::Add(value, value))?,
                 );
                 self.make(Step::Div(&one, &twice))
             }
-            Slope::Half(other) => {
+            Slope::HalfFunctionOfValue(other) => {
                 let twice = self.make(Step::Whole(2))?;
                 let inverse = self.make(Step::Apply(other, value, form))?;
                 self.make(Step::Div(&inverse, &twice))
             }
-            Slope::MinusSquare => {
+            Slope::MinusSquareOfValue => {
                 let square = self.make(Step::Mul(value, value))?;
                 self.make(Step::Neg(&square))
             }
-            Slope::OneMinusSquare => {
+            Slope::OneMinusSquareOfValue => {
                 let (one, square) = (
                     self.make(Step::Whole(1))?,
                     self.make(Step::Mul(value, value))?,
                 );
                 self.make(Step::Sub(&one, &square))
             }
-            Slope::OfOne => {
+            Slope::ValueAtOne => {
                 let one = self.make(Step::Whole(1))?;
                 self.make(Step::Apply(function, &one, form))
             }
-            Slope::Nothing => self.make(Step::Whole(0)),
-            Slope::Two => None,
+            Slope::Zero => self.make(Step::Whole(0)),
+            Slope::SeveralArguments => None,
         }
     }
 
@@ -152,7 +152,7 @@ pub trait Numbers {
         &mut self,
         node: Node,
         at: impl Fn(Edge) -> Option<&'a Self::Number>,
-        form: Former<Self::Number>,
+        form: LazyForm<Self::Number>,
     ) -> Option<Self::Number>
     where
         Self::Number: 'a,

@@ -1,8 +1,8 @@
 //! Evaluation of expressions: in floating point, and exactly at new points modulo p.
 
+use super::field_point::FieldPoint;
 use super::fp::Fp;
 use super::graph::{Edge, Graph};
-use super::lane::Lane;
 use super::numbers::{Numbers, Step};
 use super::walk;
 use num_traits::ToPrimitive;
@@ -53,11 +53,11 @@ pub fn evaluate(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<f64> {
     values.unwrap_or_else(|| vec![f64::NAN; roots.len()])
 }
 
-/// Evaluates the expressions modulo p at another point, whose symbols have been pushed into `lane`; `None`
+/// Evaluates the expressions modulo p at another point, whose symbols have been pushed into `point`; `None`
 /// if a denominator vanishes or a square root has no value there.
-pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec<Fp>> {
-    let values = walk::evaluate(graph, roots, lane)?;
-    (!lane.is_stuck()).then_some(values)
+pub fn evaluate_at(graph: &Graph, roots: &[Edge], point: &mut FieldPoint) -> Option<Vec<Fp>> {
+    let values = walk::evaluate(graph, roots, point)?;
+    (!point.has_missing_root()).then_some(values)
 }
 
 /// Solves a square linear system over F_p; `None` if it is singular.

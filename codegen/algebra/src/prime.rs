@@ -262,7 +262,7 @@ impl<const K: usize> Mul for Residue<K> {
 
 /// Whether one of the primes divides the numerator or the denominator of a nonzero number, so that the
 /// number has no faithful image.
-pub fn is_unfaithful(value: &BigRational) -> bool {
+pub fn has_bad_prime(value: &BigRational) -> bool {
     let divides =
         |n: &BigInt, p: u64| n.abs() >= BigInt::from(p) && n.is_multiple_of(&BigInt::from(p));
     let small = |n: &BigInt| n.bits() < 61;

@@ -14,7 +14,7 @@ use rustc_hash::FxHashMap;
 use std::cell::RefCell;
 
 /// Bound below which primes are split off; the rest is a square or gets a freely chosen root.
-const LARGEST_PRIME: u32 = 1 << 12;
+const PRIME_BOUND: u32 = 1 << 12;
 
 /// √c of a positive rational c; `None` where c ≤ 0 or p divides its denominator.
 pub fn of_rational<const K: usize>(c: &BigRational) -> Option<Residue<K>> {
@@ -27,10 +27,10 @@ pub fn of_rational<const K: usize>(c: &BigRational) -> Option<Residue<K>> {
 thread_local! {
     /// Roots of long numbers in both fields. Points are tried by the thousand, with the same numbers under
     /// roots.
-    static LONG: RefCell<FxHashMap<(BigInt, usize), [u64; 2]>> = RefCell::default();
+    static ROOT_CACHE: RefCell<FxHashMap<(BigInt, usize), [u64; 2]>> = RefCell::default();
 }
 /// Largest number of roots that are remembered.
-const REMEMBERED: usize = 10_000;
+const MAX_CACHED_ROOTS: usize = 10_000;
 
 /// √n for n > 0, the product of the roots of its primes.
 fn of_integer<const K: usize>(n: &BigInt) -> Residue<K> {
@@ -38,12 +38,12 @@ fn of_integer<const K: usize>(n: &BigInt) -> Residue<K> {
         return by_primes(n);
     }
     let key = (n.clone(), K);
-    if let Some(known) = LONG.with_borrow(|known| known.get(&key).copied()) {
+    if let Some(known) = ROOT_CACHE.with_borrow(|known| known.get(&key).copied()) {
         return Residue::of_parts(known);
     }
     let root = by_primes(n);
-    LONG.with_borrow_mut(|known| {
-        if known.len() == REMEMBERED {
+    ROOT_CACHE.with_borrow_mut(|known| {
+        if known.len() == MAX_CACHED_ROOTS {
             known.clear();
         }
         known.insert(key, root.parts());
@@ -54,7 +54,7 @@ fn of_integer<const K: usize>(n: &BigInt) -> Residue<K> {
 fn by_primes<const K: usize>(n: &BigInt) -> Residue<K> {
     let (mut rest, mut root) = (n.clone(), Residue::ONE);
     let mut prime = 2;
-    while prime < LARGEST_PRIME && !rest.is_one() {
+    while prime < PRIME_BOUND && !rest.is_one() {
         // Numbers below 2^64 are divided faster as machine words.
         if let Some(small) = rest.to_u64() {
             let (small, factor) = split(small, prime);
@@ -78,7 +78,7 @@ fn by_primes<const K: usize>(n: &BigInt) -> Residue<K> {
 fn split<const K: usize>(mut n: u64, first: u32) -> (u64, Residue<K>) {
     let mut root = Residue::ONE;
     let mut prime = u64::from(first);
-    while prime < u64::from(LARGEST_PRIME) && n > 1 {
+    while prime < u64::from(PRIME_BOUND) && n > 1 {
         while n.is_multiple_of(prime) {
             n /= prime;
             root = root * chosen(prime);

@@ -21,20 +21,20 @@ use super::numeric::Floats;
 use super::walk::evaluate;
 
 /// Unit roundoff of `f64`.
-pub const UNIT: f64 = f64::EPSILON / 2.0;
+pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Value of an expression computed in `f64` from start to end, with its accurate value.
 #[derive(Clone, Copy, Debug)]
-pub struct Rounded {
+pub struct RoundedValue {
     /// Value that a program in `f64` computes.
     pub rounded: f64,
     /// Value in double-double precision.
     pub exact: Double,
 }
 
-impl Rounded {
+impl RoundedValue {
     /// Returns the distance between the two values.
-    pub fn apart(&self) -> f64 {
+    pub fn rounding_error(&self) -> f64 {
         (Double::new(self.rounded) - self.exact).abs().to_f64()
     }
 }
@@ -66,9 +66,9 @@ impl Numbers for Doubles<'_> {
             },
             // A stand-in for the external function, which is not known; its own rounding errors are not of
             // interest.
-            Step::Listed(rest, a) => *rest * Double::new(external::WEIGHT) + *a,
+            Step::Listed(rest, a) => *rest * Double::new(external::STAND_IN_WEIGHT) + *a,
             Step::External(component, list, _) => {
-                let [constant, factor] = component.likeness().map(Double::new);
+                let [constant, factor] = component.stand_in().map(Double::new);
                 *list * factor + constant
             }
         })
@@ -82,13 +82,13 @@ impl Numbers for Doubles<'_> {
 
 /// Arithmetic in `f64` and in double-double precision at once. Functions in `f64` are rounded to the
 /// nearest number, so that they are the same on every machine.
-struct Both<'a>(Doubles<'a>);
+struct RoundedAndExact<'a>(Doubles<'a>);
 
-impl Numbers for Both<'_> {
-    type Number = Rounded;
+impl Numbers for RoundedAndExact<'_> {
+    type Number = RoundedValue;
 
-    fn make(&mut self, step: Step<Rounded>) -> Option<Rounded> {
-        let long = |a: &Rounded| Double::new(a.rounded);
+    fn make(&mut self, step: Step<RoundedValue>) -> Option<RoundedValue> {
+        let long = |a: &RoundedValue| Double::new(a.rounded);
         let nearest = |exact: Double| (exact.to_f64(), exact);
         let (rounded, exact) = match step {
             Step::Whole(value) => (value.into(), Double::new(value.into())),
@@ -110,29 +110,30 @@ impl Numbers for Both<'_> {
                 (Floats(&[]).make(rounded)?, self.0.make(exact)?)
             }
             Step::Listed(rest, a) => {
-                let of = |rest: Double, a: Double| rest * Double::new(external::WEIGHT) + a;
+                let of =
+                    |rest: Double, a: Double| rest * Double::new(external::STAND_IN_WEIGHT) + a;
                 let rounded = of(long(rest), long(a)).to_f64();
                 (rounded, of(rest.exact, a.exact))
             }
             Step::External(component, list, _) => {
-                let [constant, factor] = component.likeness().map(Double::new);
+                let [constant, factor] = component.stand_in().map(Double::new);
                 let of = |list: Double| list * factor + constant;
                 (of(long(list)).to_f64(), of(list.exact))
             }
         };
-        Some(Rounded { rounded, exact })
+        Some(RoundedValue { rounded, exact })
     }
 }
 
 /// Evaluates the expressions in `f64` and in double-double precision, given the values of all symbols
 /// except π.
-pub fn rounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Rounded> {
-    evaluate(graph, roots, &mut Both(Doubles(symbols))).unwrap_or_default()
+pub fn evaluate_rounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<RoundedValue> {
+    evaluate(graph, roots, &mut RoundedAndExact(Doubles(symbols))).unwrap_or_default()
 }
 
 /// A value with a bound of its rounding error in `f64`.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounded {
+pub struct BoundedValue {
     /// The value.
     pub value: f64,
     /// Bound of the error of a program in `f64`.
@@ -140,15 +141,15 @@ pub struct Bounded {
 }
 
 /// Error bounds in place of slopes: Σ |∂f/∂a| eₐ, plus u |f| if f itself is rounded.
-struct Errors;
+struct ErrorBounds;
 
-impl Slopes<Doubles<'_>> for Errors {
+impl Slopes<Doubles<'_>> for ErrorBounds {
     type Slope = f64;
 
     /// Values of symbols are exact in `f64`, except that of π.
     fn symbol(&mut self, _: &mut Doubles, index: usize) -> f64 {
         if index == 0 {
-            UNIT * Double::PI.to_f64()
+            UNIT_ROUNDOFF * Double::PI.to_f64()
         } else {
             0.0
         }
@@ -163,7 +164,7 @@ impl Slopes<Doubles<'_>> for Errors {
         let size = |value: &Double| value.abs().to_f64();
         let part = |(partial, error): &(Partial<Double>, &f64)| match partial {
             Partial::One | Partial::MinusOne => **error,
-            Partial::By(factor) => size(factor) * **error,
+            Partial::Factor(factor) => size(factor) * **error,
         };
         let inherited: f64 = parts.iter().map(part).sum();
         let is_exact = inherited == 0.0 && *value == Double::new(value.to_f64());
@@ -171,24 +172,24 @@ impl Slopes<Doubles<'_>> for Errors {
         Some(if is_exact {
             inherited
         } else {
-            inherited + UNIT * size(value)
+            inherited + UNIT_ROUNDOFF * size(value)
         })
     }
 
-    fn moves(&self, _: &Doubles, error: &f64) -> bool {
+    fn is_nonzero(&self, _: &Doubles, error: &f64) -> bool {
         *error != 0.0
     }
 }
 
 /// Evaluates the expressions with bounds of their rounding errors, given the value of every symbol. Symbols
 /// without a value count as 0.
-pub fn bounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Bounded> {
+pub fn evaluate_with_bounds(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<BoundedValue> {
     let mut numbers = Duals {
         numbers: Doubles(symbols),
-        slopes: Errors,
+        slopes: ErrorBounds,
     };
     let values = evaluate(graph, roots, &mut numbers).unwrap_or_default();
-    let bounded = |(value, error): (Double, f64)| Bounded {
+    let bounded = |(value, error): (Double, f64)| BoundedValue {
         value: value.to_f64(),
         error,
     };

@@ -1,20 +1,23 @@
 //! Directional derivatives modulo p by dual numbers: value and slope of every node, without ever writing a
 //! derivative as an expression.
 
-use super::dual::{Along, Duals};
+use super::dual::{Duals, ForwardMode};
+use super::field_point::FieldPoint;
 use super::fp::Fp;
 use super::graph::{Edge, Graph};
-use super::lane::Lane;
 use super::walk::evaluate;
 
 /// A value and its slope.
 pub type Dual = (Fp, Fp);
 
 /// Returns dual numbers modulo p along a direction, which has one entry for each symbol, 0 beyond its end.
-pub(super) fn duals(lane: &Lane, direction: &[Fp]) -> Duals<Lane, Along<impl Fn(usize) -> Fp>> {
+pub(super) fn duals(
+    point: &FieldPoint,
+    direction: &[Fp],
+) -> Duals<FieldPoint, ForwardMode<impl Fn(usize) -> Fp>> {
     Duals {
-        numbers: lane.clone(),
-        slopes: Along(|index: usize| direction.get(index).copied().unwrap_or(Fp::ZERO)),
+        numbers: point.clone(),
+        slopes: ForwardMode(|index: usize| direction.get(index).copied().unwrap_or(Fp::ZERO)),
     }
 }
 
@@ -23,10 +26,10 @@ pub(super) fn duals(lane: &Lane, direction: &[Fp]) -> Duals<Lane, Along<impl Fn(
 pub fn tangent_at(
     graph: &Graph,
     roots: &[Edge],
-    lane: &mut Lane,
+    point: &mut FieldPoint,
     direction: &[Fp],
 ) -> Option<Vec<Dual>> {
-    let mut duals = duals(lane, direction);
+    let mut duals = duals(point, direction);
     let values = evaluate(graph, roots, &mut duals)?;
-    (!duals.numbers.is_stuck()).then_some(values)
+    (!duals.numbers.has_missing_root()).then_some(values)
 }

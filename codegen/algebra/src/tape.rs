@@ -1,11 +1,11 @@
 //! Expressions as a list of steps, for evaluation modulo p at many points.
 //!
 //! The steps of an expression are found once. A point then costs one pass over them, whether values or
-//! derivatives (`jets`, `bend`) are wanted.
+//! derivatives (`jets`, `second_derivative`) are wanted.
 
+use super::field_point::FieldPoint;
 use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
-use super::lane::Lane;
 use super::numbers::{Form, Modular};
 use num_rational::BigRational;
 
@@ -48,19 +48,19 @@ impl Tape {
                     form = graph.form(function, a);
                     form.iter_mut()
                         .for_each(|(atom, _)| *atom = places[*atom as usize]);
-                    Node::Apply(function, a.moved(&places))
+                    Node::Apply(function, a.renumber(&places))
                 }
                 Node::External(component, list) => {
                     form = graph.signed_list(list);
                     form.iter_mut()
                         .for_each(|(atom, _)| *atom = places[*atom as usize]);
-                    Node::External(component, list.moved(&places))
+                    Node::External(component, list.renumber(&places))
                 }
-                node => node.over(|edge| edge.moved(&places)),
+                node => node.map_children(|edge| edge.renumber(&places)),
             };
             tape.steps.push(Step { node, form });
         }
-        tape.roots = roots.iter().map(|root| root.moved(&places)).collect();
+        tape.roots = roots.iter().map(|root| root.renumber(&places)).collect();
         Some(tape)
     }
 
@@ -84,9 +84,9 @@ impl Tape {
     }
 
     /// Evaluates the expressions at a point; `None` if something has no value there.
-    pub fn values(&self, lane: &Lane) -> Option<Vec<Fp>> {
-        let mut lane = lane.clone();
-        let values = self.run(&mut lane)?;
-        (!lane.is_stuck()).then_some(values)
+    pub fn values(&self, point: &FieldPoint) -> Option<Vec<Fp>> {
+        let mut point = point.clone();
+        let values = self.run(&mut point)?;
+        (!point.has_missing_root()).then_some(values)
     }
 }

@@ -26,7 +26,7 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
         return Some((number.to_string(), binding));
     }
     if edge.is_negative() {
-        let inner = within(graph, edge.abs(), Binding::Product, most, depth)?;
+        let inner = parenthesize(graph, edge.abs(), Binding::Product, most, depth)?;
         return Some((format!("-{inner}"), Binding::Sum));
     }
     let (text, binding) = match graph.node(edge.node()) {
@@ -36,44 +36,45 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
             Binding::Whole,
         ),
         Node::Add(a, b) => {
-            let left = within(graph, a, Binding::Sum, most, depth)?;
+            let left = parenthesize(graph, a, Binding::Sum, most, depth)?;
             let sign = if b.is_negative() { '-' } else { '+' };
-            let right = within(graph, b.abs(), Binding::Product, most, depth)?;
+            let right = parenthesize(graph, b.abs(), Binding::Product, most, depth)?;
             (format!("{left} {sign} {right}"), Binding::Sum)
         }
         Node::Mul(a, b) if a == b => (
-            format!("{}^2", within(graph, a, Binding::Whole, most, depth)?),
+            format!("{}^2", parenthesize(graph, a, Binding::Whole, most, depth)?),
             Binding::Product,
         ),
         Node::Mul(a, b) => {
-            let left = within(graph, a, Binding::Product, most, depth)?;
-            let right = within(graph, b, Binding::Product, most, depth)?;
+            let left = parenthesize(graph, a, Binding::Product, most, depth)?;
+            let right = parenthesize(graph, b, Binding::Product, most, depth)?;
             (format!("{left} * {right}"), Binding::Product)
         }
         Node::Div(a, b) => {
-            let left = within(graph, a, Binding::Product, most, depth)?;
-            let right = within(graph, b, Binding::Whole, most, depth)?;
+            let left = parenthesize(graph, a, Binding::Product, most, depth)?;
+            let right = parenthesize(graph, b, Binding::Whole, most, depth)?;
             (format!("{left} / {right}"), Binding::Product)
         }
         Node::Apply(function, a) => {
             let name = function.name();
-            let inner = within(graph, a, Binding::Sum, most, depth)?;
+            let inner = parenthesize(graph, a, Binding::Sum, most, depth)?;
             (format!("{name}({inner})"), Binding::Whole)
         }
         Node::Atan2(y, x) => {
-            let y = within(graph, y, Binding::Sum, most, depth)?;
-            let x = within(graph, x, Binding::Sum, most, depth)?;
+            let y = parenthesize(graph, y, Binding::Sum, most, depth)?;
+            let x = parenthesize(graph, x, Binding::Sum, most, depth)?;
             (format!("atan2({y}, {x})"), Binding::Whole)
         }
         Node::Listed(..) => return None,
         Node::External(component, list) => {
             let given = graph.list(list).into_iter();
-            let given = given.map(|edge| within(graph, edge, Binding::Sum, most, depth));
+            let given = given.map(|edge| parenthesize(graph, edge, Binding::Sum, most, depth));
             let given = given.collect::<Option<Vec<String>>>()?.join(", ");
-            (graph.called(component, &given), Binding::Whole)
+            (graph.external_call_text(component, &given), Binding::Whole)
         }
         Node::Select(c, a, b) => {
-            let [c, a, b] = [c, a, b].map(|edge| within(graph, edge, Binding::Sum, most, depth));
+            let [c, a, b] =
+                [c, a, b].map(|edge| parenthesize(graph, edge, Binding::Sum, most, depth));
             (
                 format!("(if {} > 0 {{ {} }} else {{ {} }})", c?, a?, b?),
                 Binding::Whole,
@@ -84,7 +85,13 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
 }
 
 /// Writes an operand, in parentheses if its operation binds less tightly than `least`.
-fn within(graph: &Graph, edge: Edge, least: Binding, most: usize, depth: usize) -> Option<String> {
+fn parenthesize(
+    graph: &Graph,
+    edge: Edge,
+    least: Binding,
+    most: usize,
+    depth: usize,
+) -> Option<String> {
     let (text, binding) = write(graph, edge, most, depth)?;
     Some(if binding < least {
         format!("({text})")

@@ -18,7 +18,7 @@ use std::borrow::Cow;
 pub const OPAQUE: Var = 1 << 24;
 
 /// Largest number of terms of an intermediate polynomial.
-pub const MOST_TERMS: usize = 4000;
+pub const MAX_TERMS: usize = 4000;
 
 /// Factor by which a polynomial may exceed the largest number of terms before it is reduced.
 const UNREDUCED_FACTOR: usize = 4;
@@ -28,14 +28,14 @@ const MAX_TERMS_LEFT_UNREDUCED: usize = 16;
 
 /// Highest degree of an intermediate polynomial; otherwise towers of powers would reach degrees that no
 /// exponent can hold.
-pub const HIGHEST_DEGREE: u32 = 100;
+pub const MAX_DEGREE: u32 = 100;
 
 /// Budget for expanding a linear form whose powers are kept, in products and sums of terms.
-const LONGEST_BASE: usize = 100;
+const BASE_WORK: usize = 100;
 
 /// a b, unless it has more than `most` terms or too high a degree.
 fn product<F: Field>(a: &Poly<F>, b: &Poly<F>, most: usize) -> Option<Poly<F>> {
-    if a.degree() + b.degree() > HIGHEST_DEGREE {
+    if a.degree() + b.degree() > MAX_DEGREE {
         return None;
     }
     a.mul_limited(b, most)
@@ -54,25 +54,25 @@ pub struct Expander {
 
 impl Default for Expander {
     fn default() -> Self {
-        Expander::within(usize::MAX)
+        Expander::with_work_limit(usize::MAX)
     }
 }
 
 impl Expander {
     /// Creates an expander that gives up after `work` products and sums of terms. Whatever is not expanded
     /// by then has no polynomial.
-    pub fn within(work: usize) -> Self {
+    pub fn with_work_limit(work: usize) -> Self {
         Expander {
             memo: FxHashMap::default(),
             work,
-            most_terms: MOST_TERMS,
+            most_terms: MAX_TERMS,
             bases: None,
         }
     }
 
     /// Returns the expander with a limit on the number of terms of intermediate polynomials; longer ones
     /// are given up.
-    pub fn of_terms(mut self, most: usize) -> Self {
+    pub fn with_term_limit(mut self, most: usize) -> Self {
         self.most_terms = most;
         self
     }
@@ -83,7 +83,7 @@ impl Expander {
     }
 
     /// Returns the expander with linear forms as variables if a third or a higher power of them is taken.
-    pub fn keeping_powers(mut self) -> Self {
+    pub fn with_kept_powers(mut self) -> Self {
         self.bases = Some(FxHashSet::default());
         self
     }
@@ -157,7 +157,7 @@ impl Expander {
             let Some(base) = graph.power_of_sum(id).filter(|base| !bases.contains(base)) else {
                 continue;
             };
-            let expanded = Expander::within(LONGEST_BASE).expand(graph, Edge::of(base));
+            let expanded = Expander::with_work_limit(BASE_WORK).expand(graph, Edge::of(base));
             if expanded.is_some_and(|form| form.degree() == 1) {
                 bases.insert(base);
             }
@@ -249,7 +249,7 @@ pub fn polynomial_at(
             Node::Symbol(index) if unknown(index as usize) => Poly::var(index),
             Node::Symbol(index) => Poly::constant(*values.get(index as usize)?),
             Node::Add(a, b) => read(&memo, a)?.add(&read(&memo, b)?),
-            Node::Mul(a, b) => product(&read(&memo, a)?, &read(&memo, b)?, MOST_TERMS)?,
+            Node::Mul(a, b) => product(&read(&memo, a)?, &read(&memo, b)?, MAX_TERMS)?,
             Node::Div(a, b) => {
                 let divisor = read(&memo, b)?.as_constant()?.inv()?;
                 read(&memo, a)?.scale(&divisor)

@@ -50,7 +50,7 @@ pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> V
                 let found = set.iter().find(|(symbol, _)| *symbol == index as usize);
                 found.map_or(Edge::of(id), |(_, value)| *value)
             }
-            node => merged(graph, node.over(|child| read(&image, child))),
+            node => merged(graph, node.map_children(|child| read(&image, child))),
         };
         image[id as usize] = made;
     }
@@ -71,7 +71,7 @@ pub fn substitute_under_roots(
         let made = match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => Edge::of(id),
             node if node.is_root() => substitute(graph, &[Edge::of(id)], set)[0],
-            node => merged(graph, node.over(|child| read(&image, child))),
+            node => merged(graph, node.map_children(|child| read(&image, child))),
         };
         image[id as usize] = made;
     }
@@ -98,11 +98,11 @@ pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
         match unsigned(node) {
             // The positive operand first, as sums are built.
             (Node::Add(a, b), _) if a.is_negative() && b.is_negative() => {
-                -into.push_apart(Node::Add(-a, -b))
+                -into.push_distinct(Node::Add(-a, -b))
             }
-            (Node::Add(a, b), _) if a.is_negative() => into.push_apart(Node::Add(b, a)),
+            (Node::Add(a, b), _) if a.is_negative() => into.push_distinct(Node::Add(b, a)),
             (other @ (Node::Add(..) | Node::Mul(..) | Node::Div(..)), negative) => {
-                into.push_apart(other).signed(negative)
+                into.push_distinct(other).signed(negative)
             }
             _ => merged(into, node),
         }
@@ -137,8 +137,8 @@ fn carry(
             Node::Constant(index) => into.number(from.constant(index), from.value(Edge::of(id))),
             Node::Symbol(index) => symbol(into, index),
             node => {
-                into.follow(from, id);
-                make(into, node.over(|child| read(&image, child)))
+                into.announce_copy(from, id);
+                make(into, node.map_children(|child| read(&image, child)))
             }
         };
         image[id as usize] = made;

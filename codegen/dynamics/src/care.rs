@@ -9,7 +9,7 @@ use super::norms::{greatest, inverse, norm};
 use super::tree::Placement;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::matrix;
-use hamel_algebra::rounding::rounded;
+use hamel_algebra::rounding::evaluate_rounded;
 use hamel_language::functions::Needs;
 use hamel_language::model::Model;
 use hamel_language::model::states::states;
@@ -131,7 +131,7 @@ pub fn note(program: &mut Program, losses: &[Option<f64>]) {
 fn condition_digits(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64 {
     let mut most = 1.0_f64;
     for state in states(model) {
-        let values = rounded(&program.graph, &mass.concat(), &state);
+        let values = evaluate_rounded(&program.graph, &mass.concat(), &state);
         let entries: Vec<f64> = values.iter().map(|entry| entry.exact.to_f64()).collect();
         let rows = matrix(&entries, mass.len());
         let of = [most, norm(&rows) * norm(&inverse(rows))];

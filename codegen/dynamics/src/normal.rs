@@ -96,8 +96,8 @@ impl NormalForms {
             .filter_map(|ideal| groebner(ideal, Order::Grevlex, Limits::default()).ok())
             .collect();
         NormalForms {
-            expander: Expander::within(work),
-            reduced: Expander::default().of_terms(MAX_NORMAL_FORM_TERMS),
+            expander: Expander::with_work_limit(work),
+            reduced: Expander::default().with_term_limit(MAX_NORMAL_FORM_TERMS),
             ideal: Ideal {
                 angles: Angles::default(),
                 bases,
@@ -108,7 +108,7 @@ impl NormalForms {
 
     /// Limits the number of terms of intermediate polynomials; larger expressions are given up.
     pub fn of_terms(mut self, most: usize) -> Self {
-        self.expander = self.expander.of_terms(most);
+        self.expander = self.expander.with_term_limit(most);
         self
     }
 
@@ -120,7 +120,7 @@ impl NormalForms {
     /// Keeps powers of linear forms unexpanded, which preserves the digits of, e.g., (x − c)³ near
     /// c.
     pub fn keeping_powers(mut self) -> Self {
-        self.expander = self.expander.keeping_powers();
+        self.expander = self.expander.with_kept_powers();
         self
     }
 

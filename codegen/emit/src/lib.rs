@@ -160,7 +160,7 @@ impl<'a> Emitter<'a> {
             Vec::new()
         };
         let roots: Vec<Edge> = function.outputs.iter().chain(&guards).copied().collect();
-        let nodes = self.program.graph.varying(&roots);
+        let nodes = self.program.graph.varying_nodes(&roots);
         Spec {
             name: self.names.functions[index].clone(),
             public: true,

@@ -19,10 +19,10 @@ pub fn digits(value: f64, significant: usize) -> String {
     };
     let exponent: i32 = exponent.parse().unwrap_or(0);
     if !(-4..6).contains(&exponent) {
-        return format!("{}e{exponent}", trimmed(mantissa));
+        return format!("{}e{exponent}", trim_zeros(mantissa));
     }
     let decimals = usize::try_from(significant as i32 - 1 - exponent).unwrap_or(0);
-    trimmed(&format!("{value:.decimals$}")).to_string()
+    trim_zeros(&format!("{value:.decimals$}")).to_string()
 }
 
 /// Formats two significant digits of an error: `3.1e-15`.
@@ -56,7 +56,7 @@ pub fn exact(value: f64) -> String {
     }
 }
 
-fn trimmed(text: &str) -> &str {
+fn trim_zeros(text: &str) -> &str {
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.')
     } else {
@@ -66,7 +66,7 @@ fn trimmed(text: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::{digits, grouped, short};
+    use super::{digits, group_thousands, short};
 
     #[test]
     fn numbers_are_short() {
@@ -83,6 +83,6 @@ mod tests {
             assert_eq!(short(value), text);
         }
         assert_eq!(digits(-1234.5, 2), "-1234");
-        assert_eq!(grouped(1234567), "1 234 567");
+        assert_eq!(group_thousands(1234567), "1 234 567");
     }
 }

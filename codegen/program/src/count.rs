@@ -36,7 +36,7 @@ impl Count {
 
 /// Counts the operations that evaluate the roots at run time.
 pub fn count(graph: &Graph, roots: &[Edge]) -> Count {
-    count_nodes(graph, &graph.varying(roots))
+    count_nodes(graph, &graph.varying_nodes(roots))
 }
 
 /// Counts the operations of a list of nodes.
@@ -51,10 +51,10 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
             Node::Div(..) => count.div += 1,
             Node::Apply(function, a) => match function.row().cost {
                 Cost::Root => count.sqrt += 1,
-                Cost::Turn => angles.push(a.abs()),
+                Cost::SineOrCosine => angles.push(a.abs()),
                 Cost::Quotient => count.div += 1,
                 Cost::Product => count.mul += 1,
-                Cost::Choice => count.add += 1,
+                Cost::Comparison => count.add += 1,
                 Cost::Other => count.other += 1,
             },
             Node::Atan2(..) => count.other += 1,

@@ -55,7 +55,7 @@ impl Interpreter {
                 places[id as usize] = 1 + symbol;
                 continue;
             }
-            let step = node.over(|edge| edge.moved(&places));
+            let step = node.map_children(|edge| edge.renumber(&places));
             let index = initial.len();
             places[id as usize] = index as NodeId;
             initial.push(match node {
@@ -67,7 +67,7 @@ impl Interpreter {
                 }
             });
         }
-        let place = |edge: &Edge| edge.moved(&places);
+        let place = |edge: &Edge| edge.renumber(&places);
         let mut guards: Vec<(usize, Edge)> =
             function.guards.iter().map(place).enumerate().collect();
         guards.sort_by_key(|(_, place)| place.node());

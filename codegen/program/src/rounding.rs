@@ -6,7 +6,7 @@
 //! 0 at one state is measured relative to its size at the others.
 
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::rounding::{Rounded, UNIT, rounded};
+use hamel_algebra::rounding::{RoundedValue, UNIT_ROUNDOFF, evaluate_rounded};
 
 /// Results that are measured together: the entries of a function, and the pivots that have to be positive for it to
 /// have a value.
@@ -29,7 +29,7 @@ pub fn digits_lost(graph: &Graph, functions: &[Measured], states: &[Vec<f64>]) -
         .flat_map(|function| function.outputs.iter().chain(function.guards).copied())
         .collect();
     for state in states {
-        let values = rounded(graph, &roots, state);
+        let values = evaluate_rounded(graph, &roots, state);
         let mut rest = values.as_slice();
         for (function, (error, size)) in functions.iter().zip(&mut sizes) {
             let (outputs, after) = rest.split_at(function.outputs.len());
@@ -41,23 +41,24 @@ pub fn digits_lost(graph: &Graph, functions: &[Measured], states: &[Vec<f64>]) -
             }
         }
     }
-    let digits =
-        |(error, size): (f64, f64)| (size > 0.0).then(|| (error / (UNIT * size)).max(1.0).log10());
+    let digits = |(error, size): (f64, f64)| {
+        (size > 0.0).then(|| (error / (UNIT_ROUNDOFF * size)).max(1.0).log10())
+    };
     sizes.into_iter().map(digits).collect()
 }
 
 /// Returns the largest error and the largest entry of a function at one state; `None` if it has no value there.
 ///
 /// The error is infinite if an entry has a value, but not in `f64`.
-fn compared(outputs: &[Rounded], guards: &[Rounded]) -> Option<(f64, f64)> {
-    let exists = |value: &Rounded| value.exact.to_f64().is_finite();
-    let positive = |pivot: &Rounded| pivot.exact.to_f64() > 0.0;
+fn compared(outputs: &[RoundedValue], guards: &[RoundedValue]) -> Option<(f64, f64)> {
+    let exists = |value: &RoundedValue| value.exact.to_f64().is_finite();
+    let positive = |pivot: &RoundedValue| pivot.exact.to_f64() > 0.0;
     if !outputs.iter().all(exists) || !guards.iter().all(positive) {
         return None;
     }
     let (mut error, mut size) = (0.0_f64, 0.0_f64);
     for entry in outputs {
-        let apart = entry.apart();
+        let apart = entry.rounding_error();
         error = error.max(if apart.is_nan() { f64::INFINITY } else { apart });
         size = size.max(entry.exact.to_f64().abs());
     }

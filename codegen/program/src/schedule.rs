@@ -32,12 +32,12 @@ impl Schedule {
                     .chain(&function.guards)
                     .copied()
                     .collect();
-                graph.varying(&roots)
+                graph.varying_nodes(&roots)
             })
             .collect();
         let mut kept: Vec<NodeId> = Vec::new();
         for (function, nodes) in program.functions.iter().zip(&bodies) {
-            let on_the_way = graph.varying(&function.rates);
+            let on_the_way = graph.varying_nodes(&function.rates);
             let nodes = nodes.iter().chain(&on_the_way);
             let children = nodes.flat_map(|&id| graph.node(id).children());
             let roots = function.outputs.iter().chain(&function.guards);

@@ -237,7 +237,8 @@ fn calls(graph: &Graph, nodes: &[NodeId]) -> FxHashMap<Key, Call> {
             arguments: graph.list(list),
             results: vec![None; external.components * columns],
         });
-        let place = usize::from(component.component) * columns + component.first().unwrap_or(0);
+        let place =
+            usize::from(component.component) * columns + component.differentiated_by().unwrap_or(0);
         if let Some(result) = call.results.get_mut(place) {
             *result = Some(id);
         }

@@ -209,7 +209,11 @@ impl Tapes {
                 return Ok(tape);
             }
             let roots = [&function.outputs, guards].concat();
-            call(&program.graph.varying(&roots), &function.outputs, guards)
+            call(
+                &program.graph.varying_nodes(&roots),
+                &function.outputs,
+                guards,
+            )
         });
         let pivots = Lowering {
             places: &places,

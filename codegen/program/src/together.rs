@@ -38,7 +38,7 @@ pub fn together(program: &Program) -> Option<Together> {
         let more = rates.guards.iter();
         guards.extend(more.filter(|&guard| !slopes.guards.contains(guard)));
     }
-    let roots = |lists: &[&[Edge]]| program.graph.varying(&lists.concat());
+    let roots = |lists: &[&[Edge]]| program.graph.varying_nodes(&lists.concat());
     let nodes = roots(&[xi_dot, &slopes.outputs, &guards]);
     let alone = roots(&[&slopes.outputs, &slopes.guards]);
     let [both, alone] = [&nodes, &alone].map(|nodes| count_nodes(&program.graph, nodes).weight());

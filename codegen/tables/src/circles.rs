@@ -10,7 +10,7 @@ use hamel_language::model::layout::Block;
 use num_rational::BigRational;
 
 /// Largest number of terms of a polynomial that is processed.
-const MOST_TERMS: usize = 300;
+const MAX_TERMS: usize = 300;
 
 /// Returns pairs of variables on a unit circle: coordinates on S¹, and cosine and sine of a common angle.
 pub fn pairs(
@@ -47,15 +47,17 @@ pub fn pairs(
 
 /// Returns the shortest polynomial found by substituting squares on circles, one circle after
 /// the other.
-pub fn shortened(polynomial: Poly<BigRational>, pairs: &[(Var, Var)]) -> Poly<BigRational> {
+pub fn shorten(polynomial: Poly<BigRational>, pairs: &[(Var, Var)]) -> Poly<BigRational> {
     let mut best = polynomial;
     for &(c, s) in pairs {
         for (square, other) in [(c, s), (s, c)] {
-            if best.terms().len() > MOST_TERMS {
+            if best.terms().len() > MAX_TERMS {
                 return best;
             }
-            match replaced(&best, square, other) {
-                Some(replaced) if replaced.terms().len() < best.terms().len() => best = replaced,
+            match replace_square(&best, square, other) {
+                Some(replace_square) if replace_square.terms().len() < best.terms().len() => {
+                    best = replace_square
+                }
                 _ => (),
             }
         }
@@ -64,7 +66,11 @@ pub fn shortened(polynomial: Poly<BigRational>, pairs: &[(Var, Var)]) -> Poly<Bi
 }
 
 /// Replaces every square² by 1 − other²; `None` if there is no square.
-fn replaced(polynomial: &Poly<BigRational>, square: Var, other: Var) -> Option<Poly<BigRational>> {
+fn replace_square(
+    polynomial: &Poly<BigRational>,
+    square: Var,
+    other: Var,
+) -> Option<Poly<BigRational>> {
     let squares = |monomial: &Monomial| monomial.exponent(square) / 2;
     if polynomial.terms().iter().all(|term| squares(&term.0) == 0) {
         return None;

@@ -13,7 +13,7 @@ use hamel_dynamics::geometry::{Block, Inspection};
 use serde_json::{Value, json as object};
 
 /// Size of the largest mass matrix whose pattern is drawn.
-const MOST_DRAWN: usize = 24;
+const MAX_DRAWN_SIZE: usize = 24;
 
 /// Returns the report as lines of two columns.
 pub fn lines(inspection: &Inspection) -> Vec<String> {
@@ -72,7 +72,7 @@ fn algebra(inspection: &Inspection) -> Vec<Row> {
     };
     rows.push(row("Lie algebra of the ∂ᵢ", whole));
     for block in &inspection.blocks {
-        let text = format!("{}: {}", inspection.list(&block.members), described(block));
+        let text = format!("{}: {}", inspection.list(&block.members), describe(block));
         rows.push(row("blocks of γ", text));
     }
     if !inspection.blocks.is_empty() && !inspection.commuting.is_empty() {
@@ -91,7 +91,7 @@ fn algebra(inspection: &Inspection) -> Vec<Row> {
     rows
 }
 
-fn described(block: &Block) -> String {
+fn describe(block: &Block) -> String {
     let mut text = match &block.algebra {
         Some(name) => name.text(),
         None if block.constant => return "γ is constant, a function of parameters".into(),
@@ -128,18 +128,18 @@ fn inertia(inspection: &Inspection) -> Vec<Row> {
     if blocks.len() > 1 {
         rows.push(row("M in blocks", blocks.join(" ")));
     }
-    if (2..=MOST_DRAWN).contains(&inspection.pattern.len()) {
+    if (2..=MAX_DRAWN_SIZE).contains(&inspection.pattern.len()) {
         for line in &inspection.pattern {
             rows.push(row(
                 "pattern: . zero, c constant, x varying",
-                drawn(line, " "),
+                draw_pattern(line, " "),
             ));
         }
     }
     rows
 }
 
-fn drawn(line: &[Entry], between: &str) -> String {
+fn draw_pattern(line: &[Entry], between: &str) -> String {
     let letters: Vec<&str> = line
         .iter()
         .map(|entry| match entry {
@@ -203,7 +203,7 @@ pub fn json(inspection: &Inspection) -> Value {
             "side": side(block.side),
         })
     });
-    let pattern = inspection.pattern.iter().map(|line| drawn(line, ""));
+    let pattern = inspection.pattern.iter().map(|line| draw_pattern(line, ""));
     let inertia = inspection.inertia_blocks.iter();
     let inertia: Vec<Vec<&str>> = inertia.map(|members| names(members)).collect();
     object!({

@@ -30,7 +30,7 @@ pub fn json(tables: &Tables, all: bool) -> Value {
 }
 
 fn table(listing: &Listing, all: bool) -> Value {
-    let listed = listing.listed(all).into_iter();
+    let listed = listing.entries_to_list(all).into_iter();
     object!({
         "symbol": listing.table.symbol(),
         "shape": listing.shape,

@@ -5,7 +5,7 @@ use super::kind::Table;
 use super::listing::Listing;
 use super::notation::latex_name;
 use super::print::{Notation, index};
-use super::text::leads;
+use super::text::lists_definitions_first;
 use super::{Tables, geometry};
 
 /// Prints all tables as LaTeX; if `all`, ungrouped and with zeros.
@@ -24,7 +24,7 @@ pub fn latex(tables: &Tables, all: bool) -> String {
             listing.table.name(),
             listing.table.title()
         ));
-        let before = if leads(listing) {
+        let before = if lists_definitions_first(listing) {
             &listing.temporaries
         } else {
             &Vec::new()
@@ -41,14 +41,14 @@ pub fn latex(tables: &Tables, all: bool) -> String {
             false => (
                 "rcl",
                 listing
-                    .listed(all)
+                    .entries_to_list(all)
                     .into_iter()
                     .map(|entry| single(listing, entry))
                     .collect(),
             ),
         };
         text.push_str(&display(columns, &rows));
-        if !leads(listing) {
+        if !lists_definitions_first(listing) {
             let rest: Vec<String> = listing.temporaries.iter().map(definition).collect();
             text.push_str(&display("rcl", &rest));
         }

@@ -34,7 +34,7 @@ pub struct Listing {
 impl Listing {
     /// Returns the entries to list one by one. Zero entries are included if `all`, or if each entry
     /// has a name of its own.
-    pub fn listed(&self, all: bool) -> Vec<&Entry> {
+    pub fn entries_to_list(&self, all: bool) -> Vec<&Entry> {
         let mut listed: Vec<&Entry> = self.entries.iter().collect();
         if all || matches!(self.table, Table::Accel | Table::States | Table::Outputs) {
             listed.extend(&self.zeros);
@@ -49,14 +49,14 @@ impl Listing {
     }
 }
 
-/// Writes the cells of a table as expressions; `theirs` are the values that the user named.
+/// Writes the cells of a table as expressions; `user_names` are the values that the user named.
 pub fn listing(
     table: Table,
     shape: Vec<usize>,
     cells: &[Cell],
     graph: &Graph,
     simplifier: &mut Simplifier,
-    theirs: &[(String, Edge)],
+    user_names: &[(String, Edge)],
 ) -> Listing {
     let (mut rows, places) = rows(cells, graph);
     let roots: Vec<Edge> = rows.iter().map(|row| row.edge).collect();
@@ -65,7 +65,7 @@ pub fn listing(
     } else {
         Style::Table
     };
-    let names = Temporaries::new(graph, &roots, theirs);
+    let names = Temporaries::new(graph, &roots, user_names);
     let mut writer = Writer::new(graph, simplifier, style, names);
     writer.prepare(&roots);
     let mut flipped = vec![false; rows.len()];

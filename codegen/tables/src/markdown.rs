@@ -3,7 +3,7 @@
 use super::entries::Definition;
 use super::listing::Listing;
 use super::print::Notation;
-use super::text::{indices, label, leads, summary};
+use super::text::{indices, label, lists_definitions_first, summary};
 use super::{Table, Tables, geometry};
 
 /// Prints all tables as Markdown; if `all`, ungrouped and with zeros.
@@ -23,7 +23,7 @@ pub fn markdown(tables: &Tables, all: bool) -> String {
             summary(listing)
         ));
         block(&mut text, "Constants:", &listing.constants);
-        if leads(listing) {
+        if lists_definitions_first(listing) {
             block(&mut text, "Temporaries:", &listing.temporaries);
         }
         let grouped = table.is_grouped() && !all;
@@ -43,7 +43,7 @@ pub fn markdown(tables: &Tables, all: bool) -> String {
             };
             text.push_str(&format!("\n{head}{}", rows.concat()));
         }
-        if !leads(listing) {
+        if !lists_definitions_first(listing) {
             block(&mut text, "where", &listing.temporaries);
         }
     }
@@ -99,5 +99,5 @@ fn entries(listing: &Listing, all: bool) -> Vec<String> {
         };
         format!("| `{}` | `{value}` |{reads}\n", label(listing, entry))
     };
-    listing.listed(all).into_iter().map(row).collect()
+    listing.entries_to_list(all).into_iter().map(row).collect()
 }

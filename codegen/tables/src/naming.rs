@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 pub struct Temporaries {
     value_prefix: String,
     constant_prefix: String,
-    theirs: FxHashMap<NodeId, (String, bool)>,
+    user_names: FxHashMap<NodeId, (String, bool)>,
     roots: FxHashSet<NodeId>,
     named: FxHashSet<NodeId>,
     constants: Vec<Definition>,
@@ -20,21 +20,21 @@ pub struct Temporaries {
 }
 
 impl Temporaries {
-    /// Creates an empty list whose names differ from all symbols of the graph; `theirs` are the user's names.
-    pub fn new(graph: &Graph, roots: &[Edge], theirs: &[(String, Edge)]) -> Self {
+    /// Creates an empty list whose names differ from all symbols of the graph; `user_names` are the user's names.
+    pub fn new(graph: &Graph, roots: &[Edge], user_names: &[(String, Edge)]) -> Self {
         let symbols = graph.symbols().iter().map(|symbol| symbol.name.as_str());
         let taken: Vec<&str> = symbols
-            .chain(theirs.iter().map(|(name, _)| name.as_str()))
+            .chain(user_names.iter().map(|(name, _)| name.as_str()))
             .collect();
         let mut own = FxHashMap::default();
-        for (name, edge) in theirs {
+        for (name, edge) in user_names {
             own.entry(edge.node())
                 .or_insert((name.clone(), edge.is_negative()));
         }
         Temporaries {
             value_prefix: free_prefix("t", &taken),
             constant_prefix: free_prefix("k", &taken),
-            theirs: own,
+            user_names: own,
             roots: roots.iter().map(|root| root.node()).collect(),
             ..Temporaries::default()
         }
@@ -46,8 +46,8 @@ impl Temporaries {
     }
 
     /// Whether the user named a node.
-    pub fn is_theirs(&self, id: NodeId) -> bool {
-        self.theirs.contains_key(&id)
+    pub fn is_user_named(&self, id: NodeId) -> bool {
+        self.user_names.contains_key(&id)
     }
 
     /// Whether a node has been named.
@@ -58,7 +58,7 @@ impl Temporaries {
     /// Names a value, and returns the expression to write in its place.
     pub fn claim(&mut self, id: NodeId, value: Term, constant: bool) -> Term {
         self.named.insert(id);
-        let (name, negative) = match self.theirs.get(&id) {
+        let (name, negative) = match self.user_names.get(&id) {
             Some(own) => own.clone(),
             None if constant => {
                 self.numbered.0 += 1;

@@ -72,9 +72,9 @@ impl Notation {
 
     fn power(self, atom: &Atom, power: u32) -> String {
         match (self, atom, power) {
-            (_, Atom::Sum(terms), _) => raised(self, self.group(&self.sum(terms)), power),
-            (Notation::Text, Atom::Name(name), _) => raised(self, name.clone(), power),
-            (Notation::Latex, Atom::Name(name), _) => raised(self, latex_name(name), power),
+            (_, Atom::Sum(terms), _) => with_exponent(self, self.group(&self.sum(terms)), power),
+            (Notation::Text, Atom::Name(name), _) => with_exponent(self, name.clone(), power),
+            (Notation::Latex, Atom::Name(name), _) => with_exponent(self, latex_name(name), power),
             (
                 _,
                 Atom::External {
@@ -96,14 +96,14 @@ impl Notation {
                         }
                     }
                 };
-                raised(self, called, power)
+                with_exponent(self, called, power)
             }
             (_, Atom::Call(Function::Select, arguments), _) => {
-                raised(self, self.choice(arguments), power)
+                with_exponent(self, self.choice(arguments), power)
             }
             (Notation::Text, Atom::Call(function, arguments), _) => {
                 let name = function.name();
-                raised(
+                with_exponent(
                     self,
                     format!("{name}({})", self.arguments(arguments)),
                     power,
@@ -111,14 +111,14 @@ impl Notation {
             }
             (Notation::Latex, Atom::Call(Function::Sqrt | Function::Norm, arguments), _) => {
                 let root = format!(r"\sqrt{{{}}}", self.arguments(arguments));
-                raised(
+                with_exponent(
                     self,
                     if power > 1 { self.group(&root) } else { root },
                     power,
                 )
             }
             (Notation::Latex, Atom::Call(function, arguments), _) => {
-                let name = raised(self, function.row().latex.into(), power);
+                let name = with_exponent(self, function.row().latex.into(), power);
                 format!("{name}{}", self.group(&self.arguments(arguments)))
             }
         }
@@ -154,7 +154,7 @@ impl Notation {
     }
 }
 
-fn raised(notation: Notation, base: String, power: u32) -> String {
+fn with_exponent(notation: Notation, base: String, power: u32) -> String {
     match (notation, power) {
         (_, 1) => base,
         (Notation::Text, _) => format!("{base}^{power}"),
@@ -184,34 +184,34 @@ fn latex_product(term: &Term, number: &num_rational::BigRational) -> String {
     let mut under = Notation::Latex.factors(&term.under);
     if under.is_empty() && !number.denom().is_one() {
         let fraction = format!(r"\tfrac{{{}}}{{{}}}", number.numer(), number.denom());
-        return format!("{fraction}{}", juxtaposed(&over));
+        return format!("{fraction}{}", juxtapose(&over));
     }
     if !number.numer().is_one() || over.is_empty() {
         over.insert(0, number.numer().to_string());
     }
     if under.is_empty() {
-        return juxtaposed(&over);
+        return juxtapose(&over);
     }
     if !number.denom().is_one() {
         under.insert(0, number.denom().to_string());
     }
     format!(
         r"\frac{{{}}}{{{}}}",
-        alone(&term.over, over),
-        alone(&term.under, under)
+        fraction_part(&term.over, over),
+        fraction_part(&term.under, under)
     )
 }
 
 /// Prints a numerator or denominator; a sum that is its only factor needs no parentheses.
-fn alone(factors: &[(Atom, u32)], written: Vec<String>) -> String {
+fn fraction_part(factors: &[(Atom, u32)], written: Vec<String>) -> String {
     if let ([(Atom::Sum(terms), 1)], [_]) = (factors, written.as_slice()) {
         return Notation::Latex.sum(terms);
     }
-    juxtaposed(&written)
+    juxtapose(&written)
 }
 
 /// Joins factors; factors that are words are separated by a gap.
-fn juxtaposed(factors: &[String]) -> String {
+fn juxtapose(factors: &[String]) -> String {
     let is_word = |factor: &String| factor.contains(r"\mathrm");
     let mut text = String::new();
     for (place, factor) in factors.iter().enumerate() {

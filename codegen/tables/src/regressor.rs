@@ -18,7 +18,7 @@ use num_rational::BigRational;
 use serde_json::{Value, json as object};
 
 /// Largest number of decimal places of a factor; others are written as fractions.
-const MOST_PLACES: u32 = 12;
+const MAX_DECIMAL_PLACES: u32 = 12;
 
 /// Returns the pseudo-inertia `[[tr(Θ)/2 I − Θ, h], [hᵀ, m]]` of a link from its ten standard parameters. It is
 /// positive definite for every physical body (Wensing, Kim and Slotine 2018).
@@ -232,7 +232,7 @@ impl BaseParameters {
         true
     }
 
-    fn listed(&self, places: &[usize]) -> String {
+    fn join_names(&self, places: &[usize]) -> String {
         let names: Vec<String> = places.iter().map(|&k| self.standard[k].name()).collect();
         names.join(", ")
     }
@@ -286,7 +286,7 @@ fn decimal(term: &Term) -> Option<String> {
     if !term.over.is_empty() || !term.under.is_empty() || term.coefficient.is_integer() {
         return None;
     }
-    (1..=MOST_PLACES).find_map(|places| {
+    (1..=MAX_DECIMAL_PLACES).find_map(|places| {
         let power = BigInt::from(10).pow(places);
         let digits = &term.coefficient * BigRational::from_integer(power.clone());
         let (whole, rest) = digits
@@ -331,7 +331,7 @@ fn rest(all: &BaseParameters, between: &str) -> String {
     if !all.idle.is_empty() {
         text.push_str(&format!(
             "{between}Without effect: {}\n",
-            all.listed(&all.idle)
+            all.join_names(&all.idle)
         ));
     }
     if !all.besides.is_empty() {

@@ -1,6 +1,6 @@
 //! Chooses the polynomial that is shown for an expression: as it stands, or in normal form modulo φ.
 
-use super::circles::{pairs, shortened};
+use super::circles::{pairs, shorten};
 use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
 use hamel_algebra::poly::monomial::Var;
 use hamel_algebra::poly::polynomial::Poly;
@@ -13,7 +13,7 @@ use num_rational::BigRational;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest number of terms of a polynomial that is shown.
-pub const MOST_SHOWN: usize = 60;
+pub const MAX_SHOWN_TERMS: usize = 60;
 
 /// Largest number of terms of an intermediate polynomial when an expression is expanded as it stands.
 const MAX_EXPANDED_TERMS: usize = 100;
@@ -23,7 +23,7 @@ const MAX_EXPANDED_TERMS: usize = 100;
 const MAX_LONG_EXPRESSIONS: usize = 100;
 
 /// Largest number of terms of a polynomial inside an expression that is not itself a polynomial.
-const MOST_INSIDE: usize = 8;
+const MAX_INNER_TERMS: usize = 8;
 
 /// Simplification of the expressions of one graph.
 pub struct Simplifier {
@@ -53,7 +53,7 @@ impl Simplifier {
     pub fn free(points: &Points) -> Self {
         let numbered = points.blocks.iter().enumerate();
         Simplifier {
-            expander: Expander::default().of_terms(MAX_EXPANDED_TERMS),
+            expander: Expander::default().with_term_limit(MAX_EXPANDED_TERMS),
             forms: None,
             failures: 0,
             first: points.first as NodeId,
@@ -74,7 +74,7 @@ impl Simplifier {
             if self.failures == MAX_LONG_EXPRESSIONS
                 && let Some(forms) = &mut self.forms
             {
-                forms.limit_terms(MOST_SHOWN);
+                forms.limit_terms(MAX_SHOWN_TERMS);
             }
         }
         shortest
@@ -91,7 +91,7 @@ impl Simplifier {
                 .iter()
                 .map(|candidate| {
                     let pairs = pairs(graph, self.first, &self.kinds, candidate);
-                    shortened(candidate.clone(), &pairs)
+                    shorten(candidate.clone(), &pairs)
                 })
                 .collect();
             // The first candidate also stays as it is: in a tie it wins over those with squares on circles replaced.
@@ -110,8 +110,8 @@ impl Simplifier {
             id.is_some_and(|id| matches!(graph.node(id), Node::Div(..)))
         };
         let most = match best.variables().into_iter().any(quotient) {
-            true => MOST_INSIDE,
-            false => MOST_SHOWN,
+            true => MAX_INNER_TERMS,
+            false => MAX_SHOWN_TERMS,
         };
         (best.terms().len() <= most).then_some(best)
     }
@@ -119,7 +119,7 @@ impl Simplifier {
     /// Returns the polynomial of a part of a longer expression, if it is short.
     pub fn part(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
         let plain = self.expander.expand(graph, Edge::of(node))?;
-        (plain.terms().len() <= MOST_INSIDE).then_some(plain)
+        (plain.terms().len() <= MAX_INNER_TERMS).then_some(plain)
     }
 
     fn cost(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> (usize, usize, usize) {

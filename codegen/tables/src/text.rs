@@ -6,7 +6,7 @@ use super::print::{Notation, index};
 use super::{Table, Tables, geometry};
 
 /// Largest width of a value that counts for the alignment of the indices after it.
-const WIDEST: usize = 60;
+const MAX_ALIGNED_WIDTH: usize = 60;
 
 /// Prints all tables as text; if `all`, ungrouped and with zeros.
 pub fn text(tables: &Tables, all: bool) -> String {
@@ -27,7 +27,7 @@ pub fn text(tables: &Tables, all: bool) -> String {
         for line in definitions(&listing.constants).into_iter().chain(lines) {
             text.push_str(&format!("  {}\n", line.trim_end()));
         }
-        if !listing.temporaries.is_empty() && !leads(listing) {
+        if !listing.temporaries.is_empty() && !lists_definitions_first(listing) {
             text.push_str("  where\n");
             for line in definitions(&listing.temporaries) {
                 text.push_str(&format!("    {line}\n"));
@@ -48,7 +48,7 @@ pub fn text(tables: &Tables, all: bool) -> String {
 }
 
 /// Whether temporaries are listed before the entries that use them, as in straight-line code.
-pub fn leads(listing: &Listing) -> bool {
+pub fn lists_definitions_first(listing: &Listing) -> bool {
     listing.table == Table::Accel
 }
 
@@ -95,12 +95,12 @@ fn definitions(list: &[Definition]) -> Vec<String> {
 }
 
 fn single(listing: &Listing, all: bool) -> Vec<String> {
-    let before = if leads(listing) {
+    let before = if lists_definitions_first(listing) {
         definitions(&listing.temporaries)
     } else {
         Vec::new()
     };
-    let entries = listing.listed(all);
+    let entries = listing.entries_to_list(all);
     let labels: Vec<String> = entries.iter().map(|entry| label(listing, entry)).collect();
     let width = labels
         .iter()
@@ -138,7 +138,10 @@ fn grouped(listing: &Listing) -> Vec<String> {
     );
     let width = |column: usize| {
         let widths = rows.iter().map(|row| row[column].chars().count());
-        widths.filter(|&width| width <= WIDEST).max().unwrap_or(0)
+        widths
+            .filter(|&width| width <= MAX_ALIGNED_WIDTH)
+            .max()
+            .unwrap_or(0)
     };
     let (first, second) = (width(0), width(1));
     rows.iter()

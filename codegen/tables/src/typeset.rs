@@ -10,7 +10,7 @@ use super::latex::left;
 use super::listing::Listing;
 use super::notation::latex_name;
 use super::print::{Notation, index};
-use super::text::leads;
+use super::text::lists_definitions_first;
 use serde_json::{Value, json};
 
 /// Returns all tables; entries with equal values are grouped in the kinds of tables that read best that way.
@@ -37,7 +37,10 @@ fn table(listing: &Listing) -> Value {
             "minus": named(&group.minus),
         })
     });
-    let entries = listing.listed(false).into_iter().filter(|_| !grouped);
+    let entries = listing
+        .entries_to_list(false)
+        .into_iter()
+        .filter(|_| !grouped);
     let entries = entries.map(|entry| {
         json!({
             "left": left(listing, &entry.index, &entry.label),
@@ -46,10 +49,11 @@ fn table(listing: &Listing) -> Value {
         })
     });
     let first = listing.constants.iter();
-    let (before, after): (Vec<&Definition>, Vec<&Definition>) = match leads(listing) {
-        true => (first.chain(&listing.temporaries).collect(), Vec::new()),
-        false => (first.collect(), listing.temporaries.iter().collect()),
-    };
+    let (before, after): (Vec<&Definition>, Vec<&Definition>) =
+        match lists_definitions_first(listing) {
+            true => (first.chain(&listing.temporaries).collect(), Vec::new()),
+            false => (first.collect(), listing.temporaries.iter().collect()),
+        };
     json!({
         "name": listing.table.name(),
         "symbol": listing.table.latex(),

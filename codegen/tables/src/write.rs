@@ -66,7 +66,7 @@ impl<'a> Writer<'a> {
 
     /// Returns the expression of a root.
     pub fn value(&self, root: Edge) -> Term {
-        self.known(root.node()).signed(root.is_negative())
+        self.term(root.node()).signed(root.is_negative())
     }
 
     /// Returns the polynomial of a root that is shown as one and has no name.
@@ -171,7 +171,7 @@ impl<'a> Writer<'a> {
             }
             if ready {
                 let term = self.local(id);
-                let term = self.named(id, term);
+                let term = self.name_if_shared(id, term);
                 self.terms.insert(id, term);
                 continue;
             }
@@ -198,7 +198,7 @@ impl<'a> Writer<'a> {
             // Read only by the call that it belongs to.
             Node::Listed(..) => Term::number(BigRational::one()),
             Node::External(component, list) => {
-                let name = self.graph.called(component, "");
+                let name = self.graph.external_call_text(component, "");
                 let (head, part) = name.split_once("()").unwrap_or((&name, ""));
                 let given = self.graph.list(list).into_iter();
                 Term::atom(Atom::External {
@@ -215,7 +215,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Returns the name of a value if it should have one, or else the value itself.
-    fn named(&mut self, id: NodeId, term: Term) -> Term {
+    fn name_if_shared(&mut self, id: NodeId, term: Term) -> Term {
         if matches!(self.plans.get(&id), Some(Plan::Leaf)) {
             return term;
         }
@@ -226,8 +226,8 @@ impl<'a> Writer<'a> {
         let shared = uses > 1 && weight >= self.style.shared();
         let long = weight > self.style.longest() && !(self.names.is_root(id) && uses < 2);
         let kept = route && free && self.kept.contains(&id);
-        let theirs = route && self.names.is_theirs(id);
-        if shared || long || kept || theirs {
+        let user_names = route && self.names.is_user_named(id);
+        if shared || long || kept || user_names {
             self.names.claim(id, term, route && free)
         } else {
             term
@@ -240,12 +240,12 @@ impl<'a> Writer<'a> {
 
     fn variable(&self, var: Var) -> Term {
         match var.checked_sub(OPAQUE) {
-            Some(id) => self.known(id),
+            Some(id) => self.term(id),
             None => Term::name(&self.graph.symbols()[var as usize].name),
         }
     }
 
-    fn known(&self, id: NodeId) -> Term {
+    fn term(&self, id: NodeId) -> Term {
         let known = self.terms.get(&id).cloned();
         known.unwrap_or_else(|| Term::number(BigRational::one()))
     }

@@ -1,9 +1,9 @@
 //! Small linear systems with restricted divisors.
 
 use hamel_algebra::blocks::{Failure, solve};
+use hamel_algebra::field_point::circle_point;
 use hamel_algebra::fp::Random;
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::lane::circle_point;
 use hamel_algebra::linear::multiply;
 
 /// Returns a graph with (c, s) on the circle, a parameter l and a free coordinate x.

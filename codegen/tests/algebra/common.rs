@@ -6,7 +6,7 @@ use hamel_algebra::graph::{Edge, Function, Graph};
 /// Returns every function of one argument.
 pub(crate) fn functions() -> impl Iterator<Item = Function> {
     let all = Function::ALL.iter().copied();
-    all.filter(|function| function.row().slope != Slope::Two)
+    all.filter(|function| function.row().slope != Slope::SeveralArguments)
 }
 
 /// Returns all functions of an argument, divided by a nonzero edge.

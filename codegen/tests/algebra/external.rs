@@ -1,11 +1,11 @@
 //! External functions: equality, and slopes by the chain rule.
 
 use hamel_algebra::derivation::Derivation;
-use hamel_algebra::dual::{Along, Duals};
+use hamel_algebra::dual::{Duals, ForwardMode};
 use hamel_algebra::external::{Component, External};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::walk::evaluate;
 
 fn graph() -> (Graph, [Edge; 2], [Fp; 2]) {
@@ -40,13 +40,19 @@ fn values_belong_to_component_and_arguments() {
     }
     assert_ne!(graph.external(second, &[x, y]), one);
     assert_ne!(
-        graph.external(first.by(0), &[x, y]),
-        graph.external(first.by(1), &[x, y])
+        graph.external(first.differentiate(0), &[x, y]),
+        graph.external(first.differentiate(1), &[x, y])
     );
-    assert_eq!(first.by(0).by(1), first.by(1).by(0));
+    assert_eq!(
+        first.differentiate(0).differentiate(1),
+        first.differentiate(1).differentiate(0)
+    );
     let number = graph.external(first, &[two, two]);
     assert!(graph.is_free(number.node()) && graph.as_rational(number).is_none());
-    assert_eq!(graph.called(first.by(1), "x, y"), "f_by_b(x, y)[1]");
+    assert_eq!(
+        graph.external_call_text(first.differentiate(1), "x, y"),
+        "f_by_b(x, y)[1]"
+    );
 }
 
 /// Derivatives as expressions agree with numbers with slopes, including second derivatives.
@@ -60,20 +66,22 @@ fn slopes_go_by_the_chain_rule() {
     let mut along = Derivation::new([(x.node(), one), (y.node(), three)]);
     let slope = along.of(&mut graph, whole);
     let bend = along.of(&mut graph, slope);
-    let mut lane = at(values);
+    let mut point = at(values);
     let seeds = [Fp::ONE, Fp::new(3)];
     let mut duals = Duals {
-        numbers: lane.clone(),
-        slopes: Along(|index: usize| seeds[index]),
+        numbers: point.clone(),
+        slopes: ForwardMode(|index: usize| seeds[index]),
     };
-    let expected = evaluate(&graph, &[slope, bend], &mut lane).expect("values");
+    let expected = evaluate(&graph, &[slope, bend], &mut point).expect("values");
     let found = evaluate(&graph, &[whole, slope], &mut duals).expect("slopes");
     assert_eq!([found[0].1, found[1].1], [expected[0], expected[1]]);
     assert_eq!(expected[0], graph.value(slope));
 }
 
-fn at(values: [Fp; 2]) -> Lane {
-    let mut lane = Lane::new();
-    values.into_iter().for_each(|value| lane.push_symbol(value));
-    lane
+fn at(values: [Fp; 2]) -> FieldPoint {
+    let mut point = FieldPoint::new();
+    values
+        .into_iter()
+        .for_each(|value| point.push_symbol(value));
+    point
 }

@@ -3,11 +3,11 @@
 use crate::common::functions;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::double::Double;
+use hamel_algebra::field_point::circle_point;
 use hamel_algebra::fp::Random;
 use hamel_algebra::function::Parity;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::interval::Interval;
-use hamel_algebra::lane::circle_point;
 use hamel_algebra::numeric::evaluate;
 use hamel_algebra::poly::monomial::Var;
 use hamel_algebra::reals::{Real, contradict};
@@ -275,7 +275,7 @@ fn the_table_of_functions_is_true() {
             match row.parity {
                 Parity::Even => assert_eq!(negative, (row.value)(at), "{function:?}"),
                 Parity::Odd => assert_eq!(negative, -(row.value)(at), "{function:?}"),
-                Parity::Plain => assert!(negative.abs() != (row.value)(at).abs(), "{function:?}"),
+                Parity::Neither => assert!(negative.abs() != (row.value)(at).abs(), "{function:?}"),
             }
             let expected = (row.value)(at);
             let near = |found: f64| (found - expected).abs() < 1e-14 * (1.0 + expected.abs());

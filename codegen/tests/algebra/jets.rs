@@ -2,10 +2,10 @@
 
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::jets::Seeds;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 
@@ -34,20 +34,20 @@ fn mixed_derivatives_are_those_of_the_symbolic_derivative() {
     let tape = Tape::new(&graph, &roots).expect("numbers");
     let mut found = 0;
     for _ in 0..40 {
-        let mut lane = Lane::new();
-        (0..4).for_each(|_| lane.push_symbol(random.element()));
-        let (s, t) = (lane.symbol(0), lane.symbol(1));
+        let mut point = FieldPoint::new();
+        (0..4).for_each(|_| point.push_symbol(random.element()));
+        let (s, t) = (point.symbol(0), point.symbol(1));
         let (zero, one) = (Fp::ZERO, Fp::ONE);
         let seeds = Seeds {
             along: vec![one, zero, t + one, s + s],
             across: vec![vec![zero, one, s, -one], vec![]],
             mixed: vec![vec![zero, zero, one, zero]],
         };
-        let Some(jets) = tape.jets(&lane, &seeds) else {
+        let Some(jets) = tape.jets(&point, &seeds) else {
             continue;
         };
         let expect =
-            |edges: &[Edge]| evaluate_at(&graph, edges, &mut lane.clone()).expect("a value");
+            |edges: &[Edge]| evaluate_at(&graph, edges, &mut point.clone()).expect("a value");
         let tables = [
             expect(&roots),
             expect(&along),
@@ -62,7 +62,7 @@ fn mixed_derivatives_are_those_of_the_symbolic_derivative() {
             );
             assert_eq!([jet.across[1], jet.mixed[1]], [zero, zero]);
         }
-        assert_eq!(tape.values(&lane), Some(tables[0].clone()));
+        assert_eq!(tape.values(&point), Some(tables[0].clone()));
         found += 1;
     }
     assert!(found > 5);

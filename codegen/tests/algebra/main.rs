@@ -1,28 +1,28 @@
 //! Laws of the graph, of its numbers and of polynomials, one module for each file of `src`. To run a single module:
 //! `cargo test -p hamel-algebra --test suite poly::`.
 
-mod bend;
 mod blocks;
-mod closest;
 mod common;
+mod continuity;
 mod degree;
 mod dense;
 mod double;
 mod echelon;
 mod external;
+mod field_point;
 mod fp;
 mod graph;
 mod interval;
 mod jets;
-mod jumps;
-mod lane;
+mod nearest_solution;
 mod poly;
 mod prime;
 mod reals;
+mod residual_scale;
 mod resubstitute;
 mod roots;
 mod rounding;
-mod sizes;
+mod second_derivative;
 mod slopes;
 mod tangent;
 mod text;

@@ -2,9 +2,9 @@
 
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 
@@ -23,13 +23,13 @@ fn slopes_are_those_of_the_symbolic_derivative() {
     let slopes = along.all(&mut graph, &roots);
     let mut found = 0;
     for _ in 0..40 {
-        let mut lane = Lane::new();
+        let mut point = FieldPoint::new();
         let direction = [1, 2].map(hamel_algebra::fp::Fp::new);
-        (0..2).for_each(|_| lane.push_symbol(random.element()));
-        let Some(duals) = tangent_at(&graph, &roots, &mut lane.clone(), &direction) else {
+        (0..2).for_each(|_| point.push_symbol(random.element()));
+        let Some(duals) = tangent_at(&graph, &roots, &mut point.clone(), &direction) else {
             continue;
         };
-        let expected = evaluate_at(&graph, &slopes, &mut lane).expect("has a value");
+        let expected = evaluate_at(&graph, &slopes, &mut point).expect("has a value");
         let slopes: Vec<_> = duals.iter().map(|dual| dual.1).collect();
         assert_eq!(slopes, expected);
         found += 1;

@@ -27,7 +27,7 @@ fn powers_of_linear_forms_are_kept_where_that_is_asked_for() {
         [terms(plain, square), terms(plain, all)],
         [Some(3), Some(4)]
     );
-    let keeping = &mut Expander::default().keeping_powers();
+    let keeping = &mut Expander::default().with_kept_powers();
     assert_eq!(terms(keeping, square), Some(3));
     assert_eq!([terms(keeping, all), terms(keeping, square)], [Some(1); 2]);
     // Not a linear form: (x y + a)³.
@@ -53,7 +53,7 @@ fn an_expansion_ends_with_its_work() {
     let square = graph.mul(sum, sum);
     let fourth = graph.mul(square, square);
     let terms = |work: usize, edge| {
-        let polynomial = Expander::within(work).expand(&graph, edge);
+        let polynomial = Expander::with_work_limit(work).expand(&graph, edge);
         polynomial.map(|polynomial| polynomial.terms().len())
     };
     // 20 terms added, 36 products, and 21² more.

@@ -37,11 +37,11 @@ const DECLARED: usize = 16;
 type Both<T> = (T, String);
 
 fn name(random: &mut Random) -> &'static str {
-    NAMES[random.below(NAMES.len())]
+    LEGAL_NAMES[random.below(LEGAL_NAMES.len())]
 }
 
 fn word(random: &mut Random) -> &'static str {
-    NAMES[random.below(DECLARED)]
+    LEGAL_NAMES[random.below(DECLARABLE_NAMES)]
 }
 
 /// Returns an exact number in one of several spellings.
@@ -65,7 +65,7 @@ fn number(random: &mut Random) -> Both<Expr> {
     }
 }
 
-fn expression(random: &mut Random, depth: usize) -> Both<Expr> {
+fn expression(random: &mut Random, depth: usize) -> BuiltAndWritten<Expr> {
     if depth == 0 {
         let name = name(random);
         return match random.below(2) {

@@ -37,7 +37,7 @@ fn digits_and_cost(program: &Program, x: f64) -> (f64, usize) {
 }
 
 fn emitted(start: &str) -> Program {
-    let generated = from_text(&TEXT.replace("START", start));
+    let generated = from_text(&FAR_POTENTIALS.replace("START", start));
     generated
         .unwrap_or_else(|errors| panic!("{errors:?}"))
         .program

@@ -122,7 +122,7 @@ impl Claim {
 /// Returns states that satisfy the constraints.
 fn states(system: &System, random: &mut Random) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut all = Vec::new();
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_SYSTEM {
         let near = system
             .start()
             .into_iter()
@@ -132,7 +132,7 @@ fn states(system: &System, random: &mut Random) -> Vec<(Vec<f64>, Vec<f64>)> {
         };
         let v = system.moving(&q, random.numbers(system.own().len()));
         let (pivot, _, independent) = system.regularity(&q);
-        if pivot > REGULAR && independent > REGULAR {
+        if pivot > MIN_PIVOT && independent > MIN_PIVOT {
             all.push((q, v));
         }
     }
@@ -217,7 +217,7 @@ fn faults(seed: u64, count: &AtomicUsize) -> Vec<String> {
     for (i, claim) in kept.truths(random).iter().enumerate() {
         let largest = |claim: &Claim| largest(claim, &kept.system, &states);
         let text = claim.text(&format!("c{i}"));
-        if largest(claim) > ZERO {
+        if largest(claim) > ZERO_TOLERANCE {
             let text = kept.system.text(&[text]);
             return vec![format!(
                 "seed {seed}: not true in numbers: {}\n{text}",
@@ -226,12 +226,12 @@ fn faults(seed: u64, count: &AtomicUsize) -> Vec<String> {
         }
         truths.push(text);
         let twin = claim.twin(random);
-        if largest(&twin) > CERTAIN {
+        if largest(&twin) > CERTAIN_RATE {
             lies.push(twin.text(&format!("c{i}_false")));
         }
     }
     for (i, claim) in kept.doubtful(random).iter().enumerate() {
-        if largest(claim, &kept.system, &states) > CERTAIN {
+        if largest(claim, &kept.system, &states) > CERTAIN_RATE {
             lies.push(claim.text(&format!("w{i}")));
         }
     }

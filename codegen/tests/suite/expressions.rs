@@ -221,7 +221,7 @@ fn expression(random: &mut Random, depth: usize, pool: &[Expr]) -> Expr {
 fn faults(seed: u64) -> Vec<String> {
     let random = &mut Random::new(seed);
     let mut pool: Vec<Expr> = Vec::new();
-    for _ in 0..OUTPUTS {
+    for _ in 0..OUTPUTS_PER_SYSTEM {
         let depth = 2 + random.below(3);
         let found = expression(random, depth, &pool);
         pool.push(found);
@@ -268,7 +268,7 @@ fn faults(seed: u64) -> Vec<String> {
             }
             let found = value(&of, &format!("o{k}"), [&x, &[0.0, 0.0], &[], &[]])[0];
             let error = (&Precise::of(found) - &expected).abs();
-            let allowed = &bound * &Precise::of(ORDERS);
+            let allowed = &bound * &Precise::of(REORDERING_ROUNDINGS);
             if found.is_nan() || (&allowed - &error).is_negative() {
                 faults.push(format!(
                     "seed {seed}: o{k} = {} at {x:?} is {:e}, not {found:e} (bound {:e})\n{text}",

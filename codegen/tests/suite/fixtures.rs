@@ -32,7 +32,7 @@ fn furuta_pendulum_has_the_published_equations() {
     let [j1, jx, jy, jz] = [0.0248, 0.0001, 0.00386, 0.0038];
     let (b1, b2, g) = (0.0001, 0.00028, 9.81);
     let mut random = Random::new(0xf0);
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_SYSTEM {
         let (x, xi, u) = (random.numbers(2), random.numbers(2), random.numbers(1));
         let dot = value(&system, "accel", [&x, &xi, &u, &[]]);
         let (s, c) = x[1].sin_cos();
@@ -47,7 +47,7 @@ fn furuta_pendulum_has_the_published_equations() {
             - w1 * w1 * s * c * (turning - jx)
             + b2 * w2
             + g * m2 * l2 * s;
-        assert!(difference(&[first, second], &[u[0], 0.0]) < CLOSE);
+        assert!(difference(&[first, second], &[u[0], 0.0]) < TOLERANCE);
     }
 }
 
@@ -81,7 +81,7 @@ fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
     let mut random = Random::new(0xca);
     for n in 1..=10 {
         let system = generated(&cart_chain(n));
-        for _ in 0..STATES {
+        for _ in 0..STATES_PER_SYSTEM {
             let (x, xi) = (random.numbers(n + 1), random.numbers(n + 1));
             let theta: Vec<f64> = (1..=n).map(|i| x[1..=i].iter().sum()).collect();
             let spin: Vec<f64> = (1..=n).map(|i| xi[1..=i].iter().sum()).collect();
@@ -110,7 +110,7 @@ fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
             let at = [x.as_slice(), &xi, &[], &[]];
             let found = value(&system, "mass_matrix", at);
             assert!(
-                difference(&wanted, &found) < CLOSE,
+                difference(&wanted, &found) < TOLERANCE,
                 "mass matrix of {n} rods"
             );
             let weight = |k: usize| 9.81 * moment(k) * theta[k - 1].sin();
@@ -125,7 +125,7 @@ fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
                 .sum();
             let found = value(&system, "bias", at);
             assert!(
-                (found[0] - pull).abs() < CLOSE * pull.abs().max(1.0),
+                (found[0] - pull).abs() < TOLERANCE * pull.abs().max(1.0),
                 "bias of {n} rods"
             );
         }
@@ -156,7 +156,7 @@ fn double_spherical_pendulum_is_two_bodies() {
     let joints = model("multibody/double_spherical_pendulum", "accel, energy");
     let hand = model("two_bodies", "accel, energy");
     let mut random = Random::new(0xd5);
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_SYSTEM {
         let x = random.configuration(&joints.program.blocks);
         let xi = random.numbers(6);
         let relative = &x[9..];
@@ -167,14 +167,14 @@ fn double_spherical_pendulum_is_two_bodies() {
         spins.extend((0..3).map(|i| seen[i] + xi[3 + i]));
         let (at, there) = ([&x[..], &xi, &[], &[]], [&absolute[..], &spins, &[], &[]]);
         let (a, b) = (value(&joints, "energy", at), value(&hand, "energy", there));
-        assert!(difference(&a, &b) < CLOSE, "energy");
+        assert!(difference(&a, &b) < TOLERANCE, "energy");
         let (a, b) = (value(&joints, "accel", at), value(&hand, "accel", there));
         // d/dt (Rᵀ ω₁ + ω) = Rᵀ ω̇₁ − ω × Rᵀ ω₁ + ω̇
         let carried = back(relative, &a[..3]);
         let turned = cross([xi[3], xi[4], xi[5]], seen);
         let mut wanted = a[..3].to_vec();
         wanted.extend((0..3).map(|i| carried[i] - turned[i] + a[3 + i]));
-        assert!(difference(&wanted, &b) < CLOSE, "accelerations");
+        assert!(difference(&wanted, &b) < TOLERANCE, "accelerations");
     }
 }
 
@@ -202,17 +202,17 @@ fn quadrotor_with_load_obeys_newton_and_euler() {
         ),
     ];
     let mut random = Random::new(0x0dad);
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_SYSTEM {
         let x = random.configuration(&system.program.blocks);
         let (xi, dot, u) = (random.numbers(9), random.numbers(9), random.numbers(4));
         let mut tree = Tree::new(&links, &x, &xi);
         tree.gravity = [0.0, 0.0, -9.81];
         let at = [x.as_slice(), &xi, &u, &dot];
         let needed = value(&system, "inverse_dynamics", at);
-        assert!(difference(&tree.needed(&dot, 1.0), &needed) < CLOSE);
+        assert!(difference(&tree.needed(&dot, 1.0), &needed) < TOLERANCE);
         let motion = value(&system, "accel", at);
         let wrench = [0.0, 0.0, u[0], u[1], u[2], u[3], 0.0, 0.0, 0.0];
-        assert!(difference(&tree.needed(&motion, 1.0), &wrench) < CLOSE);
+        assert!(difference(&tree.needed(&motion, 1.0), &wrench) < TOLERANCE);
     }
 }
 
@@ -242,7 +242,7 @@ fn obeys_newton_and_euler(
     let system = model(path, "accel, inverse_dynamics");
     let program = &system.program;
     let mut random = Random::new(0x5a7);
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_SYSTEM {
         let x = random.configuration(&program.blocks);
         let (xi, dot) = (random.numbers(program.n), random.numbers(program.n));
         let u = random.numbers(program.m);
@@ -251,7 +251,7 @@ fn obeys_newton_and_euler(
         let at = [x.as_slice(), &xi, &u, &dot];
         let needed = value(&system, "inverse_dynamics", at);
         assert!(
-            difference(&tree.needed(&dot, 1.0), &needed) < CLOSE,
+            difference(&tree.needed(&dot, 1.0), &needed) < TOLERANCE,
             "{path}"
         );
         // Light parts have large accelerations, so forces are compared, relative to the largest inertia force.
@@ -266,7 +266,7 @@ fn obeys_newton_and_euler(
             .iter()
             .zip(&wanted)
             .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-        assert!(apart < CLOSE * inertial, "{path}: {apart:e}");
+        assert!(apart < TOLERANCE * inertial, "{path}: {apart:e}");
     }
 }
 

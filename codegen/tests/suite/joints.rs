@@ -118,7 +118,7 @@ const PAIRS: [(&str, &str); 17] = [
 ];
 
 fn system(text: &str) -> Generated {
-    generated(&format!("system S {{ {text} {REST} }}"))
+    generated(&format!("system S {{ {text} {SURROUNDINGS} }}"))
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn every_kind_is_what_is_written_by_hand() {
     for (joint, hand) in PAIRS {
         let (short, long) = (system(joint), system(hand));
         let program = &short.program;
-        for _ in 0..STATES {
+        for _ in 0..STATES_PER_PAIR {
             let x = random.configuration(&program.blocks);
             // Coordinates are in the same order in both: those of `ground` are last.
             let (xi, u) = (random.numbers(program.n), random.numbers(program.m));
@@ -136,7 +136,7 @@ fn every_kind_is_what_is_written_by_hand() {
             for function in ["accel", "energy", "inverse_dynamics"] {
                 let (a, b) = (value(&short, function, at), value(&long, function, at));
                 let apart = difference(&a, &b);
-                assert!(apart < SAME, "{joint}: {function} {apart:e}");
+                assert!(apart < TOLERANCE, "{joint}: {function} {apart:e}");
             }
         }
     }

@@ -238,7 +238,7 @@ fn verdict(system: &System, seed: u64) -> Result<(), String> {
         (Ok(of), _) => of,
         (Err(errors), pivots) => {
             let said = render(&errors, "system", &system.text, false);
-            let regular = pivots.iter().all(|&pivot| pivot > REGULAR);
+            let regular = pivots.iter().all(|&pivot| pivot > MIN_PIVOT);
             let fault = said.contains("internal check");
             let moves = system.loops.len() + usize::from(system.driven.is_some()) < system.n;
             return match fault || regular && moves {
@@ -247,7 +247,7 @@ fn verdict(system: &System, seed: u64) -> Result<(), String> {
             };
         }
     };
-    if pivots[1] <= REGULAR {
+    if pivots[1] <= MIN_PIVOT {
         return match pivots[1] == 0.0 {
             true => Err("it is derived, although directions without inertia are left".into()),
             false => Ok(()),
@@ -268,7 +268,7 @@ fn verdict(system: &System, seed: u64) -> Result<(), String> {
     let size = expected.iter().fold(10.0, |most: f64, a| most.max(a.abs()));
     for (&i, found) in places.iter().zip(&found) {
         let difference = (found - expected[i]).abs();
-        if difference.is_nan() || difference > ROUNDING * size {
+        if difference.is_nan() || difference > TOLERANCE * size {
             return Err(format!(
                 "rate of v{i} at {q:?}, {v:?}: {found}, not {}",
                 expected[i]

@@ -349,7 +349,7 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
                 .map(|j| expected_mass[i * n + j] * accel[j])
                 .sum::<f64>();
             let rest = row + bias[i] + slope[i];
-            if rest.is_nan() || rest.abs() > 10.0 * CLOSE * force {
+            if rest.is_nan() || rest.abs() > 10.0 * TOLERANCE * force {
                 return Err(format!(
                     "accel at {x:?}, {xi:?}: {accel:?} leaves {rest:e} of {force:e}"
                 ));

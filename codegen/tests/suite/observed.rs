@@ -70,7 +70,7 @@ impl Case {
         let pairs = found.iter().zip(wanted);
         let worst = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         assert!(
-            worst <= CLOSE * size,
+            worst <= TOLERANCE * size,
             "{}: {what} differs by {worst:.1e}: {found:?}, {wanted:?}",
             self.name
         );
@@ -84,7 +84,7 @@ fn slope(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         let pairs = ahead.iter().zip(&behind);
         pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect()
     };
-    let (near, far) = (central(STEP), central(2.0 * STEP));
+    let (near, far) = (central(DIFFERENCE_STEP), central(2.0 * DIFFERENCE_STEP));
     near.iter()
         .zip(&far)
         .map(|(n, f)| (4.0 * n - f) / 3.0)

@@ -33,7 +33,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 fn vocabulary_words() -> &'static BTreeSet<String> {
     static ALL: OnceLock<BTreeSet<String>> = OnceLock::new();
     ALL.get_or_init(|| {
-        let mut texts = vec![PROPOSED.to_string()];
+        let mut texts = vec![PROPOSAL_WORDS.to_string()];
         let two = |(word, form): (&str, &str)| format!("{word} {form}");
         texts.extend(vocabulary::statements().map(two));
         texts.extend(vocabulary::kinds_of_joints().map(String::from));
@@ -56,7 +56,7 @@ fn foreign(error: &Diagnostic, text: &str) -> Vec<String> {
     let of_joint = |word: &str| {
         let mut rest = word;
         while let Some((front, back)) = rest.rsplit_once('_') {
-            if !BEHIND.contains(&back) {
+            if !SUFFIXES.contains(&back) {
                 return false;
             }
             if front.is_empty() || is_known(front) {
@@ -72,7 +72,7 @@ fn foreign(error: &Diagnostic, text: &str) -> Vec<String> {
     let quoted = said.flat_map(|text| text.split('`').skip(1).step_by(2));
     quoted
         .flat_map(words)
-        .filter(|word| word.len() >= LETTERS || word.contains('_') && *word != "_")
+        .filter(|word| word.len() >= MAX_PLACEHOLDER_LETTERS || word.contains('_') && *word != "_")
         .filter(|word| !is_known(word) && !of_joint(word))
         .map(|word| {
             format!(

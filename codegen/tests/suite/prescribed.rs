@@ -127,7 +127,7 @@ fn whole(
     of: &Generated,
     (links, drives): (&[Link], &[Drive]),
     [x, xi, u, dot]: [&[f64]; 4],
-) -> Whole {
+) -> FullState {
     let clock = of.model.clock.expect("the time is declared");
     let t = x[clock.x];
     let mut x = x.to_vec();
@@ -190,7 +190,7 @@ fn whole(
         let places = list.into_iter().map(|(places, _)| places);
         places.collect::<Vec<Vec<usize>>>()
     });
-    Whole {
+    FullState {
         x,
         xi: all,
         dot: rates,
@@ -216,7 +216,7 @@ fn faults(seed: u64) -> Vec<String> {
         Err(errors) => return vec![render(&errors, "tree", &text, false)],
     };
     let mut faults = Vec::new();
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_TREE {
         let program = &system.program;
         let x = random.configuration(&program.blocks);
         let (xi, u) = (random.numbers(program.n), random.numbers(program.m));
@@ -228,7 +228,7 @@ fn faults(seed: u64) -> Vec<String> {
         };
         let mut same = |what: &str, wanted: &[f64], found: &[f64]| {
             let apart = difference(wanted, found);
-            if apart.is_nan() || apart > CLOSE {
+            if apart.is_nan() || apart > TOLERANCE {
                 faults.push(format!("seed {seed}: {what} {apart:.1e} of\n{text}"));
             }
         };

@@ -46,15 +46,15 @@ const WHOLE: &str = "system Whole {
 
 #[test]
 fn the_numbers_are_those_of_the_symbolic_derivations() {
-    let system = parse_text(WHOLE).expect("a description");
+    let system = parse_text(ALL_ROUTES).expect("a description");
     let model = build(&system).expect("a model");
     let symbols = Symbols::new(&model).expect("Y");
     let graph = &symbols.geometry.model.graph;
     let numbers = Numbers::new(&model).expect("Y");
     for seed in 1..4 {
-        let lane = model.points.lane(seed).expect("a point");
-        let values = numbers.at(&lane).expect("values").expect("Y A = I");
-        let at = |edges: &[Edge]| evaluate_at(graph, edges, &mut lane.clone()).expect("values");
+        let point = model.points.lane(seed).expect("a point");
+        let values = numbers.at(&point).expect("values").expect("Y A = I");
+        let at = |edges: &[Edge]| evaluate_at(graph, edges, &mut point.clone()).expect("values");
         assert_eq!(values.left[0], values.left[1], "(30a) = (30b)");
         assert_eq!(values.left[0], values.left[2], "(30a) = (30c)");
         assert_eq!(values.left[0], at(&symbols.hamel));
@@ -69,7 +69,7 @@ fn the_numbers_are_those_of_the_symbolic_derivations() {
 #[test]
 fn a_wrong_term_of_any_function_is_refused() {
     let Generated { model, program, .. } =
-        from_text(WHOLE).unwrap_or_else(|errors| panic!("{errors:?}"));
+        from_text(ALL_ROUTES).unwrap_or_else(|errors| panic!("{errors:?}"));
     assert!(validate::validate(&model, &program).is_ok());
     let mut refused = 0;
     for index in 0..program.functions.len() {

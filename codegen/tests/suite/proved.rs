@@ -56,7 +56,7 @@ fn a_wrong_sign_in_any_function_is_refused() {
     let all: Vec<(String, Vec<String>, usize)> = (some(some(models(&folder))).par_iter())
         .map(|path| {
             let name = path.display().to_string();
-            let mut asked = ASKED.iter().map(|asked| asked_for(path, asked));
+            let mut asked = REQUESTS.iter().map(|asked| asked_for(path, asked));
             let generated = asked.find_map(Result::ok);
             let (found, tried) = unnoticed(&generated.unwrap_or_else(|| panic!("{name}")));
             (name, found, tried)

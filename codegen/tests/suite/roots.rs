@@ -115,7 +115,7 @@ fn outputs(cases: &[Case], reversed: bool) {
             let expected = expected([2.0, 3.0, x[0], x[1]]);
             let error = (found - expected).abs();
             assert!(
-                error <= CLOSE * (1.0 + expected.abs()),
+                error <= TOLERANCE * (1.0 + expected.abs()),
                 "{text} is {expected}, not {found}"
             );
         }
@@ -170,7 +170,10 @@ fn on_a_circle_and_on_a_loop() {
             let expected = [("a", s.abs()), ("b", s), ("d", rod), ("e", side * rod)];
             for (name, expected) in expected {
                 let found = output(&of, name, &x);
-                assert!((found - expected).abs() <= CLOSE, "{found} for {expected}");
+                assert!(
+                    (found - expected).abs() <= TOLERANCE,
+                    "{found} for {expected}"
+                );
             }
         }
     }
@@ -192,12 +195,12 @@ fn many_roots_and_roots_of_both_signs_have_points() {
         }}"
     ));
     let x = [3.0, 1.0];
-    assert!((output(&of, "g", &x) - 4.0).abs() < CLOSE);
+    assert!((output(&of, "g", &x) - 4.0).abs() < TOLERANCE);
     for k in 1..16 {
         let found = output(&of, &format!("o{k}"), &x);
         let k = f64::from(k);
         let expected = (3.0 + k).sqrt() + (40.0 - 2.0 * k).sqrt();
-        assert!((found - expected).abs() < CLOSE * expected);
+        assert!((found - expected).abs() < TOLERANCE * expected);
     }
 }
 
@@ -356,7 +359,7 @@ fn roots_of_roots_of_logarithms_have_values() {
         let of = generated(&text);
         let found = value(&of, "o", [&[1.25, 0.75], &[], &[], &[]])[0];
         let expected = (f64::from(n).ln().sqrt() + 2.5).sqrt();
-        assert!((found - expected).abs() < CLOSE, "{n}: {found}");
+        assert!((found - expected).abs() < TOLERANCE, "{n}: {found}");
     }
 }
 
@@ -406,7 +409,7 @@ fn roots_of_squares_are_absolute() {
                         (output(&of, &format!("o{k}"), &[x, y]), value(of_part(x, y)));
                     let error = (found - expected).abs();
                     assert!(
-                        error <= CLOSE * (1.0 + expected.abs()),
+                        error <= TOLERANCE * (1.0 + expected.abs()),
                         "{form} of {part} at {x}, {y} is {expected}, not {found} (case {case})"
                     );
                 }

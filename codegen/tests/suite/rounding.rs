@@ -41,7 +41,7 @@ fn errors(arm: &Arm, system: &Generated, seed: u64) -> [f64; 4] {
     let n = arm.0.len();
     let mut random = Random::new(seed);
     let mut worst = [0.0; 4];
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_ARM {
         let (x, xi, u) = (random.numbers(n), random.numbers(n), random.numbers(n));
         let of = |name: &str| value(system, name, [&x, &xi, &u, &[]]);
         let exact = arm.dynamics(&x, &xi);
@@ -92,7 +92,7 @@ fn error_of_tables(arm: &Arm, system: &Generated, seed: u64) -> f64 {
 fn awkward_axes_keep_their_digits() {
     let mut random = Random::new(0xa2);
     let mut failures = Vec::new();
-    for case in 0..size(ARMS.0, ARMS.1) {
+    for case in 0..size(ARM_COUNTS.0, ARM_COUNTS.1) {
         let arm = Arm::awkward(&mut random);
         let text = arm.text();
         let system = match from_text(&text) {
@@ -111,7 +111,7 @@ fn awkward_axes_keep_their_digits() {
         if worst
             .iter()
             .chain([&tables])
-            .any(|error| error.is_nan() || *error > CLOSE)
+            .any(|error| error.is_nan() || *error > TOLERANCE)
         {
             failures.push(format!(
                 "case {case}: {worst:?}, tables {tables:.1e}\n{text}"
@@ -154,7 +154,7 @@ fn a_tilt_of_a_hundredth_of_a_millionth() {
     let mass = value(&system, "mass_matrix", [&still, &still, &still, &[]]);
     assert!((mass[0] - 10.040000008).abs() < 1e-12, "{}", mass[0]);
     let worst = errors(&arm, &system, 1);
-    assert!(worst.iter().all(|&error| error <= CLOSE), "{worst:?}");
+    assert!(worst.iter().all(|&error| error <= TOLERANCE), "{worst:?}");
 }
 
 /// Digits that are lost by every candidate are measured and documented.
@@ -217,5 +217,5 @@ fn far_from_the_origin_of_the_world() {
         .mass
         .concat();
     let scale = largest(&exact);
-    assert!(apart(&far, &exact) <= CLOSE * scale && apart(&near, &exact) <= CLOSE * scale);
+    assert!(apart(&far, &exact) <= TOLERANCE * scale && apart(&near, &exact) <= TOLERANCE * scale);
 }

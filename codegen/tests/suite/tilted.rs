@@ -16,7 +16,7 @@ use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 
 /// Bound of the rounding of a program, relative to the size of the terms that it adds up.
-const ROUNDING: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-13;
 
 fn zero() -> Precise {
     Precise::of(0.0)
@@ -500,7 +500,7 @@ fn verdict(chain: &Chain, seed: u64) -> Result<(), String> {
             // False for NaN as well.
             if differences
                 .clone()
-                .all(|difference| difference <= ROUNDING * scale)
+                .all(|difference| difference <= TOLERANCE * scale)
             {
                 return Ok(());
             }
@@ -522,7 +522,7 @@ fn verdict(chain: &Chain, seed: u64) -> Result<(), String> {
         for i in 0..n {
             let row = (0..n).map(|j| mass[i * n + j] * accel[j]).sum::<f64>();
             let rest = row + bias[i] + slope[i];
-            if rest.is_nan() || rest.abs() > 10.0 * ROUNDING * force {
+            if rest.is_nan() || rest.abs() > 10.0 * TOLERANCE * force {
                 return Err(format!(
                     "accel at {x:?}, {xi:?}: {accel:?} leaves {rest:e} of {force:e}"
                 ));

@@ -15,7 +15,7 @@ const LONG: f64 = 1e-8;
 /// Number of states per tree.
 const STATES: usize = 3;
 
-const SIMPLE: [Kind; 4] = [
+const SIMPLE_TREES: [Kind; 4] = [
     Kind::Revolute,
     Kind::Revolute,
     Kind::Continuous,
@@ -86,7 +86,7 @@ fn obeys_newton(links: &[Link], seed: u64, close: f64) -> Generated {
     let system = generated(&text);
     let n = system.program.n;
     let mut random = Random::new(seed);
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_TREE {
         let state = State::random(&mut random, &system);
         let tree = Tree::new(links, &state.x, &state.xi);
         let still = vec![0.0; n];
@@ -140,13 +140,13 @@ fn obeys_the_tables(system: &Generated, seed: u64) {
     let potential = geometry.potential;
     let whole = levi_civita(model, calculus, &mass, &bias, potential, &dot);
     let mut random = Random::new(seed);
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_TREE {
         let state = State::random(&mut random, system);
         let State { x, xi, u, dot } = &state;
         let numbers = model.numbers(&[], x, xi, u, dot);
         let same = |what: &str, name: &str, wanted: Vec<f64>| {
             let apart = difference(&wanted, &state.value(system, name));
-            assert!(apart < CLOSE, "seed {seed:#x}: {what} {apart:e}");
+            assert!(apart < TOLERANCE, "seed {seed:#x}: {what} {apart:e}");
         };
         let literal = |edges: &[_]| evaluate(&model.graph, edges, &numbers);
         same("M ξ̇ + Γ ξ ξ + ∂V", "inverse_dynamics", literal(&whole));
@@ -158,17 +158,17 @@ fn obeys_the_tables(system: &Generated, seed: u64) {
 #[test]
 fn trees_of_one_freedom_a_joint() {
     for (seed, count) in [(0x51, 2), (0x52, 3), (0x53, 4), (0x54, 6), (0x55, 8)] {
-        obeys_newton(&moving(seed, count, &SIMPLE), seed, CLOSE);
+        obeys_newton(&moving(seed, count, &SIMPLE_TREES), seed, TOLERANCE);
     }
 }
 
 #[test]
 fn trees_of_all_kinds() {
     for (seed, count) in [(0xa1, 2), (0xa2, 2), (0xa3, 3), (0xa4, 4), (0xa5, 5)] {
-        obeys_newton(&moving(seed, count, &ALL), seed, CLOSE);
+        obeys_newton(&moving(seed, count, &ALL), seed, TOLERANCE);
     }
     for seed in 0xb0..0xbc {
-        obeys_newton(&moving(seed, 6, &ALL), seed, CLOSE);
+        obeys_newton(&moving(seed, 6, &ALL), seed, TOLERANCE);
     }
 }
 
@@ -177,7 +177,7 @@ fn trees_of_all_kinds() {
 fn trees_obey_the_tables_of_the_paper() {
     for seed in 0xc0..0xc5 {
         let count = 2 + (seed % 2) as usize;
-        let system = obeys_newton(&moving(seed, count, &ALL), seed, CLOSE);
+        let system = obeys_newton(&moving(seed, count, &ALL), seed, TOLERANCE);
         obeys_the_tables(&system, seed);
     }
 }
@@ -192,7 +192,7 @@ fn trees_with_particles() {
             .into_iter()
             .map(|link| link.with_particle(&mut random))
             .collect();
-        obeys_newton(&links, seed, CLOSE);
+        obeys_newton(&links, seed, TOLERANCE);
     }
 }
 
@@ -214,7 +214,7 @@ fn sliders_beside_hinges() {
             let kind = [Kind::Prismatic, Kind::Revolute][(first + k) % 2];
             on(&mut random, &mut links, kind, Some(1));
         }
-        obeys_newton(&links, seed, CLOSE);
+        obeys_newton(&links, seed, TOLERANCE);
     }
 }
 
@@ -224,14 +224,14 @@ fn a_long_chain() {
     let mut random = Random::new(0x32);
     let mut links: Vec<Link> = Vec::new();
     while links.len() < 32 {
-        let (kind, parent) = (SIMPLE[random.below(4)], links.len().checked_sub(1));
+        let (kind, parent) = (SIMPLE_TREES[random.below(4)], links.len().checked_sub(1));
         links.push(Link::on(&mut random, &links, kind, parent));
     }
-    obeys_newton(&links, 0x32, LONG);
+    obeys_newton(&links, 0x32, LONG_CHAIN_TOLERANCE);
 }
 
 #[test]
 fn a_humanoid() {
-    let system = obeys_newton(&humanoid(), 0x38, LONG);
+    let system = obeys_newton(&humanoid(), 0x38, LONG_CHAIN_TOLERANCE);
     assert_eq!(system.program.n, 38);
 }

@@ -5,9 +5,9 @@
 
 use super::frames::along_velocities;
 use super::kernel::applied;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::centroidal::moves;
@@ -15,7 +15,7 @@ use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
 /// Name of the centre of mass and centroidal momentum in messages.
-pub(super) const WHAT: &str = "the centre of mass, or the momentum about it";
+pub(super) const SUBJECT: &str = "the centre of mass, or the momentum about it";
 
 type V = [Fp; 3];
 
@@ -27,8 +27,8 @@ struct Part {
     moment: V,
 }
 
-/// Returns whether the emitted functions are those of the model; `lane` assigns values to the symbols of both.
-pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<bool> {
+/// Returns whether the emitted functions are those of the model; `point` assigns values to the symbols of both.
+pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Option<bool> {
     let emitted = |id: FunctionId| program.function(id).map(|f| f.outputs.as_slice());
     if FunctionId::CENTROIDAL
         .iter()
@@ -37,11 +37,11 @@ pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<boo
         return Some(true);
     }
     let [_, x, xi, ..] = program.symbols();
-    let rate = evaluate_at(&model.graph, &model.rate, &mut lane.clone())?;
+    let rate = evaluate_at(&model.graph, &model.rate, &mut point.clone())?;
     let mut along = vec![Fp::ZERO; xi];
     along[x..xi].copy_from_slice(&rate);
-    let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut lane.clone());
-    let (centre, momentum) = described(model, lane, &along)?;
+    let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut point.clone());
+    let (centre, momentum) = sum_over_bodies(model, point, &along)?;
     let found = emitted(FunctionId::CentreOfMass);
     let mut holds = match found {
         Some(found) => value(found)? == centre,
@@ -53,8 +53,8 @@ pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<boo
     };
     holds &= value(emitted_momentum)? == momentum;
     let slopes = |direction: &[Fp]| -> Option<Vec<Fp>> {
-        let lane = &mut lane.clone();
-        let duals = tangent_at(&program.graph, emitted_momentum, lane, direction)?;
+        let point = &mut point.clone();
+        let duals = tangent_at(&program.graph, emitted_momentum, point, direction)?;
         Some(duals.into_iter().map(|dual| dual.1).collect())
     };
     if let Some(found) = emitted(FunctionId::CentroidalMap) {
@@ -68,7 +68,7 @@ pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<boo
 }
 
 /// Returns c, and (P, L) about it, by the sums over bodies and particles that move.
-fn described(model: &Model, lane: &Lane, along: &[Fp]) -> Option<(Vec<Fp>, Vec<Fp>)> {
+fn sum_over_bodies(model: &Model, point: &FieldPoint, along: &[Fp]) -> Option<(Vec<Fp>, Vec<Fp>)> {
     let mut places = Vec::new();
     let mut fixed = Vec::new();
     for body in &model.bodies {
@@ -83,10 +83,10 @@ fn described(model: &Model, lane: &Lane, along: &[Fp]) -> Option<(Vec<Fp>, Vec<F
     let points: Vec<Edge> = particles.clone().flat_map(|one| one.position).collect();
     let masses: Vec<Edge> = particles.map(|one| one.mass).collect();
     let graph = &model.graph;
-    let duals = tangent_at(graph, &places, &mut lane.clone(), along)?;
-    let points = tangent_at(graph, &points, &mut lane.clone(), along)?;
-    let fixed = evaluate_at(graph, &fixed, &mut lane.clone())?;
-    let masses = evaluate_at(graph, &masses, &mut lane.clone())?;
+    let duals = tangent_at(graph, &places, &mut point.clone(), along)?;
+    let points = tangent_at(graph, &points, &mut point.clone(), along)?;
+    let fixed = evaluate_at(graph, &fixed, &mut point.clone())?;
+    let masses = evaluate_at(graph, &masses, &mut point.clone())?;
     let mut parts: Vec<Part> = Vec::new();
     for (pose, constants) in duals.chunks(12).zip(fixed.chunks(13)) {
         let r = |i: usize, j: usize| pose[3 * i + j].0;

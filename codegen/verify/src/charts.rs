@@ -1,9 +1,9 @@
 //! Rates of charts: K(x) times them has to be ẋ. The tangents K are those of `model/charts`, which the generator does
 //! not use to compute the rates.
 
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::tape::Tape;
 use hamel_language::model::charts::all_tangents;
 use hamel_program::{FunctionId, Program};
@@ -35,11 +35,11 @@ impl Charts {
     }
 
     /// Returns whether K times the rates of the chart is the given ẋ at a point; `None` if they have no value there.
-    pub(super) fn hold(&self, rate: &[Fp], lane: &Lane) -> Option<bool> {
+    pub(super) fn hold(&self, rate: &[Fp], point: &FieldPoint) -> Option<bool> {
         let Some(Tangents { tape, columns }) = &self.0 else {
             return Some(true);
         };
-        let mut values = tape.values(lane)?;
+        let mut values = tape.values(point)?;
         let chart = values.split_off(columns * rate.len());
         let mut moved = vec![Fp::ZERO; rate.len()];
         for (place, tangent) in values.iter().enumerate() {

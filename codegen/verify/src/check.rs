@@ -4,9 +4,9 @@
 //! derived again in the graph with free coordinates, where nothing is merged modulo φ, expanded over the rationals, and
 //! compared by normal forms modulo φ ("proved").
 
-use super::confidence::{Compared, Confidence};
+use super::confidence::{ComparisonRecord, Confidence};
 use super::forms::Symbols;
-use super::points::{POINTS, Unequal, at_fresh_points};
+use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use super::verdict::Sides;
 pub use super::verdict::{Identity, Verdict};
 use super::{constrained, invariants, motion};
@@ -22,12 +22,12 @@ use hamel_language::model::{Model, class};
 use hamel_program::Program;
 
 /// Largest number of velocities of a model whose identities are proved; those of larger models are only checked.
-const MOST_PROVED: usize = 8;
+const MAX_PROVED_VELOCITIES: usize = 8;
 /// Largest number of nodes of expressions that are expanded for a proof.
-const MOST_NODES: usize = 20_000;
+const MAX_EXPANDED_NODES: usize = 20_000;
 /// Largest number of nodes of expressions in which ξ̇ occurs: in free coordinates, second derivatives of rotations are
 /// long polynomials.
-const MOST_MOVING_NODES: usize = 640;
+const MAX_NODES_WITH_RATES: usize = 640;
 
 /// Checks all identities of a model and its program.
 pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
@@ -55,14 +55,14 @@ fn verdicts(
     mut symbols: Symbols,
     mut proofs: Option<Proofs>,
 ) -> Vec<Identity> {
-    let mut all = described(&mut symbols);
+    let mut all = description_sides(&mut symbols);
     if !model.is_constrained() {
         all.extend(motion::emitted(&mut symbols, program));
     }
     // Identities without entries are not reported.
     all.retain(|sides| !sides.left.is_empty());
     let graph = &symbols.geometry.model.graph;
-    let mut compared = Compared::new(model, graph);
+    let mut compared = ComparisonRecord::new(model, graph);
     let mut identities: Vec<Identity> = all
         .iter()
         .map(|sides| {
@@ -108,7 +108,7 @@ fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
 }
 
 /// Returns the identities that do not involve the emitted program.
-fn described(symbols: &mut Symbols) -> Vec<Sides> {
+fn description_sides(symbols: &mut Symbols) -> Vec<Sides> {
     let mut all = kinematic(symbols);
     all.extend(jacobi(&mut symbols.geometry));
     if !symbols.geometry.model.has_inertia {
@@ -134,13 +134,13 @@ impl Proofs {
             forms: NormalForms::new(&model.points),
             sides: Vec::new(),
         };
-        if model.n() > MOST_PROVED {
+        if model.n() > MAX_PROVED_VELOCITIES {
             return proofs;
         }
         let Some(mut symbols) = Symbols::unreduced(model) else {
             return proofs;
         };
-        proofs.sides = described(&mut symbols);
+        proofs.sides = description_sides(&mut symbols);
         proofs.graph = symbols.geometry.model.graph;
         proofs
     }
@@ -157,8 +157,8 @@ impl Proofs {
         let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
         let moving = |root: &Edge| self.graph.class(root.node()) & class::ACCEL != 0;
         let most = match roots.iter().any(moving) {
-            true => MOST_MOVING_NODES,
-            false => MOST_NODES,
+            true => MAX_NODES_WITH_RATES,
+            false => MAX_EXPANDED_NODES,
         };
         if self.graph.reachable(&roots).len() > most {
             return false;
@@ -388,7 +388,7 @@ fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
 }
 
 /// Bounds the chance that both sides agree at all points although they differ.
-fn confidence(compared: &mut Compared<'_>, graph: &Graph, sides: &Sides) -> Confidence {
+fn confidence(compared: &mut ComparisonRecord<'_>, graph: &Graph, sides: &Sides) -> Confidence {
     let merged = |(left, right): (&Edge, &Edge)| left == right && left.abs() != graph.zero();
     let mut pairs = sides.left.iter().zip(&sides.right);
     if pairs.any(merged) {
@@ -397,7 +397,7 @@ fn confidence(compared: &mut Compared<'_>, graph: &Graph, sides: &Sides) -> Conf
         return compared.merging();
     }
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
-    compared.at_points(&roots, POINTS, sides.left.len())
+    compared.at_points(&roots, COMPARED_POINTS, sides.left.len())
 }
 
 /// Describes where both sides differ at a point of X; `None` if they agree.
@@ -405,8 +405,8 @@ fn at_points(model: &Model, graph: &Graph, sides: &Sides) -> Option<String> {
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
     let compared = at_fresh_points(
         |number| model.points.lane(0xc4ec + number),
-        |lane, _| {
-            let values = evaluate_at(graph, &roots, &mut lane.clone())?;
+        |point, _| {
+            let values = evaluate_at(graph, &roots, &mut point.clone())?;
             let (left, right) = values.split_at(sides.left.len());
             let differs = (0..left.len()).find(|&entry| left[entry] != right[entry]);
             Some(differs.map_or(Ok(()), Err))

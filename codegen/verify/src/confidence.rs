@@ -25,7 +25,7 @@ pub struct Confidence {
 impl Confidence {
     /// Bounds the chance that a graph merged nodes that differ: each pair could be equal at its point by chance.
     pub fn of_merging(model: &Model, graph: &Graph) -> Self {
-        Compared::new(model, graph).merging()
+        ComparisonRecord::new(model, graph).merging()
     }
 
     /// Bounds the error for sums of `terms` products of expressions, compared `comparisons` times at each point.
@@ -58,17 +58,17 @@ impl Confidence {
 }
 
 /// Repeated comparisons of expressions of one graph.
-pub struct Compared<'a> {
+pub struct ComparisonRecord<'a> {
     graph: &'a Graph,
     degrees: Degrees<'a>,
     solved: f64,
     merging: Option<Confidence>,
 }
 
-impl<'a> Compared<'a> {
+impl<'a> ComparisonRecord<'a> {
     /// Prepares comparisons in a graph.
     pub fn new(model: &Model, graph: &'a Graph) -> Self {
-        Compared {
+        ComparisonRecord {
             graph,
             degrees: Degrees::new(graph, groups(model)),
             solved: solved(model),

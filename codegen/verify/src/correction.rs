@@ -34,8 +34,8 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     roots.extend(y.iter().flatten());
     at_fresh_points(
         |number| model.points.lane(0xc0_44ec + number),
-        |lane, number| {
-            let values = evaluate_at(&on_x.graph, &roots, &mut lane.clone())?;
+        |point, number| {
+            let values = evaluate_at(&on_x.graph, &roots, &mut point.clone())?;
             let (a, y) = values.split_at(nu * n);
             let mut random = Random::new(0x9e5 + number);
             let step: Vec<Fp> = (0..nu).map(|_| random.element()).collect();
@@ -46,7 +46,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             let slopes = tangent.iter().zip(&step).map(|(&tangent, &h)| tangent - h);
             // The correction is 0 on X.
             let expected: Vec<Dual> = slopes.map(|slope| (Fp::ZERO, slope)).collect();
-            let found = tangent_at(&free, &emitted, &mut lane.clone(), &direction)?;
+            let found = tangent_at(&free, &emitted, &mut point.clone(), &direction)?;
             Some(if found == expected { Ok(()) } else { Err(()) })
         },
     )
@@ -69,15 +69,15 @@ fn constraint(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     let emitted = rebuild(&program.graph, &mut free, outputs);
     at_fresh_points(
         |number| {
-            let mut lane = model.points.lane(0xf1_0ff + number)?;
+            let mut point = model.points.lane(0xf1_0ff + number)?;
             let mut random = Random::new(0x0f_f2e + number);
             for place in first..first + model.nu() {
-                lane.set_symbol(place, random.element());
+                point.set_symbol(place, random.element());
             }
-            Some(lane)
+            Some(point)
         },
-        |lane, _| {
-            let at = |edges: &[Edge]| evaluate_at(&free, edges, &mut lane.clone());
+        |point, _| {
+            let at = |edges: &[Edge]| evaluate_at(&free, edges, &mut point.clone());
             let same = at(&emitted)? == at(&phi)?;
             Some(if same { Ok(()) } else { Err(()) })
         },

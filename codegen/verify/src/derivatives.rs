@@ -4,19 +4,23 @@
 //! have proofs of their own. None of the generator's derivatives is used.
 
 use super::kernel::applied;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
 /// Name of these derivatives in messages.
-pub(super) const WHAT: &str = "the slopes of inverse dynamics, or of ξ̇ by parameters";
+pub(super) const SUBJECT: &str = "the slopes of inverse dynamics, or of ξ̇ by parameters";
 
 /// Returns whether the emitted derivatives hold. A of the full model is evaluated at `point`, the emitted functions at
 /// `inner`.
-pub(super) fn hold(full: &Model, program: &Program, [point, inner]: [&Lane; 2]) -> Option<bool> {
+pub(super) fn hold(
+    full: &Model,
+    program: &Program,
+    [point, inner]: [&FieldPoint; 2],
+) -> Option<bool> {
     let emitted = |id: FunctionId| program.function(id).is_some();
     if !(emitted(FunctionId::InverseDynamicsSlopes) || emitted(FunctionId::ParameterSlopes)) {
         return Some(true);
@@ -63,7 +67,7 @@ fn are_slopes(
     program: &Program,
     [slopes, of]: [FunctionId; 2],
     (columns, direction): (&[Fp], &[Fp]),
-    lane: &Lane,
+    point: &FieldPoint,
 ) -> Option<bool> {
     let Some(slopes) = program.function(slopes) else {
         return Some(true);
@@ -71,8 +75,8 @@ fn are_slopes(
     let Some(of) = program.function(of) else {
         return Some(false);
     };
-    let table = evaluate_at(&program.graph, &slopes.outputs, &mut lane.clone())?;
-    let duals = tangent_at(&program.graph, &of.outputs, &mut lane.clone(), direction)?;
+    let table = evaluate_at(&program.graph, &slopes.outputs, &mut point.clone())?;
+    let duals = tangent_at(&program.graph, &of.outputs, &mut point.clone(), direction)?;
     let expected: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
     Some(applied(expected.len(), &table, columns) == expected)
 }

@@ -5,9 +5,9 @@
 //! at ξ̇ = 0. None of the generator's derivatives is used.
 
 use super::kernel::applied;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 use hamel_language::functions::{FrameFunction, Jacobian};
@@ -15,16 +15,16 @@ use hamel_language::model::{Frame, Model};
 use hamel_program::Program;
 
 /// Name of the functions of frames in messages.
-pub(super) const WHAT: &str = "pose, twist, Jacobian or bias acceleration of a frame";
+pub(super) const SUBJECT: &str = "pose, twist, Jacobian or bias acceleration of a frame";
 
-/// Returns whether the emitted functions of frames hold; `lane` assigns values to the symbols of model and program.
-pub(super) fn hold(model: &Model, program: &Program, lane: &Lane) -> Option<bool> {
+/// Returns whether the emitted functions of frames hold; `point` assigns values to the symbols of model and program.
+pub(super) fn hold(model: &Model, program: &Program, point: &FieldPoint) -> Option<bool> {
     for jacobian in &model.asked.jacobians {
         let mut frames = model.frames.iter();
         let Some(frame) = frames.find(|frame| frame.name == jacobian.frame) else {
             return Some(false);
         };
-        if !frame_holds(model, program, (jacobian, frame), lane)? {
+        if !frame_holds(model, program, (jacobian, frame), point)? {
             return Some(false);
         }
     }
@@ -35,7 +35,7 @@ fn frame_holds(
     model: &Model,
     program: &Program,
     (jacobian, frame): (&Jacobian, &Frame),
-    lane: &Lane,
+    point: &FieldPoint,
 ) -> Option<bool> {
     let outputs = |of: FrameFunction| -> Option<&[Edge]> {
         let function = program.function(jacobian.name_of(of))?;
@@ -51,16 +51,16 @@ fn frame_holds(
         return Some(false);
     };
     let graph = &program.graph;
-    let value = |edges: &[Edge]| evaluate_at(graph, edges, &mut lane.clone());
+    let value = |edges: &[Edge]| evaluate_at(graph, edges, &mut point.clone());
     let [_, x, xi, ..] = program.symbols();
-    let rate = evaluate_at(&model.graph, &model.rate, &mut lane.clone())?;
+    let rate = evaluate_at(&model.graph, &model.rate, &mut point.clone())?;
     let mut moving = vec![Fp::ZERO; xi];
     moving[x..xi].copy_from_slice(&rate);
     // [R p] and its rate.
     let described: Vec<Edge> = (frame.rotation.iter().zip(frame.position))
         .flat_map(|(row, p)| [row[0], row[1], row[2], p])
         .collect();
-    let placed = tangent_at(&model.graph, &described, &mut lane.clone(), &moving)?;
+    let placed = tangent_at(&model.graph, &described, &mut point.clone(), &moving)?;
     let (placed, moved): (Vec<Fp>, Vec<Fp>) = placed.into_iter().unzip();
     let r = |i: usize, j: usize| placed[4 * i + j];
     let spin =
@@ -76,7 +76,7 @@ fn frame_holds(
     let expected = [axes(speed), axes(omega)].concat();
     let (eta, turned) = along_velocities(program, &expected);
     let slopes = |direction: &[Fp]| -> Option<Vec<Fp>> {
-        let duals = tangent_at(graph, twist, &mut lane.clone(), direction)?;
+        let duals = tangent_at(graph, twist, &mut point.clone(), direction)?;
         Some(duals.into_iter().map(|dual| dual.1).collect())
     };
     Some(

@@ -1,30 +1,30 @@
 //! Points of systems with constraints on their velocities: ξ is changed so that B ξ + b = 0.
 
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_language::model::points::Moved;
 use hamel_language::model::{Model, class};
 
 /// Returns velocities that satisfy all constraints of a model, with their symbols, by changing those of a point.
-pub(super) fn at_rest(model: &Model, lane: Lane) -> Option<Moved> {
+pub(super) fn at_rest(model: &Model, point: FieldPoint) -> Option<Moved> {
     let rows = model.constraints.iter().flat_map(|c| c.row.clone());
     let rows: Vec<Edge> = rows.collect();
-    rows_at_rest(model, &rows, lane)
+    rows_at_rest(model, &rows, point)
 }
 
 /// Does the same with other expressions for the rows of B; in the full frame with time ξ⁰ is 1.
-pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Option<Moved> {
+pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut point: FieldPoint) -> Option<Moved> {
     let places = places(&model.graph, class::VELOCITY);
     let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
-    let mut xi: Vec<Fp> = places.iter().map(|&place| lane.symbol(place)).collect();
+    let mut xi: Vec<Fp> = places.iter().map(|&place| point.symbol(place)).collect();
     let time = model.clock.filter(|_| model.spans).map(|clock| clock.xi);
     if let Some(time) = time {
         xi[time] = Fp::ONE;
     }
-    let mut rows = evaluate_at(&model.graph, rows, &mut lane)?;
-    let mut shifts = evaluate_at(&model.graph, &shifts, &mut lane)?;
+    let mut rows = evaluate_at(&model.graph, rows, &mut point)?;
+    let mut shifts = evaluate_at(&model.graph, &shifts, &mut point)?;
     if let Some(time) = time {
         for (row, shift) in rows.chunks_mut(xi.len()).zip(&mut shifts) {
             *shift = *shift + std::mem::replace(&mut row[time], Fp::ZERO);

@@ -2,25 +2,25 @@
 
 use super::kernel::applied;
 use super::states::slopes_of;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_language::functions::SLOPES;
 use hamel_language::model::Model;
 use hamel_program::Program;
 
 /// Name of the derivatives of outputs in messages.
-pub(super) const WHAT: &str = "the slopes of an output";
+pub(super) const SUBJECT: &str = "the slopes of an output";
 
-/// Returns whether the emitted outputs have the values of the description; `lane` assigns values to the model's
+/// Returns whether the emitted outputs have the values of the description; `point` assigns values to the model's
 /// symbols.
-pub(super) fn values_hold(model: &Model, program: &Program, lane: &Lane) -> Option<bool> {
+pub(super) fn values_hold(model: &Model, program: &Program, point: &FieldPoint) -> Option<bool> {
     for (name, value) in &model.outputs {
         let Some(function) = program.function(name) else {
             continue;
         };
-        let expected = evaluate_at(&model.graph, &value.entries(), &mut lane.clone())?;
-        if evaluate_at(&program.graph, &function.outputs, &mut lane.clone())? != expected {
+        let expected = evaluate_at(&model.graph, &value.entries(), &mut point.clone())?;
+        if evaluate_at(&program.graph, &function.outputs, &mut point.clone())? != expected {
             return Some(false);
         }
     }
@@ -35,15 +35,15 @@ pub(super) fn slopes_hold(
     model: &Model,
     program: &Program,
     motion: (&[Fp], &[Fp]),
-    lane: &Lane,
+    point: &FieldPoint,
     (direction, columns): (&[Fp], &[Fp]),
 ) -> Option<bool> {
     for (name, value) in &model.outputs {
         let Some(function) = program.function(format!("{name}{SLOPES}")) else {
             continue;
         };
-        let table = evaluate_at(&program.graph, &function.outputs, &mut lane.clone())?;
-        let expected = slopes_of(model, &value.entries(), motion, lane, direction)?;
+        let table = evaluate_at(&program.graph, &function.outputs, &mut point.clone())?;
+        let expected = slopes_of(model, &value.entries(), motion, point, direction)?;
         if applied(expected.len(), &table, columns) != expected {
             return Some(false);
         }

@@ -3,15 +3,15 @@
 #[cfg(test)]
 mod tests;
 
-use hamel_algebra::lane::Lane;
+use hamel_algebra::field_point::FieldPoint;
 
 /// Number of points at which everything is compared.
-pub const POINTS: u64 = 4;
+pub const COMPARED_POINTS: u64 = 4;
 /// Largest number of points tried; square roots have values at some points only.
-const TRIES: u64 = 400;
+const MAX_TRIED_POINTS: u64 = 400;
 /// Number of searches for a point, each of thousands of attempts, that have to fail until no points are assumed to
 /// exist.
-pub const MISSING: u64 = 2;
+pub const MAX_FAILED_SEARCHES: u64 = 2;
 
 /// Reason why a comparison failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,28 +22,28 @@ pub enum Unequal<E> {
     Nowhere,
 }
 
-/// Compares at fresh points until both sides differ, or have had values at [`POINTS`] points.
+/// Compares at fresh points until both sides differ, or have had values at [`COMPARED_POINTS`] points.
 ///
-/// `lane` creates the point of a number, and `at` compares there; either returns `None` if there are no values.
+/// `point` creates the point of a number, and `at` compares there; either returns `None` if there are no values.
 pub fn at_fresh_points<E>(
-    lane: impl Fn(u64) -> Option<Lane>,
-    mut at: impl FnMut(&Lane, u64) -> Option<Result<(), E>>,
+    point: impl Fn(u64) -> Option<FieldPoint>,
+    mut at: impl FnMut(&FieldPoint, u64) -> Option<Result<(), E>>,
 ) -> Result<(), Unequal<E>> {
     let (mut compared, mut missing) = (0, 0);
-    for number in 1..=TRIES {
-        let Some(lane) = lane(number) else {
+    for number in 1..=MAX_TRIED_POINTS {
+        let Some(point) = point(number) else {
             missing += 1;
             match missing {
-                MISSING => break,
+                MAX_FAILED_SEARCHES => break,
                 _ => continue,
             }
         };
-        match at(&lane, number) {
+        match at(&point, number) {
             None => continue,
             Some(Ok(())) => compared += 1,
             Some(Err(what)) => return Err(Unequal::Differs(what)),
         }
-        if compared == POINTS {
+        if compared == COMPARED_POINTS {
             return Ok(());
         }
     }

@@ -8,9 +8,9 @@
 use super::numbers::Numbers;
 use super::points::{Unequal, at_fresh_points};
 use super::verdict::{failure, nowhere};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 use hamel_dynamics::regressor::{ENTRIES, Kind, Regressor};
@@ -37,7 +37,7 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
         .ok_or_else(|| failed("its columns have no numbers"))?;
     let compared = at_fresh_points(
         |seed| model.points.lane(seed),
-        |lane, seed| at(&numbers, (&tape, &added), regressor, lane, seed),
+        |point, seed| at(&numbers, (&tape, &added), regressor, point, seed),
     );
     match compared {
         Ok(()) => Ok(()),
@@ -61,11 +61,12 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
     let factors: Vec<Edge> = terms.map(|&(_, factor)| factor).collect();
     let compared = at_fresh_points(
         |seed| model.points.lane(0x4e_9e55 + seed),
-        |lane, _| {
-            let of = |edges: &[Edge]| evaluate_at(&regressor.model.graph, edges, &mut lane.clone());
+        |point, _| {
+            let of =
+                |edges: &[Edge]| evaluate_at(&regressor.model.graph, edges, &mut point.clone());
             let emitted = |id: FunctionId| match program.function(id) {
                 None => Some(None),
-                Some(f) => evaluate_at(&program.graph, &f.outputs, &mut lane.clone()).map(Some),
+                Some(f) => evaluate_at(&program.graph, &f.outputs, &mut point.clone()).map(Some),
             };
             let (values, factors) = (of(&values)?, of(&factors)?);
             let mut factors = factors.iter();
@@ -140,14 +141,14 @@ fn at(
     numbers: &Numbers,
     (tape, added): (&Tape, &[Fp]),
     regressor: &Regressor,
-    lane: &Lane,
+    point: &FieldPoint,
     seed: u64,
 ) -> Option<Result<(), String>> {
-    let left = match numbers.at(lane)? {
+    let left = match numbers.at(point)? {
         Ok(values) => values.left,
         Err(what) => return Some(Err(what)),
     };
-    let values = tape.values(lane)?;
+    let values = tape.values(point)?;
     let terms: usize = regressor.base.iter().map(|base| base.terms.len()).sum();
     let (factors, values) = values.split_at_checked(terms)?;
     let (given, values) = values.split_at_checked(regressor.standard.len())?;

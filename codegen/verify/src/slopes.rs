@@ -9,9 +9,9 @@ use super::hamel_form;
 use super::kernel::dot;
 use super::reference::Reference;
 use super::{centroidal, derivatives, frames, outputs, states};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::linear::matrix;
 use hamel_algebra::numeric::{evaluate_at, solve};
 use hamel_algebra::tangent::tangent_at;
@@ -21,13 +21,13 @@ use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
 /// Returns whether ξ̇ as an intermediate result of [A B] is that of `accel`.
-fn rates_at(program: &Program, lane: &Lane) -> Option<bool> {
+fn rates_at(program: &Program, point: &FieldPoint) -> Option<bool> {
     let linearize = program.function(FunctionId::Linearize);
     let Some(linearize) = linearize.filter(|function| !function.rates.is_empty()) else {
         return Some(true);
     };
     let accel = program.function(FunctionId::Accel)?;
-    let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut lane.clone());
+    let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut point.clone());
     Some(value(&linearize.rates)? == value(&accel.outputs)?)
 }
 
@@ -126,44 +126,44 @@ impl Slopes {
     }
 
     /// Compares at one point; `None` if something has no value there.
-    pub fn at_point(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+    pub fn at_point(&self, program: &Program, point: &FieldPoint) -> Option<Result<(), String>> {
         let value = |name: &str| {
             let function = program.function(name)?;
-            evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+            evaluate_at(&program.graph, &function.outputs, &mut point.clone())
         };
         for (name, entries) in &self.invariants {
-            if value(name)? != evaluate_at(&self.model.graph, entries, &mut lane.clone())? {
+            if value(name)? != evaluate_at(&self.model.graph, entries, &mut point.clone())? {
                 return Some(Err("an invariant".into()));
             }
         }
-        if !measured_at(&self.model, program, [lane, lane])? {
+        if !measured_at(&self.model, program, [point, point])? {
             return Some(Err(MEASURE.into()));
         }
-        if !derivatives::hold(&self.model, program, [lane, lane])? {
-            return Some(Err(derivatives::WHAT.into()));
+        if !derivatives::hold(&self.model, program, [point, point])? {
+            return Some(Err(derivatives::SUBJECT.into()));
         }
-        if !frames::hold(&self.model, program, lane)? {
-            return Some(Err(frames::WHAT.into()));
+        if !frames::hold(&self.model, program, point)? {
+            return Some(Err(frames::SUBJECT.into()));
         }
-        if !centroidal::holds(&self.model, program, lane)? {
-            return Some(Err(centroidal::WHAT.into()));
+        if !centroidal::holds(&self.model, program, point)? {
+            return Some(Err(centroidal::SUBJECT.into()));
         }
-        if !rates_at(program, lane)? {
+        if !rates_at(program, point)? {
             return Some(Err("ξ̇ beside its slopes".into()));
         }
         match &self.source {
             None => Some(Ok(())),
-            Some(Source::Emitted) => self.emitted_at(program, lane),
-            Some(Source::Derived(reference)) => derived_at(reference, program, lane),
+            Some(Source::Emitted) => self.emitted_at(program, point),
+            Some(Source::Derived(reference)) => derived_at(reference, program, point),
         }
     }
 
     /// Compares [A B] with the derivatives of the emitted M, inverse dynamics and f.
-    fn emitted_at(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+    fn emitted_at(&self, program: &Program, point: &FieldPoint) -> Option<Result<(), String>> {
         let (model, graph) = (&self.model, &program.graph);
         let (n, nu) = (model.n(), model.nu());
         let outputs = |name: &str| Some(program.function(name)?.outputs.as_slice());
-        let value = |name: &str| evaluate_at(graph, outputs(name)?, &mut lane.clone());
+        let value = |name: &str| evaluate_at(graph, outputs(name)?, &mut point.clone());
         let mut xi_dot = value("accel")?;
         xi_dot.truncate(n);
         let mass = value("mass_matrix")?;
@@ -174,11 +174,11 @@ impl Slopes {
             .into_iter()
             .chain(model.rate.clone())
             .collect();
-        let here = evaluate_at(&model.graph, &roots, &mut lane.clone())?;
+        let here = evaluate_at(&model.graph, &roots, &mut point.clone())?;
         let displaced = Displaced::new(model, &here[nu * n..]);
         let moved = displaced.moved(model, &here[..nu * n]);
         let kinematics = |moved: &[Fp]| -> Option<Vec<Fp>> {
-            let duals = tangent_at(&model.graph, &roots, &mut lane.clone(), moved)?;
+            let duals = tangent_at(&model.graph, &roots, &mut point.clone(), moved)?;
             Some(duals.into_iter().map(|dual| dual.1).collect())
         };
         let changed = kinematics(&moved)?;
@@ -194,7 +194,7 @@ impl Slopes {
             return Some(Err(KINEMATIC.into()));
         }
         // M δξ̇ = δ(f − F(x, ξ, ξ̇)) with ξ̇ held constant.
-        let mut held = lane.clone();
+        let mut held = point.clone();
         for (place, &value) in model
             .graph
             .symbol_places(&model.xi_dot)
@@ -212,12 +212,12 @@ impl Slopes {
         if product(&mass, changed) != right {
             return Some(Err(DYNAMIC.into()));
         }
-        if states::slopes(model, (&xi_dot, changed), lane, &moved)? != state_rates {
-            return Some(Err(states::WHAT.into()));
+        if states::slopes(model, (&xi_dot, changed), point, &moved)? != state_rates {
+            return Some(Err(states::SUBJECT.into()));
         }
         let along = (&moved[..], &displaced.columns[..]);
-        if !outputs::slopes_hold(model, program, (&xi_dot, changed), lane, along)? {
-            return Some(Err(outputs::WHAT.into()));
+        if !outputs::slopes_hold(model, program, (&xi_dot, changed), point, along)? {
+            return Some(Err(outputs::SUBJECT.into()));
         }
         Some(Ok(()))
     }
@@ -230,7 +230,7 @@ impl Slopes {
 pub(super) fn measured_at(
     full: &Model,
     program: &Program,
-    [point, inner]: [&Lane; 2],
+    [point, inner]: [&FieldPoint; 2],
 ) -> Option<bool> {
     let emitted = |id: FunctionId| match program.function(id) {
         Some(function) => {
@@ -320,14 +320,18 @@ impl Displaced {
 }
 
 /// Compares [A B] with the derivatives of an independent derivation.
-fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+fn derived_at(
+    reference: &Reference,
+    program: &Program,
+    point: &FieldPoint,
+) -> Option<Result<(), String>> {
     let (model, graph) = (&reference.model, &reference.model.graph);
     let n = model.n();
     let roots = Numbers::roots(reference);
-    let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
+    let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut point.clone())?);
     // Derivatives of everything along a direction in the symbols.
     let slope = |direction: &[Fp]| -> Option<Numbers> {
-        let duals = tangent_at(graph, &roots, &mut lane.clone(), direction)?;
+        let duals = tangent_at(graph, &roots, &mut point.clone(), direction)?;
         let slopes: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
         Some(Numbers::new(reference, &slopes))
     };
@@ -336,7 +340,7 @@ fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<R
     let moving = slope(&displaced.moving)?;
     let changed = slope(&displaced.moved(model, &here.a.concat()))?;
     let linear = &program.function(FunctionId::Linearize)?.outputs;
-    let found = displaced.found(&evaluate_at(&program.graph, linear, &mut lane.clone())?);
+    let found = displaced.found(&evaluate_at(&program.graph, linear, &mut point.clone())?);
     // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
     let left = difference(&changed.rate, &product(&moving.a, &displaced.columns[..n]));
     if product(&here.a, &found[..n]) != left {
@@ -349,12 +353,12 @@ fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<R
         return Some(Err(DYNAMIC.into()));
     }
     let moved = displaced.moved(model, &here.a.concat());
-    if states::slopes(model, (&xi_dot, changed_rates), lane, &moved)? != state_rates {
-        return Some(Err(states::WHAT.into()));
+    if states::slopes(model, (&xi_dot, changed_rates), point, &moved)? != state_rates {
+        return Some(Err(states::SUBJECT.into()));
     }
     let along = (&moved[..], &displaced.columns[..]);
-    if !outputs::slopes_hold(model, program, (&xi_dot, changed_rates), lane, along)? {
-        return Some(Err(outputs::WHAT.into()));
+    if !outputs::slopes_hold(model, program, (&xi_dot, changed_rates), point, along)? {
+        return Some(Err(outputs::SUBJECT.into()));
     }
     Some(Ok(()))
 }

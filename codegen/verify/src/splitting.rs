@@ -11,9 +11,9 @@
 //! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
 
 use super::numbers::{Numbers, Values};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::{evaluate_at, solve};
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::kinematics::chart_rates;
@@ -56,33 +56,33 @@ impl Proof {
         &self,
         numbers: &Numbers,
         program: &Program,
-        lane: &Lane,
+        point: &FieldPoint,
     ) -> Option<Result<(), String>> {
         let wrong = |what: &str| Some(Err(what.to_string()));
-        let at = |name: &str, lane: &Lane| {
+        let at = |name: &str, point: &FieldPoint| {
             let function = program.function(name)?;
-            evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+            evaluate_at(&program.graph, &function.outputs, &mut point.clone())
         };
-        let x: Vec<Fp> = self.x.iter().map(|&place| lane.symbol(place)).collect();
-        let p: Vec<Fp> = self.p.iter().map(|&place| lane.symbol(place)).collect();
-        let xi = at("split_velocities", lane)?;
-        let mut moving = lane.clone();
+        let x: Vec<Fp> = self.x.iter().map(|&place| point.symbol(place)).collect();
+        let p: Vec<Fp> = self.p.iter().map(|&place| point.symbol(place)).collect();
+        let xi = at("split_velocities", point)?;
+        let mut moving = point.clone();
         set(&mut moving, &self.xi, &xi);
         if at("split_momenta", &moving)? != p {
             return wrong("p of ξ of p is p, for the emitted momenta");
         }
         if program.function(FunctionId::Centre).is_some() {
-            let mut shifted = lane.clone();
-            set(&mut shifted, &self.x, &at("centre", lane)?);
+            let mut shifted = point.clone();
+            set(&mut shifted, &self.x, &at("centre", point)?);
             if at("uncentre", &shifted)? != x {
                 return wrong("x of y of x is x, for the emitted centre");
             }
         }
-        let kick = at("kick", lane)?;
+        let kick = at("kick", point)?;
         let spin = evaluate_at(&self.model.graph, &self.rates, &mut moving.clone())?;
         let (p_dot, y_dot) = self.slopes(numbers, program, &moving)?;
         let mut inertia = match program.function(FunctionId::RotorInertia) {
-            Some(_) => at("rotor_inertia", lane)?.into_iter(),
+            Some(_) => at("rotor_inertia", point)?.into_iter(),
             None => Vec::new().into_iter(),
         };
         let Structure {
@@ -137,7 +137,7 @@ impl Proof {
         &self,
         numbers: &Numbers,
         program: &Program,
-        moving: &Lane,
+        moving: &FieldPoint,
     ) -> Option<(Vec<Fp>, Vec<Fp>)> {
         let model = &self.model;
         let Values {
@@ -167,8 +167,8 @@ impl Proof {
     }
 }
 
-fn set(lane: &mut Lane, places: &[usize], values: &[Fp]) {
+fn set(point: &mut FieldPoint, places: &[usize], values: &[Fp]) {
     for (&place, &value) in places.iter().zip(values) {
-        lane.set_symbol(place, value);
+        point.set_symbol(place, value);
     }
 }

@@ -1,8 +1,8 @@
 //! Rates of states of first order at a point, from the description with ξ̇ inserted.
 
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Node};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 use hamel_algebra::transplant::{rebuild, substitute};
@@ -10,7 +10,7 @@ use hamel_language::model::{Model, class};
 use hamel_program::{FunctionId, Program};
 
 /// Name of the rates of states in messages.
-pub(super) const WHAT: &str = "ż of the states";
+pub(super) const SUBJECT: &str = "ż of the states";
 
 /// Returns the model with the emitted ξ̇ substituted for its symbols in the rates of states and in outputs.
 ///
@@ -46,23 +46,23 @@ pub(super) fn with_rates(model: &Model, program: &Program) -> Model {
     model
 }
 
-/// Returns ż for given rates ξ̇ of the velocities; `lane` assigns values to the model's symbols.
-pub(super) fn rates(model: &Model, xi_dot: &[Fp], lane: &Lane) -> Option<Vec<Fp>> {
-    let mut lane = lane.clone();
+/// Returns ż for given rates ξ̇ of the velocities; `point` assigns values to the model's symbols.
+pub(super) fn rates(model: &Model, xi_dot: &[Fp], point: &FieldPoint) -> Option<Vec<Fp>> {
+    let mut point = point.clone();
     for (symbol, &value) in model.xi_dot.iter().zip(xi_dot) {
-        lane.set_symbol(model.graph.as_symbol(*symbol)?, value);
+        point.set_symbol(model.graph.as_symbol(*symbol)?, value);
     }
-    evaluate_at(&model.graph, &model.state_rates, &mut lane)
+    evaluate_at(&model.graph, &model.state_rates, &mut point)
 }
 
 /// Returns δż along a direction in the symbols; `motion` is ξ̇, and the δξ̇ by which ξ̇ changes along it.
 pub(super) fn slopes(
     model: &Model,
     motion: (&[Fp], &[Fp]),
-    lane: &Lane,
+    point: &FieldPoint,
     direction: &[Fp],
 ) -> Option<Vec<Fp>> {
-    slopes_of(model, &model.state_rates, motion, lane, direction)
+    slopes_of(model, &model.state_rates, motion, point, direction)
 }
 
 /// Returns the derivatives of any expressions of the model, as [`slopes`] does of ż.
@@ -70,16 +70,16 @@ pub(super) fn slopes_of(
     model: &Model,
     expressions: &[Edge],
     (xi_dot, change): (&[Fp], &[Fp]),
-    lane: &Lane,
+    point: &FieldPoint,
     direction: &[Fp],
 ) -> Option<Vec<Fp>> {
-    let mut lane = lane.clone();
+    let mut point = point.clone();
     let mut direction = direction.to_vec();
     for ((symbol, &value), &slope) in model.xi_dot.iter().zip(xi_dot).zip(change) {
         let place = model.graph.as_symbol(*symbol)?;
-        lane.set_symbol(place, value);
+        point.set_symbol(place, value);
         direction[place] = slope;
     }
-    let duals = tangent_at(&model.graph, expressions, &mut lane, &direction)?;
+    let duals = tangent_at(&model.graph, expressions, &mut point, &direction)?;
     Some(duals.into_iter().map(|dual| dual.1).collect())
 }

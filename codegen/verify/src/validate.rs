@@ -27,9 +27,9 @@ use super::slopes::Slopes;
 use super::splitting::Proof;
 use super::states;
 use super::verdict::{failure, nowhere};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 use hamel_language::diagnostics::Diagnostic;
@@ -38,7 +38,7 @@ use hamel_program::Program;
 use rustc_hash::FxHashMap;
 
 /// Largest number of velocities of a model for which a failure is explained by the identities that are broken.
-const MOST_EXPLAINED: usize = 8;
+const MAX_EXPLAINED_VELOCITIES: usize = 8;
 
 /// Validates the functions of a program.
 ///
@@ -51,7 +51,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             return nowhere(model);
         };
         let mut broken = vec![what];
-        if model.n() <= MOST_EXPLAINED
+        if model.n() <= MAX_EXPLAINED_VELOCITIES
             && let Some(symbols) = Symbols::new(model)
         {
             let identities = failures(model, program, symbols);
@@ -71,8 +71,8 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<S
     let slopes = Slopes::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
     let splitting = Proof::new(model, program);
     let charts = Charts::new(program).ok_or_else(|| without("that charts have values"))?;
-    let at_point = |lane: &Lane| -> Option<Result<(), String>> {
-        let values = match numbers.at(lane)? {
+    let at_point = |point: &FieldPoint| -> Option<Result<(), String>> {
+        let values = match numbers.at(point)? {
             Ok(values) => values,
             Err(what) => return Some(Err(what)),
         };
@@ -81,23 +81,23 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<S
                 [model, &with_rates],
                 program,
                 &values,
-                &emitted.at(lane)?,
-                lane,
+                &emitted.at(point)?,
+                point,
             )?,
-            slopes.at_point(program, lane)?,
-            match charts.hold(&values.rate, lane)? {
+            slopes.at_point(program, point)?,
+            match charts.hold(&values.rate, point)? {
                 true => Ok(()),
                 false => Err("K(x) times the rate of the chart = ẋ".into()),
             },
             splitting.as_ref().map_or(Some(Ok(())), |splitting| {
-                splitting.at_point(&numbers, program, lane)
+                splitting.at_point(&numbers, program, point)
             })?,
         ];
         Some(all.into_iter().collect())
     };
     at_fresh_points(
         |number| model.points.lane(0x7a11 + number),
-        |lane, _| at_point(lane),
+        |point, _| at_point(point),
     )
 }
 
@@ -142,8 +142,8 @@ impl Emitted {
     }
 
     /// Returns the values of all functions at a point, by name.
-    fn at(&self, lane: &Lane) -> Option<FxHashMap<&str, Vec<Fp>>> {
-        let values = self.tape.values(lane)?;
+    fn at(&self, point: &FieldPoint) -> Option<FxHashMap<&str, Vec<Fp>>> {
+        let values = self.tape.values(point)?;
         let mut rest = values.into_iter();
         Some(
             self.names
@@ -162,7 +162,7 @@ fn compare(
     program: &Program,
     values: &Values,
     emitted: &FxHashMap<&str, Vec<Fp>>,
-    lane: &Lane,
+    point: &FieldPoint,
 ) -> Option<Result<(), String>> {
     let broken = disagreements(&values.left);
     if !broken.is_empty() {
@@ -226,8 +226,8 @@ fn compare(
         if sum(&[&product(xi_dot), &resistance]) != values.force {
             return Some(Err("(30c) for the emitted ξ̇".into()));
         }
-        if state_rates != states::rates(with_rates, xi_dot, lane)? {
-            return Some(Err(states::WHAT.into()));
+        if state_rates != states::rates(with_rates, xi_dot, point)? {
+            return Some(Err(states::SUBJECT.into()));
         }
     }
     // d/dt (M ξ) = Ṁ ξ + f − h − ∂V.
@@ -237,14 +237,14 @@ fn compare(
         return Some(Err("ṗ".into()));
     }
     if let Some(xi) = emitted.get("velocity_from_momentum") {
-        let momenta = evaluate_at(&model.graph, &model.momenta, &mut lane.clone())?;
+        let momenta = evaluate_at(&model.graph, &model.momenta, &mut point.clone())?;
         if product(xi) != momenta {
             return Some(Err("ξ of p".into()));
         }
     }
     for (name, expected) in &model.outputs {
         if program.function(name).is_some() {
-            let expected = evaluate_at(&model.graph, &expected.entries(), &mut lane.clone())?;
+            let expected = evaluate_at(&model.graph, &expected.entries(), &mut point.clone())?;
             if emitted.get(name.as_str()) != Some(&expected) {
                 return Some(Err(format!("output `{name}`")));
             }

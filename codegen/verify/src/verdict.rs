@@ -1,8 +1,8 @@
 //! Results of proofs.
 
 use super::confidence::Confidence;
+use hamel_algebra::field_point::Roots;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Roots;
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 
@@ -53,7 +53,7 @@ pub(super) fn nowhere(model: &Model) -> Diagnostic {
 
 /// Explains why nothing is emitted: nested roots that the proof cannot evaluate, or else a fault of the generator.
 fn fault(model: &Model, unproved: &str, wrong: &str) -> Diagnostic {
-    if model.points.roots == Roots::Anything {
+    if model.points.roots == Roots::Arbitrary {
         let message = format!("`{}` could not be proved: {unproved}", model.name);
         let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
         return Diagnostic::new(model.span, message).help(help);

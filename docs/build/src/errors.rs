@@ -40,7 +40,7 @@ const FOLDERS: [&str; 2] = ["tests/wrong", "docs/book/errors"];
 /// Returns all examples, in the order of their files.
 pub fn examples(root: &Path) -> Vec<Example> {
     let mut files: Vec<PathBuf> = Vec::new();
-    for folder in FOLDERS {
+    for folder in EXAMPLE_FOLDERS {
         let entries = fs::read_dir(root.join(folder)).into_iter().flatten();
         files.extend(entries.filter_map(|entry| Some(entry.ok()?.path())));
     }
@@ -214,8 +214,12 @@ pub fn sites(root: &Path, folder: &str) -> BTreeMap<Site, String> {
             if line.trim_start().starts_with("//") {
                 continue;
             }
-            let first = (row as usize).saturating_sub(BEFORE);
-            let near: Vec<&str> = code.lines().skip(first).take(BEFORE + BEHIND).collect();
+            let first = (row as usize).saturating_sub(LINES_BEFORE);
+            let near: Vec<&str> = code
+                .lines()
+                .skip(first)
+                .take(LINES_BEFORE + LINES_AFTER)
+                .collect();
             let rest = near.join(" ");
             found.insert(
                 (path.display().to_string(), row, column as u32 + 1),

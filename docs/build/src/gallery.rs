@@ -118,7 +118,7 @@ impl Exhibit {
         let file = self.file();
         let picture = shell.run(&format!("hamel draw {file} {}", self.draw))?;
         let table = shell.run(&format!("hamel ops {file}"))?;
-        let counts = COUNTED.iter().filter_map(|(function, name)| {
+        let counts = COUNTED_FUNCTIONS.iter().filter_map(|(function, name)| {
             let mut rows = table
                 .lines()
                 .map(|line| line.split_whitespace().collect::<Vec<_>>());
@@ -126,7 +126,7 @@ impl Exhibit {
             // The columns: add, mul, div, sqrt, sincos, other, flops, unshared.
             Some((*name, row.get(7)?.parse().ok()?, row.get(5)?.parse().ok()?))
         });
-        Ok(Shown {
+        Ok(ShownExhibit {
             picture,
             counts: counts.collect(),
         })

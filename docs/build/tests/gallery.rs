@@ -192,7 +192,7 @@ fn picture(text: &str) -> Vec<String> {
 fn every_mechanism_of_the_gallery_holds() {
     let root = root();
     let exhibits = exhibits(&root).expect("the gallery");
-    assert!(exhibits.len() >= LEAST, "{}", exhibits.len());
+    assert!(exhibits.len() >= MIN_MECHANISMS, "{}", exhibits.len());
     let titles: BTreeSet<&str> = exhibits.iter().map(|exhibit| &*exhibit.title).collect();
     assert_eq!(titles.len(), exhibits.len(), "two are called alike");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gallery");
@@ -211,7 +211,7 @@ fn every_mechanism_of_the_gallery_holds() {
     let wrong: Vec<String> = all.iter().flat_map(|(wrong, _)| wrong.clone()).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let bytes: usize = all.iter().map(|(_, picture)| picture.len()).sum();
-    assert!(bytes <= LARGEST, "{bytes} bytes of pictures");
+    assert!(bytes <= MAX_PICTURE_BYTES, "{bytes} bytes of pictures");
 }
 
 #[test]

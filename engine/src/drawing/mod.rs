@@ -38,21 +38,21 @@ use hamel_native::Compiled;
 use points::Points;
 
 /// The function of masses, centres of mass and inertias, which depend on parameters alone.
-const BODIES: &str = "drawn_bodies";
+const BODIES_FUNCTION: &str = "drawn_bodies";
 /// The function of poses and points, which depend on x as well.
-const POINTS: &str = "drawn_points";
+const POINTS_FUNCTION: &str = "drawn_points";
 
 /// The drawable parts of a mechanism, compiled, for any parameters.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     compiled: Compiled,
-    /// The functions [`BODIES`] and [`POINTS`].
+    /// The functions [`BODIES_FUNCTION`] and [`POINTS_FUNCTION`].
     places: [Place; 2],
-    frames: Vec<Named>,
+    frames: Vec<DrawnFrame>,
     /// The frame of each body.
     bodies: Vec<usize>,
     particles: Vec<Option<usize>>,
-    joints: Vec<Jointed>,
+    joints: Vec<DrawnJoint>,
     lines: Vec<(Acts, [Option<usize>; 2])>,
     rods: usize,
     loops: usize,
@@ -60,7 +60,7 @@ pub struct Drawing {
 }
 
 #[derive(Clone, Debug)]
-struct Named {
+struct DrawnFrame {
     name: String,
     parent: Option<usize>,
     attached: bool,
@@ -68,7 +68,7 @@ struct Named {
 }
 
 #[derive(Clone, Debug)]
-struct Jointed {
+struct DrawnJoint {
     name: String,
     kind: &'static str,
     frame: usize,
@@ -80,7 +80,7 @@ struct Jointed {
 
 /// A [`Drawing`] with its parameters set.
 #[derive(Clone, Debug)]
-pub struct Drawn<'a> {
+pub struct ParametrizedDrawing<'a> {
     of: &'a Drawing,
     functions: Functions,
     /// Mass, centre of mass in the frame, ellipsoid in the frame's axes.
@@ -100,20 +100,20 @@ impl Drawing {
             let shape = Shape::Vector(outputs.len());
             Function::described(name, String::new(), arguments, shape, outputs)
         };
-        let fixed = function(BODIES, &[], &points.masses);
-        let moving = function(POINTS, &[Argument::Coordinates], &points.moving);
+        let fixed = function(BODIES_FUNCTION, &[], &points.masses);
+        let moving = function(POINTS_FUNCTION, &[Argument::Coordinates], &points.moving);
         program.functions = vec![fixed, moving];
-        let compiled = compiled(&program, &[BODIES, POINTS])?;
+        let compiled = compiled(&program, &[BODIES_FUNCTION, POINTS_FUNCTION])?;
         let place = |name: &str| {
             let place = crate::mechanism::place(&compiled, name);
             place.ok_or_else(|| Error::NotDrawable {
                 system: program.name.clone(),
             })
         };
-        let places = [place(BODIES)?, place(POINTS)?];
+        let places = [place(BODIES_FUNCTION)?, place(POINTS_FUNCTION)?];
         let moved = points.attached.into_iter().zip(points.turns);
         let frames = model.frames.iter().zip(moved);
-        let frames = frames.map(|(frame, (attached, turns))| Named {
+        let frames = frames.map(|(frame, (attached, turns))| DrawnFrame {
             name: frame.name.clone(),
             parent: frame.parent,
             attached,
@@ -131,7 +131,7 @@ impl Drawing {
                 let mut all = model.coordinates.iter();
                 all.find(|coordinate| coordinate.name == *name)
             });
-            Some(Jointed {
+            Some(DrawnJoint {
                 name: joint.name.clone(),
                 kind: joint_kind(joint.kind),
                 frame: carried,
@@ -159,16 +159,16 @@ impl Drawing {
     }
 
     /// The drawing for these parameters; a missing parameter makes everything that depends on it NaN.
-    pub fn with(&self, params: &[f64]) -> Drawn<'_> {
+    pub fn with_parameters(&self, params: &[f64]) -> ParametrizedDrawing<'_> {
         let functions = Functions::new(&self.compiled, params);
-        let values = called(&functions, self.places[0], &[]);
+        let values = call(&functions, self.places[0], &[]);
         let (bodies, masses) = values.split_at((13 * self.bodies.len()).min(values.len()));
         let bodies = bodies.chunks_exact(13).map(|entries| {
             let (mass, com) = (entries[0], vector(&entries[1..4]));
             let inertia = [4, 7, 10].map(|first| vector(&entries[first..first + 3]));
             (mass, com, Ellipsoid::new(mass, inertia))
         });
-        Drawn {
+        ParametrizedDrawing {
             of: self,
             bodies: bodies.collect(),
             masses: masses.to_vec(),
@@ -177,11 +177,11 @@ impl Drawing {
     }
 }
 
-impl Drawn<'_> {
+impl ParametrizedDrawing<'_> {
     /// The scene at x.
     pub fn scene(&self, x: &[f64]) -> Scene {
         let of = self.of;
-        let values = called(&self.functions, of.places[1], x);
+        let values = call(&self.functions, of.places[1], x);
         let mut vectors = values.chunks_exact(3).map(vector);
         let mut next = || vectors.next().unwrap_or([f64::NAN; 3]);
         let frames = of.frames.iter().map(|frame| Frame {
@@ -279,7 +279,7 @@ fn centre(bodies: &[Body], particles: &[Particle]) -> Option<Vector> {
 }
 
 /// These functions have no pivots, and are defined wherever the description is.
-fn called(functions: &Functions, place: Place, x: &[f64]) -> Vec<f64> {
+fn call(functions: &Functions, place: Place, x: &[f64]) -> Vec<f64> {
     let value = functions.call(place, [x, &[], &[], &[], &[]]);
     value.map_or_else(|_| vec![f64::NAN; place.length()], |value| value.to_vec())
 }

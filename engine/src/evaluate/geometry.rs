@@ -4,14 +4,14 @@
 use crate::error::Error;
 use crate::state::State;
 use hamel_codegen::algebra::graph::{Edge, Graph};
-use hamel_codegen::algebra::slopes::{Sloped, slopes};
+use hamel_codegen::algebra::slopes::{ValueWithSlopes, slopes};
 use hamel_codegen::derive::calculus::Calculus;
 use hamel_codegen::derive::{inertia, kinematics};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 
 /// Bound on the rounding error of a sum, relative to its terms.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Entries of a table, `table[i][j][k]`.
 pub type Cube = Vec<Vec<Vec<f64>>>;
@@ -132,7 +132,7 @@ fn gamma(model: &Model, numbers: &[f64], a: &[Sloped]) -> Result<Cube, Error> {
 }
 
 /// Γᵢⱼₖ = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si), KR18 (23).
-fn connection(n: usize, mass: &[Sloped], gamma: &Cube) -> Cube {
+fn connection(n: usize, mass: &[ValueWithSlopes], gamma: &Cube) -> Cube {
     let change = |k: usize, i: usize, j: usize| mass[i * n + j].slope(k);
     let lowered: Cube = gamma
         .iter()
@@ -156,7 +156,7 @@ fn connection(n: usize, mass: &[Sloped], gamma: &Cube) -> Cube {
 }
 
 /// γˢ M_sk for all k.
-fn lower(n: usize, gamma: &[f64], mass: &[Sloped]) -> Vec<f64> {
+fn lower(n: usize, gamma: &[f64], mass: &[ValueWithSlopes]) -> Vec<f64> {
     let entries = gamma.iter().enumerate().filter(|(_, entry)| **entry != 0.0);
     let entries: Vec<(usize, f64)> = entries.map(|(s, &entry)| (s, entry)).collect();
     let product = |k: usize| {
@@ -173,7 +173,7 @@ fn sum(terms: &[f64]) -> f64 {
     let (sum, size) = terms.iter().fold((0.0, 0.0), |(sum, size), term| {
         (sum + term, size + term.abs())
     });
-    if f64::abs(sum) <= ROUNDING * size {
+    if f64::abs(sum) <= SUM_ROUNDING * size {
         0.0
     } else {
         sum

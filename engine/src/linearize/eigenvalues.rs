@@ -9,19 +9,19 @@ use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{DMatrix, DVector, Schur};
 
 /// Iterations of the QR algorithm for each row before other axes are tried.
-const ROUNDS: usize = 60;
+const MAX_ITERATIONS_PER_ROW: usize = 60;
 /// Number of bases in which the algorithm is tried, beginning with the basis of the block. For systems at rest, whose
 /// eigenvalues come in pairs ±λ, QR cycles on about one matrix in a hundred; in another basis it then converges.
-const TURNS: u64 = 12;
+const BASES: u64 = 12;
 /// Random reflections that make up a change of basis.
-const REFLECTIONS: usize = 4;
+const REFLECTIONS_PER_BASIS: usize = 4;
 /// Deflation thresholds, in units of rounding; looser ones are tried where no basis leads to convergence.
-const LOOSER: [f64; 4] = [1.0, 8.0, 64.0, 512.0];
+const DEFLATION_THRESHOLDS: [f64; 4] = [1.0, 8.0, 64.0, 512.0];
 
 /// Strategy for repeating the QR algorithm until it converges.
-struct Tries<'a> {
+struct Strategy<'a> {
     /// Deflation thresholds, in units of rounding.
-    looser: &'a [f64],
+    thresholds: &'a [f64],
     /// Number of bases, beginning with the basis of the block.
     turns: u64,
     /// Limits on the iterations of the first attempts, where they differ from the default.
@@ -31,22 +31,22 @@ struct Tries<'a> {
 /// Real and imaginary parts, the fastest growing first; `None` if the QR algorithm does not converge. The entries have
 /// to be finite.
 pub fn eigenvalues(rows: &[Vec<f64>]) -> Option<Vec<(f64, f64)>> {
-    let tries = Tries {
-        looser: &LOOSER,
-        turns: TURNS,
+    let strategy = Strategy {
+        thresholds: &DEFLATION_THRESHOLDS,
+        turns: BASES,
         most: &[],
     };
-    eigenvalues_by(rows, &tries)
+    eigenvalues_by(rows, &strategy)
 }
 
-fn eigenvalues_by(rows: &[Vec<f64>], tries: &Tries) -> Option<Vec<(f64, f64)>> {
+fn eigenvalues_by(rows: &[Vec<f64>], strategy: &Strategy) -> Option<Vec<(f64, f64)>> {
     let mut values = Vec::with_capacity(rows.len());
     for class in classes(rows) {
         if let [only] = class.as_slice() {
             values.push((rows[*only][*only], 0.0));
         } else {
             let block = DMatrix::from_fn(class.len(), class.len(), |i, j| rows[class[i]][class[j]]);
-            values.extend(of_block(block, tries)?);
+            values.extend(of_block(block, strategy)?);
         }
     }
     values.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
@@ -78,7 +78,7 @@ fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
     classes
 }
 
-fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
+fn of_block(mut block: DMatrix<f64>, strategy: &Strategy) -> Option<Vec<(f64, f64)>> {
     // Balancing squares the entries. A power of two changes no digit; it is split into two factors since it may
     // overflow.
     let exponent = block.amax().log2().floor() as i32;
@@ -86,11 +86,16 @@ fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
     block.apply(|entry| *entry = *entry / halves[0] / halves[1]);
     balance_parlett_reinsch(&mut block);
     let n = block.nrows();
-    let looser = tries.looser.iter();
-    let attempts = looser.flat_map(|&looser| (0..tries.turns).map(move |turn| (looser, turn)));
-    attempts.enumerate().find_map(|(count, (looser, turn))| {
-        let most = tries.most.get(count).copied().unwrap_or(ROUNDS * n);
-        let schur = Schur::try_new(reflected(&block, turn), looser * f64::EPSILON, most)?;
+    let thresholds = strategy.thresholds.iter();
+    let attempts =
+        thresholds.flat_map(|&threshold| (0..strategy.turns).map(move |turn| (threshold, turn)));
+    attempts.enumerate().find_map(|(count, (threshold, turn))| {
+        let most = strategy
+            .most
+            .get(count)
+            .copied()
+            .unwrap_or(MAX_ITERATIONS_PER_ROW * n);
+        let schur = Schur::try_new(reflect(&block, turn), threshold * f64::EPSILON, most)?;
         let values = schur.complex_eigenvalues();
         let scaled = |part: f64| part * halves[0] * halves[1];
         let values: Vec<(f64, f64)> = (values.iter())
@@ -104,10 +109,10 @@ fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
 }
 
 /// H A Hᵀ, similar to A, with H a product of reflections I − 2 v vᵀ / |v|²; A itself for turn 0.
-fn reflected(block: &DMatrix<f64>, turn: u64) -> DMatrix<f64> {
+fn reflect(block: &DMatrix<f64>, turn: u64) -> DMatrix<f64> {
     let mut turned = block.clone();
     let mut state = turn;
-    for _ in 0..if turn > 0 { REFLECTIONS } else { 0 } {
+    for _ in 0..if turn > 0 { REFLECTIONS_PER_BASIS } else { 0 } {
         let v = DVector::from_fn(block.nrows(), |_, _| {
             // Steele and Vigna (2021).
             state = state.wrapping_mul(0xf135_7aea_2e62_a9c5).wrapping_add(1);
@@ -124,7 +129,7 @@ fn reflected(block: &DMatrix<f64>, turn: u64) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{LOOSER, TURNS, Tries, eigenvalues, eigenvalues_by};
+    use super::{BASES, DEFLATION_THRESHOLDS, Strategy, eigenvalues, eigenvalues_by};
 
     /// Pseudorandom numbers between −1 and 1.
     fn numbers(mut state: u64) -> impl FnMut() -> f64 {
@@ -252,8 +257,8 @@ mod tests {
             Ok(_) => 1000,
             Err(_) => 100,
         };
-        let in_their_own = Tries {
-            looser: &LOOSER,
+        let in_their_own = Strategy {
+            thresholds: &DEFLATION_THRESHOLDS,
             turns: 1,
             most: &[],
         };
@@ -333,20 +338,20 @@ mod tests {
                 (0..n).map(|j| row(i, j) + first(j)).collect()
             })
             .collect();
-        let by = |looser: &[f64], turns: u64, most: &[usize]| {
-            let tries = Tries {
-                looser,
+        let by = |thresholds: &[f64], turns: u64, most: &[usize]| {
+            let strategy = Strategy {
+                thresholds,
                 turns,
                 most,
             };
-            eigenvalues_by(&rows, &tries)
+            eigenvalues_by(&rows, &strategy)
         };
-        assert_eq!(by(&[1.0, 8.0], TURNS, &[1; 24]), None);
-        for (looser, turns, most) in [
+        assert_eq!(by(&[1.0, 8.0], BASES, &[1; 24]), None);
+        for (thresholds, turns, most) in [
             (&[1.0, 8.0][..], 1, &[1][..]),
             (&[1.0, 512.0], 2, &[1, 1, 1]),
         ] {
-            let values = by(looser, turns, most).expect("the last try ends");
+            let values = by(thresholds, turns, most).expect("the last try ends");
             for (value, expected) in values.iter().zip([5.0, 4.0, 3.0, 2.0, 1.0]) {
                 assert!(
                     (value.0 - expected).abs() < 1e-9 && value.1 == 0.0,

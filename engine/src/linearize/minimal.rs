@@ -14,11 +14,11 @@ use hamel_codegen::generate::Generated;
 use crate::state::State;
 
 /// Pivots below this, in rows whose largest entry is 1, belong to dependent rows.
-const REDUNDANT: f64 = 1e-8;
+const PIVOT_TOLERANCE: f64 = 1e-8;
 
 /// Rows smaller than the largest by this factor vanish at the state: they consist of rounding errors and are not scaled
 /// to 1.
-const VANISHING: f64 = 1e-6;
+const ROW_TOLERANCE: f64 = 1e-6;
 
 /// The independent part of (h, δξ, δz) under constraints.
 pub struct Tangent {
@@ -52,7 +52,7 @@ pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Opti
         evaluate(&full.graph, &row, &numbers)
     });
     let spared: Vec<usize> = (0..n).filter(|&i| named(&places[i])).collect();
-    let position = Eliminated::new(displaced.collect(), n, &spared);
+    let position = ReducedRows::new(displaced.collect(), n, &spared);
     if position.pivots.is_empty() && active.constraints.is_empty() {
         return None;
     }
@@ -90,7 +90,7 @@ pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Opti
         row.chain(along).collect()
     });
     let spared: Vec<usize> = (0..na).filter(|&i| named(&moving[i])).collect();
-    let velocity = Eliminated::new(rows.collect(), na, &spared);
+    let velocity = ReducedRows::new(rows.collect(), na, &spared);
     let free_v = velocity.free(na);
     let states = active.state_rates.len();
     let width = free.len() + free_v.len() + states;
@@ -162,19 +162,19 @@ impl Tangent {
 }
 
 /// Rows after elimination: each pivot is 1, and all other entries of its column are 0.
-struct Eliminated {
+struct ReducedRows {
     rows: Vec<Vec<f64>>,
     /// Rows and columns of the pivots.
     pivots: Vec<(usize, usize)>,
 }
 
-impl Eliminated {
+impl ReducedRows {
     /// Eliminates with the largest pivots among the first n columns, taking `spared` columns only if there is no other.
     fn new(mut rows: Vec<Vec<f64>>, n: usize, spared: &[usize]) -> Self {
         let size = |row: &Vec<f64>| row[..n].iter().fold(0.0_f64, |most, e| most.max(e.abs()));
         let largest = rows.iter().map(size).fold(0.0, f64::max);
         for row in &mut rows {
-            let most = size(row).max(VANISHING * largest);
+            let most = size(row).max(ROW_TOLERANCE * largest);
             if most > 0.0 {
                 row.iter_mut().for_each(|entry| *entry /= most);
             }
@@ -182,7 +182,7 @@ impl Eliminated {
         let mut pivots: Vec<(usize, usize)> = Vec::new();
         loop {
             let largest = |spare: bool| {
-                let mut best = (REDUNDANT, None);
+                let mut best = (PIVOT_TOLERANCE, None);
                 for (i, row) in rows.iter().enumerate() {
                     if pivots.iter().any(|(used, _)| *used == i) {
                         continue;
@@ -196,7 +196,7 @@ impl Eliminated {
                 best.1
             };
             let Some((i, j)) = largest(false).or_else(|| largest(true)) else {
-                return Eliminated { rows, pivots };
+                return ReducedRows { rows, pivots };
             };
             let pivot = rows[i][j];
             rows[i].iter_mut().for_each(|entry| *entry /= pivot);
@@ -235,7 +235,7 @@ impl Eliminated {
 
 #[cfg(test)]
 mod tests {
-    use super::Eliminated;
+    use super::ReducedRows;
 
     #[test]
     fn rows_that_follow_from_others_have_no_pivot() {
@@ -244,18 +244,18 @@ mod tests {
             vec![2.0, 4.0, 1e-12, 10.0],
             vec![0.0, 0.0, 3.0, 6.0],
         ];
-        let found = Eliminated::new(rows.clone(), 3, &[]);
+        let found = ReducedRows::new(rows.clone(), 3, &[]);
         assert_eq!(found.free(3), [0]);
         assert_eq!(found.lift(3, &[0]), [[1.0], [-0.5], [0.0]]);
-        let spared = Eliminated::new(rows, 3, &[1]);
+        let spared = ReducedRows::new(rows, 3, &[1]);
         assert_eq!(spared.free(3), [1]);
     }
 
     #[test]
     fn what_rounding_leaves_of_a_row_is_no_pivot() {
         let rows = vec![vec![1.0, 0.0, 0.0], vec![0.0, 1e-17, -1e-16]];
-        assert_eq!(Eliminated::new(rows, 3, &[]).free(3), [1, 2]);
+        assert_eq!(ReducedRows::new(rows, 3, &[]).free(3), [1, 2]);
         let rows = vec![vec![1.0, 0.0], vec![0.0, 1e-9]];
-        assert!(Eliminated::new(rows, 2, &[]).free(2).is_empty());
+        assert!(ReducedRows::new(rows, 2, &[]).free(2).is_empty());
     }
 }

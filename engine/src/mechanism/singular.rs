@@ -15,10 +15,10 @@ use std::fmt;
 /// Pivots below this, relative to the original diagonal entry, are rounding errors of zero.
 const ROUNDING: f64 = 1e-12;
 /// Largest number of constraints listed.
-const LISTED: usize = 6;
+const MAX_LISTED: usize = 6;
 /// Messages for singular states at which every velocity has inertia.
 const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
-const DEPENDENT: &str = "the constraints on the velocities depend on one another";
+const DEPENDENT_CONSTRAINTS: &str = "the constraints on the velocities depend on one another";
 
 /// The function that had no value, with x.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub enum Failed {
 }
 
 /// Names of velocities for messages, with the lines on which they are declared.
-pub fn labels(model: &Model, text: &str) -> Vec<String> {
+pub fn velocity_labels(model: &Model, text: &str) -> Vec<String> {
     let names = names::velocities(model).into_iter();
     let label = |(place, name): (usize, String)| {
         let span = model.velocity_spans.get(place);
@@ -44,13 +44,15 @@ pub fn labels(model: &Model, text: &str) -> Vec<String> {
 }
 
 /// The message for dependent constraints that multipliers enforce.
-pub fn dependent(model: &Model, text: &str) -> String {
-    let rows = model.constraints.iter().take(LISTED);
+pub fn dependent_message(model: &Model, text: &str) -> String {
+    let rows = model.constraints.iter().take(MAX_LISTED);
     let rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
     match model.constraints.len() {
-        0 => DEPENDENT.into(),
-        count if count > LISTED => format!("{DEPENDENT}: {} and others", rows.join(", ")),
-        _ => format!("{DEPENDENT}: {}", rows.join(", ")),
+        0 => DEPENDENT_CONSTRAINTS.into(),
+        count if count > MAX_LISTED => {
+            format!("{DEPENDENT_CONSTRAINTS}: {} and others", rows.join(", "))
+        }
+        _ => format!("{DEPENDENT_CONSTRAINTS}: {}", rows.join(", ")),
     }
 }
 
@@ -106,15 +108,15 @@ fn at_pivot(place: usize, names: &[String]) -> SingularState {
 }
 
 /// The message for a pivot of a function that is not positive.
-pub fn meaning(cause: Cause, model: &Model, text: &str) -> String {
+pub fn cause_message(cause: Cause, model: &Model, text: &str) -> String {
     match cause {
         Cause::Velocity(place) => {
-            let names = labels(model, text);
+            let names = velocity_labels(model, text);
             let name = names.get(place).map_or("", String::as_str);
             format!("the mass matrix is not positive definite: {name} has no inertia")
         }
         Cause::Mass => "the mass matrix is not positive definite".into(),
-        Cause::Constraint(_) => dependent(model, text),
+        Cause::Constraint(_) => dependent_message(model, text),
         Cause::Kinematics(_) => CONFIGURATION.into(),
     }
 }
@@ -171,9 +173,9 @@ impl Instance {
     /// ξ̇, or the reason why it has no value.
     pub fn motion(&self, x: &[f64], xi: &[f64], u: &[f64]) -> Result<Vec<f64>, SingularState> {
         match self.accel(&x.into(), &xi.into(), &u.into()) {
-            Ok(_) if self.constant_singular() => Err(self.at(x)),
+            Ok(_) if self.constant_singular() => Err(self.state_message(x)),
             Ok(xi_dot) => Ok(xi_dot.to_vec()),
-            Err(cause) => Err(self.singular(cause)),
+            Err(cause) => Err(self.singular_message(cause)),
         }
     }
 
@@ -189,7 +191,7 @@ impl Instance {
         match self.failed() {
             Some(Failed::Motion(x)) => {
                 let mass = self.mass(&x);
-                match (of_mass(&mass, self.velocity_labels()), weakest(&mass)) {
+                match (mass_message(&mass, self.velocity_labels()), weakest(&mass)) {
                     (Some(why), _) => why,
                     // Without constraints no other pivot can have failed.
                     (None, Some((place, _))) if !self.is_constrained() => {
@@ -219,7 +221,7 @@ impl Instance {
         if let Some(divided) = self.divided() {
             return SingularState::ZeroDivisor(divided.to_owned());
         }
-        at(&self.mass(x), self.velocity_labels())
+        state_message(&self.mass(x), self.velocity_labels())
     }
 
     /// M at x.
@@ -241,7 +243,7 @@ impl Instance {
 
 #[cfg(test)]
 mod tests {
-    use super::of_mass;
+    use super::mass_message;
     use nalgebra::DMatrix;
 
     #[test]
@@ -253,10 +255,10 @@ mod tests {
         };
         assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);
         // Row 2 is half of row 1: the rest is a rounding error.
-        let dependent = told([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
+        let dependent = message([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
         let expected = "the mass matrix is not positive definite at pivot 2 (`w[1]`, line 3)";
         assert_eq!(dependent.as_deref(), Some(expected));
-        let nowhere = told([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
+        let nowhere = message([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
         assert!(nowhere.is_some_and(|why| why.ends_with("pivot 3 (`w[2]`)")));
     }
 }

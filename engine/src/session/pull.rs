@@ -93,7 +93,7 @@ impl Session {
 /// A mechanism during a pull.
 struct Pulled<'a> {
     instance: &'a Instance,
-    drawn: Drawn<'a>,
+    drawn: ParametrizedDrawing<'a>,
     grip: Grip,
     /// The projection along the line of sight.
     seen: Matrix3<f64>,

@@ -53,12 +53,15 @@ pub fn derive(
     // Report errors and warnings of the description itself first.
     source.model()?;
     let of = |added: &[&Added]| {
-        let longer = Longer::of(source, added);
-        let errors = match source.saying(longer.text.clone()).try_derive_all() {
+        let extended = Extended::of(source, added);
+        let errors = match source.saying(extended.text.clone()).try_derive_all() {
             Ok(generated) => return Ok(generated),
             Err(errors) => errors,
         };
-        let own: Vec<Diagnostic> = errors.iter().filter_map(|e| longer.own(e)).collect();
+        let own: Vec<Diagnostic> = errors
+            .iter()
+            .filter_map(|e| extended.relocate_error(e))
+            .collect();
         Err((own, errors))
     };
     let mut left: Vec<&Added> = added.iter().collect();
@@ -86,7 +89,7 @@ pub fn derive(
 }
 
 /// A description with more outputs at its end.
-struct Longer {
+struct Extended {
     text: String,
     /// Where the added outputs begin.
     end: usize,
@@ -94,7 +97,7 @@ struct Longer {
     places: Vec<(Range<usize>, Range<usize>)>,
 }
 
-impl Longer {
+impl Extended {
     fn of(source: &Source, added: &[&Added]) -> Self {
         let mut more = String::from("\n");
         let mut places: Vec<(Range<usize>, Range<usize>)> = Vec::new();
@@ -106,9 +109,9 @@ impl Longer {
             for (number, side) in sides.iter().enumerate() {
                 more.push_str(if number == 0 { "" } else { " - " });
                 more.push_str(if sides.len() > 1 { "(" } else { "" });
-                let written_out = outputs.written_out(side.text);
-                let text = written_out.as_deref().unwrap_or(side.text);
-                if written_out.is_none() {
+                let substituted = outputs.substitute(side.text);
+                let text = substituted.as_deref().unwrap_or(side.text);
+                if substituted.is_none() {
                     let place = more.len()..more.len() + text.len();
                     places.push((place, side.start..side.start + text.len()));
                 }
@@ -122,21 +125,21 @@ impl Longer {
         places.extend(statements);
         // A text that was parsed before has an end.
         let (end, text) = with(&source.text, &more).unwrap_or_else(|| (0, source.text.clone()));
-        Longer { text, end, places }
+        Extended { text, end, places }
     }
 
     /// An error of the option, moved to its place there.
-    fn own(&self, error: &Diagnostic) -> Option<Diagnostic> {
+    fn relocate_error(&self, error: &Diagnostic) -> Option<Diagnostic> {
         let notes = error.notes.iter();
-        let notes = notes.filter_map(|(span, label)| Some((self.moved(*span)?, label.clone())));
+        let notes = notes.filter_map(|(span, label)| Some((self.relocate(*span)?, label.clone())));
         Some(Diagnostic {
-            span: self.moved(error.span)?,
+            span: self.relocate(error.span)?,
             notes: notes.collect(),
             ..error.clone()
         })
     }
 
-    fn moved(&self, span: Span) -> Option<Span> {
+    fn relocate(&self, span: Span) -> Option<Span> {
         let range = span.range()?;
         let first = range.start.checked_sub(self.end)?;
         let last = range.end.checked_sub(self.end)?;
@@ -169,7 +172,7 @@ impl Outputs {
     }
 
     /// The expression with the names of outputs replaced; `None` where it contains none.
-    fn written_out(&self, expression: &str) -> Option<String> {
+    fn substitute(&self, expression: &str) -> Option<String> {
         let is_of_word = |letter: char| letter.is_alphanumeric() || letter == '_';
         let (mut text, mut rest, mut changed) = (String::new(), expression, false);
         while !rest.is_empty() {
@@ -216,8 +219,8 @@ mod tests {
     fn outputs_are_written_out() {
         let outputs =
             Outputs::of("system S { output a = (q + 1) * 2; output b_1 = [q, 1]; output c = q; }");
-        assert_eq!(outputs.written_out("c").as_deref(), Some("(q)"));
-        let of = |text| outputs.written_out(text);
+        assert_eq!(outputs.substitute("c").as_deref(), Some("(q)"));
+        let of = |text| outputs.substitute(text);
         assert_eq!(
             of("2 * a - b_1[2]").as_deref(),
             Some("2 * ((q + 1) * 2) - ([q, 1])[2]")
@@ -230,10 +233,10 @@ mod tests {
     #[test]
     fn statements_are_added_before_the_bracket_that_ends_the_description() {
         let text = "system S { coord q; // }\n param m = 1; } // }\n/* } */";
-        let (end, longer) = with(text, "\noutput a = q;\n").expect("a description");
+        let (end, extended) = with(text, "\noutput a = q;\n").expect("a description");
         assert_eq!(end, text.find("} // }").expect("its end"));
         assert_eq!(
-            longer,
+            extended,
             "system S { coord q; // }\n param m = 1; \noutput a = q;\n} // }\n/* } */"
         );
         assert_eq!(with("system S {", "output a = 1;"), None);

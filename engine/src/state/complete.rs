@@ -7,10 +7,10 @@ use super::State;
 use super::given::{Given, places};
 use super::problem::StateProblem;
 use super::ties::{Ties, symbols};
-use hamel_codegen::algebra::closest::closest;
 use hamel_codegen::algebra::graph::Edge;
+use hamel_codegen::algebra::nearest_solution::find_nearest;
 use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::algebra::sizes::relative;
+use hamel_codegen::algebra::residual_scale::relative_residuals;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::closest::Constraints;
 use hamel_codegen::model::closure::{Closure, Open, normalise};
@@ -261,8 +261,8 @@ impl Completion<'_> {
         let phi: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
         let free = &model.points.free;
         let all = model.points.places();
-        let mut open = relative(&model.graph, &loops, &numbers, all.clone());
-        open.extend(relative(free, &phi, &numbers, all));
+        let mut open = relative_residuals(&model.graph, &loops, &numbers, all.clone());
+        open.extend(relative_residuals(free, &phi, &numbers, all));
         let loops = loops
             .iter()
             .map(|&edge| symbols(&model.graph, edge, places, time));
@@ -309,7 +309,7 @@ impl Completion<'_> {
             sizes: Vec::new(),
         }
         .measured();
-        let mut found = closest(&problem, x)?;
+        let mut found = find_nearest(&problem, x)?;
         for &alpha in &problem.given {
             found[alpha] = x[alpha];
         }

@@ -33,7 +33,7 @@ use crate::error::Error;
 use crate::source::Source;
 use hamel_codegen::algebra::graph::{Edge, Graph};
 use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::algebra::sizes::relative;
+use hamel_codegen::algebra::residual_scale::relative_residuals;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::model::layout::Block;
@@ -120,7 +120,7 @@ impl State {
     fn residuals(&self, model: &Model) -> Vec<f64> {
         let places = model.points.places();
         self.phi(model, |graph, phi, numbers| {
-            relative(graph, phi, numbers, places.clone())
+            relative_residuals(graph, phi, numbers, places.clone())
         })
     }
 

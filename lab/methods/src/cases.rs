@@ -88,7 +88,7 @@ fn problem<'a, Sys: System<Scalar = f64>>(
         inputs: &case.inputs,
         error: Box::new(error),
         momenta,
-        said: Box::new(ToString::to_string),
+        error_text: Box::new(ToString::to_string),
         conservative,
     }
 }

@@ -63,7 +63,7 @@ fn run(arguments: &Arguments) -> Result<(), BenchError> {
         let said = |error: String| BenchError(format!("{}: {error}", path.display()));
         let text = std::fs::read_to_string(&path).map_err(|error| said(error.to_string()))?;
         let report = json::read(&text).map_err(|error| said(error.to_string()))?;
-        return written(&report, arguments, &root);
+        return write_report(&report, arguments, &root);
     }
     let peers = Peers::find(&arguments.mujoco);
     let effort = Effort {
@@ -90,10 +90,10 @@ fn run(arguments: &Arguments) -> Result<(), BenchError> {
         report.cases.push(case);
         report.drifts.extend(drifts);
     }
-    written(&report, arguments, &root)
+    write_report(&report, arguments, &root)
 }
 
-fn written(report: &Report, arguments: &Arguments, root: &Path) -> Result<(), BenchError> {
+fn write_report(report: &Report, arguments: &Arguments, root: &Path) -> Result<(), BenchError> {
     for path in output::write(report, &arguments.out)? {
         say(&format!("wrote {}", path.display()))?;
     }

@@ -43,7 +43,7 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, BenchError>
             let subtitle = format!(
                 "{}, {} steps of {}",
                 case.name,
-                grouped(first.steps),
+                group_thousands(first.steps),
                 first.step
             );
             let figure = drifts(&title, &subtitle, &runs).map_err(said)?;
@@ -95,7 +95,7 @@ pub const CHAPTER: &str = "docs/book/src/integrators.md";
 pub fn keep(report: &Report, root: &Path) -> Result<(), BenchError> {
     let path = root.join(CHAPTER);
     let text = fs::read_to_string(&path).map_err(|error| unwritten(&path, &error))?;
-    let new = excerpt::replaced(&text, &excerpt::block(report))
+    let new = excerpt::replace_block(&text, &excerpt::block(report))
         .ok_or_else(|| BenchError(format!("{}: no block of the report", path.display())))?;
     let kept = json::write(&summary(report)).map_err(|error| BenchError(error.to_string()))?;
     written(&root.join(SUMMARY), &kept)?;

@@ -19,12 +19,12 @@ pub struct Peers {
     /// The programs, with version or reason of absence.
     pub list: Vec<Peer>,
     /// Results that were measured by another program.
-    pub foreign: Vec<Foreign>,
+    pub foreign: Vec<ForeignResults>,
 }
 
 /// The results of another program on one case.
 #[derive(Debug, Deserialize)]
-pub struct Foreign {
+pub struct ForeignResults {
     /// Name of the case.
     pub case: String,
     /// Results of its methods.
@@ -55,14 +55,14 @@ impl Peers {
                     name: format!("MuJoCo {version}"),
                     available: true,
                     note: "Euler, RK4, implicit: a free body and a top on a ball joint, through its Python wheel".into(),
-                    start: mujoco::START.into(),
+                    start: mujoco::SETUP_COMMAND.into(),
                 });
             }
             Err(why) => peers.list.push(Peer {
                 name: "MuJoCo".into(),
                 available: false,
                 note: why,
-                start: mujoco::START.into(),
+                start: mujoco::SETUP_COMMAND.into(),
             }),
         }
         peers

@@ -20,22 +20,22 @@ const STRIDE: u32 = 10;
 /// # Errors
 /// If the motion or the drawing fails.
 pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
-    let [j1, j2, j3] = MOMENTS;
+    let [j1, j2, j3] = INERTIA;
     let body = PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 })
         .map_err(|error| BenchError(error.to_string()))?;
     let mut state: State<PrincipalAxes<f64>> = State::start(&body);
-    state.xi = START;
+    state.xi = START_VELOCITY;
     let mut track = Vec::new();
     let mut count = 0;
     integrate(
         &body,
         Rkmk4,
         &mut state,
-        STEP,
-        UNTIL,
+        STEP_LENGTH,
+        DURATION,
         |_, _: &_, _: &_| [],
         |state| {
-            if count % STRIDE == 0 {
+            if count % STEPS_PER_POINT == 0 {
                 track.push(state.clone());
             }
             count += 1;
@@ -50,7 +50,7 @@ pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
             .lines
             .push((format!("ω{}", ["₁", "₂", "₃"][axis]), values));
     }
-    let momentum = |w: &[f64; 3]| std::array::from_fn(|i| MOMENTS[i] * w[i]);
+    let momentum = |w: &[f64; 3]| std::array::from_fn(|i| INERTIA[i] * w[i]);
     let poinsot = Poinsot {
         momenta: track.iter().map(|state| momentum(&state.xi)).collect(),
         inertia: [[j1, 0.0, 0.0], [0.0, j2, 0.0], [0.0, 0.0, j3]],
@@ -74,7 +74,7 @@ pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
         "Poinsot's construction",
         "The same motion: P stays where sphere and ellipsoid meet.",
         &poinsot,
-        UNTIL,
+        DURATION,
     );
     Ok(vec![
         (

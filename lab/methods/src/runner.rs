@@ -69,11 +69,11 @@ impl Runner<'_> {
     /// Measures entries. If a step is given, also measures long runs with it for all methods but those of peers.
     pub fn entries(&mut self, entries: &[Entry], long: Option<f64>) {
         let plan = Plan {
-            steps: Plan::doublings(COARSEST, DOUBLINGS),
-            tolerances: TOLERANCES.to_vec(),
+            steps: Plan::doublings(MIN_STEPS, STEP_DOUBLINGS),
+            tolerances: STEP_TOLERANCES.to_vec(),
             repeats: self.effort.repeats,
-            least: LEAST,
-            floor: FLOOR,
+            least: MIN_TIMING,
+            floor: ERROR_FLOOR,
         };
         let tick = self.tick;
         measure(&mut self.case, entries, &plan, &mut |done, all| {
@@ -84,7 +84,7 @@ impl Runner<'_> {
             let ours = entries.iter().filter(|entry| entry.kind != Kind::Peer);
             for entry in ours {
                 self.drifts
-                    .extend(drift(&self.case.name, entry, step, LONG));
+                    .extend(drift(&self.case.name, entry, step, LONG_RUN_STEPS));
             }
         }
     }

@@ -166,7 +166,7 @@ fn check(session: &Session) -> Value {
             "label": identity.label,
             "equation": identity.equation,
             "verdict": identity.verdict,
-            "told": identity.told,
+            "told": identity.explanation,
         })
     });
     json!({ "identities": identities.collect::<Vec<Value>>(), "remarks": remarks })

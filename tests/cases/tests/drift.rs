@@ -45,7 +45,7 @@ trait Watched: System<Scalar = f64> {
     fn velocity(xi: &Self::Velocities) -> so3::Vector<f64>;
 }
 
-impl Watched for Top<f64> {
+impl WatchedBody for Top<f64> {
     fn body(&self) -> &Body<f64> {
         &self.0
     }
@@ -57,7 +57,7 @@ impl Watched for Top<f64> {
     }
 }
 
-impl Watched for Spin<Top<f64>> {
+impl WatchedBody for Spin<Top<f64>> {
     fn body(&self) -> &Body<f64> {
         &self.0.0
     }
@@ -69,7 +69,7 @@ impl Watched for Spin<Top<f64>> {
     }
 }
 
-impl Watched for QuaternionTop<f64> {
+impl WatchedBody for QuaternionTop<f64> {
     fn body(&self) -> &Body<f64> {
         &self.0
     }
@@ -81,7 +81,7 @@ impl Watched for QuaternionTop<f64> {
     }
 }
 
-fn run<Sys: Watched, M: Method<Sys>>(system: &Sys, method: M, h: f64, steps: u32) -> Drift {
+fn run<Sys: WatchedBody, M: Method<Sys>>(system: &Sys, method: M, h: f64, steps: u32) -> Drift {
     let body = system.body();
     let energy = |state: &State<Sys>| {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
@@ -129,15 +129,18 @@ fn assert_steady(what: &str, drift: &Drift, expected: Option<f64>) {
     println!("{what}: {drift:?}");
     let [first, .., last] = drift.energy;
     assert!(
-        last <= (GROWTH * first).max(ENERGY_ROUNDING),
+        last <= (MAX_GROWTH * first).max(ENERGY_ROUNDING),
         "{what}: {drift:?}"
     );
-    assert!(drift.momentum <= MOMENTUM, "{what}: {drift:?}");
-    assert!(drift.orthonormality <= ORTHONORMAL, "{what}: {drift:?}");
+    assert!(drift.momentum <= MOMENTUM_TOLERANCE, "{what}: {drift:?}");
+    assert!(
+        drift.orthonormality <= ORTHONORMALITY_TOLERANCE,
+        "{what}: {drift:?}"
+    );
     if let Some(expected) = expected {
         let largest = first.max(last);
         assert!(
-            (0.9..SEEN).contains(&(largest / expected)),
+            (0.9..PROTOTYPE_MARGIN).contains(&(largest / expected)),
             "{what}: {largest:e}"
         );
     }
@@ -165,7 +168,7 @@ fn splitting_by_the_exact_flow() {
     println!("{drift:?}");
     assert!(drift.energy.iter().all(|error| *error < 1e-10), "{drift:?}");
     assert!(
-        drift.momentum <= MOMENTUM && drift.orthonormality <= ORTHONORMAL,
+        drift.momentum <= MOMENTUM_TOLERANCE && drift.orthonormality <= ORTHONORMALITY_TOLERANCE,
         "{drift:?}"
     );
 }
@@ -218,11 +221,14 @@ fn collocation() {
         let drift = run(&top(case), Gauss4, h, steps);
         let [first, .., last] = drift.energy;
         assert!(
-            last <= GROWTH * first && first < 1.2e-9,
+            last <= MAX_GROWTH * first && first < 1.2e-9,
             "{case}: {drift:?}"
         );
         assert!(drift.momentum < momentum, "{case}: {drift:?}");
-        assert!(drift.orthonormality <= ORTHONORMAL, "{case}: {drift:?}");
+        assert!(
+            drift.orthonormality <= ORTHONORMALITY_TOLERANCE,
+            "{case}: {drift:?}"
+        );
         assert_steady(case, &run(&top(case), Gauss6, h, steps), None);
     }
 }

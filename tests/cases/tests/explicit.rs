@@ -24,12 +24,12 @@ where
     for &(n, expected) in sizes {
         let end = case.run(method, case.until, n).expect(case.name);
         let error = case.error(&end);
-        let holds = if expected <= FLOOR {
-            error <= ROUNDED * FLOOR
-        } else if expected < SMALL {
-            error <= ROUNDED * expected && error >= expected / ROUNDED
+        let holds = if expected <= ROUNDING_FLOOR {
+            error <= ROUNDING_FACTOR * ROUNDING_FLOOR
+        } else if expected < ROUNDED_ERROR {
+            error <= ROUNDING_FACTOR * expected && error >= expected / ROUNDING_FACTOR
         } else {
-            (error / expected - 1.0).abs() <= SIZE
+            (error / expected - 1.0).abs() <= ERROR_TOLERANCE
         };
         assert!(
             holds,

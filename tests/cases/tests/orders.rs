@@ -71,11 +71,14 @@ fn compare(what: &str, case: &str, error: f64, expected: f64) {
     println!("{what}, {case}: {error:.3e}, expected {expected:.2e}");
     if expected >= 1e-9 {
         assert!(
-            (error / expected - 1.0).abs() <= SIZE,
+            (error / expected - 1.0).abs() <= ERROR_TOLERANCE,
             "{what}, {case}: {error:e}"
         );
     } else {
-        assert!(error <= SMALL * expected, "{what}, {case}: {error:e}");
+        assert!(
+            error <= ROUNDING_FACTOR * expected,
+            "{what}, {case}: {error:e}"
+        );
     }
 }
 
@@ -153,7 +156,11 @@ const CLEAN: f64 = 5e-13;
 
 /// Asserts the slopes of errors between halvings, as far as they exceed rounding.
 fn assert_order(what: &str, errors: &[f64], order: f64, tolerance: f64) {
-    let clean: Vec<f64> = errors.iter().copied().filter(|e| *e > CLEAN).collect();
+    let clean: Vec<f64> = errors
+        .iter()
+        .copied()
+        .filter(|e| *e > MIN_CLEAN_ERROR)
+        .collect();
     assert!(clean.len() >= 3, "{what}: {errors:?}");
     let slopes = slopes(&clean);
     println!("{what}: errors {errors:?}, slopes {slopes:.3?}");

@@ -23,7 +23,7 @@ mod some;
 
 use case::Case;
 use common::{Random, size};
-use compile::{STRICT, folder, run};
+use compile::{STRICT_FLAGS, folder, run};
 use hamel_codegen::Builder;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::emit::c::{self, Precision};
@@ -66,7 +66,7 @@ fn read(path: &Path) -> Generated {
 /// Compiles cases in groups, and compares all that they print.
 fn attack(what: &str, cases: Vec<Case>) {
     let faults: Vec<String> = cases
-        .par_chunks(TOGETHER)
+        .par_chunks(DESCRIPTIONS_PER_SOURCE)
         .enumerate()
         .flat_map_iter(|(number, cases)| compile::faults(&format!("{what}{number}"), cases))
         .collect();
@@ -116,7 +116,7 @@ fn what_is_asked_for_gives_what_the_interpreter_gives() {
         "satellite",
         "spring_chain",
     ];
-    const ASKED: [&str; 5] = [
+    const REQUESTS: [&str; 5] = [
         "linearize",
         "inverse_dynamics_slopes",
         "parameter_slopes",
@@ -131,9 +131,9 @@ fn what_is_asked_for_gives_what_the_interpreter_gives() {
                 .iter()
                 .any(|model| path.ends_with(format!("{model}.eom")))
         })
-        .flat_map(|path| (0..ASKED.len()).map(move |k| (path.clone(), k)))
+        .flat_map(|path| (0..REQUESTS.len()).map(move |k| (path.clone(), k)))
         .collect();
-    assert_eq!(asked.len(), MODELS.len() * ASKED.len());
+    assert_eq!(asked.len(), MODELS.len() * REQUESTS.len());
     let cases: Vec<Case> = asked
         .par_iter()
         .filter_map(|(path, k)| {
@@ -208,7 +208,7 @@ fn the_lines_of_the_book_are_c() {
     );
     std::fs::write(folder.join("shown.c"), program).expect("written");
     for line in [
-        &*format!("gcc -std=c99 -O2 {STRICT} shown.c cart_pole.c -lm -o shown"),
+        &*format!("gcc -std=c99 -O2 {STRICT_FLAGS} shown.c cart_pole.c -lm -o shown"),
         &folder.join("shown").display().to_string(),
     ] {
         run(&folder, line).unwrap_or_else(|error| panic!("{error}"));
@@ -228,13 +228,14 @@ fn the_example_holds_its_pole_upright() {
             .c_files(&folder, precision)
             .generate();
         built.unwrap_or_else(|error| panic!("{error}"));
-        let line = format!("gcc -std=c99 -O2 {STRICT} -c cart_pole.c");
+        let line = format!("gcc -std=c99 -O2 {STRICT_FLAGS} -c cart_pole.c");
         run(&folder, &line).unwrap_or_else(|error| panic!("{error}"));
         // The program is written with `double`.
         if precision == Precision::Float {
             continue;
         }
-        let line = format!("gcc -std=c99 -O2 {STRICT} -I. {main} cart_pole.o -lm -o cart_pole");
+        let line =
+            format!("gcc -std=c99 -O2 {STRICT_FLAGS} -I. {main} cart_pole.o -lm -o cart_pole");
         run(&folder, &line).unwrap_or_else(|error| panic!("{error}"));
         let printed = run(&folder, &folder.join("cart_pole").display().to_string());
         let printed = printed.unwrap_or_else(|error| panic!("{error}"));

@@ -38,7 +38,7 @@ fn states(generated: &Generated, random: &mut Random) -> Vec<State> {
         let momentum = random.numbers(program.n);
         [x, xi, xi_dot, momentum, random.numbers(program.m)]
     };
-    (0..STATES).map(|_| state()).collect()
+    (0..STATE_COUNT).map(|_| state()).collect()
 }
 
 fn interpreted(generated: &Generated, function: &Function, state: &State) -> Expected {
@@ -155,7 +155,7 @@ fn compiled_code_gives_what_the_interpreter_gives() {
             .collect();
         let double = [1e-11, 1e-3];
         let single = [1e-4, 100.0];
-        for first in 0..STATES {
+        for first in 0..STATE_COUNT {
             let at: &At = &|lane, argument, entry| states[first + lane][argument][entry];
             compare("f64", (case.double)(at), first, &expected, double, case);
             compare("f32", (case.single)(at), first, &expected, single, case);
@@ -174,7 +174,7 @@ fn compiled_code_gives_what_the_interpreter_gives() {
 
 #[test]
 fn every_text_is_rust() {
-    let count = size(PARSED, 2_000);
+    let count = size(PARSED_DESCRIPTIONS, 2_000);
     let written = (10_000..10_000 + count).into_par_iter().filter(|&seed| {
         let text = describe::description(&mut Random::new(seed), None);
         match source(&text, "random.eom") {

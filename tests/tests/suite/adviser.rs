@@ -1,8 +1,8 @@
 //! The descriptions that the adviser proposes have the same motion as the given one.
 
+use hamel_codegen::algebra::field_point::FieldPoint;
 use hamel_codegen::algebra::fp::Fp;
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
-use hamel_codegen::algebra::lane::Lane;
 use hamel_codegen::algebra::numeric::{evaluate_at, solve};
 use hamel_codegen::algebra::tangent::tangent_at;
 use hamel_codegen::derive::accel::accel;
@@ -34,10 +34,10 @@ fn motion(model: &Model, lane: &Lane, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     let (chosen, _) = accel(model, &Care::default()).expect("M is regular");
     let graph = &model.graph;
     let places = symbols(graph, &model.xi);
-    let mut moved = Lane::new();
+    let mut moved = FieldPoint::new();
     for index in 0..graph.symbols().len() {
         let own = places.iter().position(|&place| place == index);
-        moved.push_symbol(own.map_or_else(|| lane.symbol(index), |place| xi[place]));
+        moved.push_symbol(own.map_or_else(|| point.symbol(index), |place| xi[place]));
     }
     let rate = evaluate_at(graph, &model.rate, &mut moved.clone()).expect("a value");
     let xi_dot = evaluate_at(&chosen.graph, &chosen.xi_dot, &mut moved.clone()).expect("a value");
@@ -68,16 +68,16 @@ fn every_choice_has_the_same_motion() {
         assert_eq!(choices.iter().filter(|choice| choice.as_written).count(), 1);
         let weights: Vec<usize> = choices.iter().map(|choice| choice.accel.weight()).collect();
         assert!(weights.is_sorted(), "{name}: {weights:?}");
-        let lane = model.points.lane(0xadf1).expect("a point");
+        let point = model.points.lane(0xadf1).expect("a point");
         for choice in &choices {
             // Computes ξ' from ẋ = A' ξ' by the normal equations.
             let given = symbols(&model.graph, &model.xi);
-            let xi: Vec<Fp> = given.iter().map(|&place| lane.symbol(place)).collect();
-            let (rate, acceleration) = motion(&model, &lane, &xi);
+            let xi: Vec<Fp> = given.iter().map(|&place| point.symbol(place)).collect();
+            let (rate, acceleration) = motion(&model, &point, &xi);
             let a = evaluate_at(
                 &choice.model.graph,
                 &choice.model.a.concat(),
-                &mut lane.clone(),
+                &mut point.clone(),
             )
             .expect("a value");
             let n = model.n();
@@ -94,7 +94,7 @@ fn every_choice_has_the_same_motion() {
                 .map(|i| sum(rows.iter().zip(&rate).map(|(row, &r)| row[i] * r).collect()))
                 .collect();
             let own = solve(gram, right).expect("A' has full rank");
-            let (own_rate, own_acceleration) = motion(&choice.model, &lane, &own);
+            let (own_rate, own_acceleration) = motion(&choice.model, &point, &own);
             assert_eq!(own_rate, rate, "{name}: {}", choice.label);
             assert_eq!(own_acceleration, acceleration, "{name}: {}", choice.label);
         }

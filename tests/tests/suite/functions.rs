@@ -32,11 +32,11 @@ enum Tree {
 
 const NAMES: [&str; 5] = ["x", "y", "v", "w", "u"];
 const KNOTS: [(f64, f64); 4] = [(-1.0, 0.5), (0.0, -0.25), (0.5, 1.0), (2.0, 0.0)];
-const ONE: [&str; 9] = [
+const FUNCTIONS_OF_ONE: [&str; 9] = [
     "abs", "sign", "tanh", "sin", "-", "square", "root", "inverse", "line",
 ];
-const TWO: [&str; 7] = ["+", "-", "*", "min", "max", "hypot", "/"];
-const LESS: [&str; 4] = ["<", "<=", ">", ">="];
+const FUNCTIONS_OF_TWO: [&str; 7] = ["+", "-", "*", "min", "max", "hypot", "/"];
+const COMPARISONS: [&str; 4] = ["<", "<=", ">", ">="];
 
 impl Tree {
     fn random(random: &mut Random, depth: usize) -> Self {
@@ -51,11 +51,11 @@ impl Tree {
         match kind {
             0..=2 => {
                 let inner = Box::new(next());
-                Tree::One(ONE[random.below(9)], inner)
+                Tree::One(FUNCTIONS_OF_ONE[random.below(9)], inner)
             }
             3..=6 => {
                 let (a, b) = (Box::new(next()), Box::new(next()));
-                Tree::Two(TWO[random.below(7)], a, b)
+                Tree::Two(FUNCTIONS_OF_TWO[random.below(7)], a, b)
             }
             7 => {
                 let inner = Box::new(next());
@@ -66,7 +66,7 @@ impl Tree {
             }
             _ => {
                 let parts = [next(), next(), next(), next()];
-                Tree::If(LESS[random.below(4)], Box::new(parts))
+                Tree::If(COMPARISONS[random.below(4)], Box::new(parts))
             }
         }
     }

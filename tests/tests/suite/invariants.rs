@@ -140,7 +140,7 @@ fn driven<Sys>(
     };
     integrate(system, Rkmk4, &mut state, 5e-4, 2.0, inputs, observe).expect("a run");
     for worst in worst {
-        assert!(worst < DRIFT, "{worst:e}");
+        assert!(worst < MAX_DRIFT, "{worst:e}");
     }
 }
 

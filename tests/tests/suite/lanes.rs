@@ -70,7 +70,7 @@ where
         for (found, expected) in states.iter().zip(&expected) {
             assert_eq!(found.t, UNTIL);
             let error = distance(found, expected);
-            assert!(error < ROUNDING, "{error:e}");
+            assert!(error < TOLERANCE, "{error:e}");
         }
     }
 }
@@ -207,7 +207,7 @@ fn failures_do_not_spread() {
     );
     for member in (0..15).filter(|member| ![2, 6, 9].contains(member)) {
         assert_eq!(states[member].t, UNTIL);
-        assert!(distance(&states[member], &expected[member]) < ROUNDING);
+        assert!(distance(&states[member], &expected[member]) < TOLERANCE);
     }
 }
 
@@ -225,7 +225,7 @@ fn members_start_when_they_like() {
     let outcome = ensemble::integrate(&wide, &Rkmk4, &mut states, H, UNTIL, none, quietly);
     assert_eq!(outcome, Outcome::default());
     for (found, expected) in states.iter().zip(&expected) {
-        assert!(distance(found, expected) < ROUNDING);
+        assert!(distance(found, expected) < TOLERANCE);
     }
     let outcome = ensemble::integrate(&wide, &Rkmk4, &mut states, 0.0, 2.0, none, quietly);
     assert_eq!(outcome.failures.len(), 10, "steps of no length");
@@ -241,7 +241,7 @@ fn implicit_methods_iterate_until_all_lanes_are_content() {
     let outcome = ensemble::integrate(&wide, &Gauss4, &mut states, H, UNTIL, none, quietly);
     assert_eq!(outcome, Outcome::default());
     for (found, expected) in states.iter().zip(&expected) {
-        assert!(distance(found, expected) < ROUNDING);
+        assert!(distance(found, expected) < TOLERANCE);
     }
 }
 

@@ -118,7 +118,7 @@ fn difference(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         let pairs = after.iter().zip(&before);
         pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect()
     };
-    let (coarse, fine) = (central(STEP), central(STEP / 2.0));
+    let (coarse, fine) = (central(DIFFERENCE_STEP), central(DIFFERENCE_STEP / 2.0));
     let pairs = coarse.iter().zip(&fine);
     pairs.map(|(c, f)| (4.0 * f - c) / 3.0).collect()
 }
@@ -165,7 +165,7 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
         let check = |what: &str, j: usize, found: &[f64], expected: &[f64]| {
             for (a, b) in found.iter().zip(expected) {
                 assert!(
-                    (a - b).abs() <= DIFFERENCE * size,
+                    (a - b).abs() <= TOLERANCE * size,
                     "{name}, {what}, column {}: {found:?} against {expected:?}",
                     j + 1
                 );

@@ -54,7 +54,7 @@ where
     for found in ends {
         let error = relative(found.x.as_ref(), expected.x.as_ref());
         let error = error.max(relative(found.xi.as_ref(), expected.xi.as_ref()));
-        assert!(error <= SAME, "{error:e}");
+        assert!(error <= TOLERANCE, "{error:e}");
     }
 }
 
@@ -90,7 +90,7 @@ fn chains_of_bodies_run_by_gauss() {
     let system = TwoBodies::default();
     let expected = end(&system, Rkmk8, 400, 0.5, &[]);
     let found = end(&system, Gauss6, 400, 0.5, &[]);
-    assert!(relative(&found.x, &expected.x) <= SAME);
+    assert!(relative(&found.x, &expected.x) <= TOLERANCE);
 }
 
 /// Coordinate constraints that are not built into a chart hold up to rounding in long runs, and the projection does not

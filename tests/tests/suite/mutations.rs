@@ -71,7 +71,7 @@ fn run(
                 *work.lock().expect("unpoisoned") = None;
                 done.fetch_add(1, Ordering::Relaxed);
             };
-            let thread = std::thread::Builder::new().stack_size(STACK);
+            let thread = std::thread::Builder::new().stack_size(STACK_BYTES);
             thread.spawn_scoped(scope, worker).expect("a thread");
         }
         while done.load(Ordering::Relaxed) < workers {
@@ -79,7 +79,7 @@ fn run(
             for work in &work {
                 let work = work.lock().expect("unpoisoned");
                 if let Some((text, since)) = work.as_ref()
-                    && since.elapsed() > PATIENCE
+                    && since.elapsed() > CASE_TIMEOUT
                     && failure.lock().expect("unpoisoned").is_none()
                 {
                     // The thread cannot be stopped, so the process ends.
@@ -130,7 +130,9 @@ fn is_long(text: &str) -> bool {
         return false;
     };
     let moves = |item: &&Item| matches!(item.kind, ItemKind::Joint(_) | ItemKind::Coord(_));
-    expand(&system).is_ok_and(|written| written.system.items.iter().filter(moves).count() > LONG)
+    expand(&system).is_ok_and(|written| {
+        written.system.items.iter().filter(moves).count() > LONG_DESCRIPTION_JOINTS
+    })
 }
 
 /// Runs all stages and renders the errors; returns whether the text is correct.
@@ -151,7 +153,8 @@ fn generate(text: &str) -> bool {
 fn no_text_panics() {
     let corpus = Corpus::read();
     let seed = number("HAMEL_FUZZ_SEED", 0x4a6d) as u64;
-    let [parsed, generated] = [PARSED, GENERATED].map(|[few, many]| size(few, many) as usize);
+    let [parsed, generated] =
+        [PARSED_CASES, GENERATED_CASES].map(|[few, many]| size(few, many) as usize);
     let cases = number("HAMEL_FUZZ_CASES", generated);
     println!("seed {seed}, {parsed} parsed, {cases} generated");
     let mutate = |case: usize| corpus.mutate(&mut Random::new(seed + case as u64), false);

@@ -18,7 +18,7 @@ use std::f64::consts::{PI, TAU};
 /// Steps of about 1/4000 of the motion's period, with which the error of RKMK4 is below 1e-11.
 const STEPS: u32 = 4000;
 /// Method error of such runs, with margin.
-const EXACT: f64 = 1e-10;
+const METHOD_TOLERANCE: f64 = 1e-10;
 
 fn end<Sys: System>(
     system: &Sys,
@@ -82,8 +82,8 @@ fn pendulum_period() {
             let by_raw = end(&raw, x0, [0.0], part * period);
             let by_circle = end(&circle, x0, [0.0], part * period);
             for (x, xi) in [(by_raw.x, by_raw.xi), (by_circle.x, by_circle.xi)] {
-                assert_near("θ", x[1].atan2(x[0]), theta, EXACT);
-                assert_near("θ̇", xi[0], rate, 10.0 * EXACT);
+                assert_near("θ", x[1].atan2(x[0]), theta, METHOD_TOLERANCE);
+                assert_near("θ̇", xi[0], rate, 10.0 * METHOD_TOLERANCE);
             }
         }
     }
@@ -104,9 +104,9 @@ fn particle_on_a_kepler_orbit() {
 
     let (x0, xi0) = ([rho, 0.3], [0.0, v]);
     let once = end(&system, x0, xi0, period);
-    assert_near("ρ after a period", once.x[0], rho, EXACT);
-    assert_near("φ after a period", once.x[1], 0.3 + TAU, EXACT);
-    assert_near("radial speed", once.xi[0], 0.0, 10.0 * EXACT);
+    assert_near("ρ after a period", once.x[0], rho, METHOD_TOLERANCE);
+    assert_near("φ after a period", once.x[1], 0.3 + TAU, METHOD_TOLERANCE);
+    assert_near("radial speed", once.xi[0], 0.0, 10.0 * METHOD_TOLERANCE);
 
     for part in [0.1, 0.35, 0.8] {
         let state = end(&system, x0, xi0, part * period);
@@ -118,13 +118,13 @@ fn particle_on_a_kepler_orbit() {
         }
         let distance = a * (1.0 - eccentricity * anomaly.cos());
         let angular_momentum = m * state.x[0] * state.xi[1];
-        assert_near("ρ", state.x[0], distance, EXACT);
-        assert_near("m ρ v", angular_momentum, m * rho * v, EXACT);
+        assert_near("ρ", state.x[0], distance, METHOD_TOLERANCE);
+        assert_near("m ρ v", angular_momentum, m * rho * v, METHOD_TOLERANCE);
         let factor = ((1.0 + eccentricity) / (1.0 - eccentricity)).sqrt();
         let (sin, cos) = (0.5 * anomaly).sin_cos();
         let anomaly = 2.0 * (factor * sin).atan2(cos);
         let turned = (state.x[1] - 0.3 - anomaly).rem_euclid(TAU);
-        assert_near("φ", turned.min(TAU - turned), 0.0, EXACT);
+        assert_near("φ", turned.min(TAU - turned), 0.0, METHOD_TOLERANCE);
     }
 }
 
@@ -133,22 +133,27 @@ fn particle_on_a_kepler_orbit() {
 #[test]
 fn cart_pole_near_the_upright() {
     /// Nonlinear terms are of the third order in the angle: 1e-12 relative.
-    const SMALL: f64 = 1e-6;
+    const SMALL_ANGLE: f64 = 1e-6;
     let (mc, mp, l, g) = (1.2, 0.3, 0.5, 9.81);
     let system = CartPole::new(CartPoleParameters { mc, mp, l, g }).expect("a cart");
     let square = (mc + mp) * g / (mc * l);
     let still = [0.0; 2];
     let accel = |x, u| system.accel(x, &still, u).expect("M is regular");
-    let [p, th] = accel(&[0.4, SMALL], &[0.0]);
-    assert_near("eigenvalue", (th / SMALL).sqrt(), square.sqrt(), 1e-10);
-    assert_near("cart", p / SMALL, -mp / mc * g, 1e-10);
+    let [p, th] = accel(&[0.4, SMALL_ANGLE], &[0.0]);
+    assert_near(
+        "eigenvalue",
+        (th / SMALL_ANGLE).sqrt(),
+        square.sqrt(),
+        1e-10,
+    );
+    assert_near("cart", p / SMALL_ANGLE, -mp / mc * g, 1e-10);
     let [p, th] = accel(&[0.4, 0.0], &[2.0]);
     assert_near("push, cart", p, 2.0 / mc, 1e-13);
     assert_near("push, pole", th, -2.0 / (mc * l), 1e-13);
 
     let until = 2.0 / square.sqrt();
-    let state = end(&system, [0.4, SMALL], still, until);
-    assert_near("growth", state.x[1] / SMALL, 2.0_f64.cosh(), 1e-9);
+    let state = end(&system, [0.4, SMALL_ANGLE], still, until);
+    assert_near("growth", state.x[1] / SMALL_ANGLE, 2.0_f64.cosh(), 1e-9);
 }
 
 /// The centre of mass of a free planar body falls on a parabola, and the body rotates uniformly.
@@ -176,13 +181,13 @@ fn planar_body_in_free_fall() {
     let arm = [start[0] - r0[0], start[1] - r0[1]];
     let speed = [v0[0] - spin * arm[1], v0[1] + spin * arm[0]];
     let [x, y] = centre([state.x[0], state.x[1]], q);
-    assert_near("x", x, start[0] + speed[0] * until, EXACT);
+    assert_near("x", x, start[0] + speed[0] * until, METHOD_TOLERANCE);
     let fall = start[1] + speed[1] * until - 0.5 * g * until * until;
-    assert_near("y", y, fall, EXACT);
-    assert_near("spin", state.xi[2], spin, EXACT);
+    assert_near("y", y, fall, METHOD_TOLERANCE);
+    assert_near("spin", state.xi[2], spin, METHOD_TOLERANCE);
     let [c, s] = s1::exp(angle + spin * until);
-    assert_near("cosine", q[0], c, EXACT);
-    assert_near("sine", q[1], s, EXACT);
+    assert_near("cosine", q[0], c, METHOD_TOLERANCE);
+    assert_near("sine", q[1], s, METHOD_TOLERANCE);
 }
 
 /// Steady precession of a symmetric top with tilt θ against the vertical at the rate Ω:
@@ -231,8 +236,8 @@ fn symmetric_top_in_steady_precession() {
         let by3 = so3::apply(end3.x, [0.0, 0.0, 1.0]);
         let by2 = so3::apply(end2.x, [0.0, 1.0, 0.0]);
         for k in 0..3 {
-            assert_near("axis along e₃", by3[k], turned[k], PRECESSION);
-            assert_near("axis along e₂", by2[k], turned[k], PRECESSION);
+            assert_near("axis along e₃", by3[k], turned[k], PRECESSION_TOLERANCE);
+            assert_near("axis along e₂", by2[k], turned[k], PRECESSION_TOLERANCE);
         }
         assert_near("spin along e₃", end3.xi[2], spin, 1e-9 * spin.abs());
         assert_near("spin along e₂", end2.xi[1], spin, 1e-9 * spin.abs());
@@ -249,9 +254,9 @@ fn free_symmetric_body_precesses_evenly() {
     let until = 3.0;
     let state = end(&system, so3::identity(), w0, until);
     let (sin, cos) = (rate * until).sin_cos();
-    assert_near("ω₁", state.xi[0], 0.8 * cos, EXACT);
-    assert_near("ω₂", state.xi[1], 0.8 * sin, EXACT);
-    assert_near("ω₃", state.xi[2], w0[2], EXACT);
+    assert_near("ω₁", state.xi[0], 0.8 * cos, METHOD_TOLERANCE);
+    assert_near("ω₂", state.xi[1], 0.8 * sin, METHOD_TOLERANCE);
+    assert_near("ω₃", state.xi[2], w0[2], METHOD_TOLERANCE);
 }
 
 /// A thrust F = m g against gravity and a torque τ about a principal axis from rest: φ = τ t² / 2 J.
@@ -274,10 +279,10 @@ fn hovering_body_under_a_torque() {
     let (sin, cos) = (0.5 * tau / 0.04 * until * until).sin_cos();
     let expected = [cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0];
     for k in 0..9 {
-        assert_near("R", state.x[3 + k], expected[k], EXACT);
+        assert_near("R", state.x[3 + k], expected[k], METHOD_TOLERANCE);
     }
     for k in 0..3 {
-        assert_near("r", state.x[k], x0[k], EXACT);
+        assert_near("r", state.x[k], x0[k], METHOD_TOLERANCE);
     }
 }
 
@@ -308,10 +313,10 @@ fn bead_on_a_turning_hoop() {
     }
     let [c, s] = s1::exp(rest);
     let state = end(&system, [1.0, 0.0, c, s], [speed, 0.0], 1.0);
-    assert_near("θ", state.x[3].atan2(state.x[2]), rest, EXACT);
+    assert_near("θ", state.x[3].atan2(state.x[2]), rest, METHOD_TOLERANCE);
     let [c, s] = s1::exp(speed);
-    assert_near("cos ψ", state.x[0], c, EXACT);
-    assert_near("sin ψ", state.x[1], s, EXACT);
+    assert_near("cos ψ", state.x[0], c, METHOD_TOLERANCE);
+    assert_near("sin ψ", state.x[1], s, METHOD_TOLERANCE);
 }
 
 /// (28): f is the power of the applied loads per unit velocity.

@@ -20,7 +20,7 @@ fn a_refused_mass_leaves_everything_unchanged() {
     let inputs = [1.0, 2.0, 3.0, 0.1, 0.2, 0.3];
     let before = system.accel(&state.x, &state.xi, &inputs);
     assert!(before.is_ok());
-    for refused in REFUSED {
+    for refused in INVALID_NUMBERS {
         assert_eq!(
             system.set_m(refused),
             Err(Singular::Inertia { velocity: "v[1]" }),
@@ -41,7 +41,7 @@ fn a_refused_inertia_names_its_velocity() {
         .into_iter()
         .enumerate()
     {
-        for refused in REFUSED {
+        for refused in INVALID_NUMBERS {
             let mut j = [1.0, 2.0, 3.0];
             j[place] = refused;
             let result = PrincipalAxes::new(PrincipalAxesParameters {

@@ -22,7 +22,7 @@ const UNTIL: f64 = 1.0;
 /// Number of steps: h |ω| is below 4e-3, where the error of RKMK4 is below 1e-11.
 const STEPS: u32 = 2000;
 /// Method error of both motions, with margin; a wrong term gives 1e-3 and more.
-const SAME: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 
 type Vector = [f64; 3];
 type Matrix = [f64; 9];
@@ -41,7 +41,7 @@ fn join<const A: usize, const B: usize, const C: usize>(a: [f64; A], b: [f64; B]
 fn assert_same(what: &str, a: &[f64], b: &[f64]) {
     let difference = relative(a, b);
     println!("{what}: {difference:.1e}");
-    assert!(difference <= SAME, "{what}: {a:?} against {b:?}");
+    assert!(difference <= TOLERANCE, "{what}: {a:?} against {b:?}");
 }
 
 /// The start of a free body, far from the identity: r, R, and v, ω in world axes.

@@ -19,7 +19,7 @@ const UNTIL: f64 = 1.0;
 /// Number of steps of methods of order four, whose errors are below 1e-11 at these speeds.
 const STEPS: u32 = 4000;
 /// Method error of both motions, with margin; a wrong term gives 1e-3 and more.
-const SAME: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 
 fn end<Sys: System>(system: &Sys, x: Sys::Coordinates, xi: Sys::Velocities) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
@@ -30,7 +30,7 @@ fn end<Sys: System>(system: &Sys, x: Sys::Coordinates, xi: Sys::Velocities) -> S
 fn assert_near(what: &str, value: f64, expected: f64) {
     println!("{what}: {value} off by {:.1e}", value - expected);
     assert!(
-        (value - expected).abs() <= SAME * expected.abs().max(1.0),
+        (value - expected).abs() <= TOLERANCE * expected.abs().max(1.0),
         "{what}: {value}, expected {expected}"
     );
 }

@@ -44,12 +44,12 @@ fn definitions_give_the_same_functions_as_rates() {
     let (Ok(a), Ok(b)) = accel else {
         panic!("{accel:?}")
     };
-    assert_close("free body", &a, &b, ROUNDING);
+    assert_close("free body", &a, &b, TOLERANCE);
     assert_close(
         "free body",
         &rows.rate(&x, &xi),
         &rates.rate(&x, &xi),
-        ROUNDING,
+        TOLERANCE,
     );
 
     let (rows, rates) = (
@@ -62,8 +62,8 @@ fn definitions_give_the_same_functions_as_rates() {
     let (Ok(a), Ok(b)) = accel else {
         panic!("{accel:?}")
     };
-    assert_close("rods", &a, &b, ROUNDING);
-    assert_close("rods", &rows.rate(&x, &xi), &rates.rate(&x, &xi), ROUNDING);
+    assert_close("rods", &a, &b, TOLERANCE);
+    assert_close("rods", &rows.rate(&x, &xi), &rates.rate(&x, &xi), TOLERANCE);
 }
 
 /// Nine reals with RᵀR = I and det R = 1 written out are equivalent to a rotation matrix: A = R ω̂.
@@ -81,10 +81,10 @@ fn columns_of_reals_turn_as_a_rotation_does() {
         columns.accel(&transposed, &xi, &[]),
         top.accel(&r, &xi, &[]),
     );
-    assert_close("ξ̇", &a.expect("regular"), &b.expect("regular"), ROUNDING);
+    assert_close("ξ̇", &a.expect("regular"), &b.expect("regular"), TOLERANCE);
     let (a, b) = (columns.rate(&transposed, &xi), top.rate(&r, &xi));
     let b: [f64; 9] = std::array::from_fn(|i| b[3 * (i % 3) + i / 3]);
-    assert_close("ẋ", &a, &b, ROUNDING);
+    assert_close("ẋ", &a, &b, TOLERANCE);
     assert_eq!(
         columns.constraint(&transposed).len(),
         10,
@@ -118,8 +118,8 @@ fn a_pendulum_of_points_swings_as_one_of_angles() {
     let b = angles
         .accel(&[theta.cos(), theta.sin()], &[0.4], &[])
         .expect("regular");
-    assert_close("θ̈", &a, &b, ROUNDING);
-    assert_close("θ̈", &a, &[-9.81 / l * theta.sin()], ROUNDING);
+    assert_close("θ̈", &a, &b, TOLERANCE);
+    assert_close("θ̈", &a, &[-9.81 / l * theta.sin()], TOLERANCE);
 }
 
 /// Returns the other angles of the four-bar for a crank angle, in the assembly of the start.
@@ -261,7 +261,7 @@ fn disturbed_linkages_decay_exponentially() {
     const LAMBDA: f64 = 10.0;
     const UNTIL: f64 = 0.5;
     /// Terms of φ² at a disturbance of 1e-7, and (λ h)⁵ of the method, with margin.
-    const DECAY: f64 = 2e-3;
+    const DECAY_TOLERANCE: f64 = 2e-3;
     fn decay<Sys>(system: &Sys, phi: impl Fn(&Sys::Coordinates) -> Vec<f64>)
     where
         Sys: System<Scalar = f64>,
@@ -278,7 +278,7 @@ fn disturbed_linkages_decay_exponentially() {
             println!("{before:e} {after:e}");
             let expected = before * (-LAMBDA * UNTIL).exp();
             assert!(
-                (after - expected).abs() < DECAY * 1e-7,
+                (after - expected).abs() < DECAY_TOLERANCE * 1e-7,
                 "{after:e} {expected:e}"
             );
         }

@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-12;
 /// Step of central differences (s): errors of order h², rounding of order 1e-16/h².
 const STEP: f64 = 1e-4;
 /// Errors of first and second central differences, with margin: a wrong term gives 1e-2 and more.
-const DIFFERENCE: f64 = 1e-6;
+const DIFFERENCE_TOLERANCE: f64 = 1e-6;
 
 #[track_caller]
 fn assert_near(what: &str, a: &[f64], b: &[f64], bound: f64) {
@@ -38,9 +38,14 @@ fn chain_of_springs_and_dampers_obeys_newton() {
         -second / chain.m3(),
     ];
     let accel = chain.accel(&x, &v, &[]).expect("masses");
-    assert_near("v̇", &accel, &expected, ROUNDING);
+    assert_near("v̇", &accel, &expected, ROUNDING_TOLERANCE);
     let dissipation = 0.5 * c * (v[1] - v[0]).powi(2) + c * (v[2] - v[1]).powi(2);
-    assert_near("D", &[chain.dissipation(&x, &v)], &[dissipation], ROUNDING);
+    assert_near(
+        "D",
+        &[chain.dissipation(&x, &v)],
+        &[dissipation],
+        ROUNDING_TOLERANCE,
+    );
 }
 
 /// A body on springs and dampers loses energy at the rate 2 D, over a run and at each instant.
@@ -95,7 +100,7 @@ fn springs_in_space_pull_along_their_lines() {
     pull(body.s(), [0.0, 0.0, -body.m() * body.g()]);
     let slope = body.potential_force(&x).map(|slope| -slope);
     let expected: [f64; 6] = std::array::from_fn(|i| if i < 3 { force[i] } else { torque[i - 3] });
-    assert_near("−∂V", &slope, &expected, ROUNDING);
+    assert_near("−∂V", &slope, &expected, ROUNDING_TOLERANCE);
 }
 
 /// In relative angles, a motor's torque acts on its joint only, and a force at a point of the lower link, with its
@@ -111,7 +116,7 @@ fn reactions_of_motors_act_on_the_other_link() {
         3.0 - arm.d1() * xi[0],
         5.0 + 7.0 * arm.s2() - arm.d2() * xi[1],
     ];
-    assert_near("f", &force, &expected, ROUNDING);
+    assert_near("f", &force, &expected, ROUNDING_TOLERANCE);
 }
 
 /// d/dt (T + V) = −2 D + fᵢ ξⁱ of the inputs, by central differences along the motion.
@@ -129,8 +134,8 @@ fn energy_of_an_actuated_pendulum_balances() {
             &arm,
             Rkmk4,
             &mut state,
-            STEP * steps.signum(),
-            STEP * steps,
+            DIFFERENCE_STEP * steps.signum(),
+            DIFFERENCE_STEP * steps,
             |_, _: &_, _: &_| u,
             |_| {},
         )
@@ -139,7 +144,7 @@ fn energy_of_an_actuated_pendulum_balances() {
     };
     let (later, now) = (energy(2.0), energy(1.0));
     let first = energy(0.0);
-    let rate = (later - first) / (2.0 * STEP);
+    let rate = (later - first) / (2.0 * DIFFERENCE_STEP);
     let mut state = State {
         xi: [0.8, -2.0],
         ..start.clone()
@@ -148,8 +153,8 @@ fn energy_of_an_actuated_pendulum_balances() {
         &arm,
         Rkmk4,
         &mut state,
-        STEP,
-        STEP,
+        DIFFERENCE_STEP,
+        DIFFERENCE_STEP,
         |_, _: &_, _: &_| u,
         |_| {},
     )
@@ -158,7 +163,7 @@ fn energy_of_an_actuated_pendulum_balances() {
     let motors = [u[0], u[1] + u[2] * arm.s2()];
     let gain = motors[0] * state.xi[0] + motors[1] * state.xi[1];
     assert!((now - first).abs() > 1e-6, "the energy moves");
-    assert_near("Ė", &[rate], &[gain - loss], DIFFERENCE);
+    assert_near("Ė", &[rate], &[gain - loss], DIFFERENCE_TOLERANCE);
 }
 
 /// Returns three states of a run, one step apart.
@@ -167,8 +172,9 @@ where
     Sys: System<Scalar = f64>,
     State<Sys>: Clone,
 {
-    let next =
-        |from: &State<Sys>| run(system, Rkmk4, from.clone(), from.t + STEP, 1).expect("a run");
+    let next = |from: &State<Sys>| {
+        run(system, Rkmk4, from.clone(), from.t + DIFFERENCE_STEP, 1).expect("a run")
+    };
     let middle = next(&start);
     let last = next(&middle);
     [start, middle, last]
@@ -189,11 +195,11 @@ fn sensors_of_a_pendulum_see_its_motion() {
     let places = states.each_ref().map(|s| bob.place(&s.x));
     let State { x, xi, .. } = &states[1];
     let speed = bob.speed(x, xi);
-    let measured = difference(places[2], places[0], 2.0 * STEP);
-    assert_near("speed", &speed, &measured, DIFFERENCE);
+    let measured = difference(places[2], places[0], 2.0 * DIFFERENCE_STEP);
+    assert_near("speed", &speed, &measured, DIFFERENCE_TOLERANCE);
 
     let speeds = states.each_ref().map(|s| bob.speed(&s.x, &s.xi));
-    let mut felt = difference(speeds[2], speeds[0], 2.0 * STEP);
+    let mut felt = difference(speeds[2], speeds[0], 2.0 * DIFFERENCE_STEP);
     felt[1] += bob.g();
     let (c, s) = (x[1], x[2]);
     let turned = [
@@ -202,9 +208,19 @@ fn sensors_of_a_pendulum_see_its_motion() {
         felt[2],
     ];
     let xi_dot = bob.accel(x, xi, &u).expect("a mass");
-    assert_near("felt", &bob.felt(x, xi, &xi_dot), &turned, DIFFERENCE);
-    assert_near("gyro", &[bob.gyro(xi)], &[xi[1]], ROUNDING);
-    assert_near("sliding", &bob.sliding(xi), &[xi[0], 0.0, 0.0], ROUNDING);
+    assert_near(
+        "felt",
+        &bob.felt(x, xi, &xi_dot),
+        &turned,
+        DIFFERENCE_TOLERANCE,
+    );
+    assert_near("gyro", &[bob.gyro(xi)], &[xi[1]], ROUNDING_TOLERANCE);
+    assert_near(
+        "sliding",
+        &bob.sliding(xi),
+        &[xi[0], 0.0, 0.0],
+        ROUNDING_TOLERANCE,
+    );
 }
 
 /// At rest, an accelerometer measures g upwards, and the spring carries the weight.
@@ -214,9 +230,9 @@ fn at_rest_an_accelerometer_shows_gravity() {
     let stretch = bob.m() * bob.g() / bob.k();
     let (x, xi, u) = ([bob.l() + stretch, 0.0, -1.0], [0.0; 2], [0.0]);
     let xi_dot = bob.accel(&x, &xi, &u).expect("a mass");
-    assert_near("rest", &xi_dot, &[0.0, 0.0], ROUNDING);
+    assert_near("rest", &xi_dot, &[0.0, 0.0], ROUNDING_TOLERANCE);
     let felt = bob.felt(&x, &xi, &xi_dot);
-    assert_near("felt", &felt, &[-bob.g(), 0.0, 0.0], ROUNDING);
+    assert_near("felt", &felt, &[-bob.g(), 0.0, 0.0], ROUNDING_TOLERANCE);
 }
 
 /// The readings of a body's sensors in space equal differences of position and speed in its axes; the sensors are not
@@ -231,13 +247,13 @@ fn sensors_of_a_drone_see_its_motion() {
     let places = states.each_ref().map(|s| drone.place(&s.x));
     let State { x, xi, .. } = &states[1];
     let sum: [f64; 3] = std::array::from_fn(|i| places[2][i] - 2.0 * places[1][i] + places[0][i]);
-    let mut acceleration = sum.map(|sum| sum / (STEP * STEP));
+    let mut acceleration = sum.map(|sum| sum / (DIFFERENCE_STEP * DIFFERENCE_STEP));
     acceleration[2] += drone.g();
     let rotation: [f64; 9] = std::array::from_fn(|i| x[3 + i]);
     let expected = so3::apply_transpose(rotation, acceleration);
     let xi_dot = drone.accel(x, xi, &u).expect("a body");
     let felt = drone.accelerometer(x, xi, &xi_dot);
-    assert_near("accelerometer", &felt, &expected, DIFFERENCE);
+    assert_near("accelerometer", &felt, &expected, DIFFERENCE_TOLERANCE);
     let turning = drone.turning(&xi_dot);
     assert_near("ω̇", &turning, &xi_dot[3..], ROUNDING);
     // The speed of the centre of mass, on which the drag acts.
@@ -245,10 +261,15 @@ fn sensors_of_a_drone_see_its_motion() {
     let lever = so3::cross(w, drone.s());
     let local: [f64; 3] = std::array::from_fn(|i| xi[i] + lever[i]);
     let world = so3::apply(rotation, local);
-    assert_near("speed", &drone.ground_speed(x, xi), &world, ROUNDING);
+    assert_near(
+        "speed",
+        &drone.ground_speed(x, xi),
+        &world,
+        ROUNDING_TOLERANCE,
+    );
     let drag = drone.generalized_force(x, xi, &u);
     let pull = local.map(|v| -drone.d() * v);
     let twist = so3::cross(drone.s(), pull);
     let expected: [f64; 6] = std::array::from_fn(|i| if i < 3 { pull[i] } else { twist[i - 3] });
-    assert_near("drag", &drag, &expected, ROUNDING);
+    assert_near("drag", &drag, &expected, ROUNDING_TOLERANCE);
 }

@@ -79,7 +79,7 @@ where
     /// Time over which exp(−λ t) = 1/148.
     const UNTIL: f64 = 0.5;
     /// Terms of φ² at a disturbance of 1e-5, and (λ h)⁵ of the method, with margin.
-    const DECAY: f64 = 1e-3;
+    const DECAY_TOLERANCE: f64 = 1e-3;
     let mut state = State::start(system);
     for (k, x) in state.x.as_mut().iter_mut().enumerate() {
         *x += disturb(k);
@@ -91,7 +91,7 @@ where
     for (before, after) in before.iter().zip(phi(&end.x)) {
         println!("{before:e} {after:e} {}", after / before / expected);
         assert!(before.abs() > 1e-6, "not disturbed");
-        assert!((after / before / expected - 1.0).abs() < DECAY);
+        assert!((after / before / expected - 1.0).abs() < DECAY_TOLERANCE);
     }
 }
 
@@ -120,7 +120,10 @@ fn rods_are_integrated_with_order_four() {
         let differences: Vec<f64> = ends.windows(2).map(|e| distance(&e[0], &e[1])).collect();
         println!("{method:?}: {differences:?} {:?}", slopes(&differences));
         for slope in slopes(&differences) {
-            assert!((slope - 4.0).abs() < SLOPE, "{method:?}: {differences:?}");
+            assert!(
+                (slope - 4.0).abs() < ORDER_TOLERANCE,
+                "{method:?}: {differences:?}"
+            );
         }
     }
 }
@@ -159,8 +162,14 @@ fn hoop_takes_up_the_work_of_its_torque() {
     let energy = system.energy(&state.x, &state.xi) - system.energy(&start.x, &start.xi);
     println!("work {work}, energy {energy}");
     assert!(work.abs() > 0.1, "no work to speak of");
-    assert!((energy - work).abs() < WORK, "{energy} against {work}");
+    assert!(
+        (energy - work).abs() < WORK_TOLERANCE,
+        "{energy} against {work}"
+    );
     let momentum =
         system.momentum(&state.x, &state.xi)[0] - system.momentum(&start.x, &start.xi)[0];
-    assert!((momentum - impulse(until)).abs() < WORK, "{momentum}");
+    assert!(
+        (momentum - impulse(until)).abs() < WORK_TOLERANCE,
+        "{momentum}"
+    );
 }

@@ -60,7 +60,7 @@ fn pivots_lie_between_the_inertias_of_their_velocities() {
         for &(place, pivot) in &pivots {
             let (least, most) = (1.0 / inverse[(place, place)], mass[(place, place)]);
             assert!(
-                (1.0 - CLOSE) * least <= pivot && pivot <= (1.0 + CLOSE) * most,
+                (1.0 - TOLERANCE) * least <= pivot && pivot <= (1.0 + TOLERANCE) * most,
                 "{}: `{}`: {least} <= {pivot} <= {most}",
                 path.display(),
                 program.velocity(place)

@@ -34,8 +34,8 @@ const ALONG: [f64; 4] = [1.0, 1.0, 1.0, -1.0];
 fn at(angle: f64, rate: f64) -> State<Platform<f64>> {
     State {
         t: 0.0,
-        x: ALONG.map(|sign| sign * angle),
-        xi: ALONG.map(|sign| sign * rate),
+        x: CRANK_DIRECTIONS.map(|sign| sign * angle),
+        xi: CRANK_DIRECTIONS.map(|sign| sign * rate),
     }
 }
 
@@ -77,10 +77,14 @@ where
             });
             for (row, expected) in expected.iter().enumerate() {
                 let entries = &slopes.row(row)[first..];
-                let found: f64 = entries.iter().zip(ALONG).map(|(a, sign)| a * sign).sum();
+                let found: f64 = entries
+                    .iter()
+                    .zip(CRANK_DIRECTIONS)
+                    .map(|(a, sign)| a * sign)
+                    .sum();
                 let apart = (found - expected).abs();
                 assert!(
-                    apart < DIFFERENCE,
+                    apart < DIFFERENCE_TOLERANCE,
                     "{name} at {angle}, row {row}: {found}, {expected}"
                 );
             }

@@ -1,7 +1,7 @@
 //! Compares first-order states with closed forms, with the Newton-Euler equations by hand, and with the same mechanism
 //! with inputs instead of states.
 
-use crate::described::{CLOSE, assert_near, generated, states, text, value};
+use crate::described::{TOLERANCE, assert_near, generated, states, text, value};
 use hamel::adaptive::Adaptive;
 use hamel::methods::{General, Rkmk54};
 use hamel::{State, System};
@@ -41,9 +41,9 @@ fn a_motor_turns_a_pendulum() {
             "ẇ",
             dw,
             (n * k * i - m * g * l * q.sin() - d * w) / inertia,
-            CLOSE,
+            TOLERANCE,
         );
-        assert_near("di/dt", di, (v - r * i - n * k * w) / coil, CLOSE);
+        assert_near("di/dt", di, (v - r * i - n * k * w) / coil, TOLERANCE);
         let stored = inertia * w * dw + m * g * l * q.sin() * w + coil * i * di;
         let supplied = system.supplied(&[w, i], &[v]);
         assert_near("power", stored + r * i * i + d * w * w, supplied, 1e-10);
@@ -59,7 +59,7 @@ fn a_motor_turns_a_pendulum() {
             [0.0, -n * k / coil, -r / coil, 1.0 / coil],
         ];
         for (found, expected) in rows.concat().into_iter().zip(expected.concat()) {
-            assert_near("[A B]", found, expected, CLOSE);
+            assert_near("[A B]", found, expected, TOLERANCE);
         }
     }
 }
@@ -123,7 +123,12 @@ fn rotors_lag_behind_their_commands() {
     })
     .expect("a drone");
     let (_, xi) = start.start();
-    assert_near("thrust at the start", xi[6..].iter().sum(), m * g, CLOSE);
+    assert_near(
+        "thrust at the start",
+        xi[6..].iter().sum(),
+        m * g,
+        TOLERANCE,
+    );
 }
 
 /// Returns a diagonal matrix by rows.

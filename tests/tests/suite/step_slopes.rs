@@ -212,7 +212,11 @@ where
     Sys: Tangent<Scalar = f64>,
 {
     let exact = !name.ends_with("backward-euler");
-    let close = if exact { DIFFERENCE } else { ITERATED };
+    let close = if exact {
+        DIFFERENCE_TOLERANCE
+    } else {
+        ITERATED_DIFFERENCE_TOLERANCE
+    };
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
     let (end, slopes) = (steps.slopes)(&inputs);
@@ -227,7 +231,11 @@ where
     // Explicit methods add in another order; implicit ones iterate until the slopes have converged, too.
     let numbers = |state: &State<Sys>| [state.x.as_ref(), state.xi.as_ref()].concat();
     for (found, expected) in numbers(&end).iter().zip(numbers(&alone)) {
-        let close = if exact { STATE } else { CONVERGED };
+        let close = if exact {
+            STATE_TOLERANCE
+        } else {
+            ITERATED_STATE_TOLERANCE
+        };
         assert!(
             (found - expected).abs() <= close * expected.abs().max(1.0),
             "{name}: {found} {expected}"
@@ -468,7 +476,7 @@ fn methods_for_long_runs_keep_the_symplectic_form() {
         let before = form(&start);
         let worst = pulled.iter().flatten().zip(before.iter().flatten());
         let worst = worst.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert_eq!(worst < ROUNDING * 10.0, kept, "{name}: {worst}");
+        assert_eq!(worst < ROUNDING_TOLERANCE * 10.0, kept, "{name}: {worst}");
     };
     for scheme in SCHEMES {
         let method = Splitting::new(&top, scheme);

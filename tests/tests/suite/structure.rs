@@ -36,7 +36,7 @@ fn close(a: &DVector<f64>, b: &DVector<f64>, tolerance: f64, what: &str) {
 }
 
 fn differ(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
-    (a - b).amax() > APART * a.amax().max(b.amax())
+    (a - b).amax() > DISTINCT_TOLERANCE * a.amax().max(b.amax())
 }
 
 /// T as a function of momenta is ½ Σ P·J⁻¹P + ½ pᵀ D p, with D determined at another state.
@@ -67,7 +67,7 @@ fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
         let (i, j) = (uniform[i], uniform[j]);
         single(case, &[i, j]) - single(case, &[i]) - single(case, &[j])
     });
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_LAW {
         let (x, p) = (case.x(), case.numbers(n));
         let mut expected: f64 = 0.0;
         for (rates, j) in turning.iter().zip(&rotors) {
@@ -80,7 +80,7 @@ fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
         let found = energy(case, &x, &p);
         let scale = expected.abs().max(1e-300);
         assert!(
-            (found - expected).abs() <= ROUNDING * scale,
+            (found - expected).abs() <= ROUNDING_TOLERANCE * scale,
             "{}: T = {found}, {expected}",
             case.name
         );
@@ -90,7 +90,7 @@ fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
 /// `centre` and `uncentre` are inverse, and so are `split_momenta` and `split_velocities`.
 fn inverses(case: &mut Case) {
     let n = case.generated.program.n;
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_LAW {
         let (x, xi) = (case.x(), case.numbers(n));
         let y = case.moved("centre", &x);
         let back = case.moved("uncentre", y.as_slice());
@@ -98,13 +98,18 @@ fn inverses(case: &mut Case) {
         close(
             &back,
             &x_vector,
-            ROUNDING,
+            ROUNDING_TOLERANCE,
             &format!("{}: x of y", case.name),
         );
         let p = case.call("split_momenta", &x, &xi, &[], &[]);
         let back = case.call("split_velocities", &x, &[], &[], p.as_slice());
         let xi = DVector::from_vec(xi);
-        close(&back, &xi, ROUNDING, &format!("{}: ξ of p", case.name));
+        close(
+            &back,
+            &xi,
+            ROUNDING_TOLERANCE,
+            &format!("{}: ξ of p", case.name),
+        );
     }
 }
 
@@ -112,7 +117,7 @@ fn inverses(case: &mut Case) {
 fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
     let (n, m) = (case.generated.program.n, case.generated.program.m);
     let rotors = case.rotors(splitting);
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_LAW {
         let (x, xi, u) = (case.x(), case.numbers(n), case.numbers(m));
         let (rate, accel) = (
             case.call("rate", &x, &xi, &[], &[]),
@@ -124,11 +129,12 @@ fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
             };
             (step(&x, &rate), step(&xi, &accel))
         };
-        let ((x1, xi1), (x2, xi2)) = (after(STEP), after(-STEP));
+        let ((x1, xi1), (x2, xi2)) = (after(DIFFERENCE_STEP), after(-DIFFERENCE_STEP));
         let p_dot = (case.call("split_momenta", &x1, &xi1, &[], &[])
             - case.call("split_momenta", &x2, &xi2, &[], &[]))
-            / (2.0 * STEP);
-        let y_dot = (case.moved("centre", &x1) - case.moved("centre", &x2)) / (2.0 * STEP);
+            / (2.0 * DIFFERENCE_STEP);
+        let y_dot =
+            (case.moved("centre", &x1) - case.moved("centre", &x2)) / (2.0 * DIFFERENCE_STEP);
         let p = case.call("split_momenta", &x, &xi, &[], &[]);
         let mut expected = case.call("kick", &x, &[], &u, &[]);
         let mut rotor = rotors.iter();
@@ -140,7 +146,7 @@ fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
                     close(
                         &moved,
                         &own,
-                        DIFFERENCE,
+                        DIFFERENCE_TOLERANCE,
                         &format!("{}: ẏ of {name}", case.name),
                     );
                 }
@@ -155,14 +161,20 @@ fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
                 }
             }
         }
-        close(&p_dot, &expected, DIFFERENCE, &format!("{}: ṗ", case.name));
+        close(
+            &p_dot,
+            &expected,
+            DIFFERENCE_TOLERANCE,
+            &format!("{}: ṗ", case.name),
+        );
     }
 }
 
 /// The stated forms of inertias hold at the default parameters.
 fn symmetries_hold(case: &Case, splitting: &Splitting) {
     for (form, j) in splitting.rotors.iter().zip(case.rotors(splitting)) {
-        let equal = |a: usize, b: usize| (j[(a, a)] - j[(b, b)]).abs() <= ROUNDING * j[(a, a)];
+        let equal =
+            |a: usize, b: usize| (j[(a, a)] - j[(b, b)]).abs() <= ROUNDING_TOLERANCE * j[(a, a)];
         let [x, y, z] = [equal(1, 2), equal(2, 0), equal(0, 1)];
         match form.inertia {
             Inertia::Principal(Symmetry::Spherical) => assert!(x && y && z, "{}", case.name),
@@ -172,7 +184,7 @@ fn symmetries_hold(case: &Case, splitting: &Splitting) {
             Inertia::General => {
                 let off = j[(0, 1)].abs() + j[(0, 2)].abs() + j[(1, 2)].abs();
                 assert!(off > 0.0, "{}: a full inertia", case.name);
-                assert!((&j - j.transpose()).amax() <= ROUNDING * j.amax());
+                assert!((&j - j.transpose()).amax() <= ROUNDING_TOLERANCE * j.amax());
             }
         }
     }
@@ -215,7 +227,7 @@ fn forces_change(case: &mut Case) -> bool {
         }
         let (a, b) = (case.numbers(n), case.numbers(n));
         let at = |xi: &[f64]| case.call("generalized_force", &x, xi, &u, &[]);
-        (at(&a) - at(&b)).amax() > APART
+        (at(&a) - at(&b)).amax() > DISTINCT_TOLERANCE
     })
 }
 
@@ -240,7 +252,7 @@ fn inertia_changes(case: &mut Case, on: &[String]) -> bool {
     let plain = parts
         .iter()
         .all(|(_, block, ..)| matches!(block, Block::Flat(_)));
-    all && (plain || (there / here.determinant() - 1.0).abs() > APART)
+    all && (plain || (there / here.determinant() - 1.0).abs() > DISTINCT_TOLERANCE)
 }
 
 /// Returns whether the rates of a rotor and of another coordinate remain coupled after elimination of plain
@@ -268,7 +280,7 @@ fn coupled(case: &mut Case, rotor: &str, other: &str) -> bool {
         let inverse = block(&plain, &plain).try_inverse().expect("masses");
         left -= block(&a, &plain) * inverse * block(&plain, &b);
     }
-    left.amax() > APART * inertia.amax()
+    left.amax() > DISTINCT_TOLERANCE * inertia.amax()
 }
 
 #[test]
@@ -323,7 +335,7 @@ fn the_mass_matrix_depends_on_what_is_named() {
             let point = case.point(block);
             there[entries].copy_from_slice(&point);
             let there = case.call("mass_matrix", &there, &[], &[], &[]);
-            let changes = (&there - &here).amax() > APART * here.amax();
+            let changes = (&there - &here).amax() > DISTINCT_TOLERANCE * here.amax();
             let named = case.generated.program.structure.mass.contains(&name);
             assert_eq!(changes, named, "{}: {name}", case.name);
         }

@@ -1,7 +1,7 @@
 //! Compares time, prescribed motion and moving frames with closed forms, with equivalent descriptions of the same
 //! mechanism, and with inverse dynamics.
 
-use crate::described::{CLOSE, assert_near, generated, states, text, value};
+use crate::described::{TOLERANCE, assert_near, generated, states, text, value};
 use hamel::methods::{General, Rkmk4, Rkmk8};
 use hamel::{State, System};
 use hamel_codegen::generate::Generated;
@@ -30,13 +30,18 @@ fn kapitzas_pendulum() {
     for [t, q, rate] in states() {
         let [found] = system.accel(&[t, q], &[rate], &[]).expect("a value");
         let lift = -a * w * w * (w * t).cos();
-        assert_near("ξ̇", found, -(g + lift) * q.sin() / l, CLOSE);
+        assert_near("ξ̇", found, -(g + lift) * q.sin() / l, TOLERANCE);
         let (vx, vy) = (
             l * q.cos() * rate,
             l * q.sin() * rate - a * w * (w * t).sin(),
         );
         let kinetic = m * (vx * vx + vy * vy) / 2.0;
-        assert_near("T", system.kinetic_energy(&[t, q], &[rate]), kinetic, CLOSE);
+        assert_near(
+            "T",
+            system.kinetic_energy(&[t, q], &[rate]),
+            kinetic,
+            TOLERANCE,
+        );
     }
 }
 
@@ -80,14 +85,14 @@ fn a_bead_on_a_driven_hoop() {
         let spin_rate = -4.0 * b * (2.0 * t).sin();
         let (s, c) = q.sin_cos();
         let [found] = system.accel(&x, &xi, &[]).expect("a value");
-        assert_near("ξ̇", found, spin * spin * s * c - g / r * s, CLOSE);
+        assert_near("ξ̇", found, spin * spin * s * c - g / r * s, TOLERANCE);
         let [torque] = system.constraint_force(&x, &xi, &[]).expect("a value");
         let inertia = j + m * r * r * s * s;
         let needed = inertia * spin_rate + 2.0 * m * r * r * s * c * spin * rate;
-        assert_near("torque", torque, needed, CLOSE);
+        assert_near("torque", torque, needed, TOLERANCE);
         let kinetic = (inertia * spin * spin + m * r * r * rate * rate) / 2.0;
-        assert_near("T", system.kinetic_energy(&x, &xi), kinetic, CLOSE);
-        assert_near("φ̇", system.rate(&x, &xi)[1], spin, CLOSE);
+        assert_near("T", system.kinetic_energy(&x, &xi), kinetic, TOLERANCE);
+        assert_near("φ̇", system.rate(&x, &xi)[1], spin, TOLERANCE);
     }
 }
 
@@ -124,10 +129,10 @@ fn an_engine_at_constant_speed() {
         let angle = 0.3 + TAU * f64::from(k) / 24.0;
         let (rod, slider, turn, slide) = motion(angle);
         let x = [0.0, angle.cos(), angle.sin(), rod.cos(), rod.sin(), slider];
-        assert_near("T + V", system.energy(&x, &[]), energy(angle), CLOSE);
+        assert_near("T + V", system.energy(&x, &[]), energy(angle), TOLERANCE);
         let rate = system.rate(&x, &[]);
-        assert_near("ẋ", rate[5], slide * of.speed, CLOSE);
-        assert_near("rod", rate[4], rod.cos() * turn * of.speed, CLOSE);
+        assert_near("ẋ", rate[5], slide * of.speed, TOLERANCE);
+        assert_near("rod", rate[4], rod.cos() * turn * of.speed, TOLERANCE);
         let []: [f64; 0] = system.accel(&x, &[], &inputs).expect("nothing to move");
         let centred = |h: f64| (energy(angle + h) - energy(angle - h)) / (2.0 * h);
         let slope = (64.0 * centred(0.005) - 20.0 * centred(0.01) + centred(0.02)) / 45.0;
@@ -163,9 +168,9 @@ fn a_ball_on_a_turntable() {
     let push = system.push(&x, &xi, &xi_dot);
     let turn = 2.0 / 7.0 * omega;
     for (found, expected) in push.into_iter().zip([-turn * vy, turn * vx, 0.0]) {
-        assert_near("acceleration", found, expected, CLOSE);
+        assert_near("acceleration", found, expected, TOLERANCE);
     }
-    assert_near("vz", vz, 0.0, CLOSE);
+    assert_near("vz", vz, 0.0, TOLERANCE);
     let start = State { t: 0.0, x, xi };
     let end = run(&system, Rkmk8, start, TAU / turn, 400).expect("a run");
     assert_near("x after a turn", end.x[1], x[1], 1e-10);
@@ -181,11 +186,11 @@ fn a_sleigh_on_a_belt() {
     for [t, angle, v, w] in states() {
         let x = [t, 0.4, -0.7, angle];
         let [dv, dw] = system.accel(&x, &[v, w], &[]).expect("a value");
-        assert_near("v̇", dv, a * w * w - c * angle.cos(), CLOSE);
+        assert_near("v̇", dv, a * w * w - c * angle.cos(), TOLERANCE);
         let turned = m * a * (c * angle.sin() - v * w) / (j + m * a * a);
-        assert_near("ẇ", dw, turned, CLOSE);
+        assert_near("ẇ", dw, turned, TOLERANCE);
         let rate = system.rate(&x, &[v, w]);
-        assert_near("ẋ", rate[1], v * angle.cos() + c * t, CLOSE);
+        assert_near("ẋ", rate[1], v * angle.cos() + c * t, TOLERANCE);
     }
 }
 
@@ -201,24 +206,24 @@ fn energies_with_terms_of_all_degrees() {
         let dw = -k * y / m + t.cos() * x + t.sin() * p;
         let state: [&[f64]; 3] = [&[t, x, y], &[u, w], &[]];
         let found = value(&system, "accel", state);
-        assert_near("u̇", found[0], du, CLOSE);
-        assert_near("ẇ", found[1], dw, CLOSE);
+        assert_near("u̇", found[0], du, TOLERANCE);
+        assert_near("ẇ", found[1], dw, TOLERANCE);
         let kinetic = m * (p * p + q * q) / 2.0;
         assert_near(
             "T",
             value(&system, "kinetic_energy", state)[0],
             kinetic,
-            CLOSE,
+            TOLERANCE,
         );
         let momentum = value(&system, "momentum", state);
-        assert_near("∂T/∂u", momentum[0], m * p, CLOSE);
-        assert_near("∂T/∂w", momentum[1], m * q, CLOSE);
+        assert_near("∂T/∂u", momentum[0], m * p, TOLERANCE);
+        assert_near("∂T/∂w", momentum[1], m * q, TOLERANCE);
         let dissipation = d * (p - 1.0) * (p - 1.0) / 2.0;
         assert_near(
             "D",
             value(&system, "dissipation", state)[0],
             dissipation,
-            CLOSE,
+            TOLERANCE,
         );
     }
 }
@@ -270,14 +275,14 @@ fn a_moving_constraint() {
             "momentum",
         ] {
             let [found, expected] = [value(&rows, name, on_rows), value(&angle, name, on_angle)];
-            assert_near(name, found[0], expected[0], CLOSE);
+            assert_near(name, found[0], expected[0], TOLERANCE);
         }
         let rate = value(&rows, "rate", on_rows);
-        assert_near("ẋ", rate[1], growth * c - length * s * w, CLOSE);
-        assert_near("ż", rate[2], growth * s + length * c * w, CLOSE);
+        assert_near("ẋ", rate[1], growth * c - length * s * w, TOLERANCE);
+        assert_near("ż", rate[2], growth * s + length * c * w, TOLERANCE);
         // l² q̈ + 2 l l̇ q̇ + g l cos q = 0.
         let expected = -(2.0 * growth * w + 9.81 * c) / length;
-        assert_near("ξ̇", value(&rows, "accel", on_rows)[0], expected, CLOSE);
+        assert_near("ξ̇", value(&rows, "accel", on_rows)[0], expected, TOLERANCE);
     }
 }
 

@@ -1,9 +1,11 @@
 //! A frame with its grid, ticks and labels.
 
-use super::figure::{Anchor, Area, Drawn, FINE, failed, letters, stroke, unit, write};
+use super::figure::{
+    Anchor, Area, DrawResult, SUBPIXELS, draw_error, letters, stroke, unit, write,
+};
 use super::line::Point;
 use super::theme;
-use super::width::fitted;
+use super::width::fit;
 use crate::number::digits;
 use plotters::chart::ChartBuilder;
 use plotters::coord::combinators::IntoLogRange;
@@ -92,7 +94,7 @@ impl Axis {
             return match power {
                 0 => "1".into(),
                 1 => "10".into(),
-                _ => format!("10{}", raised(power)),
+                _ => format!("10{}", superscript(power)),
             };
         }
         if value.abs() < 1e-9 * (self.high - self.low) {
@@ -105,7 +107,7 @@ impl Axis {
     pub fn factor(&self) -> String {
         match self.exponent {
             0 => String::new(),
-            power => format!(" ×10{}", raised(power)),
+            power => format!(" ×10{}", superscript(power)),
         }
     }
 }
@@ -139,7 +141,7 @@ pub struct Axes {
 }
 
 /// Width of the labels of the left edge, and height of those of the lower one.
-const LABELS: (f64, f64) = (54.0, 26.0);
+const LABEL_MARGINS: (f64, f64) = (54.0, 26.0);
 
 impl Axes {
     /// Returns the position of a point in the drawing.
@@ -167,10 +169,10 @@ impl Axes {
             width,
             height,
         } = self.frame;
-        let below = if labels_below { LABELS.1 } else { 0.0 };
+        let below = if labels_below { LABEL_MARGINS.1 } else { 0.0 };
         let part = area.clone().shrink(
-            (unit(x - LABELS.0), unit(y)),
-            (unit(width + LABELS.0), unit(height + below)),
+            (unit(x - LABEL_MARGINS.0), unit(y)),
+            (unit(width + LABEL_MARGINS.0), unit(height + below)),
         );
         let text = letters(12.0, theme::SOFT.0, Anchor::Start, false);
         let lines = (
@@ -182,9 +184,9 @@ impl Axes {
             ($x:expr, $y:expr) => {
                 ChartBuilder::on(&part)
                     .x_label_area_size(unit(below))
-                    .y_label_area_size(unit(LABELS.0))
+                    .y_label_area_size(unit(LABEL_MARGINS.0))
                     .build_cartesian_2d($x, $y)
-                    .map_err(failed)?
+                    .map_err(draw_error)?
                     .configure_mesh()
                     .x_labels(lines.0)
                     .y_labels(lines.1)
@@ -194,9 +196,9 @@ impl Axes {
                     .axis_style(stroke(theme::GRID.0, 1.0))
                     .bold_line_style(stroke(theme::GRID.0, 1.0))
                     .light_line_style(TRANSPARENT)
-                    .set_all_tick_mark_size((4.0 * FINE) as u32)
+                    .set_all_tick_mark_size((4.0 * SUBPIXELS) as u32)
                     .draw()
-                    .map_err(failed)
+                    .map_err(draw_error)
             };
         }
         let (x, y) = (across.low..across.high, up.low..up.high);
@@ -214,7 +216,7 @@ impl Axes {
     /// If the drawing library fails.
     pub fn name(&self, area: &Area, name: &str) -> Drawn {
         let style = letters(12.0, theme::INK.0, Anchor::Start, true);
-        let name = fitted(name, 12.0, true, self.frame.width);
+        let name = fit(name, 12.0, true, self.frame.width);
         write(area, &name, (self.frame.x, self.frame.y - 13.0), &style)
     }
 
@@ -240,7 +242,7 @@ mod tests {
     fn labels_are_round() {
         let axis = Axis::exact(0.0, 100.0);
         assert_eq!([axis.label(20.0), axis.label(1e-12)], ["20", "0"]);
-        let axis = Axis::around([0.0, -3.2e-13].into_iter());
+        let axis = Axis::with_margin([0.0, -3.2e-13].into_iter());
         assert_eq!(axis.factor(), " ×10⁻¹³");
         assert_eq!(axis.label(-2e-13), "−2");
         let axis = Axis::logarithmic([1e-12, 0.0, f64::NAN, 1.0].into_iter());
@@ -251,8 +253,8 @@ mod tests {
 
     #[test]
     fn a_constant_is_in_the_middle() {
-        let axis = Axis::around([7.0, 7.0].into_iter());
+        let axis = Axis::with_margin([7.0, 7.0].into_iter());
         assert_eq!(axis.part(7.0), 0.5);
-        assert_eq!(Axis::around(std::iter::empty()).part(0.0), 0.5);
+        assert_eq!(Axis::with_margin(std::iter::empty()).part(0.0), 0.5);
     }
 }

@@ -1,7 +1,7 @@
 //! Lines over time, each named at its end.
 
 use super::axes::{Axes, Axis, Frame};
-use super::figure::{Anchor, Area, Drawn, letters, line, stroke, write};
+use super::figure::{Anchor, Area, DrawResult, letters, line, stroke, write};
 use super::line::{Point, by_column, simplify};
 use super::width::width;
 use super::{Panel, theme};
@@ -16,14 +16,14 @@ const MARGIN: f64 = 10.0;
 /// Returns the width that names of lines need next to a frame.
 pub fn room<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
     let widest = names
-        .map(|name| width(name, SIZE, true))
+        .map(|name| width(name, LABEL_SIZE, true))
         .fold(0.0, f64::max);
-    BEGIN + widest + MARGIN
+    LABEL_OFFSET + widest + LABEL_MARGIN
 }
 
 /// Returns the least height of a frame with this number of lines.
 pub fn height(lines: usize) -> f64 {
-    LABEL * lines.saturating_sub(1) as f64
+    LABEL_SPACING * lines.saturating_sub(1) as f64
 }
 
 /// Draws a panel; the last one has the labels of the time axis.
@@ -39,7 +39,7 @@ pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool)
     let axes = Axes {
         frame,
         across: Axis::exact(from, to),
-        up: Axis::around(values),
+        up: Axis::with_margin(values),
     };
     axes.draw(area, last)?;
     axes.name(area, &format!("{}{}", panel.title, axes.up.factor()))?;
@@ -72,7 +72,7 @@ pub fn names(area: &Area, ends: &[(usize, &str, f64)], frame: Frame) -> Drawn {
     let right = frame.x + frame.width;
     let mut order: Vec<&(usize, &str, f64)> = ends.iter().collect();
     order.sort_by(|a, b| a.2.total_cmp(&b.2));
-    let gap = LABEL.min((frame.height + LABEL) / ends.len().max(1) as f64);
+    let gap = LABEL_SPACING.min((frame.height + LABEL_SPACING) / ends.len().max(1) as f64);
     let mut places: Vec<f64> = Vec::new();
     for (_, _, end) in &order {
         places.push(places.last().map_or(*end, |above| end.max(above + gap)));
@@ -86,8 +86,8 @@ pub fn names(area: &Area, ends: &[(usize, &str, f64)], frame: Frame) -> Drawn {
         let colour = theme::series(index);
         let lead = [(right + 2.0, end), (right + 11.0, place)];
         line(area, &lead, stroke(colour, 1.0))?;
-        let style = letters(SIZE, colour, Anchor::Start, true);
-        write(area, name, (right + BEGIN, place), &style)?;
+        let style = letters(LABEL_SIZE, colour, Anchor::Start, true);
+        write(area, name, (right + LABEL_OFFSET, place), &style)?;
     }
     Ok(())
 }

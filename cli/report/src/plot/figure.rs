@@ -2,7 +2,7 @@
 
 use super::line::Point;
 use super::theme;
-use super::width::fitted;
+use super::width::fit;
 use crate::code::plain;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
@@ -32,7 +32,7 @@ impl fmt::Display for PlotError {
 impl Error for PlotError {}
 
 /// The result of drawing.
-pub type Drawn = Result<(), PlotError>;
+pub type DrawResult = Result<(), PlotError>;
 
 /// Converts an error of `plotters`.
 pub fn failed(error: impl fmt::Display) -> PlotError {
@@ -57,14 +57,14 @@ impl Figure {
         width: f64,
         height: f64,
         title: &str,
-        draw: impl FnOnce(&Area) -> Drawn,
+        draw: impl FnOnce(&Area) -> DrawResult,
     ) -> Result<Self, PlotError> {
         let mut text = String::new();
         {
-            let size = ((width * FINE) as u32, (height * FINE) as u32);
+            let size = ((width * SUBPIXELS) as u32, (height * SUBPIXELS) as u32);
             let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
             draw(&root)?;
-            root.present().map_err(failed)?;
+            root.present().map_err(draw_error)?;
         }
         // Replaces the outer element.
         let elements = text.split_once(">\n").map_or("", |(_, rest)| rest);
@@ -108,8 +108,8 @@ impl Figure {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{title}\">\n\
              <title>{title}</title>\n{style}{elements}</svg>\n",
-            width * FINE,
-            height * FINE,
+            width * SUBPIXELS,
+            height * SUBPIXELS,
         )
     }
 }
@@ -177,7 +177,7 @@ pub fn escape(text: &str) -> String {
 
 /// Converts a length or coordinate to units of the drawing.
 pub fn unit(pixels: f64) -> i32 {
-    (pixels * FINE).round() as i32
+    (pixels * SUBPIXELS).round() as i32
 }
 
 /// Converts a point to units of the drawing.
@@ -190,7 +190,7 @@ pub fn stroke(colour: impl Color, width: f64) -> ShapeStyle {
     ShapeStyle {
         color: colour.to_rgba(),
         filled: false,
-        stroke_width: (width * FINE).round() as u32,
+        stroke_width: (width * SUBPIXELS).round() as u32,
     }
 }
 
@@ -226,27 +226,28 @@ pub fn letters(size: f64, colour: RGBColor, anchor: Anchor, bold: bool) -> TextS
 }
 
 /// Writes a text.
-pub fn write(area: &Area, text: &str, at: Point, style: &TextStyle) -> Drawn {
+pub fn write(area: &Area, text: &str, at: Point, style: &TextStyle) -> DrawResult {
     let element = Text::new(text.to_string(), place(at), style.clone());
-    area.draw(&element).map_err(failed)
+    area.draw(&element).map_err(draw_error)
 }
 
 /// Draws a polyline.
-pub fn line(area: &Area, points: &[Point], style: ShapeStyle) -> Drawn {
+pub fn line(area: &Area, points: &[Point], style: ShapeStyle) -> DrawResult {
     let points: Vec<(i32, i32)> = points.iter().copied().map(place).collect();
-    area.draw(&PathElement::new(points, style)).map_err(failed)
+    area.draw(&PathElement::new(points, style))
+        .map_err(draw_error)
 }
 
 /// Draws a disk, or a circle.
-pub fn circle(area: &Area, at: Point, radius: f64, style: ShapeStyle) -> Drawn {
+pub fn circle(area: &Area, at: Point, radius: f64, style: ShapeStyle) -> DrawResult {
     area.draw(&Circle::new(place(at), unit(radius), style))
-        .map_err(failed)
+        .map_err(draw_error)
 }
 
 /// Fills a polygon.
-pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> Drawn {
+pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> DrawResult {
     let points: Vec<(i32, i32)> = points.iter().copied().map(place).collect();
-    area.draw(&Polygon::new(points, colour)).map_err(failed)
+    area.draw(&Polygon::new(points, colour)).map_err(draw_error)
 }
 
 /// Fills the background, and writes a heading and a sentence below it, cut to the width.
@@ -256,9 +257,9 @@ pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
     area.fill(&theme::GROUND.0).map_err(failed)?;
     let widest = f64::from(area.dim_in_pixel().0) / FINE - LEFT - RIGHT;
     let head = letters(18.0, theme::INK.0, Anchor::Start, true);
-    let title = fitted(&plain(title), 18.0, true, widest);
-    write(area, &title, (LEFT, 28.0), &head)?;
+    let title = fit(&plain(title), 18.0, true, widest);
+    write(area, &title, (LEFT_MARGIN, 28.0), &head)?;
     let sub = letters(13.0, theme::SOFT.0, Anchor::Start, false);
-    let subtitle = fitted(&plain(subtitle), 13.0, false, widest);
-    write(area, &subtitle, (LEFT, 50.0), &sub)
+    let subtitle = fit(&plain(subtitle), 13.0, false, widest);
+    write(area, &subtitle, (LEFT_MARGIN, 50.0), &sub)
 }

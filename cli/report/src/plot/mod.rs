@@ -24,7 +24,7 @@ pub use width::width;
 pub use windows::drifts;
 
 use axes::Frame;
-use figure::headed;
+use figure::draw_heading;
 
 /// Lines over time that share a vertical axis.
 #[derive(Clone, Debug)]
@@ -91,7 +91,7 @@ pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
     let across = if spheres > 0 { 446.0 } else { 656.0 };
     let lines = picture.panels.iter().flat_map(|panel| &panel.lines);
     let names = chart::room(lines.map(|(name, _)| name.as_str()));
-    let wide = LEFT + across + names.max(LABELS);
+    let wide = LEFT_MARGIN + across + names.max(MIN_LABEL_WIDTH);
     let upper = if picture.panels.len() > 2 {
         140.0
     } else {
@@ -104,35 +104,35 @@ pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
         chart::height(lines).max(if last { 92.0 } else { upper })
     };
     let charts: f64 = (0..picture.panels.len())
-        .map(|index| TITLE + height_of(index) + GAP)
+        .map(|index| TITLE_HEIGHT + height_of(index) + PANEL_GAP)
         .sum();
-    let least = HEAD + if spheres > 0 { SPHERE.1 } else { 0.0 };
-    let height = (HEAD + charts - GAP + FOOT).max(least);
-    let width = wide + SPHERE.0 * spheres as f64;
+    let least = HEADING_HEIGHT + if spheres > 0 { SPHERE_SIZE.1 } else { 0.0 };
+    let height = (HEADING_HEIGHT + charts - PANEL_GAP + FOOT_HEIGHT).max(least);
+    let width = wide + SPHERE_SIZE.0 * spheres as f64;
     Figure::draw(width, height, &picture.title, |area| {
-        headed(area, &picture.title, &picture.subtitle)?;
-        let mut top = HEAD;
+        draw_heading(area, &picture.title, &picture.subtitle)?;
+        let mut top = HEADING_HEIGHT;
         for (index, panel) in picture.panels.iter().enumerate() {
-            top += TITLE;
+            top += TITLE_HEIGHT;
             let frame = Frame {
-                x: LEFT,
+                x: LEFT_MARGIN,
                 y: top,
                 width: across,
                 height: height_of(index),
             };
             let last = index + 1 == picture.panels.len();
             chart::panel(area, panel, &picture.time, frame, last)?;
-            top += frame.height + GAP;
+            top += frame.height + PANEL_GAP;
         }
         let end = picture.time.last().copied().unwrap_or(0.0);
-        let middle = (HEAD + height) / 2.0 - 8.0;
-        let mut x = wide + 0.5 * SPHERE.0 - 10.0;
+        let middle = (HEADING_HEIGHT + height) / 2.0 - 8.0;
+        let mut x = wide + 0.5 * SPHERE_SIZE.0 - 10.0;
         if let Some(path) = &picture.path {
-            sphere::path(area, path, end, (x, middle), RADIUS)?;
-            x += SPHERE.0;
+            sphere::path(area, path, end, (x, middle), SPHERE_RADIUS)?;
+            x += SPHERE_SIZE.0;
         }
         if let Some(poinsot) = &picture.poinsot {
-            sphere::poinsot(area, poinsot, end, (x, middle), RADIUS)?;
+            sphere::poinsot(area, poinsot, end, (x, middle), SPHERE_RADIUS)?;
         }
         Ok(())
     })
@@ -149,7 +149,7 @@ pub fn construction(
     end: f64,
 ) -> Result<Figure, PlotError> {
     Figure::draw(480.0, 540.0, title, |area| {
-        headed(area, title, subtitle)?;
+        draw_heading(area, title, subtitle)?;
         sphere::poinsot(area, poinsot, end, (240.0, 296.0), 160.0)
     })
 }

@@ -2,7 +2,7 @@
 
 use super::axes::{Axes, Axis, Frame};
 use super::figure::{
-    Anchor, Area, Drawn, Figure, PlotError, circle, headed, letters, line, stroke, write,
+    Anchor, Area, DrawResult, Figure, PlotError, circle, headed, letters, line, stroke, write,
 };
 use super::line::Point;
 use super::theme;
@@ -42,9 +42,9 @@ impl Precision {
 }
 
 /// Larger errors are not drawn.
-const LARGEST: f64 = 30.0;
-const WIDE: f64 = 350.0;
-const HIGH: f64 = 330.0;
+const MAX_DRAWN_ERROR: f64 = 30.0;
+const FRAME_WIDTH: f64 = 350.0;
+const FRAME_HEIGHT: f64 = 330.0;
 /// Height of a line of the legend.
 const ROW: f64 = 17.0;
 /// Position of names in a line of the legend, and their least width.
@@ -64,39 +64,39 @@ pub fn precision(case: &Case) -> Result<Figure, PlotError> {
     if measured(Precision::Time) {
         panels.push(Precision::Time);
     }
-    let legend = 112.0 + ROW * case.methods.len() as f64;
-    let height = (100.0 + HIGH + 64.0).max(legend);
-    let left = 70.0 + panels.len() as f64 * (WIDE + 70.0);
+    let legend = 112.0 + LEGEND_ROW_HEIGHT * case.methods.len() as f64;
+    let height = (100.0 + FRAME_HEIGHT + 64.0).max(legend);
+    let left = 70.0 + panels.len() as f64 * (FRAME_WIDTH + 70.0);
     let names = case.methods.iter();
     let names = names.map(|method| width(&method.method, 12.0, method.kind == Kind::Method));
-    let width = left + NAME + names.fold(LEAST, f64::max) + 16.0;
+    let width = left + NAME_OFFSET + names.fold(MIN_NAME_WIDTH, f64::max) + 16.0;
     let subtitle = format!("t = {}; {}", crate::number::short(case.until), case.error);
     Figure::draw(width, height, &case.title, |area| {
-        headed(area, &case.title, &subtitle)?;
+        draw_heading(area, &case.title, &subtitle)?;
         for (index, &panel) in panels.iter().enumerate() {
-            let x = 76.0 + index as f64 * (WIDE + 70.0);
+            let x = 76.0 + index as f64 * (FRAME_WIDTH + 70.0);
             let frame = Frame {
                 x,
                 y: 100.0,
-                width: WIDE,
-                height: HIGH,
+                width: FRAME_WIDTH,
+                height: FRAME_HEIGHT,
             };
             diagram(area, case, panel, frame)?;
         }
         for (index, method) in case.methods.iter().enumerate() {
-            let at = (left, 108.0 + ROW * index as f64);
+            let at = (left, 108.0 + LEGEND_ROW_HEIGHT * index as f64);
             let end = (at.0 + 22.0, at.1);
             line(area, &[at, end], style(index, method))?;
             mark(area, (at.0 + 11.0, at.1), index, method)?;
             let bold = method.kind == Kind::Method;
             let text = letters(12.0, theme::series(index), Anchor::Start, bold);
-            write(area, &method.method, (at.0 + NAME, at.1), &text)?;
+            write(area, &method.method, (at.0 + NAME_OFFSET, at.1), &text)?;
         }
         Ok(())
     })
 }
 
-fn diagram(area: &Area, case: &Case, panel: Precision, frame: Frame) -> Drawn {
+fn diagram(area: &Area, case: &Case, panel: Precision, frame: Frame) -> DrawResult {
     let all: Vec<(f64, f64)> = case
         .methods
         .iter()
@@ -110,7 +110,7 @@ fn diagram(area: &Area, case: &Case, panel: Precision, frame: Frame) -> Drawn {
     };
     axes.draw(area, true)?;
     axes.name(area, "error")?;
-    axes.below(area, panel.name())?;
+    axes.write_x_label(area, panel.name())?;
     for (index, method) in case.methods.iter().enumerate() {
         let points: Vec<Point> = method
             .runs

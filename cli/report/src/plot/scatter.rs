@@ -1,7 +1,7 @@
 //! Scatter diagrams of many runs: each result against each cause.
 
 use super::axes::{Axes, Axis, Frame};
-use super::figure::{Area, Drawn, Figure, PlotError, circle, headed, stroke};
+use super::figure::{Area, DrawResult, Figure, PlotError, circle, draw_heading, stroke};
 use super::theme;
 use plotters::style::ShapeStyle;
 
@@ -33,10 +33,10 @@ const BOTTOM: f64 = 62.0;
 /// If the drawing library fails; no case is known.
 pub fn scatter(of: &Scatter) -> Result<Figure, PlotError> {
     let (columns, rows) = (of.across.len().max(1) as f64, of.up.len().max(1) as f64);
-    let width = LEFT + columns * (WIDE + GAP.0) - GAP.0 + 30.0;
-    let height = TOP + rows * (HIGH + GAP.1) - GAP.1 + BOTTOM;
+    let width = LEFT_MARGIN + columns * (FRAME_WIDTH + FRAME_GAPS.0) - FRAME_GAPS.0 + 30.0;
+    let height = TOP_MARGIN + rows * (FRAME_HEIGHT + FRAME_GAPS.1) - FRAME_GAPS.1 + BOTTOM_MARGIN;
     Figure::draw(width, height, &of.title, |area| {
-        headed(area, &of.title, &of.subtitle)?;
+        draw_heading(area, &of.title, &of.subtitle)?;
         for row in 0..of.up.len() {
             for column in 0..of.across.len() {
                 diagram(area, of, row, column)?;
@@ -46,24 +46,24 @@ pub fn scatter(of: &Scatter) -> Result<Figure, PlotError> {
     })
 }
 
-fn diagram(area: &Area, of: &Scatter, row: usize, column: usize) -> Drawn {
+fn diagram(area: &Area, of: &Scatter, row: usize, column: usize) -> DrawResult {
     let ((cause, causes), (result, results)) = (&of.across[column], &of.up[row]);
     let frame = Frame {
-        x: LEFT + column as f64 * (WIDE + GAP.0),
-        y: TOP + row as f64 * (HIGH + GAP.1),
-        width: WIDE,
-        height: HIGH,
+        x: LEFT_MARGIN + column as f64 * (FRAME_WIDTH + FRAME_GAPS.0),
+        y: TOP_MARGIN + row as f64 * (FRAME_HEIGHT + FRAME_GAPS.1),
+        width: FRAME_WIDTH,
+        height: FRAME_HEIGHT,
     };
     let axes = Axes {
         frame,
-        across: Axis::around(causes.iter().copied()),
-        up: Axis::around(results.iter().copied()),
+        across: Axis::with_margin(causes.iter().copied()),
+        up: Axis::with_margin(results.iter().copied()),
     };
     let last = row + 1 == of.up.len();
     axes.draw(area, last)?;
     axes.name(area, &format!("{result}{}", axes.up.factor()))?;
     if last {
-        axes.below(area, &format!("{cause}{}", axes.across.factor()))?;
+        axes.write_x_label(area, &format!("{cause}{}", axes.across.factor()))?;
     }
     let style = ShapeStyle {
         filled: true,

@@ -3,7 +3,7 @@
 //! the curves in which a sphere and an ellipsoid intersect.
 
 use super::Path;
-use super::figure::{Anchor, Area, Drawn, circle, fill, letters, line, stroke, write};
+use super::figure::{Anchor, Area, DrawResult, circle, fill, letters, line, stroke, write};
 use super::line::{Point, simplify};
 use super::theme::{self, ramp};
 use crate::number::short;
@@ -41,7 +41,7 @@ struct View {
 impl View {
     /// Returns the position in the drawing, and the distance in front of the sphere's centre.
     fn project(&self, p: Vector) -> (Point, f64) {
-        let ((sa, ca), (se, ce)) = (EYE.0.sin_cos(), EYE.1.sin_cos());
+        let ((sa, ca), (se, ce)) = (EYE_DIRECTION.0.sin_cos(), EYE_DIRECTION.1.sin_cos());
         let right = ca * p[1] - sa * p[0];
         let up = ce * p[2] - se * (ca * p[0] + sa * p[1]);
         let depth = se * p[2] + ce * (ca * p[0] + sa * p[1]);
@@ -74,7 +74,7 @@ fn in_front(_: Vector, depth: f64) -> bool {
     depth >= 0.0
 }
 
-fn lines(area: &Area, parts: &[Vec<Point>], style: ShapeStyle) -> Drawn {
+fn lines(area: &Area, parts: &[Vec<Point>], style: ShapeStyle) -> DrawResult {
     parts
         .iter()
         .try_for_each(|part| line(area, &simplify(part, 0.1), style))
@@ -126,7 +126,7 @@ pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64)
     let view = View {
         x: at.0,
         y: at.1,
-        radius: radius * (REACH / (most + NAMES)).min(1.0),
+        radius: radius * (MAX_REACH / (most + NAME_DISTANCE)).min(1.0),
     };
     let ends = |i: usize| reach(&unit(i)).max(1.0);
     let names = ["1", "2", "3"];
@@ -149,7 +149,7 @@ pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64)
     scale(area, end, (at.0, below + 34.0))
 }
 
-fn heading(area: &Area, text: &str, at: Point, radius: f64) -> Drawn {
+fn heading(area: &Area, text: &str, at: Point, radius: f64) -> DrawResult {
     let style = letters(12.0, theme::INK.0, Anchor::Middle, true);
     write(area, text, (at.0, at.1 - radius - 50.0), &style)
 }
@@ -198,7 +198,9 @@ fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> 
 
 /// Returns circles of longitude and latitude every 30 degrees.
 fn circles() -> Vec<Vec<Vector>> {
-    let turns = || (0..=CIRCLE).map(|i| (f64::from(i) * 360.0 / f64::from(CIRCLE)).to_radians());
+    let turns = || {
+        (0..=CIRCLE_POINTS).map(|i| (f64::from(i) * 360.0 / f64::from(CIRCLE_POINTS)).to_radians())
+    };
     let mut circles: Vec<Vec<Vector>> = Vec::new();
     for longitude in 0..6 {
         let (s, k) = (f64::from(longitude) * 30.0).to_radians().sin_cos();
@@ -226,12 +228,12 @@ fn axes(
     names: [&str; 3],
     reach: impl Fn(usize) -> f64,
     front: bool,
-) -> Drawn {
+) -> DrawResult {
     let style = letters(12.0, theme::SOFT.0, Anchor::Middle, false);
     for (axis, name) in names.into_iter().enumerate() {
         let out = reach(axis);
         let at = |length: f64| view.project(unit(axis).map(|v| v * (out + length)));
-        let ((from, depth), (to, _), (label, _)) = (at(0.0), at(0.13), at(NAMES));
+        let ((from, depth), (to, _), (label, _)) = (at(0.0), at(0.13), at(NAME_DISTANCE));
         if (depth >= 0.0) == front {
             line(area, &[from, to], stroke(theme::SOFT.0, 1.4))?;
             write(area, name, label, &style)?;
@@ -243,7 +245,7 @@ fn axes(
 /// Splits a curve into single-coloured pieces, in front and behind.
 fn pieces(view: &View, points: &[Vector]) -> Vec<(f64, [Vec<Vec<Point>>; 2])> {
     let steps = points.len().saturating_sub(1);
-    let count = PIECES.min(steps);
+    let count = MAX_PATH_PIECES.min(steps);
     (0..count)
         .filter_map(|piece| {
             let (from, to) = (piece * steps / count, (piece + 1) * steps / count);

@@ -4,7 +4,7 @@
 /// Returns the width of a text of this size, in whole pixels.
 pub fn width(text: &str, size: f64, bold: bool) -> f64 {
     let em: f64 = text.chars().map(letter).sum();
-    (size * em * if bold { 1.0 } else { REGULAR }).ceil()
+    (size * em * if bold { 1.0 } else { REGULAR_WIDTH }).ceil()
 }
 
 /// Returns the text, or a beginning of it with `…` if it is wider than `widest`.
@@ -42,7 +42,7 @@ fn letter(letter: char) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{fitted, width};
+    use super::{fit, width};
 
     #[test]
     fn wide_letters_count_for_more() {
@@ -53,8 +53,8 @@ mod tests {
 
     #[test]
     fn what_is_too_long_is_cut_where_it_fits() {
-        assert_eq!(fitted("a top", 12.0, false, 100.0), "a top");
-        let cut = fitted("a top whose axis is held at one point", 12.0, false, 100.0);
+        assert_eq!(fit("a top", 12.0, false, 100.0), "a top");
+        let cut = fit("a top whose axis is held at one point", 12.0, false, 100.0);
         assert!(cut.starts_with("a top") && cut.ends_with('…'), "{cut}");
         assert!(width(&cut, 12.0, false) <= 100.0);
     }

@@ -7,7 +7,7 @@ use num_traits::One;
 use std::sync::Arc;
 
 /// Class bit of lists, which prevents them from being kept as run-time constants, whatever their entries.
-const LIST: u8 = 1 << 7;
+const LIST_CLASS: u8 = 1 << 7;
 
 impl Graph {
     /// External functions that the graph knows.
@@ -29,10 +29,10 @@ impl Graph {
 
     /// Appends a number to a list; 0 is the empty list.
     pub(crate) fn listed(&mut self, rest: Edge, last: Edge) -> Edge {
-        let value = self.lane.listed(self.value(rest), self.value(last));
-        let class = self.class(rest.node()) | self.class(last.node()) | LIST;
+        let value = self.point.listed(self.value(rest), self.value(last));
+        let class = self.class(rest.node()) | self.class(last.node()) | LIST_CLASS;
         let node = Node::Listed(rest, last);
-        match self.known(node, value, class) {
+        match self.find_equal(node, value, class) {
             Some(known) => known,
             None => self.push(node, value, class),
         }
@@ -41,11 +41,11 @@ impl Graph {
     /// Calls a component with a list of arguments. If all of them are numbers, the result is constant at
     /// run time, but it is not a number.
     pub(crate) fn external_of(&mut self, component: Component, list: Edge) -> Edge {
-        let value = self.lane.external(component, self.value(list));
+        let value = self.point.external(component, self.value(list));
         let given = self.list(list).into_iter();
         let class = given.fold(self.free_class, |class, a| class | self.class(a.node()));
         let node = Node::External(component, list);
-        match self.known(node, value, class) {
+        match self.find_equal(node, value, class) {
             Some(known) => known,
             None => self.push(node, value, class),
         }
@@ -73,7 +73,7 @@ impl Graph {
     }
 
     /// Returns the component and the list of a call, if the edge is a call.
-    pub fn called_with(&self, edge: Edge) -> Option<(Component, Edge)> {
+    pub fn as_external_call(&self, edge: Edge) -> Option<(Component, Edge)> {
         match self.node(edge.node()) {
             Node::External(component, list) => Some((component, list)),
             _ => None,
@@ -96,14 +96,16 @@ impl Graph {
 
     /// Writes a call as text: `lift(a, b)[1]`, or `lift_by_a(a, b)[1]` for its derivative by the argument
     /// `a`.
-    pub fn called(&self, component: Component, given: &str) -> String {
+    pub fn external_call_text(&self, component: Component, given: &str) -> String {
         let Some(external) = self.externals.get(usize::from(component.function)) else {
             return format!("f{}({given})", component.function);
         };
         let by = match component.order() {
             0 => String::new(),
             1 => {
-                let argument = component.first().and_then(|j| external.arguments.get(j));
+                let argument = component
+                    .differentiated_by()
+                    .and_then(|j| external.arguments.get(j));
                 argument.map_or("'".into(), |argument| format!("_by_{argument}"))
             }
             order => "'".repeat(order),

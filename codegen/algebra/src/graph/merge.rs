@@ -2,13 +2,13 @@
 
 use super::{Edge, Function, Graph, Node, NodeId};
 use crate::fp::Fp;
-use crate::shadow::Shadow;
+use crate::real_enclosure::RealValues;
 
 impl Graph {
     /// Returns an existing node with this value, or the small rational that has it. An expression that is
     /// constant at run time is not replaced by one that is not, and no expression is replaced by one that
     /// is a different number according to the real samples.
-    pub(super) fn known(&mut self, node: Node, value: Fp, class: u8) -> Option<Edge> {
+    pub(super) fn find_equal(&mut self, node: Node, value: Fp, class: u8) -> Option<Edge> {
         let known = match self.lookup(value) {
             Some(edge) => {
                 let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
@@ -39,14 +39,16 @@ impl Graph {
         let (nodes, constants) = (&self.nodes, &self.constants);
         // Numbers are not protected by a random point, so they are compared with certainty.
         if class == 0 && self.classes[known.node() as usize] == 0 {
-            return self.shadow.disputes_number(nodes, constants, node, known);
+            return self
+                .real_values
+                .disputes_number(nodes, constants, node, known);
         }
-        self.shadow.disputes(nodes, constants, node, known)
+        self.real_values.disputes(nodes, constants, node, known)
     }
 
     /// Returns the real samples of all nodes, if one of the given nodes contains a square root.
-    pub(crate) fn sampled(&self, ids: &[NodeId]) -> Option<Shadow> {
-        self.shadow.filled(&self.nodes, &self.constants, ids)
+    pub(crate) fn compute_samples(&self, ids: &[NodeId]) -> Option<RealValues> {
+        self.real_values.filled(&self.nodes, &self.constants, ids)
     }
 
     /// Finds an existing number whose square is the given number.
@@ -79,7 +81,7 @@ impl Graph {
             .children()
             .fold(0, |class, child| class | self.class(child.node()));
         self.nodes.push(node);
-        self.shadow.follow(node);
+        self.real_values.push(node);
         self.values.push(Fp::ZERO);
         self.classes.push(class);
         Edge::of(id)
@@ -87,7 +89,7 @@ impl Graph {
 
     /// Adds a sum, product or quotient that does not merge with a node of equal value that is computed in
     /// another way.
-    pub(crate) fn push_apart(&mut self, node: Node) -> Edge {
+    pub(crate) fn push_distinct(&mut self, node: Node) -> Edge {
         let value = |edge: Edge| self.value(edge);
         let value = match node {
             Node::Add(a, b) => value(a) + value(b),
@@ -108,7 +110,7 @@ impl Graph {
 
     /// Announces that the next node is a copy of a node of another graph at the same points. If that node
     /// is not a number, the copy is none either, which saves the search for the number.
-    pub(crate) fn follow(&mut self, from: &Graph, id: NodeId) {
+    pub(crate) fn announce_copy(&mut self, from: &Graph, id: NodeId) {
         self.copied = from.values[id as usize];
     }
 
@@ -120,7 +122,7 @@ impl Graph {
     pub(super) fn push(&mut self, node: Node, value: Fp, class: u8) -> Edge {
         let id = self.nodes.len() as NodeId;
         self.nodes.push(node);
-        self.shadow.follow(node);
+        self.real_values.push(node);
         self.values.push(value);
         self.classes.push(class);
         let (key, negative) = canonical(value);

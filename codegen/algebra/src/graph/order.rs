@@ -25,7 +25,7 @@ impl Graph {
 
     /// Returns the nodes that the roots depend on and that vary at run time, without symbols. They are in
     /// depth-first order of the roots, so that a value is computed shortly before it is needed.
-    pub fn varying(&self, roots: &[Edge]) -> Vec<NodeId> {
+    pub fn varying_nodes(&self, roots: &[Edge]) -> Vec<NodeId> {
         let mut order = Vec::new();
         let mut seen = vec![false; self.nodes.len()];
         let mut stack = Vec::new();
@@ -52,7 +52,7 @@ impl Graph {
     pub fn depth(&self, roots: &[Edge]) -> usize {
         let mut depths = vec![0; self.nodes.len()];
         let mut deepest = 0;
-        for id in self.varying(roots) {
+        for id in self.varying_nodes(roots) {
             let children = self.nodes[id as usize].children();
             let below = children.map(|child| depths[child.node() as usize]).max();
             let depth = 1 + below.unwrap_or(0);

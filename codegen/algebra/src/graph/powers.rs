@@ -6,7 +6,7 @@ use num_rational::BigRational;
 use std::cmp::Ordering;
 
 /// Largest number of factors of a product that is analysed.
-const MOST_FACTORS: usize = 12;
+const MAX_FACTORS: usize = 12;
 
 /// A product w a sᶠ, where a is a constant multiple of s up to the signs of its factors.
 pub(crate) struct Power {
@@ -154,7 +154,7 @@ impl Graph {
                 Node::Mul(a, b) => stack.extend([b, a.signed(edge.is_negative())]),
                 _ => factors.push(edge),
             }
-            if factors.len() + stack.len() > MOST_FACTORS {
+            if factors.len() + stack.len() > MAX_FACTORS {
                 return None;
             }
         }

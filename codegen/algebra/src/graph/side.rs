@@ -19,12 +19,12 @@ impl Graph {
         };
         let (a, b) = (a.signed(negative), b.signed(negative));
         let other = self.value(b);
-        let value = other + self.lane.positive(self.value(c)) * (self.value(a) - other);
+        let value = other + self.point.positive(self.value(c)) * (self.value(a) - other);
         let node = Node::Select(c, a, b);
         let class = node
             .children()
             .fold(0, |class, child| class | self.class(child.node()));
-        let edge = match self.known(node, value, class) {
+        let edge = match self.find_equal(node, value, class) {
             Some(known) => known,
             None => self.push(node, value, class),
         };
@@ -33,7 +33,7 @@ impl Graph {
 
     /// Returns the expression whose sign decides the value of a node, if the node is a selection or a
     /// function of the sign.
-    pub fn chosen_by(&self, id: NodeId) -> Option<Edge> {
+    pub fn condition_of(&self, id: NodeId) -> Option<Edge> {
         match self.node(id) {
             Node::Select(by, ..) => Some(by),
             Node::Apply(function, by) if function.row().law == Law::Side => Some(by),
@@ -49,7 +49,9 @@ impl Graph {
         if self.class(edge.node()) != 0 {
             return None;
         }
-        let bounds = self.shadow.number(&self.nodes, &self.constants, edge)?;
+        let bounds = self
+            .real_values
+            .number(&self.nodes, &self.constants, edge)?;
         bounds.side()
     }
 }

@@ -8,11 +8,11 @@ use num_traits::One;
 use std::cmp::Ordering;
 
 /// Number of square roots that are taken of an argument.
-const ROOTS: u32 = 10;
-/// Number of terms of the series, whose argument is below 2^−ROOTS.
-const TERMS: i64 = 18;
+const SQUARE_ROOTS: u32 = 10;
+/// Number of terms of the series, whose argument is below 2^−SQUARE_ROOTS.
+const SERIES_TERMS: i64 = 18;
 /// Binary exponent of a bound on the truncated rest of the series.
-const REST: i64 = -(ROOTS as i64) * (2 * TERMS + 1) + 1;
+const TRUNCATION_EXPONENT: i64 = -(SQUARE_ROOTS as i64) * (2 * SERIES_TERMS + 1) + 1;
 
 impl Interval {
     /// log a = e log 2 + log m with a = m 2^e, ½ ≤ m ≤ 1; `None` if a may be 0 or negative.
@@ -32,11 +32,15 @@ impl Interval {
 
     /// log m = 2^k · 2 artanh((r − 1)/(r + 1)), where r is the 2^k-th root of m.
     fn log_below_one(&self) -> Option<Self> {
-        let root = (0..ROOTS).try_fold(self.clone(), |a, _| a.sqrt())?;
+        let root = (0..SQUARE_ROOTS).try_fold(self.clone(), |a, _| a.sqrt())?;
         let one = Interval::whole(1);
         let below = root.plus(&one).inverse()?;
         let argument = root.plus(&one.signed(true)).times(&below);
-        Some(argument.odd_series(false)?.scaled(i64::from(ROOTS) + 1))
+        Some(
+            argument
+                .odd_series(false)?
+                .scaled(i64::from(SQUARE_ROOTS) + 1),
+        )
     }
 
     /// Angle of (x, y) in (−π, π], where `self` is y; `None` if it is not certain on which side of the
@@ -62,29 +66,29 @@ impl Interval {
     /// at most 1.
     fn arctan(&self) -> Option<Self> {
         let one = Interval::whole(1);
-        let small = (0..=ROOTS).try_fold(self.clone(), |t, _| {
+        let small = (0..=SQUARE_ROOTS).try_fold(self.clone(), |t, _| {
             let root = one.plus(&t.times(&t)).sqrt()?;
             Some(t.times(&one.plus(&root).inverse()?))
         })?;
-        Some(small.odd_series(true)?.scaled(i64::from(ROOTS) + 1))
+        Some(small.odd_series(true)?.scaled(i64::from(SQUARE_ROOTS) + 1))
     }
 
-    /// t ± t³/3 + t⁵/5 ± …, for |t| below 2^−ROOTS.
+    /// t ± t³/3 + t⁵/5 ± …, for |t| below 2^−SQUARE_ROOTS.
     fn odd_series(&self, alternating: bool) -> Option<Self> {
         let size = self.exponent + self.lo.bits().max(self.hi.bits()) as i64;
-        if size > -i64::from(ROOTS) {
+        if size > -i64::from(SQUARE_ROOTS) {
             return None;
         }
         let square = self.times(self).signed(alternating);
         let rest = power_of_two(0);
-        // Later terms are smaller by a factor of 2^(2 ROOTS) each.
+        // Later terms are smaller by a factor of 2^(2 SQUARE_ROOTS) each.
         let mut sum = Interval {
             lo: -&rest,
             hi: rest,
-            exponent: REST,
+            exponent: TRUNCATION_EXPONENT,
         };
         let mut power = self.clone();
-        for k in 0..TERMS {
+        for k in 0..SERIES_TERMS {
             let odd = Interval::whole(2 * k + 1).inverse()?;
             sum = sum.plus(&power.times(&odd));
             power = power.times(&square);

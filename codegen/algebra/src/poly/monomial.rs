@@ -7,12 +7,12 @@ use std::cmp::Ordering;
 pub type Var = u32;
 
 /// Number of powers that are stored without a heap allocation, enough for most monomials.
-const FEW: usize = 6;
+const INLINE_POWERS: usize = 6;
 
 /// A product of powers of variables. Its derived `Ord` is a fixed total order for use as a map key,
 /// not a monomial order; see [`super::order::Order`].
 #[derive(PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
-pub struct Monomial(SmallVec<[(Var, u32); FEW]>);
+pub struct Monomial(SmallVec<[(Var, u32); INLINE_POWERS]>);
 
 /// Copies the memory in one piece, where a derived `Clone` would push the powers one by one.
 impl Clone for Monomial {
@@ -34,7 +34,8 @@ impl Monomial {
 
     /// The product of the given powers, in any order; repeated variables multiply.
     pub fn from_powers(powers: impl IntoIterator<Item = (Var, u32)>) -> Self {
-        let mut list: SmallVec<[_; FEW]> = powers.into_iter().filter(|power| power.1 > 0).collect();
+        let mut list: SmallVec<[_; INLINE_POWERS]> =
+            powers.into_iter().filter(|power| power.1 > 0).collect();
         list.sort_unstable_by_key(|power| power.0);
         list.dedup_by(|next, kept| {
             let same = next.0 == kept.0;
@@ -123,7 +124,7 @@ impl Monomial {
 
     /// Combines exponents: f(a_i, b_i) over the variables of either monomial.
     fn merge(&self, other: &Self, f: impl Fn(u32, u32) -> u32) -> Self {
-        let mut result: SmallVec<[_; FEW]> = SmallVec::new();
+        let mut result: SmallVec<[_; INLINE_POWERS]> = SmallVec::new();
         let (mut i, mut j) = (0, 0);
         loop {
             let (variable, a, b) = match (self.0.get(i), other.0.get(j)) {

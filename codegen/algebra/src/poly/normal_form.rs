@@ -113,7 +113,7 @@ pub(super) fn reduce<F: Field>(
 }
 
 /// Number of terms of a tail up to which each term is inserted by binary search; longer tails are merged.
-const FEW: usize = 8;
+const MAX_BINARY_INSERTIONS: usize = 8;
 
 /// rest − c m tail, for an ascending `rest` and a descending `tail`.
 fn subtract<F: Field>(
@@ -130,7 +130,7 @@ fn subtract<F: Field>(
         work += value.words() as u64;
         (monomial.mul(m), value)
     });
-    let result = match tail.len() <= FEW {
+    let result = match tail.len() <= MAX_BINARY_INSERTIONS {
         true => placed(order, rest, products),
         false => merged(order, rest, products.rev(), tail.len()),
     };

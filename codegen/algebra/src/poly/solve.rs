@@ -24,15 +24,15 @@ use structure::{by_preference, dense, determined, parts};
 
 /// Numbers of random values tried: for the first variable, and for a later one before an earlier choice is
 /// revised.
-const TRIES: (usize, usize) = (60, 6);
+const RANDOM_VALUES: (usize, usize) = (60, 6);
 /// Largest number of systems examined for each variable before the search gives up.
-const SYSTEMS_PER_VARIABLE: usize = 60;
+const MAX_SYSTEMS_PER_VARIABLE: usize = 60;
 /// The largest degree of a minimal polynomial.
-const DEGREE: usize = 64;
+const MAX_MINIMAL_DEGREE: usize = 64;
 /// The largest amount of work in one system, in a quick and in a thorough search.
-const WORK: (u64, u64) = (60_000, 1_500_000);
+const MAX_SYSTEM_WORK: (u64, u64) = (60_000, 1_500_000);
 /// The largest amount of work in all systems of a search.
-const TOTAL_WORK: u64 = 8_000_000;
+const MAX_TOTAL_WORK: u64 = 8_000_000;
 
 /// Returns a random F_p point of the variety of the generators, by ascending variable; `None` if no point
 /// was found: the system is inconsistent, has no point over F_p, or is too big.
@@ -50,8 +50,8 @@ pub fn point<const K: usize>(
         let mut search = Search {
             random,
             quick,
-            systems: SYSTEMS_PER_VARIABLE * (open.len() + 1),
-            work: TOTAL_WORK,
+            systems: MAX_SYSTEMS_PER_VARIABLE * (open.len() + 1),
+            work: MAX_TOTAL_WORK,
             choices: 0,
         };
         search.solve(generators, &open)
@@ -125,7 +125,11 @@ impl Search<'_> {
         {
             return self.free(system, None, open, free);
         }
-        let work = if self.quick { WORK.0 } else { WORK.1 };
+        let work = if self.quick {
+            MAX_SYSTEM_WORK.0
+        } else {
+            MAX_SYSTEM_WORK.1
+        };
         let limits = Limits {
             pairs: 2_000,
             terms: 2_000,
@@ -161,7 +165,7 @@ impl Search<'_> {
     ) -> Result<Values<K>, Failure> {
         let variable = match determined(system, open) {
             Some(variable) => {
-                let minimal = minimal_polynomial(basis, variable, DEGREE);
+                let minimal = minimal_polynomial(basis, variable, MAX_MINIMAL_DEGREE);
                 return self.finite(system, &minimal.ok_or(Failure::Unlucky)?, open, variable);
             }
             None => by_preference(system, open).first().copied(),
@@ -178,7 +182,11 @@ impl Search<'_> {
         open: &BTreeSet<Var>,
         variable: Var,
     ) -> Result<Values<K>, Failure> {
-        let tries = if self.choices == 0 { TRIES.0 } else { TRIES.1 };
+        let tries = if self.choices == 0 {
+            RANDOM_VALUES.0
+        } else {
+            RANDOM_VALUES.1
+        };
         for _ in 0..tries {
             let value = self.random.residue();
             self.choices += 1;
@@ -187,7 +195,7 @@ impl Search<'_> {
             match (result, basis) {
                 (Ok(values), _) => return Ok(values),
                 (Err(Failure::Inconsistent), Some(basis)) => {
-                    let minimal = minimal_polynomial(basis, variable, DEGREE);
+                    let minimal = minimal_polynomial(basis, variable, MAX_MINIMAL_DEGREE);
                     return self.finite(system, &minimal.ok_or(Failure::Unlucky)?, open, variable);
                 }
                 (Err(_), _) => {}

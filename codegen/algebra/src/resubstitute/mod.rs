@@ -12,7 +12,7 @@ use crate::fp::Fp;
 use crate::graph::{Graph, canonical};
 use crate::node::{Edge, Node, NodeId};
 use crate::prime::Residue;
-use crate::shadow::Shadow;
+use crate::real_enclosure::RealValues;
 use crate::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
 use sieve::Sieve;
@@ -20,14 +20,14 @@ use spread::{Spread, spreads};
 use std::cell::OnceCell;
 
 /// Largest number of varying nodes; larger expressions are left as they are.
-const LARGEST: usize = 400;
+const MAX_VARYING_NODES: usize = 400;
 
 /// Rebuilds the roots in `base`, a graph with the same symbols, with fewer operations if some can be saved;
 /// `None` if nothing was found.
 pub fn resubstitute(graph: &Graph, roots: &[Edge], base: &Graph) -> Option<(Graph, Vec<Edge>)> {
     // This is checked before the inverses of many values are computed.
     let varying = |id: &&NodeId| !graph.is_free(**id);
-    if graph.reachable(roots).iter().filter(varying).count() > LARGEST {
+    if graph.reachable(roots).iter().filter(varying).count() > MAX_VARYING_NODES {
         return None;
     }
     let mut graph = graph.clone();
@@ -53,7 +53,7 @@ struct Network<'a> {
     roots: &'a [Edge],
     definitions: Vec<Option<Node>>,
     /// Real samples, if square roots are involved.
-    shadow: Option<Shadow>,
+    real_values: Option<RealValues>,
     /// 1 / value of every node whose value has an inverse.
     inverses: Vec<Option<Fp>>,
     /// Nodes by their values, up to sign.
@@ -88,7 +88,7 @@ impl<'a> Network<'a> {
         Network {
             graph,
             roots,
-            shadow: graph.sampled(&nodes),
+            real_values: graph.compute_samples(&nodes),
             sieve: Sieve::new(nodes.iter().map(value)),
             inverses,
             by_value,
@@ -231,8 +231,9 @@ impl<'a> Network<'a> {
         let below = self.below(&ends.collect::<Vec<_>>(), None);
         let sums = spread.terms.iter().map(|term| {
             let node = Node::Add(term.rest, term.part);
-            let agrees = |shadow: &Shadow| !shadow.refuses(term.whole, node);
-            let usable = !below.contains(&term.whole) && self.shadow.as_ref().is_none_or(agrees);
+            let agrees = |real_values: &RealValues| !real_values.refuses(term.whole, node);
+            let usable =
+                !below.contains(&term.whole) && self.real_values.as_ref().is_none_or(agrees);
             usable.then_some((term.whole, node))
         });
         let Some(sums) = sums.collect::<Option<Vec<_>>>() else {
@@ -276,7 +277,10 @@ impl<'a> Network<'a> {
         let target = self.value(id);
         let pairs = self.pairs(id);
         let agrees = |node: &Node| {
-            let refused = self.shadow.as_ref().map(|shadow| shadow.refuses(id, *node));
+            let refused = self
+                .real_values
+                .as_ref()
+                .map(|real_values| real_values.refuses(id, *node));
             !refused.unwrap_or(false)
         };
         let paired = usable
@@ -317,10 +321,10 @@ impl<'a> Network<'a> {
             image[edge.node() as usize] = made;
         }
         for id in alive.into_iter().filter(|&id| !self.graph.is_free(id)) {
-            into.follow(self.graph, id);
+            into.announce_copy(self.graph, id);
             image[id as usize] = match self.definitions[id as usize] {
                 Some(Node::Symbol(index)) => Edge::of(into.symbols()[index as usize].node),
-                Some(node) => merged(into, node.over(|child| read(&image, child))),
+                Some(node) => merged(into, node.map_children(|child| read(&image, child))),
                 None => continue,
             };
         }

@@ -4,14 +4,14 @@
 use super::{Fp, Residue};
 
 /// Number of bits of a hash: 2 KB of flags suffice for the values of some hundred nodes.
-const BITS: u32 = 14;
+const HASH_BITS: u32 = 14;
 
 /// Flags for the hashes of values, the same for a value and its negative.
 pub(super) struct Sieve(Vec<u64>);
 
 impl Sieve {
     pub(super) fn new(values: impl Iterator<Item = Fp>) -> Self {
-        let mut words = vec![0; (1 << BITS) / 64];
+        let mut words = vec![0; (1 << HASH_BITS) / 64];
         for value in values {
             let place = place(value.0);
             words[place / 64] |= 1 << (place % 64);
@@ -32,5 +32,5 @@ fn place(part: Residue<0>) -> usize {
         .parts()
         .map(|part| part.min(Residue::<0>::P.wrapping_sub(part)));
     let mixed = (real ^ imaginary.rotate_left(7)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    (mixed >> (64 - BITS)) as usize
+    (mixed >> (64 - HASH_BITS)) as usize
 }

@@ -4,9 +4,9 @@
 use super::dependent::{CLEARED, SERIES, multipliers_at, raise, raising};
 use super::parts::Parts;
 use crate::calculus::Calculus;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Function, Graph};
-use hamel_algebra::lane::Lane;
 use hamel_language::model::Model;
 
 /// Solution of the constrained equations of motion.
@@ -314,7 +314,7 @@ pub fn solve_at(
     [mass, force, rows, right]: [&[Fp]; 4],
     given: &[(usize, Fp)],
     balance: bool,
-    lane: &Lane,
+    lane: &FieldPoint,
 ) -> Option<Solved> {
     let n = force.len();
     let (mut mass, mut force) = (mass.to_vec(), force.to_vec());

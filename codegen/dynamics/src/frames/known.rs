@@ -102,7 +102,7 @@ fn runs(model: &Model, index: usize) -> Runs {
 
 /// Returns the model in a graph with known expressions.
 fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
-    let mut known = model.graph.fresh();
+    let mut known = model.graph.empty_copy();
     let symbols = model.graph.symbols().iter().enumerate();
     let mut reals = Vec::new();
     for (place, symbol) in symbols {

@@ -201,7 +201,7 @@ fn restricted(
     xi: &[Edge],
     xi_dot: &[Edge],
 ) -> (Graph, Vec<Edge>) {
-    let mut graph = from.fresh();
+    let mut graph = from.empty_copy();
     let mut images = Vec::new();
     let (mut velocity, mut acceleration, mut momentum) = (0, 0, 0);
     let mut solved = Vec::new();

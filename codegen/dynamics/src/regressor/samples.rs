@@ -2,9 +2,9 @@
 //! states: symbols of parameters have one random value each, and functions of constants have those of one lane.
 
 use hamel_algebra::echelon::Echelon;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 use hamel_language::model::{Model, class};
@@ -23,7 +23,7 @@ pub struct Samples {
     /// Rows, with an entry for every column of Y.
     pub rows: Vec<Vec<Fp>>,
     /// A sampled state, with the same values of everything that is constant at run time.
-    lane: Lane,
+    lane: FieldPoint,
 }
 
 impl Samples {
@@ -86,7 +86,7 @@ impl Samples {
 }
 
 /// Returns a random state with the constants of a seed.
-fn lane(model: &Model, seed: u64, state: u64) -> Option<Lane> {
+fn lane(model: &Model, seed: u64, state: u64) -> Option<FieldPoint> {
     let random = &mut Random::new(seed.wrapping_mul(0x6a09_e667) ^ (state << 32));
     let mut values = model.points.choose(random)?;
     let frozen = &mut Random::new(seed ^ 0x3c6e_f372);
@@ -95,7 +95,7 @@ fn lane(model: &Model, seed: u64, state: u64) -> Option<Lane> {
             *value = frozen.element();
         }
     }
-    let mut lane = Lane::new();
+    let mut lane = FieldPoint::new();
     lane.roots = model.points.roots;
     values.into_iter().for_each(|value| lane.push_symbol(value));
     Some(lane)

@@ -4,9 +4,9 @@
 //! result that an expression depends on none of the varied symbols is wrong with the same
 //! probability as node identity.
 
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tape::Tape;
 use hamel_language::model::Model;
@@ -19,7 +19,7 @@ const SEED: u64 = 0x5711;
 /// Point of X from which symbols are varied.
 pub struct Variation<'a> {
     model: &'a Model,
-    here: Lane,
+    here: FieldPoint,
 }
 
 impl<'a> Variation<'a> {

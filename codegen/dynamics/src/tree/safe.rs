@@ -3,7 +3,7 @@
 
 use super::draft::Draft;
 use hamel_algebra::graph::{Edge, Graph};
-use hamel_algebra::rounding::{UNIT, bounded};
+use hamel_algebra::rounding::{UNIT_ROUNDOFF, evaluate_with_bounds};
 use hamel_language::model::Model;
 
 /// Largest shift of an origin in multiples of the size of the description.
@@ -49,7 +49,7 @@ impl Safe {
         if entries.iter().any(|entry| !graph.is_free(entry.node())) {
             return f64::NAN;
         }
-        let values = bounded(graph, entries, &self.numbers).into_iter();
+        let values = evaluate_with_bounds(graph, entries, &self.numbers).into_iter();
         values
             .map(|entry| entry.value * entry.value)
             .sum::<f64>()
@@ -63,20 +63,22 @@ impl Safe {
 
     /// Returns whether the direction of a vector is accurate in spite of rounding.
     pub fn has_direction(&self, graph: &Graph, vector: &[Edge]) -> bool {
-        let entries = bounded(graph, vector, &self.numbers);
+        let entries = evaluate_with_bounds(graph, vector, &self.numbers);
         let norm = |pick: fn(f64, f64) -> f64| {
             let squares = entries.iter().map(|e| pick(e.value, e.error).powi(2));
             squares.sum::<f64>().sqrt()
         };
         let (length, error) = (norm(|value, _| value), norm(|_, error| error));
-        length > 0.0 && error <= BLUR * UNIT * length
+        length > 0.0 && error <= BLUR * UNIT_ROUNDOFF * length
     }
 
     /// Returns whether a cosine and a sine are accurate in spite of rounding.
     ///
     /// Their square root may be known by another expression, in which digits cancel.
     pub fn is_sharp(&self, graph: &Graph, turn: &[Edge]) -> bool {
-        let entries = bounded(graph, turn, &self.numbers);
-        entries.iter().all(|entry| entry.error <= BLUR * UNIT)
+        let entries = evaluate_with_bounds(graph, turn, &self.numbers);
+        entries
+            .iter()
+            .all(|entry| entry.error <= BLUR * UNIT_ROUNDOFF)
     }
 }

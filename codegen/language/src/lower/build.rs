@@ -76,11 +76,11 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
         errors.iter().cloned().for_each(|error| report.push(error));
         let mut ground = Ground::on(&variety, &point, system, &names, seed, &mut report);
         if doubts == DOUBTS {
-            ground.graph.keep_roots_apart();
+            ground.graph.forbid_root_merges();
         }
         let result = read_at(system, &variety, &names.order, ground, report);
         match result {
-            Ok(model) if model.graph.is_unfaithful() => {
+            Ok(model) if model.graph.has_bad_prime() => {
                 errors.push(
                     Diagnostic::new(
                         system.name.span,
@@ -91,10 +91,14 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
                 return Err(errors);
             }
             // Another point may be on the branch of the start.
-            Ok(model) if model.graph.is_contradicted() => branches = true,
-            Err((_, Some(graph))) if graph.is_contradicted() => branches = true,
-            Ok(model) if model.graph.is_stuck() => variety.points.require_roots(&model.graph),
-            Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
+            Ok(model) if model.graph.has_contradicted_samples() => branches = true,
+            Err((_, Some(graph))) if graph.has_contradicted_samples() => branches = true,
+            Ok(model) if model.graph.has_missing_root() => {
+                variety.points.require_roots(&model.graph)
+            }
+            Err((_, Some(graph))) if graph.has_missing_root() => {
+                variety.points.require_roots(&graph)
+            }
             Ok(model) if doubts < DOUBTS && is_doubtful(&variety, &model) => doubts += 1,
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
@@ -142,7 +146,7 @@ fn is_doubtful(variety: &Variety, model: &Model) -> bool {
     let near = variety.near.as_deref();
     let samples =
         (1..=DRAWN).map(|seed| samples::sample(&variety.points, &variety.phi, seed, near));
-    model.graph.is_doubtful(samples)
+    model.graph.has_doubtful_merges(samples)
 }
 
 /// The errors, and the graph if there is one.

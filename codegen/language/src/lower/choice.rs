@@ -40,7 +40,7 @@ impl Evaluator<'_> {
         let coordinates = self.scope.plain();
         let free =
             |symbol: NodeId| graph.class(symbol) != class::COORD || coordinates.contains(&symbol);
-        let Some(by) = graph.jump(&value.entries(), class::PARAM, &free) else {
+        let Some(by) = graph.find_discontinuity(&value.entries(), class::PARAM, &free) else {
             return Some(());
         };
         let place =

@@ -7,7 +7,7 @@ use super::declare::{Declared, size};
 use super::definitions::Row;
 use super::rate::advised;
 use super::variety::Variety;
-use crate::algebra::blocks::{AtStart, Failure, solve};
+use crate::algebra::blocks::{Failure, StartValues, solve};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::transpose;
@@ -29,7 +29,7 @@ pub struct Given<'a> {
     /// Indices of the rows of Φ in ∂φ/∂x.
     pub independent: &'a [usize],
     /// Evaluates expressions at the start.
-    pub start: &'a AtStart<'a>,
+    pub start: &'a StartValues<'a>,
 }
 
 /// An equation for the unknown rates: coefficients of all ẋ, and the right-hand side.

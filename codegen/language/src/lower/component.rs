@@ -156,7 +156,7 @@ impl Walk<'_> {
     /// Returns the point of X near the given values.
     fn close(&self, mut numbers: Vec<f64>) -> Option<Vec<f64>> {
         let (first, count) = self.coordinates;
-        let x = self.equations.near(&numbers)?;
+        let x = self.equations.solve_near(&numbers)?;
         numbers[first..first + count].copy_from_slice(&x);
         numbers.iter().all(|a| a.is_finite()).then_some(numbers)
     }

@@ -64,7 +64,7 @@ fn corner(model: &Model, edges: &[Edge], time: NodeId) -> Option<String> {
     let reached = model.graph.reachable(edges);
     let chosen = reached
         .iter()
-        .any(|&id| model.graph.chosen_by(id).is_some());
+        .any(|&id| model.graph.condition_of(id).is_some());
     if !chosen || !reached.contains(&time) {
         return None;
     }
@@ -75,7 +75,7 @@ fn corner(model: &Model, edges: &[Edge], time: NodeId) -> Option<String> {
         .map(|&edge| along.of(&mut graph, edge))
         .collect();
     let free = |symbol: NodeId| graph.class(symbol) != class::COORD || symbol == time;
-    let by = graph.jump(&rates, class::PARAM, &free)?;
+    let by = graph.find_discontinuity(&rates, class::PARAM, &free)?;
     let place = short(&graph, by, LONGEST).map(|by| format!(" where {by} = 0"));
     Some(place.unwrap_or_default())
 }

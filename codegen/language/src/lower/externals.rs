@@ -30,8 +30,8 @@ pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &m
             continue;
         }
         check(function, report);
-        if known.len() == Component::MOST {
-            let message = format!("more than {} functions in Rust", Component::MOST);
+        if known.len() == Component::MAX_COUNT {
+            let message = format!("more than {} functions in Rust", Component::MAX_COUNT);
             report.push(
                 Diagnostic::new(name.span, message)
                     .help("one function with several components may do for some of them"),
@@ -74,7 +74,7 @@ fn check(function: &External, report: &mut Report) {
             );
         }
     }
-    let most = Component::MOST;
+    let most = Component::MAX_COUNT;
     if function.parameters.len() > most {
         let message = format!("a function of {} arguments", function.parameters.len());
         let help = format!("functions in Rust take up to {most} numbers");
@@ -136,7 +136,7 @@ impl Evaluator<'_> {
                 "a function in Rust is called while the system moves: let a parameter stand for this value",
             ));
         }
-        let count = function.components.0.clamp(1, Component::MOST);
+        let count = function.components.0.clamp(1, Component::MAX_COUNT);
         let of = |component| Component::new(place, component, given);
         let made = (0..count).map(|k| self.graph.external(of(k), &edges));
         let made: Vec<Edge> = made.collect();
@@ -179,7 +179,7 @@ pub fn misplaced(model: &Model, called: &[(Edge, Span)]) -> Option<Diagnostic> {
     kept.state_rates.clear();
     let edges = kept.all_edges();
     let (component, list) = model.graph.find_external(&edges, 0)?;
-    let lists = |edge: Edge| model.graph.called_with(edge).map(|(_, list)| list);
+    let lists = |edge: Edge| model.graph.as_external_call(edge).map(|(_, list)| list);
     let call = called.iter().find(|(edge, _)| lists(*edge) == Some(list));
     let function = model
         .graph

@@ -233,7 +233,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
                     .collect(),
             )
         }
-        (name, [Scalar(a)]) => match Function::named(name) {
+        (name, [Scalar(a)]) => match Function::from_name(name) {
             Some(function) => Scalar(graph.apply(function, *a)),
             None => return Err(None),
         },

@@ -75,7 +75,7 @@ impl<'a> Ground<'a> {
         let reals = |graph: &mut Graph| {
             let near = variety.near.as_deref();
             graph.set_reals(samples::sample(&variety.points, &variety.phi, seed, near));
-            graph.watch(near.is_some() && variety.complete);
+            graph.compare_samples(near.is_some() && variety.complete);
         };
         let mut graph = Graph::new(class::PARAM);
         graph.set_roots(variety.points.roots);

@@ -26,7 +26,7 @@ pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
         .iter()
         .fold(0, |class, xi| class | graph.class(xi.node()));
     let chosen = |id: NodeId| {
-        let by = graph.chosen_by(id);
+        let by = graph.condition_of(id);
         by.is_some_and(|by| graph.class(by.node()) & moving != 0)
     };
     twice == double && third == graph.zero() && !graph.reachable(&[second]).into_iter().any(chosen)

@@ -5,7 +5,7 @@ use super::ground::{Constraint, Ground};
 use super::{branch, component, start};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
-use crate::algebra::sizes::relative;
+use crate::algebra::residual_scale::relative_residuals;
 use crate::algebra::topoly::is_polynomial;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
@@ -166,7 +166,7 @@ impl Variety {
     fn holds_at_start(&self) -> bool {
         let rows: Vec<Edge> = self.phi.iter().map(|(edge, _)| *edge).collect();
         self.near.as_ref().is_some_and(|near| {
-            let left = relative(&self.points.free, &rows, near, self.points.places());
+            let left = relative_residuals(&self.points.free, &rows, near, self.points.places());
             left.iter().all(|left| left.abs() < ROUNDING)
         })
     }

@@ -6,13 +6,13 @@
 use super::closure::{Closure, normalise};
 use super::layout::Block;
 use super::way::{chart_rate, way};
-use crate::algebra::closest::Equations;
 use crate::algebra::dense::{
     apply, backward, cholesky, cholesky_with, dot, forward, gram, least_norm, product,
 };
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::nearest_solution::Equations;
 use crate::algebra::numeric::evaluate;
-use crate::algebra::sizes::{beside, sizes};
+use crate::algebra::residual_scale::{relative_residual, residual_scales};
 use crate::algebra::slopes::slopes;
 
 /// Smallest pivot of M relative to its diagonal entry; a smaller one is replaced by this fraction of the largest
@@ -109,12 +109,12 @@ impl Equations for Loops<'_, '_> {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let mut residuals = self.closure.residuals(x);
         let sizes = residuals.iter_mut().zip(&self.sizes);
-        sizes.for_each(|(residual, &size)| *residual = beside(*residual, size));
+        sizes.for_each(|(residual, &size)| *residual = relative_residual(*residual, size));
         residuals.extend((self.given.iter()).map(|&alpha| kept(x[alpha], self.guess[alpha])));
         residuals
     }
 
-    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+    fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let n = self.closure.n;
         let loops = self.closure.loops().into_iter();
         let rows = loops.flat_map(|place| self.closure.constraints[place].row.iter().copied());
@@ -125,11 +125,16 @@ impl Equations for Loops<'_, '_> {
             (self.given.iter()).map(|&alpha| (&a[alpha * n..][..n], length_of(self.guess[alpha])));
         let rows = b.chunks(n.max(1)).zip(self.sizes.iter().copied());
         rows.chain(given)
-            .map(|(row, size)| self.free.iter().map(|&i| beside(row[i], size)).collect())
+            .map(|(row, size)| {
+                self.free
+                    .iter()
+                    .map(|&i| relative_residual(row[i], size))
+                    .collect()
+            })
             .collect()
     }
 
-    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let (mut apart, mut slopes): (Vec<f64>, Vec<Vec<f64>>) = Default::default();
         let rates = self.chart_rates(x);
         let mut place = 0;
@@ -150,7 +155,7 @@ impl Equations for Loops<'_, '_> {
         (apply(weight, &apart), product(weight, &slopes))
     }
 
-    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+    fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         let (a, n) = (self.a(x), self.closure.n);
         let mut moved = x.to_vec();
         for (entry, row) in moved.iter_mut().zip(a.chunks(n.max(1))) {
@@ -200,7 +205,7 @@ impl Constraints<'_> {
     pub fn measured(self) -> Self {
         let places = self.first..self.first + self.guess.len();
         Constraints {
-            sizes: sizes(self.graph, &self.phi, &self.at(self.guess), places),
+            sizes: residual_scales(self.graph, &self.phi, &self.at(self.guess), places),
             ..self
         }
     }
@@ -220,12 +225,12 @@ impl Equations for Constraints<'_> {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let mut residuals = evaluate(self.graph, &self.phi, &self.at(x));
         let sizes = residuals.iter_mut().zip(&self.sizes);
-        sizes.for_each(|(residual, &size)| *residual = beside(*residual, size));
+        sizes.for_each(|(residual, &size)| *residual = relative_residual(*residual, size));
         residuals.extend((self.given.iter()).map(|&alpha| kept(x[alpha], self.guess[alpha])));
         residuals
     }
 
-    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+    fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let unit = |alpha: usize| {
             let mut direction = vec![0.0; self.first + alpha + 1];
             direction[self.first + alpha] = 1.0;
@@ -237,7 +242,7 @@ impl Equations for Constraints<'_> {
         let mut rows: Vec<Vec<f64>> = rows.collect();
         for (row, size) in rows.iter_mut().zip(&self.sizes) {
             row.iter_mut()
-                .for_each(|slope| *slope = beside(*slope, *size));
+                .for_each(|slope| *slope = relative_residual(*slope, *size));
         }
         rows.extend(self.given.iter().map(|&alpha| {
             let mut row = vec![0.0; x.len()];
@@ -247,13 +252,13 @@ impl Equations for Constraints<'_> {
         rows
     }
 
-    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let apart = x.iter().zip(self.guess).map(|(a, b)| a - b).collect();
         let row = |alpha: usize| (0..x.len()).map(|beta| f64::from(alpha == beta)).collect();
         (apart, (0..x.len()).map(row).collect())
     }
 
-    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+    fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         let mut moved: Vec<f64> = x.iter().zip(step).map(|(x, h)| x + h).collect();
         normalise(self.blocks, &mut moved);
         moved

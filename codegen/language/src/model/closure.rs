@@ -8,12 +8,12 @@ use super::closest::{Loops, velocities};
 use super::layout::{Block, blocks};
 use super::pfaffian::{Kind, Pfaffian};
 use super::{Clock, Coordinate, Model};
-use crate::algebra::closest::closest;
 use crate::algebra::dense::{dot, least_norm};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
+use crate::algebra::nearest_solution::find_nearest;
 use crate::algebra::numeric::evaluate;
-use crate::algebra::sizes::{beside, sizes};
+use crate::algebra::residual_scale::{relative_residual, residual_scales};
 use crate::algebra::slopes::slopes;
 
 /// Largest number of steps of Newton's method.
@@ -22,7 +22,7 @@ const STEPS: usize = 60;
 const JUDGED: usize = 3;
 /// Smallest number of steps for constraints on velocities, so that rounding is refined away.
 const LEAST_ROUNDS: usize = 3;
-/// Largest residual of a solution, relative to its [size](sizes).
+/// Largest residual of a solution, relative to its [scale](residual_scales).
 const SOLVED: f64 = 1e-12;
 /// Largest residual, relative to the size of its terms, that counts as rounding of the given numbers; those are then
 /// corrected.
@@ -145,7 +145,7 @@ impl<'a> Closure<'a> {
         let mut found = None;
         for _ in 0..JUDGED {
             let loops = Loops::new(self, mass, x, given, &sizes);
-            found = closest(&loops, x);
+            found = find_nearest(&loops, x);
             let Some(there) = found.as_ref().filter(|x| !self.is_closed(x)) else {
                 break;
             };
@@ -394,7 +394,7 @@ impl<'a> Closure<'a> {
             .map(|&place| self.constraints[place].residual)
             .collect();
         let first = 1 + self.params.len();
-        let sizes = sizes(self.graph, &edges, &self.numbers(x), first..first + x.len());
+        let sizes = residual_scales(self.graph, &edges, &self.numbers(x), first..first + x.len());
         self.shared(loops.iter().copied(), sizes)
     }
 
@@ -437,7 +437,9 @@ impl<'a> Closure<'a> {
 /// Divides residuals by the sizes of their terms.
 fn relative(residuals: &[f64], sizes: &[f64]) -> Vec<f64> {
     let parts = residuals.iter().zip(sizes);
-    parts.map(|(&left, &size)| beside(left, size)).collect()
+    parts
+        .map(|(&left, &size)| relative_residual(left, size))
+        .collect()
 }
 
 /// Returns index and absolute value of the largest entry; NaN counts as larger than any number.

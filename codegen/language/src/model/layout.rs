@@ -1,8 +1,8 @@
 //! Layout of the coordinates in x, with their constraints and canonical quasi-velocities.
 
+use crate::algebra::field_point::circle_point;
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::lane::circle_point;
 use crate::algebra::linear::{multiply3, transpose3};
 use crate::syntax::ast::CoordKind;
 use std::ops::{Add, Mul, Sub};

@@ -2,9 +2,9 @@
 
 use super::class;
 use super::layout::{Block, sample};
+use crate::algebra::field_point::{FieldPoint, Roots};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::lane::{Lane, Roots};
 use crate::algebra::newton::Newton;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
@@ -161,7 +161,7 @@ impl Points {
         let mut lane = self.lane_of(values);
         match evaluate_at(&self.free, &self.radicals, &mut lane) {
             Some(_) => [false; 2],
-            None if lane.is_stuck() => lane.stuck(),
+            None if lane.has_missing_root() => lane.missing_roots(),
             None => [true; 2],
         }
     }
@@ -175,16 +175,17 @@ impl Points {
             .collect();
         let radicals = copy(graph, &mut self.free, &roots);
         // The same roots are stuck once more: to tell |e| from e, a graph takes another sign, which is no square.
-        let again = !self.radicals.is_empty() && graph.is_stuck();
+        let again = !self.radicals.is_empty() && graph.has_missing_root();
         self.radicals = radicals;
         let (varying, fixed): (Vec<Edge>, Vec<Edge>) =
             (self.radicals.iter()).partition(|root| self.free.class(root.node()) != 0);
         let many = varying.len() > MOST_STRICT;
         let mut random = Random::new(0x5_71c7);
-        for roots in [Roots::OfSquares, Roots::Extended] {
-            let skipped = self.roots == Roots::Anything
-                || roots == Roots::Extended && again && self.roots == Roots::Extended
-                || roots == Roots::OfSquares && (many || again || self.roots == Roots::Extended);
+        for roots in [Roots::BaseField, Roots::ExtensionField] {
+            let skipped = self.roots == Roots::Arbitrary
+                || roots == Roots::ExtensionField && again && self.roots == Roots::ExtensionField
+                || roots == Roots::BaseField
+                    && (many || again || self.roots == Roots::ExtensionField);
             if skipped {
                 continue;
             }
@@ -199,7 +200,7 @@ impl Points {
                 return;
             }
         }
-        self.roots = Roots::Anything;
+        self.roots = Roots::Arbitrary;
     }
 
     /// Returns whether the roots of constants have values. If log 9, say, is not a square, no choice of a point
@@ -209,14 +210,14 @@ impl Points {
         let mut lane = self.lane_of(&values);
         let inside = |value: &Fp| value.0.is_prime() && value.1.is_prime();
         let found = evaluate_at(&self.free, fixed, &mut lane);
-        found.is_some_and(|found| self.roots != Roots::OfSquares || found.iter().all(inside))
+        found.is_some_and(|found| self.roots != Roots::BaseField || found.iter().all(inside))
     }
 
     /// Returns the same variety with roots in F_p(i), where every number of F_p is a square; `None` if it has these
     /// already.
     pub fn extended(&self) -> Option<Self> {
-        (self.roots == Roots::OfSquares).then(|| Points {
-            roots: Roots::Extended,
+        (self.roots == Roots::BaseField).then(|| Points {
+            roots: Roots::ExtensionField,
             ..self.clone()
         })
     }
@@ -323,7 +324,12 @@ impl Points {
 
     /// Returns a lane at a fresh point where some symbols have the values of expressions of `graph`; `None` if no
     /// point was found.
-    pub fn lane_where(&self, seed: u64, graph: &Graph, set: &[(usize, Edge)]) -> Option<Lane> {
+    pub fn lane_where(
+        &self,
+        seed: u64,
+        graph: &Graph,
+        set: &[(usize, Edge)],
+    ) -> Option<FieldPoint> {
         self.lane_moved(seed, graph, set, &|_| Some(Vec::new()))
     }
 
@@ -334,8 +340,8 @@ impl Points {
         seed: u64,
         graph: &Graph,
         set: &[(usize, Edge)],
-        moved: &dyn Fn(Lane) -> Option<Moved>,
-    ) -> Option<Lane> {
+        moved: &dyn Fn(FieldPoint) -> Option<Moved>,
+    ) -> Option<FieldPoint> {
         let move_in = |values: &mut Vec<Fp>, moved: Moved| {
             for (symbol, value) in moved {
                 *values.get_mut(symbol)? = value;
@@ -356,17 +362,17 @@ impl Points {
     }
 
     /// Returns a lane at a fresh point.
-    pub fn lane(&self, seed: u64) -> Option<Lane> {
+    pub fn lane(&self, seed: u64) -> Option<FieldPoint> {
         let values = self.choose(&mut Random::new(seed ^ 0x0b5e))?;
         Some(self.lane_of(&values))
     }
 
-    fn lane_of(&self, values: &[Fp]) -> Lane {
-        let mut lane = Lane::new();
+    fn lane_of(&self, values: &[Fp]) -> FieldPoint {
+        let mut lane = FieldPoint::new();
         // Values derived from others may lie outside F_p; then sums with them are not squares of F_p.
         let outside = |value: &Fp| !(value.0.is_prime() && value.1.is_prime());
         lane.roots = match self.roots {
-            Roots::OfSquares if values.iter().any(outside) => Roots::Extended,
+            Roots::BaseField if values.iter().any(outside) => Roots::ExtensionField,
             roots => roots,
         };
         for &value in values {
@@ -383,7 +389,7 @@ type Change<'a> = dyn Fn(&mut Vec<Fp>) -> Option<()> + 'a;
 pub type Moved = Vec<(usize, Fp)>;
 
 /// Evaluates expressions to the values of the symbols that they are assigned to.
-pub fn imposed(mut lane: Lane, graph: &Graph, set: &[(usize, Edge)]) -> Option<Moved> {
+pub fn imposed(mut lane: FieldPoint, graph: &Graph, set: &[(usize, Edge)]) -> Option<Moved> {
     let edges: Vec<Edge> = set.iter().map(|(_, edge)| *edge).collect();
     let values = evaluate_at(graph, &edges, &mut lane)?;
     let symbols = set.iter().map(|(symbol, _)| *symbol);

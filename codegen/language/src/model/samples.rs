@@ -49,7 +49,9 @@ pub fn sample(
                 *value += NEAR * number(&mut random);
             }
         }
-        let solved = equations.as_ref().map(|equations| equations.near(&values));
+        let solved = equations
+            .as_ref()
+            .map(|equations| equations.solve_near(&values));
         for (index, value) in values.into_iter().enumerate() {
             let coordinate = index.checked_sub(points.first);
             all[index][sample] = match (&solved, coordinate) {

@@ -40,7 +40,7 @@ pub fn states(model: &Model) -> Vec<Vec<f64>> {
         let guess = model.start_x.iter().map(|x| x + NEAR * number(&mut random));
         let guess = guess.collect();
         let mut state = numbers(model, guess, &mut random);
-        if let Some(x) = equations.near(&state) {
+        if let Some(x) = equations.solve_near(&state) {
             let first = model.points.first;
             state[first..first + x.len()].copy_from_slice(&x);
             all.push(state);

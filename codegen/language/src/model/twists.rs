@@ -5,7 +5,7 @@ use super::{Body, Frame, Particle};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::algebra::numeric::evaluate;
-use crate::algebra::slopes::{Sloped, slopes};
+use crate::algebra::slopes::{ValueWithSlopes, slopes};
 
 /// Twist of a frame for a velocity of 1, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -141,7 +141,7 @@ fn pose(rotation: &Mat3, position: Vec3) -> Vec<Edge> {
     [rotation.concat(), position.to_vec()].concat()
 }
 
-fn placed(entries: &[Sloped], n: usize) -> Placed {
+fn placed(entries: &[ValueWithSlopes], n: usize) -> Placed {
     let rotation = std::array::from_fn(|i| std::array::from_fn(|j| entries[3 * i + j].value));
     let twists = (0..n).map(|i| {
         // ω̂ = Ṙ Rᵀ

@@ -130,7 +130,7 @@ fn value(name: &str, arguments: &[Shaped]) -> Option<Shaped> {
         ("cross", [Vector(3), Vector(3)]) => Vector(3),
         ("hat", [Vector(3)]) => Shape::TURN,
         ("vee", [Shape::TURN]) => Vector(3),
-        (name, [Scalar]) if Function::named(name).is_some() => Scalar,
+        (name, [Scalar]) if Function::from_name(name).is_some() => Scalar,
         _ => return None,
     };
     Some(known.map_or(Shaped::of(shape), Shaped::number))

@@ -50,7 +50,8 @@ const RESERVED: &[&str] = &[
 /// last.
 pub fn reserved() -> impl Iterator<Item = &'static str> {
     let table = Function::ALL.iter().map(|function| function.name());
-    let further = table.filter(|name| !RESERVED.contains(name) && Function::named(name).is_some());
+    let further =
+        table.filter(|name| !RESERVED.contains(name) && Function::from_name(name).is_some());
     RESERVED.iter().copied().chain(further)
 }
 
@@ -136,7 +137,7 @@ pub fn usage(name: &str) -> Option<Cow<'static, str>> {
         "angular_velocity" => "`angular_velocity(f)` of a frame",
         "angular_acceleration" => "`angular_acceleration(f)` of a frame",
         name => {
-            let name = Function::named(name)?.name();
+            let name = Function::from_name(name)?.name();
             return Some(format!("`{name}(a)` of a scalar").into());
         }
     };

@@ -225,15 +225,15 @@ proptest! {
 
     #[test]
     fn mutated_descriptions_do_not_panic(
-        edits in prop::collection::vec((any::<prop::sample::Index>(), 0..4_u8, 0..ODD.len()), 1..8)
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0..4_u8, 0..MISPLACED_TOKENS.len()), 1..8)
     ) {
         let mut parts: Vec<&str> = FREE_BODY.split_inclusive(|c: char| !c.is_alphanumeric()).collect();
         for (place, edit, odd) in edits {
             let at = place.index(parts.len());
             match edit {
                 0 => { parts.remove(at); }
-                1 => parts.insert(at, ODD[odd]),
-                2 => parts[at] = ODD[odd],
+                1 => parts.insert(at, MISPLACED_TOKENS[odd]),
+                2 => parts[at] = MISPLACED_TOKENS[odd],
                 _ => parts.swap(at, odd),
             }
         }

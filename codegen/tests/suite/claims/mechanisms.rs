@@ -2,12 +2,12 @@
 //! them.
 
 use super::pieces::{Piece, Rate, kinetic, moment, momentum, potential};
-use super::{Claim, Form, REGULAR};
+use super::{Claim, Form, MIN_PIVOT};
 use crate::common::Random;
 use crate::jointed::{Joint, Law, Load, Loop, Motion, Name, System, short};
 
 /// A mechanism with conserved quantities that are known by construction.
-pub struct Kept {
+pub struct ConservativeMechanism {
     /// The mechanism.
     pub system: System,
     /// The number of joints that carry the others, and on which only gravity acts.
@@ -39,7 +39,7 @@ fn root((axis, kind): ([f64; 3], &'static str), i: usize, random: &mut Random) -
     }
 }
 
-impl Kept {
+impl ConservativeMechanism {
     fn random(random: &mut Random) -> Self {
         let upright = ([0.0, 0.0, 1.0], "revolute");
         let kind = random.below(6);
@@ -92,7 +92,7 @@ impl Kept {
         constrain(&mut system, random, roots);
         act(&mut system, random);
         let lasting = !depends_on_time(&system);
-        Kept {
+        ConservativeMechanism {
             system,
             roots,
             free,
@@ -380,9 +380,9 @@ fn depends_on_time(system: &System) -> bool {
 /// Draws a system that moves, and in which every spring moves.
 pub fn drawn(random: &mut Random) -> Kept {
     loop {
-        let kept = Kept::random(random);
+        let kept = ConservativeMechanism::random(random);
         let (pivot, left, independent) = kept.system.regularity(&kept.system.start());
-        let moves = pivot > REGULAR && left > 0 && independent > 0.05;
+        let moves = pivot > MIN_PIVOT && left > 0 && independent > 0.05;
         if moves && !kept.system.has_idle_spring() {
             return kept;
         }

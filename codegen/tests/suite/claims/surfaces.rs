@@ -3,7 +3,7 @@
 
 use super::mechanisms::{of_law, value};
 use super::pieces::{Piece, kinetic, moment, potential};
-use super::{CERTAIN, Claim, Form, ZERO, faults_of, largest, states};
+use super::{CERTAIN_RATE, Claim, Form, ZERO_TOLERANCE, faults_of, largest, states};
 use crate::common::{Random, attack};
 use crate::jet::Jet;
 use crate::jointed::{Joint, Law, Load, Loop, Motion, Name, System, short};
@@ -161,12 +161,12 @@ fn faults(seed: u64) -> Vec<String> {
     for (i, claim) in surface.truths(random).iter().enumerate() {
         let text = claim.text(&format!("c{i}"));
         let rate = largest(claim, &surface.system, &states);
-        if rate > ZERO {
+        if rate > ZERO_TOLERANCE {
             return vec![format!("seed {seed}: not true in numbers: {rate}\n{text}")];
         }
         truths.push(text);
         let twin = claim.twin(random);
-        if largest(&twin, &surface.system, &states) > CERTAIN {
+        if largest(&twin, &surface.system, &states) > CERTAIN_RATE {
             lies.push(twin.text(&format!("c{i}_false")));
         }
     }
@@ -244,7 +244,7 @@ fn frames(seed: u64) -> Vec<String> {
         Name::Joint(i) => Jet::number(places[i]),
         Name::Time => Jet::number(0.0),
     });
-    if value.value.abs() > CERTAIN {
+    if value.value.abs() > CERTAIN_RATE {
         let twin = describe("+");
         faults.extend(unless_refused(&twin, "Y A differs from I", "velocity "));
     }

@@ -7,7 +7,7 @@ pub const VARIABLES: usize = 8;
 
 /// A value, its gradient and its Hessian.
 #[derive(Clone, Copy)]
-pub struct Jet<const N: usize = VARIABLES> {
+pub struct Jet<const N: usize = MAX_VARIABLES> {
     /// The value.
     pub value: f64,
     /// Its first derivatives.

@@ -20,7 +20,13 @@ impl Precise {
     /// Parses a decimal number, without rounding to f64.
     pub fn parse(text: &str) -> Self {
         let parsed = CONSTANTS.with_borrow_mut(|constants| {
-            BigFloat::parse(text, astro_float_num::Radix::Dec, BITS, ROUND, constants)
+            BigFloat::parse(
+                text,
+                astro_float_num::Radix::Dec,
+                PRECISION_BITS,
+                ROUNDING_MODE,
+                constants,
+            )
         });
         assert!(!parsed.is_nan(), "{text}");
         Precise(parsed)
@@ -28,7 +34,7 @@ impl Precise {
 
     /// Converts an f64 exactly.
     pub fn of(value: f64) -> Self {
-        Precise(BigFloat::from_f64(value, BITS))
+        Precise(BigFloat::from_f64(value, PRECISION_BITS))
     }
 
     /// 2^exponent
@@ -43,47 +49,68 @@ impl Precise {
 
     /// π
     pub fn pi() -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| constants.pi(BITS, ROUND)))
+        Precise(CONSTANTS.with_borrow_mut(|constants| constants.pi(PRECISION_BITS, ROUNDING_MODE)))
     }
 
     /// Sine.
     pub fn sin(&self) -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.sin(BITS, ROUND, constants)))
+        Precise(
+            CONSTANTS
+                .with_borrow_mut(|constants| self.0.sin(PRECISION_BITS, ROUNDING_MODE, constants)),
+        )
     }
 
     /// Cosine.
     pub fn cos(&self) -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.cos(BITS, ROUND, constants)))
+        Precise(
+            CONSTANTS
+                .with_borrow_mut(|constants| self.0.cos(PRECISION_BITS, ROUNDING_MODE, constants)),
+        )
     }
 
     /// Exponential.
     pub fn exp(&self) -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.exp(BITS, ROUND, constants)))
+        Precise(
+            CONSTANTS
+                .with_borrow_mut(|constants| self.0.exp(PRECISION_BITS, ROUNDING_MODE, constants)),
+        )
     }
 
     /// Natural logarithm.
     pub fn log(&self) -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.ln(BITS, ROUND, constants)))
+        Precise(
+            CONSTANTS
+                .with_borrow_mut(|constants| self.0.ln(PRECISION_BITS, ROUNDING_MODE, constants)),
+        )
     }
 
     /// Arc cosine.
     pub fn acos(&self) -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.acos(BITS, ROUND, constants)))
+        Precise(
+            CONSTANTS
+                .with_borrow_mut(|constants| self.0.acos(PRECISION_BITS, ROUNDING_MODE, constants)),
+        )
     }
 
     /// Arc sine.
     pub fn asin(&self) -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.asin(BITS, ROUND, constants)))
+        Precise(
+            CONSTANTS
+                .with_borrow_mut(|constants| self.0.asin(PRECISION_BITS, ROUNDING_MODE, constants)),
+        )
     }
 
     /// Arc tangent.
     pub fn atan(&self) -> Self {
-        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.atan(BITS, ROUND, constants)))
+        Precise(
+            CONSTANTS
+                .with_borrow_mut(|constants| self.0.atan(PRECISION_BITS, ROUNDING_MODE, constants)),
+        )
     }
 
     /// Square root.
     pub fn sqrt(&self) -> Self {
-        Precise(self.0.sqrt(BITS, ROUND))
+        Precise(self.0.sqrt(PRECISION_BITS, ROUNDING_MODE))
     }
 
     /// |a|
@@ -115,7 +142,7 @@ macro_rules! operator {
         impl $trait<&Precise> for &Precise {
             type Output = Precise;
             fn $name(self, other: &Precise) -> Precise {
-                Precise(self.0.$name(&other.0, BITS, ROUND))
+                Precise(self.0.$name(&other.0, PRECISION_BITS, ROUNDING_MODE))
             }
         }
     };

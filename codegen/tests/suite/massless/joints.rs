@@ -2,7 +2,7 @@
 //! others. Emitted accelerations are compared with Lagrange's equations in numbers. A refusal is right if the reference
 //! finds a direction without inertia at the start, or no remaining motion.
 
-use super::{REGULAR, ROUNDING};
+use super::{MIN_PIVOT, TOLERANCE};
 use crate::common::{Random, attack, value};
 use crate::dense::kernel;
 use crate::jointed::{Joint, Law, Load, Loop, Motion, Name, System, short};
@@ -121,7 +121,7 @@ fn tie(system: &mut System, random: &mut Random) {
 /// Returns whether the reason of a refusal is right.
 fn rightly_refused(system: &System, said: &str) -> bool {
     let (pivot, left, _) = system.regularity(&system.start());
-    let idle = pivot <= REGULAR && said.contains("the mass matrix is not positive definite");
+    let idle = pivot <= MIN_PIVOT && said.contains("the mass matrix is not positive definite");
     let still = left == 0 && said.contains("the constraints leave no motion");
     idle || still || said.contains("this spring does nothing") && system.has_idle_spring()
 }
@@ -182,7 +182,7 @@ fn outcome(system: &System, text: &str, random: &mut Random) -> Result<Outcome, 
         return Err("it is derived, although directions without inertia are left".into());
     }
     let mut outcome = Outcome::Singular;
-    for _ in 0..STATES {
+    for _ in 0..STATES_PER_SYSTEM {
         let near = system
             .start()
             .into_iter()
@@ -192,7 +192,7 @@ fn outcome(system: &System, text: &str, random: &mut Random) -> Result<Outcome, 
         };
         let v = system.moving(&q, random.numbers(n));
         let (pivot, left, independent) = system.regularity(&q);
-        if left == 0 || pivot <= REGULAR || independent <= REGULAR {
+        if left == 0 || pivot <= MIN_PIVOT || independent <= MIN_PIVOT {
             continue;
         }
         outcome = Outcome::Compared;
@@ -200,7 +200,7 @@ fn outcome(system: &System, text: &str, random: &mut Random) -> Result<Outcome, 
         let size = expected.iter().fold(10.0, |most: f64, a| most.max(a.abs()));
         for (place, rate) in found(&of, system, &q, &v) {
             let difference = (rate - expected[place]).abs();
-            if difference.is_nan() || difference > ROUNDING * size {
+            if difference.is_nan() || difference > TOLERANCE * size {
                 let joint = system.own()[place];
                 return Err(format!(
                     "rate of j{joint} at {q:?}, {v:?}: {rate}, not {}; pivots {pivot} {independent}",
@@ -217,7 +217,7 @@ fn drawn(random: &mut Random) -> System {
     loop {
         let system = system(random);
         let (pivot, ..) = system.regularity(&system.start());
-        if pivot > REGULAR || random.below(4) == 0 {
+        if pivot > MIN_PIVOT || random.below(4) == 0 {
             return system;
         }
     }

@@ -9,9 +9,9 @@ use crate::numbers::Numbers;
 use crate::points::{Unequal, at_fresh_points};
 use crate::reference::Reference;
 use crate::states;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Function, Graph};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::transplant::{substitute, substitute_under_roots};
 use hamel_dynamics::accel::saddle;
@@ -231,9 +231,9 @@ pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         reference.dissipation,
     ]);
     let graph = &reference.model.graph;
-    let at = |lane: &Lane| {
-        let found = evaluate_at(graph, &roots, &mut lane.clone())?;
-        let Ok(values) = numbers.at(lane)? else {
+    let at = |point: &FieldPoint| {
+        let found = evaluate_at(graph, &roots, &mut point.clone())?;
+        let Ok(values) = numbers.at(point)? else {
             return Some(Err(()));
         };
         let mut expected: Vec<Fp> = values.mass.concat();
@@ -251,8 +251,8 @@ pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         let unmoved = |_| Some(Vec::new());
         (model.points).lane_moved(0xf4a_3e0 + number, &model.graph, &given, &unmoved)
     };
-    let compared = match at_fresh_points(anywhere, |lane, _| at(lane)) {
-        Err(Unequal::Nowhere) => at_fresh_points(prescribed, |lane, _| at(lane)),
+    let compared = match at_fresh_points(anywhere, |point, _| at(point)) {
+        Err(Unequal::Nowhere) => at_fresh_points(prescribed, |point, _| at(point)),
         compared => compared,
     };
     match compared {

@@ -3,15 +3,16 @@
 //! At points of X with ξ = C ξₐ, the emitted ξ̇ₐ and multipliers have to satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row
 //! of the full frame, and d/dt (B ξ) has to be what the constraints demand; M, h, V and f are those of the full frame.
 
+mod comparison;
 pub mod frame;
 mod point;
-mod seen;
 
 use super::charts::Charts;
 use super::confidence::Confidence;
 use super::kernel::rows_at_rest;
-use super::points::{POINTS, Unequal, at_fresh_points};
+use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use super::verdict::{Identity, Verdict, failure, nowhere};
+use comparison::PointComparison;
 use frame::{Full, given};
 use hamel_algebra::graph::Edge;
 use hamel_dynamics::reduction::Reduction;
@@ -19,8 +20,7 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 use hamel_language::model::points::{Points, imposed};
 use hamel_program::{FunctionId, Program};
-use point::At;
-use seen::Seen;
+use point::ConstrainedPoint;
 
 /// Claims about the emitted functions that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ impl Claim {
     ];
 
     /// Returns the label and the equation that `check` prints.
-    fn said(self) -> (&'static str, &'static str) {
+    fn label(self) -> (&'static str, &'static str) {
         match self {
             Claim::Complement => ("C", "B C = 0 for the rows that were solved"),
             Claim::Rate => (
@@ -126,7 +126,7 @@ impl Claim {
     }
 
     /// Returns whether the program has the functions that the claim is about; other claims are not shown.
-    fn is_there(self, full: &Full, reduction: &Reduction, program: &Program) -> bool {
+    fn is_applicable(self, full: &Full, reduction: &Reduction, program: &Program) -> bool {
         let has_entries = |id: &FunctionId| {
             let function = program.function(*id);
             function.is_some_and(|function| !function.outputs.is_empty())
@@ -189,7 +189,7 @@ pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Resu
         return Err(nowhere(model));
     };
     match failed.first() {
-        Some(claim) => Err(failure(model, claim.said().1)),
+        Some(claim) => Err(failure(model, claim.label().1)),
         None => Ok(()),
     }
 }
@@ -222,13 +222,13 @@ fn compare_at(
         |number| {
             // Roots of velocities that constraints determine need values, too.
             let graph = &full.reference.model.graph;
-            let solved = |lane| imposed(lane, graph, &full.solved);
+            let solved = |point| imposed(point, graph, &full.solved);
             points.lane_moved(0xb0d5 + number, graph, &given, &solved)
         },
-        |lane, _| {
-            let seen = Seen::new(full, reduction, (program, &charts), lane)?;
+        |point, _| {
+            let comparison = PointComparison::new(full, reduction, (program, &charts), point)?;
             for claim in Claim::ALL {
-                if !seen.holds(claim)? {
+                if !comparison.holds(claim)? {
                     failed.push(claim);
                 }
             }
@@ -246,11 +246,11 @@ fn compare_at(
     let still = at_fresh_points(
         |number| {
             let model = &full.reference.model;
-            let moved = |lane| rows_at_rest(model, &rows, lane);
+            let moved = |point| rows_at_rest(model, &rows, point);
             points.lane_moved(0x50_0e4 + number, &model.graph, &given, &moved)
         },
-        |lane, _| {
-            let balanced = At::new(full, reduction, program, lane)?.power()?;
+        |point, _| {
+            let balanced = ConstrainedPoint::new(full, reduction, program, point)?.power()?;
             Some(if balanced { Ok(()) } else { Err(()) })
         },
     );
@@ -286,7 +286,7 @@ fn confidence(full: &Full, model: &Model, program: &Program) -> Confidence {
         (&program.graph, &emitted[..]),
     ];
     let terms = 4 * (model.n() + full.rows.len() + 1);
-    Confidence::new(model, &expressions, terms, POINTS, terms * terms)
+    Confidence::new(model, &expressions, terms, COMPARED_POINTS, terms * terms)
 }
 
 /// Returns the identities with their verdicts.
@@ -303,13 +303,13 @@ pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Ve
         (Some(_), Some(confidence)) => Verdict::Checked(confidence),
         _ => Verdict::Failed("no point was found to compare at".into()),
     };
-    let is_there = |claim: &Claim| {
+    let is_applicable = |claim: &Claim| {
         let known = full.as_ref();
-        known.is_none_or(|full| claim.is_there(full, reduction, program))
+        known.is_none_or(|full| claim.is_applicable(full, reduction, program))
     };
-    (Claim::ALL.into_iter().filter(is_there))
+    (Claim::ALL.into_iter().filter(is_applicable))
         .map(|claim| {
-            let (label, equation) = claim.said();
+            let (label, equation) = claim.label();
             Identity {
                 label,
                 equation: equation.into(),

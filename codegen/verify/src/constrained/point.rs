@@ -5,9 +5,9 @@ use super::frame::Full;
 use crate::kernel::{dot, places};
 use crate::outputs::slopes_hold;
 use crate::slopes::measured_at;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::reduction::Reduction;
@@ -15,7 +15,7 @@ use hamel_language::model::class;
 use hamel_program::{FunctionId, Program};
 
 /// A point with ξ = C ξₐ + c, as a point of the full model and of the reduced one.
-pub(super) struct At<'a> {
+pub(super) struct ConstrainedPoint<'a> {
     full: &'a Full,
     program: &'a Program,
     /// C, by rows.
@@ -23,9 +23,9 @@ pub(super) struct At<'a> {
     /// c.
     pub(super) shift: Vec<Fp>,
     /// Values of the symbols of the full model.
-    pub(super) point: Lane,
+    pub(super) point: FieldPoint,
     /// Values of the symbols of the reduced model.
-    pub(super) inner: Lane,
+    pub(super) inner: FieldPoint,
 }
 
 /// Numbers of the full frame at a point.
@@ -63,27 +63,27 @@ impl Values {
     }
 }
 
-impl<'a> At<'a> {
-    /// Creates the point with the active velocities of a lane.
+impl<'a> ConstrainedPoint<'a> {
+    /// Creates the point with the active velocities of a point of the full model.
     pub(super) fn new(
         full: &'a Full,
         reduction: &Reduction,
         program: &'a Program,
-        lane: &Lane,
+        point: &FieldPoint,
     ) -> Option<Self> {
         let graph = &full.reference.model.graph;
-        let mut c = evaluate_at(graph, &full.complement, &mut lane.clone())?;
+        let mut c = evaluate_at(graph, &full.complement, &mut point.clone())?;
         let shift = c.split_off(full.reference.model.n() * reduction.active.len());
         let velocities = places(graph, class::VELOCITY);
         let active = reduction.active.iter();
-        let active: Vec<Fp> = active.map(|&i| lane.symbol(velocities[i])).collect();
+        let active: Vec<Fp> = active.map(|&i| point.symbol(velocities[i])).collect();
         let others = [class::ACCEL, class::MOMENTUM].map(|class| places(graph, class));
-        let mut point = lane.clone();
+        let mut point = point.clone();
         let na = active.len();
         for (i, (&symbol, &shift)) in velocities.iter().zip(&shift).enumerate() {
             point.set_symbol(symbol, dot(&c[i * na..][..na], &active) + shift);
         }
-        let mut inner = point.fresh();
+        let mut inner = point.without_symbols();
         for index in 0..graph.symbols().len() {
             let solved = others.iter().chain([&velocities]).any(|list| {
                 let found = list.iter().position(|&symbol| symbol == index);
@@ -98,9 +98,9 @@ impl<'a> At<'a> {
             let atoms = evaluate_at(&full.reduced.graph, &atoms, &mut inner.clone())?;
             let coefficients = form.iter().map(|(_, c)| c.clone());
             let form = atoms.into_iter().zip(coefficients).collect();
-            point.write_out(point.symbol(*symbol), form);
+            point.set_linear_form(point.symbol(*symbol), form);
         }
-        Some(At {
+        Some(ConstrainedPoint {
             full,
             program,
             c,

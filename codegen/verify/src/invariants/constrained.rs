@@ -3,11 +3,11 @@
 
 use crate::confidence::Confidence;
 use crate::kernel::at_rest;
-use crate::points::{POINTS, Unequal, at_fresh_points};
+use crate::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use crate::verdict::{Identity, Verdict};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::calculus::Calculus;
@@ -25,7 +25,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
         .any(|c| c.residual != model.graph.zero());
     let mut errors = Vec::new();
     for claim in &model.invariants {
-        let message = match refuted(model, program, claim) {
+        let message = match find_refutation(model, program, claim) {
             None => continue,
             Some(Unequal::Nowhere) => format!(
                 "the claim `{}` cannot be checked: the motion has no value where it is claimed",
@@ -54,7 +54,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
 
 /// Returns the claims with their verdicts.
 pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
-    let verdict = |claim: &Invariant| match refuted(model, program, claim) {
+    let verdict = |claim: &Invariant| match find_refutation(model, program, claim) {
         None => Verdict::Checked(confidence(model, program)),
         Some(_) => Verdict::Failed("d/dt is not zero where the constraints hold".into()),
     };
@@ -80,7 +80,7 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
     let accel = program.xi_dot().unwrap_or_default();
     let expressions = [(&own.graph, &roots[..]), (&program.graph, accel)];
     let terms = 4 * (model.n() + 1);
-    Confidence::new(model, &expressions, terms, POINTS, 9)
+    Confidence::new(model, &expressions, terms, COMPARED_POINTS, 9)
 }
 
 /// Returns T and V.
@@ -96,7 +96,7 @@ fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
 }
 
 /// Returns how the claim fails, with the index of the entry that changes; `None` if it does not fail.
-fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
+fn find_refutation(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
     let energies = energies(&mut own, &mut calculus);
@@ -104,12 +104,12 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
     let entries = value.entries();
     let compared = at_fresh_points(
         |number| {
-            let moved = |lane| at_rest(&own, lane);
+            let moved = |point| at_rest(&own, point);
             own.points
                 .lane_moved(0x1a7f + number, &own.graph, &claim.set, &moved)
         },
-        |lane, _| {
-            let slopes = slopes(&own, program, &entries, lane)?;
+        |point, _| {
+            let slopes = slopes(&own, program, &entries, point)?;
             let changes = slopes.iter().position(|slope| !slope.is_zero());
             Some(changes.map_or(Ok(()), Err))
         },
@@ -118,11 +118,16 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
 }
 
 /// Returns d/dt of the entries at a point with B ξ = 0.
-fn slopes(model: &Model, program: &Program, entries: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
+fn slopes(
+    model: &Model,
+    program: &Program,
+    entries: &[Edge],
+    point: &FieldPoint,
+) -> Option<Vec<Fp>> {
     let graph = &model.graph;
-    let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut lane.clone())?;
-    let rate = evaluate_at(graph, &model.rate, &mut lane.clone())?;
+    let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut point.clone())?;
+    let rate = evaluate_at(graph, &model.rate, &mut point.clone())?;
     let direction = super::direction(model, &rate, &xi_dot);
-    let duals = tangent_at(graph, entries, &mut lane.clone(), &direction)?;
+    let duals = tangent_at(graph, entries, &mut point.clone(), &direction)?;
     Some(duals.into_iter().map(|dual| dual.1).collect())
 }

@@ -16,12 +16,12 @@ mod proof;
 mod remainder;
 
 use super::confidence::Confidence;
-use super::points::{POINTS, Unequal, at_fresh_points};
+use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph, Node};
-use hamel_algebra::lane::Lane;
 use hamel_algebra::linear::matrix;
 use hamel_algebra::numeric::{evaluate_at, solve};
 use hamel_algebra::tangent::tangent_at;
@@ -47,7 +47,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
     let mut prover: Option<Option<Prover>> = None;
     for claim in &model.invariants {
         let entries = motion.entries(claim);
-        match motion.refuted(claim, &entries) {
+        match motion.find_refutation(claim, &entries) {
             None => {}
             Some(Unequal::Nowhere) => {
                 let message = format!(
@@ -105,7 +105,7 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     let mut all = Vec::new();
     for claim in &model.invariants {
         let entries = motion.entries(claim);
-        let verdict = match motion.refuted(claim, &entries) {
+        let verdict = match motion.find_refutation(claim, &entries) {
             Some(Unequal::Nowhere) => Verdict::Failed("no point was found to check it at".into()),
             Some(Unequal::Differs(entry)) => Verdict::Failed(format!(
                 "entry {} of {} is not constant",
@@ -185,11 +185,17 @@ impl Equations {
         roots.extend(force.iter().chain(&reference.model.rate).chain(entries));
         let graph = &reference.model.graph;
         let terms = 2 * (model.n() + 1);
-        Confidence::new(model, &[(graph, &roots)], terms, POINTS, entries.len())
+        Confidence::new(
+            model,
+            &[(graph, &roots)],
+            terms,
+            COMPARED_POINTS,
+            entries.len(),
+        )
     }
 
     /// Returns how the claim fails; `None` if it does not.
-    fn refuted(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Unequal<usize>> {
+    fn find_refutation(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Unequal<usize>> {
         let force = self.force();
         let model = &self.reference.model;
         let compared = at_fresh_points(
@@ -197,8 +203,8 @@ impl Equations {
                 let points = &model.points;
                 points.lane_where(0x1a7e + number, &model.graph, &claim.set)
             },
-            |lane, _| {
-                let slopes = self.slopes(entries, &force, lane)?;
+            |point, _| {
+                let slopes = self.slopes(entries, &force, point)?;
                 let changes = slopes.iter().position(|slope| !slope.is_zero());
                 Some(changes.map_or(Ok(()), Err))
             },
@@ -207,19 +213,19 @@ impl Equations {
     }
 
     /// Returns d/dt of the entries at a point.
-    fn slopes(&self, entries: &[Edge], force: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
+    fn slopes(&self, entries: &[Edge], force: &[Edge], point: &FieldPoint) -> Option<Vec<Fp>> {
         let model = &self.reference.model;
         let graph = &model.graph;
         let n = model.n();
         let mut roots = self.reference.mass.concat();
         roots.extend(force.iter().chain(&model.rate));
-        let values = evaluate_at(graph, &roots, &mut lane.clone())?;
+        let values = evaluate_at(graph, &roots, &mut point.clone())?;
         let (mass, rest) = values.split_at(n * n);
         let (force, rate) = rest.split_at(n);
         let rows = matrix(mass, n);
         let xi_dot = solve(rows, force.to_vec())?;
         let direction = direction(model, rate, &xi_dot);
-        let duals = tangent_at(graph, entries, &mut lane.clone(), &direction)?;
+        let duals = tangent_at(graph, entries, &mut point.clone(), &direction)?;
         Some(duals.into_iter().map(|dual| dual.1).collect())
     }
 

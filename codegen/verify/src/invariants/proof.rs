@@ -20,12 +20,12 @@ use hamel_language::model::Model;
 use hamel_language::model::invariants::Invariant;
 
 /// Largest number of velocities of models whose claims are proved; those of larger models are only checked modulo p.
-const MOST_PROVED: usize = 8;
+const MAX_PROVED_VELOCITIES: usize = 8;
 /// Largest number of nodes of expressions that are expanded.
-const MOST_NODES: usize = 20_000;
+const MAX_EXPANDED_NODES: usize = 20_000;
 
 /// Budget of products and sums of terms for all expansions together; beyond it, the claim is only checked modulo p.
-const WORK: usize = 300_000;
+const EXPANSION_WORK: usize = 300_000;
 
 /// Outcome of a proof.
 pub enum Proof {
@@ -50,7 +50,7 @@ pub struct Prover {
 impl Prover {
     /// Derives the equations; `None` if the model is too large, or its kinematics have no left inverse.
     pub fn new(model: &Model) -> Option<Self> {
-        if model.n() > MOST_PROVED {
+        if model.n() > MAX_PROVED_VELOCITIES {
             return None;
         }
         let Geometry {
@@ -63,7 +63,7 @@ impl Prover {
         } = Geometry::unreduced(model)?;
         // Normal forms at every stage keep the polynomials small. They may be differentiated, since the columns of A
         // are tangent to X.
-        let mut forms = NormalForms::within(&model.points, WORK);
+        let mut forms = NormalForms::within(&model.points, EXPANSION_WORK);
         let entries = gamma.iter_mut().flatten().flatten();
         for entry in entries.chain(mass.iter_mut().flatten()) {
             *entry = normal(&mut forms, &mut free.graph, *entry);
@@ -179,7 +179,7 @@ impl Prover {
             }
         }
         let claims = substitute(graph, &claims, &claim.set);
-        if graph.reachable(&claims).len() > MOST_NODES {
+        if graph.reachable(&claims).len() > MAX_EXPANDED_NODES {
             return Proof::Open;
         }
         let mut forms = Vec::new();
@@ -217,7 +217,7 @@ fn seed_rotations(model: &mut Model) {
 
 /// Returns the normal form of an expression, or the expression itself if it is too large.
 fn normal(forms: &mut NormalForms, graph: &mut Graph, edge: Edge) -> Edge {
-    if graph.reachable(&[edge]).len() > MOST_NODES {
+    if graph.reachable(&[edge]).len() > MAX_EXPANDED_NODES {
         return edge;
     }
     let Some(polynomial) = forms.expand(graph, edge) else {

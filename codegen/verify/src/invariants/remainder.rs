@@ -8,13 +8,13 @@ use num_rational::BigRational;
 use num_traits::{One, Signed};
 
 /// Number of terms that are written out; further terms are only counted.
-const SHOWN: usize = 6;
+const MAX_SHOWN_TERMS: usize = 6;
 
 /// Returns the text of a polynomial; `None` if one of its variables cannot be written briefly, such as a quotient.
 pub fn readable(graph: &Graph, polynomial: &Poly<BigRational>) -> Option<String> {
     let mut text = String::new();
     let terms = polynomial.terms();
-    for (index, (monomial, number)) in terms.iter().take(SHOWN).enumerate() {
+    for (index, (monomial, number)) in terms.iter().take(MAX_SHOWN_TERMS).enumerate() {
         let mut factors = Vec::new();
         for &(var, exponent) in monomial.powers() {
             let name = variable(graph, var)?;
@@ -35,7 +35,7 @@ pub fn readable(graph: &Graph, polynomial: &Poly<BigRational>) -> Option<String>
         });
         text.push_str(&factors.join(" "));
     }
-    let more = terms.len().saturating_sub(SHOWN);
+    let more = terms.len().saturating_sub(MAX_SHOWN_TERMS);
     if more > 0 {
         text.push_str(&format!(" + … ({more} more terms)"));
     }
@@ -49,8 +49,8 @@ fn variable(graph: &Graph, var: Var) -> Option<String> {
 /// Returns the text of a node: symbols, and functions of sums and products of them.
 fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
     /// Depth from which arguments are no longer readable.
-    const DEEPEST: usize = 6;
-    if depth > DEEPEST {
+    const MAX_DEPTH: usize = 6;
+    if depth > MAX_DEPTH {
         return None;
     }
     let of = |edge: Edge| expression(graph, edge, depth + 1);

@@ -26,9 +26,9 @@ mod space;
 
 use crate::kernel::dot;
 use expressions::{Expressions, Reader};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::jets::{Jet, Seeds};
-use hamel_algebra::lane::Lane;
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
 use inertia::{BodyNumbers, Sums};
@@ -130,7 +130,7 @@ impl Kinematics {
         // Entries Y_α^k that are not constant, weighted by p_k ẋ^α; in large frames there are few of them.
         let mut moving: Vec<(&Jet, Fp)> = Vec::new();
         for (row, &p) in self.rows().zip(p) {
-            let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_still());
+            let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_constant());
             moving.extend(entries.map(|(jet, &rate)| (jet, p * rate)));
         }
         let turn = |i: usize| {
@@ -167,14 +167,14 @@ impl Numbers {
     ///
     /// # Errors
     /// The name of the identity if Y A is not I.
-    pub fn at(&self, lane: &Lane) -> Option<Result<Values, String>> {
+    pub fn at(&self, field_point: &FieldPoint) -> Option<Result<Values, String>> {
         let all = &self.expressions;
         let model = &all.model;
         let (n, nu) = (model.n(), model.nu());
-        let constants = all.constants.values(lane)?;
+        let constants = all.constants.values(field_point)?;
         let mut read = Reader::new(&constants);
         let (xi, xi_dot) = (read.list(n)?, read.list(n)?);
-        let start = all.kinematics.values(lane)?;
+        let start = all.kinematics.values(field_point)?;
         let (a, rest) = start.split_at_checked(n * nu)?;
         let rate = rest.get(..nu)?;
         let columns: Vec<Vec<Fp>> = (0..n)
@@ -194,7 +194,7 @@ impl Numbers {
             across: columns.clone(),
             mixed: Vec::new(),
         };
-        let mut jets = all.kinematics.jets(lane, &seeds)?;
+        let mut jets = all.kinematics.jets(field_point, &seeds)?;
         let y = jets.split_off(n * nu + nu);
         let rates = jets.split_off(n * nu);
         let kinematics = Kinematics {
@@ -224,7 +224,7 @@ impl Numbers {
                 .chain([all.of_x(&second)])
                 .collect(),
         };
-        let poses = all.poses.jets(lane, &seeds)?;
+        let poses = all.poses.jets(field_point, &seeds)?;
         let (potentials, rest) = poses.split_at_checked(3)?;
         let (frames, points) = rest.split_at_checked(12 * all.frames.len())?;
         let frames: FxHashMap<usize, MovingFrame> = all
@@ -257,8 +257,13 @@ impl Numbers {
         let slope = along(potential);
         let mut left_of_written = vec![Fp::ZERO; n];
         if all.writes_kinetic() {
-            left_of_written =
-                self.written(lane, &kinematics, &mut sums, (rate, &xi, &xi_dot), written)?;
+            left_of_written = self.written(
+                field_point,
+                &kinematics,
+                &mut sums,
+                (rate, &xi, &xi_dot),
+                written,
+            )?;
         }
         let turn = kinematics.turn(&sums.momentum);
         let hamel = (0..n).map(|i| sums.momentum_rate[i] - sums.slope[i] + turn[i] + slope[i]);
@@ -271,7 +276,8 @@ impl Numbers {
             .collect();
         let levi_civita = (0..n).map(|i| dot(&sums.mass[i], &xi_dot) + bias[i] + slope[i]);
         let left = [hamel.collect(), gibbs.collect(), levi_civita.collect()];
-        let (force, dissipation) = self.forces(lane, &mut read, &frames, &mut points, &xi)?;
+        let (force, dissipation) =
+            self.forces(field_point, &mut read, &frames, &mut points, &xi)?;
         Some(Ok(Values {
             left,
             bias,
@@ -290,7 +296,7 @@ impl Numbers {
     /// Adds the kinetic energy that the user wrote to the sums, and returns its contribution to (30b).
     fn written(
         &self,
-        lane: &Lane,
+        field_point: &FieldPoint,
         kinematics: &Kinematics,
         sums: &mut Sums,
         (rate, xi, xi_dot): (&[Fp], &[Fp], &[Fp]),
@@ -305,7 +311,7 @@ impl Numbers {
                 across: by_velocity.clone(),
                 mixed: Vec::new(),
             };
-            all.velocity.jets(lane, &seeds)?.into_iter().next()
+            all.velocity.jets(field_point, &seeds)?.into_iter().next()
         };
         let driven = by(all.of_x_and_xi(rate, xi_dot))?;
         let coasting = by(all.of_x(rate))?;
@@ -314,8 +320,10 @@ impl Numbers {
         let mut left = Vec::with_capacity(n);
         sums.kinetic = sums.kinetic + written.value;
         for i in 0..n {
-            let bend = all.velocity.bend(lane, &all.of_xi(&unit(n, i)))?;
-            let row = all.xi_of(&bend);
+            let hessian_row = all
+                .velocity
+                .second_derivative(field_point, &all.of_xi(&unit(n, i)))?;
+            let row = all.xi_of(&hessian_row);
             let slope = written.across(i);
             left.push(dot(&row, xi_dot) + coasting.mixed(i) - slope + turn[i]);
             for (sum, entry) in [
@@ -337,7 +345,7 @@ impl Numbers {
     /// Returns f, and D of dampers and dissipation.
     fn forces(
         &self,
-        lane: &Lane,
+        field_point: &FieldPoint,
         read: &mut Reader,
         frames: &FxHashMap<usize, MovingFrame>,
         points: &mut dyn Iterator<Item = Moving<Vec3>>,
@@ -372,7 +380,7 @@ impl Numbers {
             across,
             mixed: Vec::new(),
         };
-        let velocity = all.velocity.jets(lane, &seeds)?;
+        let velocity = all.velocity.jets(field_point, &seeds)?;
         let (dissipation, mut rates) = match velocity.as_slice() {
             [_, dissipation, rates @ ..] => (dissipation, rates.iter()),
             _ => return None,

@@ -1,15 +1,16 @@
 //! Tests of fresh points: agreement requires all of them.
 
-use super::{MISSING, POINTS, Unequal, at_fresh_points};
-use hamel_algebra::lane::Lane;
+use super::{COMPARED_POINTS, MAX_FAILED_SEARCHES, Unequal, at_fresh_points};
+use hamel_algebra::field_point::FieldPoint;
 
 #[test]
 fn too_few_points_are_no_agreement() {
-    let lane = |_| Some(Lane::new());
-    let some = |most: u64| move |_: &Lane, number| (number <= most).then_some(Ok::<(), ()>(()));
-    assert_eq!(at_fresh_points(lane, some(POINTS)), Ok(()));
+    let point = |_| Some(FieldPoint::new());
+    let some =
+        |most: u64| move |_: &FieldPoint, number| (number <= most).then_some(Ok::<(), ()>(()));
+    assert_eq!(at_fresh_points(point, some(COMPARED_POINTS)), Ok(()));
     assert_eq!(
-        at_fresh_points(lane, some(POINTS - 1)),
+        at_fresh_points(point, some(COMPARED_POINTS - 1)),
         Err(Unequal::Nowhere)
     );
     let looked = std::cell::Cell::new(0);
@@ -18,10 +19,19 @@ fn too_few_points_are_no_agreement() {
         None
     };
     assert_eq!(
-        at_fresh_points(nowhere, some(POINTS)),
+        at_fresh_points(nowhere, some(COMPARED_POINTS)),
         Err(Unequal::Nowhere)
     );
-    assert_eq!(looked.get(), MISSING);
-    let last = |_: &Lane, number| Some(if number < POINTS { Ok(()) } else { Err(number) });
-    assert_eq!(at_fresh_points(lane, last), Err(Unequal::Differs(POINTS)));
+    assert_eq!(looked.get(), MAX_FAILED_SEARCHES);
+    let last = |_: &FieldPoint, number| {
+        Some(if number < COMPARED_POINTS {
+            Ok(())
+        } else {
+            Err(number)
+        })
+    };
+    assert_eq!(
+        at_fresh_points(point, last),
+        Err(Unequal::Differs(COMPARED_POINTS))
+    );
 }

@@ -2,7 +2,7 @@
 //! 10⁻¹³ of the scale and the rounding of arguments and statements.
 
 use crate::some::some;
-use hamel_codegen::algebra::rounding::rounded;
+use hamel_codegen::algebra::rounding::evaluate_rounded;
 use hamel_codegen::generate::{Generated, from_file};
 use hamel_codegen::model::states::states;
 use hamel_codegen::program::interpret::Interpreter;
@@ -100,14 +100,14 @@ fn doubt(program: &Program, function: &Function, state: &State, value: &[f64]) -
 /// The largest error of the graph's results, and whether a pivot is lost in rounding.
 fn rounding(program: &Program, function: &Function, state: &State) -> (f64, bool) {
     let roots = [function.outputs.as_slice(), &function.guards].concat();
-    let values = rounded(&program.graph, &roots, &state.symbols);
+    let values = evaluate_rounded(&program.graph, &roots, &state.symbols);
     let (outputs, guards) = values.split_at(function.outputs.len());
     let error = outputs
         .iter()
-        .map(|value| value.apart())
+        .map(|value| value.rounding_error())
         .fold(0.0, f64::max);
-    let lost = |pivot: &hamel_codegen::algebra::rounding::Rounded| {
-        pivot.exact.to_f64().abs() <= 16.0 * pivot.apart()
+    let lost = |pivot: &hamel_codegen::algebra::rounding::RoundedValue| {
+        pivot.exact.to_f64().abs() <= 16.0 * pivot.rounding_error()
     };
     (error, guards.iter().any(lost))
 }

@@ -1,6 +1,6 @@
 //! MuJoCo, through `lab/peers/mujoco_peer.py`.
 
-use super::Foreign;
+use super::ForeignResults;
 use serde::Deserialize;
 use std::path::Path;
 use std::process::Command;
@@ -14,7 +14,7 @@ pub const PYTHON: &str = "target/mujoco/bin/python";
 #[derive(Deserialize)]
 struct Output {
     version: String,
-    cases: Vec<Foreign>,
+    cases: Vec<ForeignResults>,
 }
 
 /// Runs the script, and returns its version and results.

@@ -4,7 +4,7 @@ use crate::common::Random;
 use hamel_codegen::algebra::graph::Function::Raised;
 use hamel_codegen::algebra::numbers::{Numbers, Step};
 use hamel_codegen::algebra::numeric::Floats;
-use hamel_codegen::algebra::rounding::{Rounded, rounded};
+use hamel_codegen::algebra::rounding::{RoundedValue, evaluate_rounded};
 use hamel_codegen::algebra::walk::evaluate;
 use hamel_codegen::builder::written_in_c;
 use hamel_codegen::emit::c::Precision;
@@ -61,7 +61,7 @@ impl Case {
         let mut states = near(&generated);
         let program = &generated.program;
         let mut random = Random::new(program.nu as u64);
-        for _ in 0..RANDOM {
+        for _ in 0..RANDOM_STATES {
             let x = random.configuration(&program.blocks);
             let [xi, xi_dot] = [(); 2].map(|()| random.numbers(program.n + program.n_z));
             let (u, p) = (random.numbers(program.m), random.numbers(program.n));
@@ -312,7 +312,7 @@ fn single(program: &Program, function: &Function, numbers: &[f64]) -> Vec<f64> {
 /// The rounding error of a function at a state, and whether a pivot is lost in rounding to `float`.
 fn rounding(program: &Program, function: &Function, numbers: &[f64]) -> (f64, bool) {
     let (outputs, guards) = (&function.outputs, &function.guards);
-    let values = rounded(
+    let values = evaluate_rounded(
         &program.graph,
         &[outputs.as_slice(), guards].concat(),
         numbers,
@@ -320,10 +320,11 @@ fn rounding(program: &Program, function: &Function, numbers: &[f64]) -> (f64, bo
     let (outputs, guards) = values.split_at(outputs.len());
     let error = outputs
         .iter()
-        .map(|value| value.apart())
+        .map(|value| value.rounding_error())
         .fold(0.0, f64::max);
     let digits = f64::from(f32::EPSILON) / f64::EPSILON;
-    let narrow = |pivot: &Rounded| pivot.exact.to_f64().abs() <= 16.0 * digits * pivot.apart();
+    let narrow =
+        |pivot: &RoundedValue| pivot.exact.to_f64().abs() <= 16.0 * digits * pivot.rounding_error();
     (error, guards.iter().any(narrow))
 }
 

@@ -71,17 +71,19 @@ fn faults_in(folder: &Path, precision: Precision, cases: &[Case]) -> Vec<String>
     std::fs::write(folder.join(format!("{file}.c")), source(cases, precision)).expect("written");
     let optimised = if *EVERYTHING { "-O1" } else { "-O0" };
     let mut lines = vec![format!(
-        "gcc -std=c99 {optimised} {STRICT} {file}.c -lm -o {file}"
+        "gcc -std=c99 {optimised} {STRICT_FLAGS} {file}.c -lm -o {file}"
     )];
     if *EVERYTHING && installed("g++") {
         lines.push(format!(
-            "g++ -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
+            "g++ -x c++ -std=c++17 -fsyntax-only {STRICT_FLAGS} {file}.c"
         ));
     }
     if *EVERYTHING && installed("clang") {
-        lines.push(format!("clang -std=c99 -fsyntax-only {STRICT} {file}.c"));
         lines.push(format!(
-            "clang -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
+            "clang -std=c99 -fsyntax-only {STRICT_FLAGS} {file}.c"
+        ));
+        lines.push(format!(
+            "clang -x c++ -std=c++17 -fsyntax-only {STRICT_FLAGS} {file}.c"
         ));
     }
     let built: Vec<_> = lines.iter().map(|line| run(folder, line)).collect();

@@ -6,7 +6,7 @@ use hamel_codegen::render::render;
 use std::path::Path;
 
 /// Rounding of a few hundred operations.
-pub const CLOSE: f64 = 1e-11;
+pub const TOLERANCE: f64 = 1e-11;
 
 #[track_caller]
 pub fn assert_near(what: &str, found: f64, expected: f64, bound: f64) {

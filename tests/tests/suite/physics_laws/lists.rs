@@ -3,7 +3,7 @@
 use hamel::Scalar;
 
 /// Step of central differences, extrapolated once: truncation like h⁴, rounding like 1e-16 / h.
-const STEP: f64 = 1e-3;
+const DIFFERENCE_STEP: f64 = 1e-3;
 
 pub fn largest(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |m, v| Scalar::max(m, v.abs()))
@@ -40,7 +40,7 @@ pub fn derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         let difference = plus(&f(h), -1.0, &f(-h));
         difference.iter().map(|d| d / (2.0 * h)).collect()
     };
-    let (coarse, fine) = (central(STEP), central(STEP / 2.0));
+    let (coarse, fine) = (central(DIFFERENCE_STEP), central(DIFFERENCE_STEP / 2.0));
     let change = plus(&fine, -1.0, &coarse);
     plus(&fine, 1.0 / 3.0, &change)
 }

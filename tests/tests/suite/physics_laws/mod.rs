@@ -30,7 +30,7 @@ fn frame(point: &dyn Point, x: &[f64]) -> Vec<Vec<f64>> {
 fn mass_matrix_is_symmetric_and_positive_definite() {
     everywhere(|point| {
         let m = point.mass(point.x());
-        let bound = ROUNDING * largest(&m.concat());
+        let bound = ROUNDING_TOLERANCE * largest(&m.concat());
         for (i, row) in m.iter().enumerate() {
             let column: Vec<f64> = m.iter().map(|row| row[i]).collect();
             assert_close(point.label(), row, &column, bound);
@@ -44,13 +44,13 @@ fn kinetic_energy_momentum_and_mass_matrix_agree() {
     everywhere(|point| {
         let m_xi = times(&point.mass(point.x()), point.xi());
         let momentum = point.momentum(point.x(), point.xi());
-        let bound = ROUNDING * largest(&m_xi).max(1.0);
+        let bound = ROUNDING_TOLERANCE * largest(&m_xi).max(1.0);
         assert_close(point.label(), &momentum, &m_xi, bound);
         let t = point.kinetic(point.x());
         let half = 0.5 * dot(point.xi(), &m_xi);
-        assert_close(point.label(), &[t], &[half], ROUNDING * t);
+        assert_close(point.label(), &[t], &[half], ROUNDING_TOLERANCE * t);
         let v = point.potential(point.x());
-        let bound = ROUNDING * t.max(v.abs());
+        let bound = ROUNDING_TOLERANCE * t.max(v.abs());
         assert_close(point.label(), &[point.energy()], &[t + v], bound);
     });
 }
@@ -64,7 +64,7 @@ fn velocities_are_those_of_their_momenta() {
         let m = point.mass(point.x());
         // Compared as momenta, so that the condition of M does not amplify rounding.
         let change = times(&m, &plus(&back, -1.0, xi));
-        let bound = ROUNDING * largest(&times(&m, xi)).max(1.0);
+        let bound = ROUNDING_TOLERANCE * largest(&times(&m, xi)).max(1.0);
         assert_close(point.label(), &change, &vec![0.0; xi.len()], bound);
     });
 }
@@ -81,7 +81,8 @@ fn the_terms_of_the_equations_of_motion_add_up() {
             (point.random(bias.len()), None),
         ] {
             let inertia = times(&m, &xi_dot);
-            let bound = ROUNDING * largest(&[&inertia[..], &bias, &slope].concat()).max(1.0);
+            let bound =
+                ROUNDING_TOLERANCE * largest(&[&inertia[..], &bias, &slope].concat()).max(1.0);
             let sum = plus(&rest, 1.0, &inertia);
             assert_close(point.label(), &point.needed(&xi_dot), &sum, bound);
             if let Some(force) = force {
@@ -101,7 +102,7 @@ fn rates_are_tangent_to_the_constraint() {
         let zero = vec![0.0; phi.len()];
         assert_close(point.label(), &phi, &zero, 1e-14);
         let phi_dot = derivative(|s| point.phi(&plus(x, s, &rate)));
-        let bound = DIFFERENCE * largest(&rate).max(1.0);
+        let bound = DIFFERENCE_TOLERANCE * largest(&rate).max(1.0);
         assert_close(point.label(), &phi_dot, &zero, bound);
     });
 }
@@ -113,7 +114,7 @@ fn chart_rates_and_rates_agree() {
         let u_dot = point.chart_rate();
         let rate = point.rate(point.x(), point.xi());
         let by_chart = derivative(|s| point.retracted(&plus(&vec![0.0; u_dot.len()], s, &u_dot)));
-        let bound = DIFFERENCE * largest(&rate).max(largest(point.x()));
+        let bound = DIFFERENCE_TOLERANCE * largest(&rate).max(largest(point.x()));
         assert_close(point.label(), &by_chart, &rate, bound);
     });
 }
@@ -122,14 +123,14 @@ fn chart_rates_and_rates_agree() {
 #[test]
 fn corrections_lead_back_to_the_constraint() {
     /// Size of the disturbance; φ is of this size before the step, and of its square after it.
-    const OFF: f64 = 1e-5;
+    const DISTURBANCE: f64 = 1e-5;
     /// Second derivatives of φ and Ψ, summed over the coordinates.
-    const CURVATURE: f64 = 100.0;
+    const MAX_CURVATURE: f64 = 100.0;
     everywhere(|point| {
-        let x = plus(point.x(), OFF, &point.random(point.x().len()));
+        let x = plus(point.x(), DISTURBANCE, &point.random(point.x().len()));
         let back = plus(&x, 1.0, &point.correction(&x));
         let phi = point.phi(&back);
-        let bound = CURVATURE * OFF * OFF;
+        let bound = MAX_CURVATURE * DISTURBANCE * DISTURBANCE;
         assert_close(point.label(), &phi, &vec![0.0; phi.len()], bound);
     });
 }
@@ -144,7 +145,12 @@ fn potential_force_is_the_slope_of_the_potential() {
             .map(|column| derivative(|s| vec![point.potential(&plus(x, s, column))])[0])
             .collect();
         let scale = point.potential(x).abs().max(largest(&slope)).max(1.0);
-        assert_close(point.label(), &point.slope(), &slope, DIFFERENCE * scale);
+        assert_close(
+            point.label(),
+            &point.slope(),
+            &slope,
+            DIFFERENCE_TOLERANCE * scale,
+        );
     });
 }
 
@@ -174,7 +180,12 @@ fn momentum_rate_is_the_rate_of_the_momentum() {
         // M ξ̇, and the part of it that remains.
         let inertia = largest(&times(&point.mass(x), &xi_dot));
         let scale = inertia.max(point.kinetic(x)).max(1.0);
-        assert_close(point.label(), &rate, &along, 10.0 * DIFFERENCE * scale);
+        assert_close(
+            point.label(),
+            &rate,
+            &along,
+            10.0 * DIFFERENCE_TOLERANCE * scale,
+        );
     });
 }
 
@@ -206,7 +217,7 @@ fn bias_is_that_of_hamels_equation() {
                 let tangent: Vec<f64> = (0..x.len())
                     .map(|alpha| a.iter().zip(&gamma).map(|(a, g)| a[alpha] * g).sum())
                     .collect();
-                let bound = DIFFERENCE * largest(&commutator).max(1.0);
+                let bound = DIFFERENCE_TOLERANCE * largest(&commutator).max(1.0);
                 assert_close(point.label(), &commutator, &tangent, bound);
             }
             bias[i] -= derivative(|s| vec![point.kinetic(&plus(x, s, &a[i]))])[0];
@@ -217,7 +228,7 @@ fn bias_is_that_of_hamels_equation() {
             point.label(),
             &point.bias(),
             &bias,
-            10.0 * DIFFERENCE * scale,
+            10.0 * DIFFERENCE_TOLERANCE * scale,
         );
     });
 }

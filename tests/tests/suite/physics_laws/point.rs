@@ -98,7 +98,7 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
         // Light parts get small inputs.
         for _ in 0..HALVINGS {
             let accel = system.accel(&state.x, &state.xi, &inputs);
-            if accel.is_ok_and(|accel| largest(accel.as_ref()) <= FASTEST) {
+            if accel.is_ok_and(|accel| largest(accel.as_ref()) <= MAX_ACCELERATION) {
                 break;
             }
             inputs.as_mut().iter_mut().for_each(|u| *u *= 0.5);
@@ -251,7 +251,7 @@ macro_rules! models {
             let mut failures = Vec::new();
             $(
                 let system = AssertUnwindSafe(|| {
-                    for seed in 1..=STATES {
+                    for seed in 1..=STATES_PER_LAW {
                         law(&At::<hamel_tests::$module::$name<f64>>::new(stringify!($module), seed));
                     }
                 });
@@ -264,7 +264,7 @@ macro_rules! models {
 
         #[test]
         fn single_precision_agrees_with_double() {
-            $(for seed in 1..=STATES {
+            $(for seed in 1..=STATES_PER_LAW {
                 let double = At::<hamel_tests::$module::$name<f64>>::new(stringify!($module), seed);
                 single(&double, &hamel_tests::$module::$name::<f32>::default());
             })+
@@ -378,5 +378,5 @@ where
     let narrow: Vec<f64> = narrow.as_ref().iter().map(|v| f64::from(*v)).collect();
     let wide = wide.expect(&double.label);
     let scale = largest(wide.as_ref()).max(1.0);
-    assert_close(&double.label, &narrow, wide.as_ref(), SINGLE * scale);
+    assert_close(&double.label, &narrow, wide.as_ref(), F32_TOLERANCE * scale);
 }

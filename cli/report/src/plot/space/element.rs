@@ -149,7 +149,7 @@ impl Sheet {
             written(at(nearest + quarter)),
         );
         let whole = Ellipse::of(&flat);
-        if whole.short < THIN {
+        if whole.short < MIN_DRAWN_RADIUS {
             return format!("M{from}L{to}");
         }
         let turns = flat[0].0 * flat[1].1 - flat[0].1 * flat[1].0;
@@ -174,7 +174,7 @@ impl Sheet {
     pub fn path(&self, path: &[Vector]) -> String {
         let points: Vec<Point> = path.iter().map(|point| self.place(*point)).collect();
         let steps = points.len().saturating_sub(1);
-        let pieces = PIECES.min(steps.max(1));
+        let pieces = PATH_PIECES.min(steps.max(1));
         let mut text = String::new();
         for piece in 0..pieces {
             let (from, to) = (piece * steps / pieces, (piece + 1) * steps / pieces);
@@ -195,7 +195,10 @@ impl Sheet {
         let ends = [0, 1, 2].map(|axis| self.view.place(along(axis)));
         let left = ends.iter().fold(0.0, |least: f64, end| least.min(end.0));
         let low = ends.iter().fold(0.0, |most: f64, end| most.max(end.1));
-        let origin = (18.0 - NAMED * left, height - 16.0 - NAMED * low);
+        let origin = (
+            18.0 - NAME_DISTANCE * left,
+            height - 16.0 - NAME_DISTANCE * low,
+        );
         let mut text = String::new();
         let mut axes: Vec<(f64, usize)> = (0..3)
             .map(|axis| (self.view.depth(along(axis)), axis))
@@ -203,7 +206,7 @@ impl Sheet {
         axes.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, axis) in axes {
             let (x, y) = self.view.place(along(axis));
-            let end = (origin.0 + LENGTH * x, origin.1 + LENGTH * y);
+            let end = (origin.0 + AXIS_LENGTH * x, origin.1 + AXIS_LENGTH * y);
             text += &polyline(&[origin, end], axis_colour(axis), 1.6, "");
             let name = (origin.0 + NAMED * x - 3.0, origin.1 + NAMED * y + 4.0);
             // There is no room to name an axis that points towards the eye.
@@ -259,7 +262,7 @@ const CLOSED: &str = "\"/>\n";
 fn polyline(points: &[Point], colour: RGBColor, width: f64, more: &str) -> String {
     let points: Vec<String> = points.iter().map(|point| written(*point)).collect();
     format!(
-        "<path class=\"line\" stroke=\"{}\" stroke-width=\"{}\"{more} d=\"M{}{CLOSED}",
+        "<path class=\"line\" stroke=\"{}\" stroke-width=\"{}\"{more} d=\"M{}{POLYLINE_END}",
         code(colour),
         unit(width),
         points.join("L")
@@ -277,7 +280,7 @@ pub fn joined(elements: impl Iterator<Item = String>) -> String {
         let begin = head.map_or("", |end| &element[..end + 4]);
         // Only single lines are merged; elements with several lines, such as dampers, stay unchanged.
         let one = !begin.is_empty() && element.matches('<').count() == 1;
-        match text.strip_suffix(CLOSED) {
+        match text.strip_suffix(POLYLINE_END) {
             Some(rest) if one && begin == open => {
                 let length = rest.len();
                 text.truncate(length);
@@ -301,24 +304,38 @@ fn beside(from: Point, to: Point, part: f64, aside: f64) -> Point {
 }
 
 fn zigzag(from: Point, to: Point) -> Vec<Point> {
-    let mut points = vec![from, beside(from, to, LEAD, 0.0)];
-    for tooth in 0..2 * TEETH {
-        let part = (f64::from(tooth) + 0.5) / f64::from(2 * TEETH);
-        let side = if tooth % 2 == 0 { TOOTH } else { -TOOTH };
-        points.push(beside(from, to, LEAD + (1.0 - 2.0 * LEAD) * part, side));
+    let mut points = vec![from, point_beside(from, to, STRAIGHT_PART, 0.0)];
+    for tooth in 0..2 * SPRING_TEETH {
+        let part = (f64::from(tooth) + 0.5) / f64::from(2 * SPRING_TEETH);
+        let side = if tooth % 2 == 0 {
+            TOOTH_HEIGHT
+        } else {
+            -TOOTH_HEIGHT
+        };
+        points.push(point_beside(
+            from,
+            to,
+            STRAIGHT_PART + (1.0 - 2.0 * STRAIGHT_PART) * part,
+            side,
+        ));
     }
-    points.extend([beside(from, to, 1.0 - LEAD, 0.0), to]);
+    points.extend([point_beside(from, to, 1.0 - STRAIGHT_PART, 0.0), to]);
     points
 }
 
 /// Returns a rod with its piston, and the cylinder around it.
 fn piston(from: Point, to: Point) -> [Vec<Point>; 4] {
-    const HALF: f64 = 5.0;
-    let at = |part: f64, aside: f64| beside(from, to, part, aside);
+    const HALF_WIDTH: f64 = 5.0;
+    let at = |part: f64, aside: f64| point_beside(from, to, part, aside);
     [
         vec![from, at(0.55, 0.0)],
-        vec![at(0.55, HALF - 1.5), at(0.55, 1.5 - HALF)],
-        vec![at(0.4, HALF), at(0.7, HALF), at(0.7, -HALF), at(0.4, -HALF)],
+        vec![at(0.55, HALF_WIDTH - 1.5), at(0.55, 1.5 - HALF_WIDTH)],
+        vec![
+            at(0.4, HALF_WIDTH),
+            at(0.7, HALF_WIDTH),
+            at(0.7, -HALF_WIDTH),
+            at(0.4, -HALF_WIDTH),
+        ],
         vec![at(0.7, 0.0), to],
     ]
 }

@@ -1,7 +1,7 @@
 //! The floor below the drawn shapes: its height, its grid, and the shadows on it.
 
 use super::element::{self, Sheet};
-use super::shape::{Part, Shape, THICK, Vector};
+use super::shape::{MIN_SPLIT_WIDTH, Part, Shape, Vector};
 use super::view::{Base, dot};
 
 use crate::number::short;
@@ -60,12 +60,16 @@ impl Floor {
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
-        let stands = least[2] > -0.02 * size && least[2] < NEAR * size;
-        let height = if stands { 0.0 } else { least[2] - BELOW * size };
-        let spacing = nice(size / SQUARES);
+        let stands = least[2] > -0.02 * size && least[2] < MAX_HEIGHT_ABOVE_ZERO * size;
+        let height = if stands {
+            0.0
+        } else {
+            least[2] - GAP_BELOW * size
+        };
+        let spacing = nice(size / GRID_SQUARES);
         let lines = [0, 1].map(|k| {
-            let first = ((least[k] - ROOM * size) / spacing).floor();
-            let last = ((most[k] + ROOM * size) / spacing).ceil();
+            let first = ((least[k] - MARGIN * size) / spacing).floor();
+            let last = ((most[k] + MARGIN * size) / spacing).ceil();
             (first as i64, last as i64)
         });
         Some(Floor {
@@ -124,21 +128,21 @@ impl Floor {
     pub fn shadows(&self, sheet: &Sheet, parts: &[Part]) -> String {
         let mut elements = Vec::new();
         for part in parts {
-            let point = |at: Vector| self.dropped(at, self.height);
+            let point = |at: Vector| self.project_down(at, self.height);
             match &part.shape {
                 Shape::Ellipsoid { centre, arms } => {
-                    let arms = arms.map(|arm| self.dropped(arm, 0.0));
-                    elements.push(sheet.shade(point(*centre), &arms, SHADOW));
+                    let arms = arms.map(|arm| self.project_down(arm, 0.0));
+                    elements.push(sheet.shade(point(*centre), &arms, SHADOW_COLOR));
                 }
-                Shape::Bar { ends, width } if *width >= THICK => {
-                    elements.push(sheet.stroke(&ends.map(point), SHADOW, *width, ""));
+                Shape::Bar { ends, width } if *width >= MIN_SPLIT_WIDTH => {
+                    elements.push(sheet.stroke(&ends.map(point), SHADOW_COLOR, *width, ""));
                 }
                 _ => {}
             }
         }
         format!(
             "<g opacity=\"0.16\">\n{}</g>\n",
-            element::joined(elements.into_iter())
+            element::join_elements(elements.into_iter())
         )
     }
 }

@@ -19,11 +19,11 @@ pub use view::{Base, ISOMETRIC, View, base};
 use super::figure::{Figure, escape, unit};
 use super::line::Point;
 use super::theme;
-use super::width::fitted;
+use super::width::fit;
 use crate::code::plain;
 use element::Sheet;
 use floor::Floor;
-use shape::THICK;
+use shape::MIN_SPLIT_WIDTH;
 use std::fmt::Write;
 use view::dot;
 
@@ -90,10 +90,12 @@ impl Shape {
         let Shape::Bar { ends, width } = self else {
             return vec![self.clone()];
         };
-        if *width < THICK {
+        if *width < MIN_SPLIT_WIDTH {
             return vec![self.clone()];
         }
-        let pieces = (sheet.length(ends) / LONGEST).ceil().clamp(1.0, PIECES);
+        let pieces = (sheet.length(ends) / MAX_PIECE_LENGTH)
+            .ceil()
+            .clamp(1.0, MAX_BAR_PIECES);
         let [from, to] = ends;
         let at = |part: f64| {
             let part = part / pieces;
@@ -147,43 +149,43 @@ pub fn space(space: &Space) -> Figure {
     for point in floor.iter().flat_map(Floor::corners) {
         frame.hold(view.place(point));
     }
-    let (sheet, height) = frame.fitted(view);
+    let (sheet, height) = frame.fit(view);
 
     let mut text = format!(
         "<rect width=\"{}\" height=\"{}\" fill=\"{}\"/>\n",
-        unit(WIDTH),
+        unit(DRAWING_WIDTH),
         unit(height),
         theme::code(theme::GROUND.0)
     );
-    text += element::LIGHT;
+    text += element::STYLE_AND_LIGHT;
     if let Some(floor) = &floor {
-        text += &floor.drawn(&sheet);
+        text += &floor.draw(&sheet);
         text += &floor.shadows(&sheet, &parts);
     }
     for (index, pose) in poses.iter().enumerate() {
         let part = (index + 1) as f64 / poses.len() as f64;
-        let opacity = FAINT.0 + part * (FAINT.1 - FAINT.0);
+        let opacity = FAINT_OPACITY.0 + part * (FAINT_OPACITY.1 - FAINT_OPACITY.0);
         let _ = writeln!(text, "<g opacity=\"{opacity:.2}\">");
-        text += &ordered(pose, &sheet, true);
+        text += &order_by_depth(pose, &sheet, true);
         text += "</g>\n";
     }
     for path in &paths {
         text += &sheet.path(path);
     }
-    text += &ordered(&parts, &sheet, false);
+    text += &order_by_depth(&parts, &sheet, false);
     text += &sheet.compass(height);
-    let title = fitted(&plain(&space.title), 15.0, true, WIDTH - 40.0);
+    let title = fit(&plain(&space.title), 15.0, true, DRAWING_WIDTH - 40.0);
     text += &written(&title, (20.0, 24.0), 15.0, true);
-    let grid = floor.map_or(String::new(), |floor| floor.said());
+    let grid = floor.map_or(String::new(), |floor| floor.describe_grid());
     let said = [plain(&space.subtitle), grid];
     let said: Vec<&str> = said
         .iter()
         .map(String::as_str)
         .filter(|part| !part.is_empty())
         .collect();
-    let said = fitted(&said.join(" · "), 12.0, false, WIDTH - 40.0);
+    let said = fit(&said.join(" · "), 12.0, false, DRAWING_WIDTH - 40.0);
     text += &written(&said, (20.0, 43.0), 12.0, false);
-    Figure::of(WIDTH, height, &space.title, text)
+    Figure::of(DRAWING_WIDTH, height, &space.title, text)
 }
 
 /// Draws the shapes of a pose, from the farthest to the nearest; faint ones are outlines, each in one piece.
@@ -207,7 +209,7 @@ fn ordered(parts: &[Part], sheet: &Sheet, faint: bool) -> String {
     let drawn = pieces
         .iter()
         .map(|(_, ink, shape)| sheet.shape(*ink, shape, faint));
-    element::joined(drawn)
+    element::join_elements(drawn)
 }
 
 fn finite(path: &[Vector]) -> Vec<Vector> {
@@ -259,11 +261,14 @@ impl Bounds {
             if size.is_finite() { size } else { 0.0 }
         };
         let (wide, high) = (size(least.0, most.0), size(least.1, most.1));
-        let room = (WIDTH - 2.0 * SIDE, HEIGHT.1 - HEAD - SIDE);
+        let room = (
+            DRAWING_WIDTH - 2.0 * SIDE_MARGIN,
+            HEIGHT_RANGE.1 - TOP_MARGIN - SIDE_MARGIN,
+        );
         let scale = (room.0 / wide).min(room.1 / high);
         let scale = if scale.is_finite() { scale } else { 100.0 };
-        let height = (HEAD + scale * high + SIDE)
-            .clamp(HEIGHT.0, HEIGHT.1)
+        let height = (TOP_MARGIN + scale * high + SIDE_MARGIN)
+            .clamp(HEIGHT_RANGE.0, HEIGHT_RANGE.1)
             .ceil();
         let middle = |least: f64, most: f64| match size(least, most) {
             0.0 if !least.is_finite() => 0.0,
@@ -274,8 +279,8 @@ impl Bounds {
             view,
             scale,
             origin: (
-                0.5 * WIDTH - scale * x,
-                0.5 * (HEAD + height - SIDE) - scale * y,
+                0.5 * DRAWING_WIDTH - scale * x,
+                0.5 * (TOP_MARGIN + height - SIDE_MARGIN) - scale * y,
             ),
         };
         (sheet, height)

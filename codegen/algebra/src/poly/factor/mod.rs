@@ -42,11 +42,11 @@ pub struct Term {
 
 /// Budget of all attempts together, in pairs of products examined (about 50 ms); one attempt is always
 /// made.
-const WORK: u64 = 300_000;
+const PAIR_BUDGET: u64 = 300_000;
 /// Attempts without an improvement before the search ends: a fixed number, and a number for each term.
-const PATIENCE: (usize, usize) = (30, 4);
+const IDLE_ATTEMPTS: (usize, usize) = (30, 4);
 /// Largest number of products that one product may become when sums in it are expanded.
-const EXPANSION: usize = 64;
+const MAX_EXPANDED_PRODUCTS: usize = 64;
 
 /// Returns a cheap program whose outputs are the given polynomials.
 pub fn factor(polynomials: &[Vec<Term>]) -> Program {
@@ -61,12 +61,12 @@ pub fn factor(polynomials: &[Vec<Term>]) -> Program {
     let mut best = system.clone();
     let mut least = best.operations();
     let terms: usize = polynomials.iter().map(Vec::len).sum();
-    let patience = PATIENCE.0 + PATIENCE.1 * terms;
+    let patience = IDLE_ATTEMPTS.0 + IDLE_ATTEMPTS.1 * terms;
     let (mut work, mut failures) = (0, 0);
     for attempt in 0.. {
         let dice = |index: u64, sides: u64| mix(mix(attempt) ^ index) % sides;
         let (start, chosen) = match fixed.get(attempt as usize) {
-            Some(&(kernel, cube)) if attempt == 0 || work < WORK / 3 => {
+            Some(&(kernel, cube)) if attempt == 0 || work < PAIR_BUDGET / 3 => {
                 (system.clone(), strategy(kernel, cube, 0, 0))
             }
             _ => {
@@ -76,11 +76,11 @@ pub fn factor(polynomials: &[Vec<Term>]) -> Program {
                 let inner = best.outputs..best.sums.len();
                 let share = 100 * wanted / inner.len().max(1) as u64;
                 let inner = inner.filter(|&k| dice(k as u64 + 3, 100) < share);
-                let start = best.expanded(&inner.collect(), EXPANSION);
+                let start = best.expanded(&inner.collect(), MAX_EXPANDED_PRODUCTS);
                 (start, strategy(kernel, cube, noise, mix(attempt)))
             }
         };
-        let (result, spent) = extracted(&start, chosen, 4 * WORK);
+        let (result, spent) = extracted(&start, chosen, 4 * PAIR_BUDGET);
         work += spent + 50 + 4 * start.sums.len() as u64;
         let operations = result.operations();
         failures = if operations < least { 0 } else { failures + 1 };
@@ -88,7 +88,7 @@ pub fn factor(polynomials: &[Vec<Term>]) -> Program {
             least = operations;
             best = result;
         }
-        if failures > patience || work > WORK {
+        if failures > patience || work > PAIR_BUDGET {
             break;
         }
     }

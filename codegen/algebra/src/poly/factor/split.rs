@@ -5,7 +5,7 @@ use super::system::{Literal, Literals, Product, System};
 use std::collections::BTreeMap;
 
 /// Affordable number of pairs of products in all sums together.
-const PAIRS: usize = 60_000;
+const MAX_PAIRS: usize = 60_000;
 
 /// Splits the long sums of a system.
 pub(super) fn split(mut system: System) -> System {
@@ -13,11 +13,11 @@ pub(super) fn split(mut system: System) -> System {
         let sums = system.sums.iter();
         sums.map(|sum| sum.len() * sum.len() / 2).sum()
     };
-    if pairs(&system) <= PAIRS {
+    if pairs(&system) <= MAX_PAIRS {
         return system;
     }
     let products: usize = system.sums.iter().map(Vec::len).sum();
-    let most = (2 * PAIRS / products.max(1)).clamp(8, 200);
+    let most = (2 * MAX_PAIRS / products.max(1)).clamp(8, 200);
     let mut index = 0;
     while index < system.sums.len() {
         while system.sums[index].len() > most {

@@ -2,7 +2,7 @@
 
 use crate::algebra::graph::Node;
 use crate::algebra::numeric::evaluate;
-use crate::algebra::sizes::relative;
+use crate::algebra::residual_scale::relative_residuals;
 use crate::diagnostics::{Diagnostic, Report, rough};
 use crate::lower::declare::Declared;
 use crate::lower::variety::{Origin, Variety};
@@ -29,7 +29,7 @@ pub fn check(
     numbers.resize(variety.points.symbols, 0.0);
     let rows: Vec<_> = variety.phi.iter().map(|(edge, _)| *edge).collect();
     let residuals = evaluate(&variety.points.free, &rows, &numbers);
-    let parts = relative(
+    let parts = relative_residuals(
         &variety.points.free,
         &rows,
         &numbers,

@@ -1,8 +1,8 @@
 //! Guesses, `start q ~ 1.2;`: checks what they are about, and finds the start that is nearest to them.
 
 use super::Start;
-use crate::algebra::closest::closest;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::nearest_solution::find_nearest;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
 use crate::lower::rate::Kinematics;
@@ -127,7 +127,7 @@ pub fn assembled(
         sizes: Vec::new(),
     }
     .measured();
-    let mut found = closest(&problem, &start.x)?;
+    let mut found = find_nearest(&problem, &start.x)?;
     for &alpha in &problem.given {
         found[alpha] = start.x[alpha];
     }

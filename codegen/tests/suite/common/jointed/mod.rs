@@ -192,7 +192,7 @@ impl System {
     pub fn assembled(&self, mut q: Vec<f64>) -> Option<Vec<f64>> {
         let n = self.own().len();
         self.prescribe(&mut q);
-        for _ in 0..STEPS {
+        for _ in 0..MAX_NEWTON_STEPS {
             let at = self.placed(&q);
             let residuals = self.residuals(&at);
             let size = residuals

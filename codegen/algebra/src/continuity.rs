@@ -14,15 +14,15 @@ use num_traits::Signed;
 use std::collections::BTreeSet;
 
 /// Largest number of terms of a sum that are tried.
-const MOST_TERMS: usize = 12;
+const MAX_TERMS: usize = 12;
 
 /// Largest number of symbols that are tried.
-const MOST_SYMBOLS: usize = 8;
+const MAX_SYMBOLS: usize = 8;
 
 /// Rule for what can change: nothing that is written in `still` classes only; symbols that are not `free`
 /// cannot be moved alone.
 #[derive(Clone, Copy)]
-struct Moving<'a> {
+struct Motion<'a> {
     still: u8,
     free: &'a dyn Fn(NodeId) -> bool,
 }
@@ -34,52 +34,57 @@ impl Graph {
     /// Finds an expression at whose zeros the expressions may jump: the first c for which they were not
     /// found to be equal on both sides. Whatever is written in `still` classes only never changes, and
     /// symbols that are not `free` cannot be moved alone.
-    pub fn jump(&self, edges: &[Edge], still: u8, free: &dyn Fn(NodeId) -> bool) -> Option<Edge> {
+    pub fn find_discontinuity(
+        &self,
+        edges: &[Edge],
+        still: u8,
+        free: &dyn Fn(NodeId) -> bool,
+    ) -> Option<Edge> {
         let chosen = |&id: &NodeId| match self.node(id) {
             // |c| is continuous.
             Node::Apply(Function::Abs, _) => None,
-            _ => self.chosen_by(id),
+            _ => self.condition_of(id),
         };
-        let moving = Moving { still, free };
+        let moving = Motion { still, free };
         let reachable = self.reachable(edges);
         let all: BTreeSet<Edge> = reachable.iter().filter_map(chosen).map(Edge::abs).collect();
         let mut all = all
             .into_iter()
-            .filter(|by| self.moves(*by, moving))
+            .filter(|by| self.is_moving(*by, moving))
             .peekable();
         all.peek()?;
         let mut graph = self.clone();
-        all.find(|by| !graph.meets(edges, *by, moving))
+        all.find(|by| !graph.is_continuous_at(edges, *by, moving))
     }
 
-    fn moves(&self, edge: Edge, moving: Moving<'_>) -> bool {
+    fn is_moving(&self, edge: Edge, moving: Motion<'_>) -> bool {
         self.class(edge.node()) & !moving.still != 0
     }
 
     /// Whether the expressions are found to be equal on both sides of c = 0.
-    fn meets(&mut self, edges: &[Edge], by: Edge, moving: Moving<'_>) -> bool {
+    fn is_continuous_at(&mut self, edges: &[Edge], by: Edge, moving: Motion<'_>) -> bool {
         let factors = self.factors(by, moving);
         factors.into_iter().all(|factor| {
             let equal = |graph: &mut Graph, set: Equation| {
-                let above = graph.beside(edges, by, false, set);
-                above.is_some() && above == graph.beside(edges, by, true, set)
+                let above = graph.one_sided_values(edges, by, false, set);
+                above.is_some() && above == graph.one_sided_values(edges, by, true, set)
             };
-            let terms = self.terms(factor, moving);
+            let terms = self.solve_for_terms(factor, moving);
             let zero = (factor.node(), self.zero());
             terms.into_iter().chain([zero]).any(|set| equal(self, set)) || {
-                let lines = self.lines(factor, moving);
+                let lines = self.solve_for_symbols(factor, moving);
                 lines.into_iter().any(|set| equal(self, set))
             }
         })
     }
 
     /// Returns the factors that change sign, or are 0, where c changes sign, or is 0.
-    fn factors(&self, by: Edge, moving: Moving<'_>) -> BTreeSet<Edge> {
+    fn factors(&self, by: Edge, moving: Motion<'_>) -> BTreeSet<Edge> {
         let mut factors = BTreeSet::new();
         let mut rest = vec![by.abs()];
         while let Some(edge) = rest.pop() {
             match self.node(edge.node()) {
-                _ if !self.moves(edge, moving) => {}
+                _ if !self.is_moving(edge, moving) => {}
                 Node::Mul(a, b) => rest.extend([a, b]),
                 Node::Div(a, b) if self.is_positive(b) => rest.push(a),
                 Node::Div(a, b) => rest.extend([a, b]),
@@ -111,7 +116,7 @@ impl Graph {
 
     /// Solves sum = 0 for each of its terms, and for the moving factor of a term whose other factor does
     /// not move.
-    fn terms(&mut self, sum: Edge, moving: Moving<'_>) -> Vec<Equation> {
+    fn solve_for_terms(&mut self, sum: Edge, moving: Motion<'_>) -> Vec<Equation> {
         let mut found = Vec::new();
         let mut rest = vec![sum];
         while let Some(edge) = rest.pop() {
@@ -119,15 +124,15 @@ impl Graph {
             let node = self.node(edge.node());
             if let Node::Add(a, b) = node {
                 rest.extend([negative(b), negative(a)]);
-            } else if self.moves(edge, moving) && edge.node() != sum.node() {
+            } else if self.is_moving(edge, moving) && edge.node() != sum.node() {
                 found.push((edge, self.one()));
                 if let Node::Mul(a, b) = node {
                     let pairs = [(a, b), (b, a)].into_iter();
-                    let pairs = pairs.filter(|(_, factor)| !self.moves(*factor, moving));
+                    let pairs = pairs.filter(|(_, factor)| !self.is_moving(*factor, moving));
                     found.extend(pairs.map(|(term, factor)| (negative(term), factor)));
                 }
             }
-            if found.len() > MOST_TERMS {
+            if found.len() > MAX_TERMS {
                 break;
             }
         }
@@ -140,33 +145,38 @@ impl Graph {
     }
 
     /// Solves an expression that is 0 for the symbols in which it is linear.
-    fn lines(&mut self, zero: Edge, moving: Moving<'_>) -> Vec<Equation> {
+    fn solve_for_symbols(&mut self, zero: Edge, moving: Motion<'_>) -> Vec<Equation> {
         let below = self.reachable(&[zero]);
         // Choices inside the expression have other slopes elsewhere.
-        if below.iter().any(|&id| self.chosen_by(id).is_some()) {
+        if below.iter().any(|&id| self.condition_of(id).is_some()) {
             return Vec::new();
         }
         let symbol = |id: &NodeId| matches!(self.node(*id), Node::Symbol(_));
         let symbols: Vec<NodeId> = below.into_iter().filter(symbol).collect();
-        let line = |symbol: NodeId| self.line(symbol, zero, moving);
+        let line = |symbol: NodeId| self.solve_for_symbol(symbol, zero, moving);
         symbols
             .into_iter()
             .filter_map(line)
-            .take(MOST_SYMBOLS)
+            .take(MAX_SYMBOLS)
             .collect()
     }
 
-    fn line(&mut self, symbol: NodeId, zero: Edge, moving: Moving<'_>) -> Option<Equation> {
-        if !self.moves(Edge::of(symbol), moving) {
+    fn solve_for_symbol(
+        &mut self,
+        symbol: NodeId,
+        zero: Edge,
+        moving: Motion<'_>,
+    ) -> Option<Equation> {
+        if !self.is_moving(Edge::of(symbol), moving) {
             return None;
         }
-        let slope = self.linear(symbol, zero)?;
+        let slope = self.linear_slope(symbol, zero)?;
         // Where the slope is 0 as well, the equation says nothing about the symbol. That must not be the
         // case on a whole component of f = 0.
         if !self
             .factors(slope, moving)
             .into_iter()
-            .all(|factor| self.apart(factor, zero, moving))
+            .all(|factor| self.is_nonzero_on(factor, zero, moving))
         {
             return None;
         }
@@ -175,7 +185,7 @@ impl Graph {
     }
 
     /// Returns the slope along a symbol, if the expression is linear in it.
-    fn linear(&mut self, symbol: NodeId, edge: Edge) -> Option<Edge> {
+    fn linear_slope(&mut self, symbol: NodeId, edge: Edge) -> Option<Edge> {
         let mut along = Derivation::new([(symbol, self.one())]);
         let slope = along.of(self, edge);
         (slope != self.zero() && along.of(self, slope) == self.zero()).then_some(slope)
@@ -183,14 +193,14 @@ impl Graph {
 
     /// Whether an expression is not identically 0 where a factor is. The factor is made 0 by solving it for
     /// one of its symbols.
-    fn apart(&mut self, factor: Edge, edge: Edge, moving: Moving<'_>) -> bool {
+    fn is_nonzero_on(&mut self, factor: Edge, edge: Edge, moving: Motion<'_>) -> bool {
         let symbol = |id: &NodeId| matches!(self.node(*id), Node::Symbol(_));
         let symbols = self.reachable(&[factor]).into_iter().filter(symbol);
         let symbols: Vec<NodeId> = symbols.filter(|&id| (moving.free)(id)).collect();
         symbols.into_iter().any(|symbol| {
             let Some(slope) = self
-                .linear(symbol, factor)
-                .filter(|slope| !self.moves(*slope, moving))
+                .linear_slope(symbol, factor)
+                .filter(|slope| !self.is_moving(*slope, moving))
             else {
                 return false;
             };
@@ -199,7 +209,7 @@ impl Graph {
             };
             let moved = self.sub(Edge::of(symbol), back);
             let none = self.zero();
-            let there = self.beside(&[edge], none, false, (symbol, moved));
+            let there = self.one_sided_values(&[edge], none, false, (symbol, moved));
             there.is_some_and(|there| there[0] != none)
         })
     }
@@ -207,7 +217,7 @@ impl Graph {
     /// Returns the expressions with the branches for one side of c = 0, and with a node replaced by the
     /// expression that it equals. `None` if they have no value there, or one that depends on the sign of
     /// another expression that is 0, too.
-    fn beside(
+    fn one_sided_values(
         &mut self,
         edges: &[Edge],
         by: Edge,
@@ -257,7 +267,7 @@ impl Graph {
             _ => {}
         }
         let mut whole = true;
-        let node = node.over(|child| {
+        let node = node.map_children(|child| {
             let known = of(image, child);
             whole &= known.is_some();
             known.unwrap_or(child)

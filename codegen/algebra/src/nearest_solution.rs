@@ -6,32 +6,32 @@ use super::dense::{backward, cholesky, dot, forward, gram, largest, least_norm};
 use super::fp::Random;
 
 /// Largest number of steps of Newton's method.
-const STEPS: usize = 100;
+const MAX_NEWTON_STEPS: usize = 100;
 /// Largest number of steps of the descent.
-const DESCENT: usize = 200;
+const MAX_DESCENT_STEPS: usize = 200;
 /// Largest residual of a solution.
-const SOLVED: f64 = 1e-12;
+const RESIDUAL_TOLERANCE: f64 = 1e-12;
 /// Step length, relative to 1 + the distance, at which the descent ends.
-const STILL: f64 = 1e-11;
+const STEP_TOLERANCE: f64 = 1e-11;
 /// Largest number of refinement steps after the descent, which find the digits that comparing distances
 /// cannot resolve.
-const SETTLING: usize = 20;
+const MAX_REFINEMENTS: usize = 20;
 /// Largest number of times that a step is halved.
-const HALVED: usize = 24;
+const MAX_HALVINGS: usize = 24;
 /// Largest entry of a Newton step (rad, m), relative to 1 + the largest coordinate.
-const REACH: f64 = 0.1;
+const MAX_NEWTON_ENTRY: f64 = 0.1;
 /// Longest step of the descent, as a multiple of the step that would be right on a flat surface.
-const LONGER: f64 = 16.0;
+const MAX_STEP_FACTOR: f64 = 16.0;
 /// Shortest refinement step after the descent, as a multiple of the same step.
-const SHORTER: f64 = 1e-4;
+const MIN_STEP_FACTOR: f64 = 1e-4;
 /// Largest number of neighbours of the guess that are tried, times the number of directions.
-const NEIGHBOURS: usize = 240;
+const NEIGHBOUR_BUDGET: usize = 240;
 /// Largest number of neighbours that are tried.
-const MOST: usize = 40;
+const MAX_NEIGHBOURS: usize = 40;
 /// Largest displacement of a neighbour along each direction (rad, m).
-const AWAY: f64 = 3.0;
+const MAX_DISPLACEMENT: f64 = 3.0;
 /// Regularization of the metric, relative to its largest entry, that makes it positive definite.
-const REGULAR: f64 = 1e-9;
+const METRIC_REGULARIZATION: f64 = 1e-9;
 
 /// Equations for a point, and its distance from a guess. Directions are the rates (generalized velocities)
 /// along which the point may move.
@@ -41,30 +41,30 @@ pub trait Equations {
     /// Residuals φ(x), which are 0 at a solution.
     fn residuals(&self, x: &[f64]) -> Vec<f64>;
     /// Jacobian of the residuals along the directions, row by row.
-    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>>;
+    fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>>;
     /// Error e(x), whose norm is the distance from the guess, and its Jacobian along the directions.
-    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>);
+    fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>);
     /// Retraction: the point that a step along the directions leads to.
-    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64>;
+    fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64>;
 }
 
 /// Returns the solution nearest to the guess; `None` if none was found.
-pub fn closest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
-    if largest(&problem.residuals(guess)) <= SOLVED {
+pub fn find_nearest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
+    if largest(&problem.residuals(guess)) <= RESIDUAL_TOLERANCE {
         return Some(guess.to_vec());
     }
     let count = problem.directions();
     let mut starts = vec![guess.to_vec()];
     let mut random = Random::new(0x6e65_6172);
     let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-    for _ in 0..(NEIGHBOURS / count.max(1)).min(MOST) {
-        let away = AWAY * number();
+    for _ in 0..(NEIGHBOUR_BUDGET / count.max(1)).min(MAX_NEIGHBOURS) {
+        let away = MAX_DISPLACEMENT * number();
         let step: Vec<f64> = (0..count).map(|_| away * number()).collect();
-        starts.push(problem.moved(guess, &step));
+        starts.push(problem.retract(guess, &step));
     }
     let mut best: Option<(f64, Vec<f64>)> = None;
     for start in starts {
-        let Some(x) = close(problem, start).and_then(|x| descend(problem, x)) else {
+        let Some(x) = solve_newton(problem, start).and_then(|x| descend(problem, x)) else {
             continue;
         };
         let distance = distance(problem, &x);
@@ -80,16 +80,18 @@ pub fn closest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// Newton's method with the shortest steps in the metric, iterated to full precision.
-fn close(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn solve_newton(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut residuals = problem.residuals(&x);
-    for _ in 0..STEPS {
+    for _ in 0..MAX_NEWTON_STEPS {
         let step = step(problem, &x, &residuals, false);
-        if largest(&residuals) <= SOLVED {
+        if largest(&residuals) <= RESIDUAL_TOLERANCE {
             // Continue as long as full steps reduce the residuals.
-            let next = step.map(|step| problem.moved(&x, &step));
+            let next = step.map(|step| problem.retract(&x, &step));
             let after = next.as_ref().map(|next| problem.residuals(next));
             match (next, after) {
-                (Some(next), Some(after)) if square(&after) < 0.25 * square(&residuals) => {
+                (Some(next), Some(after))
+                    if squared_norm(&after) < 0.25 * squared_norm(&residuals) =>
+                {
                     (x, residuals) = (next, after);
                     continue;
                 }
@@ -98,90 +100,90 @@ fn close(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
         }
         let mut step = step?;
         // Long steps would end on distant branches.
-        let most = REACH * (1.0 + largest(&x));
+        let most = MAX_NEWTON_ENTRY * (1.0 + largest(&x));
         let size = largest(&step);
         if size > most {
             step.iter_mut().for_each(|h| *h *= most / size);
         }
-        let (next, after) = shortened(&step, |step| {
-            let next = problem.moved(&x, step);
+        let (next, after) = halve_until(&step, |step| {
+            let next = problem.retract(&x, step);
             let after = problem.residuals(&next);
-            (square(&after) < square(&residuals)).then_some((next, after))
+            (squared_norm(&after) < squared_norm(&residuals)).then_some((next, after))
         })?;
         (x, residuals) = (next, after);
     }
-    (largest(&residuals) <= SOLVED).then_some(x)
+    (largest(&residuals) <= RESIDUAL_TOLERANCE).then_some(x)
 }
 
 /// Descends along the set of solutions to where the distance from the guess is least.
 fn descend(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut before = distance(problem, &x);
-    for _ in 0..DESCENT {
+    for _ in 0..MAX_DESCENT_STEPS {
         let step = step(problem, &x, &problem.residuals(&x), true)?;
-        if square(&step).sqrt() <= STILL * (1.0 + before) {
+        if squared_norm(&step).sqrt() <= STEP_TOLERANCE * (1.0 + before) {
             break;
         }
         let at = |factor: f64| -> Option<(Vec<f64>, f64)> {
             let step: Vec<f64> = step.iter().map(|h| factor * h).collect();
-            let next = close(problem, problem.moved(&x, &step))?;
+            let next = solve_newton(problem, problem.retract(&x, &step))?;
             let after = distance(problem, &next);
             (after < before).then_some((next, after))
         };
         // Along the step, the squared distance is nearly a parabola whose slope at the start is known.
-        let (apart, slopes) = problem.apart(&x);
+        let (error, slopes) = problem.error(&x);
         let slope: f64 = slopes
             .iter()
-            .zip(&apart)
+            .zip(&error)
             .map(|(row, e)| e * dot(row, &step))
             .sum();
         let whole = at(1.0);
         let ahead = whole
             .as_ref()
             .map_or(f64::INFINITY, |(_, after)| after * after);
-        let bend = (ahead - before * before) / 2.0 - slope;
-        let lowest = if bend > 0.0 {
-            -slope / (2.0 * bend)
+        let curvature = (ahead - before * before) / 2.0 - slope;
+        let lowest = if curvature > 0.0 {
+            -slope / (2.0 * curvature)
         } else {
-            LONGER
+            MAX_STEP_FACTOR
         };
-        let lowest = lowest.min(LONGER);
+        let lowest = lowest.min(MAX_STEP_FACTOR);
         let lower = if lowest > 0.0 { at(lowest) } else { None };
         let better = match (whole, lower) {
             (Some(one), Some(other)) if one.1 <= other.1 => Some(one),
             (Some(one), None) => Some(one),
             (_, other) => other,
         };
-        let halves = (1..HALVED as i32).map(|k| 0.5_f64.powi(k));
+        let halves = (1..MAX_HALVINGS as i32).map(|k| 0.5_f64.powi(k));
         let nearer = better.or_else(|| halves.into_iter().find_map(at));
         let Some((next, after)) = nearer else {
             break;
         };
         (x, before) = (next, after);
     }
-    settle(problem, x)
+    refine(problem, x)
 }
 
 /// Refines the end of the descent. Near the minimum, distances differ by less than their rounding errors
 /// while half of the digits are still missing. The steps are more precise: they are taken as long as they
 /// become shorter.
-fn settle(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn refine(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let ahead = |x: &[f64]| step(problem, x, &problem.residuals(x), true);
     let mut step = ahead(&x)?;
     let mut factor = 1.0;
-    for _ in 0..SETTLING {
+    for _ in 0..MAX_REFINEMENTS {
         let taken: Vec<f64> = step.iter().map(|h| factor * h).collect();
-        let next = close(problem, problem.moved(&x, &taken));
+        let next = solve_newton(problem, problem.retract(&x, &taken));
         let both = next.and_then(|next| ahead(&next).map(|after| (next, after)));
         let Some((next, after)) = both else {
             break;
         };
-        let left = dot(&after, &step) / square(&step);
-        let shorter = square(&after) < 0.5 * square(&step);
+        let left = dot(&after, &step) / squared_norm(&step);
+        let shorter = squared_norm(&after) < 0.5 * squared_norm(&step);
         if shorter {
             (x, step) = (next, after);
         }
         // The part of a step that is left after taking it tells how long the step should have been.
-        let better = (factor / (1.0 - left)).clamp(SHORTER, LONGER);
+        let better = (factor / (1.0 - left)).clamp(MIN_STEP_FACTOR, MAX_STEP_FACTOR);
         if !shorter && (better / factor - 1.0).abs() < 0.1 || better.is_nan() {
             break;
         }
@@ -191,9 +193,9 @@ fn settle(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
 }
 
 /// Tries a step, its half, its quarter …, and returns the first result that `serves` accepts.
-fn shortened<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> Option<T> {
+fn halve_until<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> Option<T> {
     let mut step = step.to_vec();
-    for _ in 0..HALVED {
+    for _ in 0..MAX_HALVINGS {
         if let Some(found) = serves(&step) {
             return Some(found);
         }
@@ -205,25 +207,25 @@ fn shortened<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> Op
 /// Computes a step h with φ + B h = 0: the shortest one in the metric EᵀE or, if `towards` is set, the one
 /// with the shortest e + E h. B and E are the Jacobians of φ and e.
 fn step(problem: &dyn Equations, x: &[f64], residuals: &[f64], towards: bool) -> Option<Vec<f64>> {
-    let (apart, slopes) = problem.apart(x);
+    let (error, slopes) = problem.error(x);
     let count = problem.directions();
     let column = |i: usize| slopes.iter().map(move |row| row[i]);
     let mut metric = gram(&slopes, count);
     let scale = (0..count)
         .map(|i| metric[i][i])
         .fold(f64::MIN_POSITIVE, f64::max);
-    (0..count).for_each(|i| metric[i][i] += REGULAR * scale);
+    (0..count).for_each(|i| metric[i][i] += METRIC_REGULARIZATION * scale);
     let factor = cholesky(&metric)?;
     let gradient: Vec<f64> = match towards {
         true => (0..count)
-            .map(|i| column(i).zip(&apart).map(|(a, b)| a * b).sum())
+            .map(|i| column(i).zip(&error).map(|(a, b)| a * b).sum())
             .collect(),
         false => vec![0.0; count],
     };
     // In the variables u = Lᵀ h, the metric is the identity.
     let away = forward(&factor, &gradient);
     let rows: Vec<Vec<f64>> = problem
-        .slopes(x)
+        .jacobian(x)
         .iter()
         .map(|row| forward(&factor, row))
         .collect();
@@ -241,11 +243,11 @@ fn step(problem: &dyn Equations, x: &[f64], residuals: &[f64], towards: bool) ->
 }
 
 fn distance(problem: &dyn Equations, x: &[f64]) -> f64 {
-    square(&problem.apart(x).0).sqrt()
+    squared_norm(&problem.error(x).0).sqrt()
 }
 
 /// |a|²; infinite if an entry is NaN.
-fn square(a: &[f64]) -> f64 {
+fn squared_norm(a: &[f64]) -> f64 {
     let sum = dot(a, a);
     if sum.is_nan() { f64::INFINITY } else { sum }
 }

@@ -1,4 +1,4 @@
-//! A lane: one point of the variety in each of the two fields, with the values of all symbols, and of sin,
+//! One point of the variety in each of the two fields, with the values of all symbols, and of sin,
 //! cos, exp, √.
 //!
 //! The value of a function depends only on the value of its argument, in the same way at every point: two
@@ -29,53 +29,53 @@ pub type LinearForm = Form<Fp>;
 
 /// Number of parts into which the atom of an angle is divided. A part gets a random circle point, so that
 /// halves, thirds, quarters and sixths of the atom are whole multiples of it.
-const PARTS: i64 = 12;
+const PARTS_PER_ANGLE: i64 = 12;
 
 /// Tag of the random numbers that stand for conditions a > 0.
-const POSITIVE: u64 = 128;
+const CONDITION_TAG: u64 = 128;
 
 /// Largest number of bits of the numerator and denominator of a value that is recognised as rational.
-const PLAIN_BITS: u32 = 29;
+const RATIONAL_BITS: u32 = 29;
 
 /// Selection of the square roots that have values at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Roots {
     /// Roots of squares of F_p, for which √a √b = √(ab).
     #[default]
-    OfSquares,
+    BaseField,
     /// Roots of squares of F_p(i), for which √a √b may be −√(ab).
-    Extended,
+    ExtensionField,
     /// All roots. If F_p(i) has no root, an arbitrary value stands for it, whose square is not the
     /// argument. What is proved with such values holds, but not everything that holds is proved.
-    Anything,
+    Arbitrary,
 }
 
 /// A point, given by the values of symbols. Values of functions depend only on the values of their
 /// arguments, so that two graphs agree at the same point. Values in one field do not depend on those in the
 /// other.
 #[derive(Clone, Debug, Default)]
-pub struct Lane {
+pub struct FieldPoint {
     symbols: Vec<Fp>,
     /// Whether a square root of a non-square was requested, for each field; the point should be chosen anew
     /// there.
-    stuck: [bool; 2],
+    missing_roots: [bool; 2],
     /// Which square roots have values.
     pub roots: Roots,
     /// Linear forms that symbols stand for, by the values of the symbols.
     written: FxHashMap<Fp, LinearForm>,
 }
 
-impl Lane {
+impl FieldPoint {
     /// Creates a point that has no symbols yet.
     pub fn new() -> Self {
-        Lane::default()
+        FieldPoint::default()
     }
 
     /// Creates a point with the same functions, but without symbols.
-    pub fn fresh(&self) -> Self {
-        Lane {
+    pub fn without_symbols(&self) -> Self {
+        FieldPoint {
             roots: self.roots,
-            ..Lane::new()
+            ..FieldPoint::new()
         }
     }
 
@@ -93,13 +93,13 @@ impl Lane {
 
     /// From now on, functions read a symbol of this value as the linear form that another graph has in its
     /// place, so that sin(a + b) and sin(c) are equal where c = a + b.
-    pub fn write_out(&mut self, value: Fp, form: LinearForm) {
+    pub fn set_linear_form(&mut self, value: Fp, form: LinearForm) {
         self.written.insert(value, form);
     }
 
     /// Replaces symbols by the linear forms that they stand for, as in the graph in which these are written
     /// out, and collects equal atoms.
-    fn written_out(&self, form: &LinearForm) -> LinearForm {
+    fn substitute_forms(&self, form: &LinearForm) -> LinearForm {
         let mut all = LinearForm::new();
         for (atom, coefficient) in form {
             match self.written.get(atom) {
@@ -120,19 +120,19 @@ impl Lane {
     }
 
     /// Whether a square root of a non-square was requested in either field.
-    pub fn is_stuck(&self) -> bool {
-        self.stuck != [false; 2]
+    pub fn has_missing_root(&self) -> bool {
+        self.missing_roots != [false; 2]
     }
 
     /// Whether a square root of a non-square was requested, for each field.
-    pub fn stuck(&self) -> [bool; 2] {
-        self.stuck
+    pub fn missing_roots(&self) -> [bool; 2] {
+        self.missing_roots
     }
 
     /// Returns the value of a function of one argument; `form` is `Graph::form` of the argument.
     pub fn function(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
         if !self.written.is_empty() && function.row().law.is_additive() {
-            let form = self.written_out(form);
+            let form = self.substitute_forms(form);
             return self.value(function, argument, &form);
         }
         self.value(function, argument, form)
@@ -152,8 +152,8 @@ impl Lane {
                     self.root(argument.0, form, &first),
                     self.root(argument.1, form, &second),
                 );
-                self.stuck[0] |= roots.0.is_none();
-                self.stuck[1] |= roots.1.is_none();
+                self.missing_roots[0] |= roots.0.is_none();
+                self.missing_roots[1] |= roots.1.is_none();
                 let other = self.opaque(Function::Sqrt, argument, Fp::ZERO);
                 Fp(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
             }
@@ -182,15 +182,15 @@ impl Lane {
         _: Part<K>,
     ) -> Option<Residue<K>> {
         let anything = || {
-            (self.roots == Roots::Anything)
-                .then(|| Lane::draw(Function::Sqrt as u64, argument, Residue::ZERO).residue())
+            (self.roots == Roots::Arbitrary)
+                .then(|| FieldPoint::draw(Function::Sqrt as u64, argument, Residue::ZERO).residue())
         };
         let Some((_, factor)) = form.first() else {
             return argument.sqrt().or_else(anything);
         };
         let rest = argument * Residue::from_rational(factor)?.inv()?;
         let root = rest.principal_root();
-        let root = root.or_else(|| rest.sqrt().filter(|_| self.roots != Roots::OfSquares));
+        let root = root.or_else(|| rest.sqrt().filter(|_| self.roots != Roots::BaseField));
         let root = root.map(|root| Some(roots::of_rational::<K>(factor)? * root));
         root.unwrap_or_else(anything)
     }
@@ -199,8 +199,8 @@ impl Lane {
     pub fn opaque(&self, function: Function, a: Fp, b: Fp) -> Fp {
         let tag = function as u64;
         Fp(
-            Lane::draw(tag, a.0, b.0).residue(),
-            Lane::draw(tag, a.1, b.1).residue(),
+            FieldPoint::draw(tag, a.0, b.0).residue(),
+            FieldPoint::draw(tag, a.1, b.1).residue(),
         )
     }
 
@@ -222,12 +222,12 @@ impl Lane {
     /// each of the sides only because s is 1 or 0 there, such as s² = s, are not found. The relation s(−a)
     /// = 1 − s(a) is false at a = 0, so the two are chosen independently.
     pub fn positive(&self, a: Fp) -> Fp {
-        if let Some((n, _)) = a.to_small_rational(PLAIN_BITS) {
+        if let Some((n, _)) = a.to_small_rational(RATIONAL_BITS) {
             return if n > 0 { Fp::ONE } else { Fp::ZERO };
         }
         Fp(
-            Lane::draw(POSITIVE, a.0, Residue::ONE).residue(),
-            Lane::draw(POSITIVE, a.1, Residue::ONE).residue(),
+            FieldPoint::draw(CONDITION_TAG, a.0, Residue::ONE).residue(),
+            FieldPoint::draw(CONDITION_TAG, a.1, Residue::ONE).residue(),
         )
     }
 
@@ -259,7 +259,7 @@ impl Lane {
                     1 if base == pi => (twelfth(), count),
                     1 if base == -pi => (twelfth(), -count),
                     _ => {
-                        let mut random = Lane::draw(64 + parts, base, Residue::ONE);
+                        let mut random = FieldPoint::draw(64 + parts, base, Residue::ONE);
                         (circle_residue(&mut random), count)
                     }
                 };
@@ -275,7 +275,7 @@ impl Lane {
                 if base.is_zero() {
                     return total;
                 }
-                let magnitude = Lane::draw(96 + parts, base, Residue::ONE)
+                let magnitude = FieldPoint::draw(96 + parts, base, Residue::ONE)
                     .residue::<K>()
                     .pow(count.unsigned_abs());
                 total
@@ -288,10 +288,10 @@ impl Lane {
     }
 }
 
-impl Numbers for Lane {
+impl Numbers for FieldPoint {
     type Number = Fp;
 
-    /// Missing square roots are noted (`is_stuck`).
+    /// Missing square roots are noted (`has_missing_root`).
     #[inline]
     fn make(&mut self, step: Step<Fp>) -> Option<Fp> {
         Some(match step {
@@ -325,7 +325,7 @@ impl Numbers for Lane {
     }
 }
 
-impl Modular for Lane {
+impl Modular for FieldPoint {
     fn residue(&mut self, value: Fp) -> Option<Fp> {
         Some(value)
     }
@@ -375,7 +375,7 @@ fn hyperbolic<const K: usize>(function: Function, e: Residue<K>) -> Residue<K> {
 /// not a multiple of a part, c·atom is a base of its own. Returns the base, the number, and 1 or 0 for
 /// these two cases.
 fn split<const K: usize>(atom: Residue<K>, coefficient: &BigRational) -> (Residue<K>, i64, u64) {
-    let parts = coefficient * BigRational::from_integer(BigInt::from(PARTS));
+    let parts = coefficient * BigRational::from_integer(BigInt::from(PARTS_PER_ANGLE));
     let whole = parts
         .is_integer()
         .then(|| parts.to_integer().to_i64())

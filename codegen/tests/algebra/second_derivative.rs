@@ -1,10 +1,10 @@
 //! Rows of second derivatives by reverse accumulation agree with hyper-dual numbers.
 
 use crate::common::functions;
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Graph;
 use hamel_algebra::jets::Seeds;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::tape::Tape;
 
 #[test]
@@ -31,18 +31,20 @@ fn rows_are_the_mixed_derivatives_of_jets() {
     let mut found = 0;
     // In both fields, both roots have values at one point in sixteen.
     for _ in 0..240 {
-        let mut lane = Lane::new();
-        (0..first + 3).for_each(|_| lane.push_symbol(random.element()));
+        let mut point = FieldPoint::new();
+        (0..first + 3).for_each(|_| point.push_symbol(random.element()));
         for k in 0..3 {
             let seeds = Seeds {
                 along: unit(k),
                 across: (0..3).map(unit).collect(),
                 mixed: Vec::new(),
             };
-            let Some(jets) = tape.jets(&lane, &seeds) else {
+            let Some(jets) = tape.jets(&point, &seeds) else {
                 continue;
             };
-            let row = tape.bend(&lane, &unit(k)).expect("has a value there, too");
+            let row = tape
+                .second_derivative(&point, &unit(k))
+                .expect("has a value there, too");
             assert_eq!(row[first..], jets[0].mixed[..]);
             found += 1;
         }

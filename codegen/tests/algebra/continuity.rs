@@ -13,7 +13,7 @@ fn made() -> (Graph, [Edge; 4]) {
 
 fn jumps(g: &Graph, edge: Edge) -> bool {
     let every = |_: NodeId| true;
-    g.jump(&[edge], 1, &every).is_some()
+    g.find_discontinuity(&[edge], 1, &every).is_some()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The solution nearest to a guess is found if there is one.
 
-use hamel_algebra::closest::{Equations, closest};
+use hamel_algebra::nearest_solution::{Equations, find_nearest};
 
 /// A point on a circle about the origin, with its distance from a guess in a diagonal metric.
 struct Circle {
@@ -16,15 +16,15 @@ impl Equations for Circle {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         vec![x[0] * x[0] + x[1] * x[1] - self.radius * self.radius]
     }
-    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+    fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
         vec![vec![2.0 * x[0], 2.0 * x[1]]]
     }
-    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let entry = |k: usize| self.weights[k] * (x[k] - self.guess[k]);
         let slopes = vec![vec![self.weights[0], 0.0], vec![0.0, self.weights[1]]];
         (vec![entry(0), entry(1)], slopes)
     }
-    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+    fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         vec![x[0] + step[0], x[1] + step[1]]
     }
 }
@@ -40,8 +40,8 @@ fn the_nearest_point_of_a_circle_is_found() {
             guess: [2.0 * number(), 2.0 * number()],
             weights: [1.0 + number().abs(), 1.0 + 2.0 * number().abs()],
         };
-        let x = closest(&circle, &circle.guess).expect("a point");
-        let distance = |x: &[f64]| circle.apart(x).0.iter().map(|e| e * e).sum::<f64>().sqrt();
+        let x = find_nearest(&circle, &circle.guess).expect("a point");
+        let distance = |x: &[f64]| circle.error(x).0.iter().map(|e| e * e).sum::<f64>().sqrt();
         let least = (0..5_000)
             .map(|k| {
                 let angle = k as f64 * std::f64::consts::TAU / 5_000.0;
@@ -60,23 +60,23 @@ fn the_nearest_point_of_a_circle_is_found() {
 
 #[test]
 fn where_there_is_no_solution_none_is_found() {
-    struct Nowhere;
-    impl Equations for Nowhere {
+    struct Unsolvable;
+    impl Equations for Unsolvable {
         fn directions(&self) -> usize {
             1
         }
         fn residuals(&self, x: &[f64]) -> Vec<f64> {
             vec![x[0] * x[0] + 1.0]
         }
-        fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        fn jacobian(&self, x: &[f64]) -> Vec<Vec<f64>> {
             vec![vec![2.0 * x[0]]]
         }
-        fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        fn error(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
             (vec![x[0] - 0.4], vec![vec![1.0]])
         }
-        fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+        fn retract(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
             vec![x[0] + step[0]]
         }
     }
-    assert_eq!(closest(&Nowhere, &[0.4]), None);
+    assert_eq!(find_nearest(&Unsolvable, &[0.4]), None);
 }

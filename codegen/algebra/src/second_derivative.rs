@@ -3,23 +3,24 @@
 //! however many symbols there are.
 
 use super::dual::{Duals, Record};
+use super::field_point::FieldPoint;
 use super::fp::Fp;
-use super::lane::Lane;
 use super::tangent::duals;
 use super::tape::Tape;
 
 impl Tape {
     /// Computes ∂(∂f/∂s)/∂xₖ for the symbols xₖ, where f is the first of the expressions and s is
     /// `direction`; one entry for each entry of `direction`. `None` if something has no value at the point.
-    pub fn bend(&self, lane: &Lane, direction: &[Fp]) -> Option<Vec<Fp>> {
+    pub fn second_derivative(&self, point: &FieldPoint, direction: &[Fp]) -> Option<Vec<Fp>> {
         let mut all = Duals {
-            numbers: duals(lane, direction),
+            numbers: duals(point, direction),
             slopes: Record::default(),
         };
         let place = self.run(&mut all)?.first()?.1;
         let row = all
             .slopes
-            .backwards(&mut all.numbers, place, direction.len())?;
-        (!all.numbers.numbers.is_stuck()).then(|| row.into_iter().map(|(_, bent)| bent).collect())
+            .gradient(&mut all.numbers, place, direction.len())?;
+        (!all.numbers.numbers.has_missing_root())
+            .then(|| row.into_iter().map(|(_, bent)| bent).collect())
     }
 }

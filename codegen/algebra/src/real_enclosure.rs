@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 
 /// Real values of nodes, computed when they are first needed.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shadow {
+pub(super) struct RealValues {
     /// Samples of the symbols.
     symbols: Vec<Reals>,
     /// Samples of the first nodes, as far as they have been computed.
@@ -29,13 +29,13 @@ pub(super) struct Shadow {
     /// Merges of expressions that contain square roots: a node, and the edge that replaced it.
     taken: Vec<(Node, Edge)>,
     /// Whether expressions that contain a square root are never merged with others.
-    pub(super) apart: bool,
+    pub(super) separate_roots: bool,
 }
 
 /// Smallest number of samples at which two merged expressions must both be known.
-const FEWEST: usize = 16;
+const MIN_COMMON_SAMPLES: usize = 16;
 
-impl Shadow {
+impl RealValues {
     /// Sets the samples of the symbols.
     pub(super) fn set(&mut self, symbols: Vec<Reals>) {
         self.symbols = symbols;
@@ -49,7 +49,7 @@ impl Shadow {
     }
 
     /// Takes note of a node that was added to the graph.
-    pub(super) fn follow(&mut self, node: Node) {
+    pub(super) fn push(&mut self, node: Node) {
         self.rooted.push(self.has_root(node));
     }
 
@@ -76,7 +76,7 @@ impl Shadow {
         if !rooted && !self.watched {
             return false;
         }
-        if rooted && self.apart {
+        if rooted && self.separate_roots {
             return true;
         }
         self.fill(nodes, constants);
@@ -96,7 +96,7 @@ impl Shadow {
 
     /// Whether some merged expression differs from its replacement at one of many samples, or both are
     /// known at too few of them.
-    pub(super) fn is_doubtful(
+    pub(super) fn has_doubtful_merges(
         &self,
         nodes: &[Node],
         constants: &[BigRational],
@@ -106,12 +106,12 @@ impl Shadow {
             return false;
         }
         let mut counts = vec![0; self.taken.len()];
-        let mut shadow = Shadow::default();
+        let mut real_values = RealValues::default();
         for symbols in samples {
-            shadow.set(symbols);
-            shadow.fill(nodes, constants);
+            real_values.set(symbols);
+            real_values.fill(nodes, constants);
             for (&(node, known), count) in self.taken.iter().zip(&mut counts) {
-                let (a, b) = (shadow.value(constants, node), shadow.read(known));
+                let (a, b) = (real_values.value(constants, node), real_values.read(known));
                 if contradict(&a, &b) {
                     return true;
                 }
@@ -119,7 +119,7 @@ impl Shadow {
                 *count += both.filter(|(a, b)| a.is_known() && b.is_known()).count();
             }
         }
-        counts.iter().any(|&count| count < FEWEST)
+        counts.iter().any(|&count| count < MIN_COMMON_SAMPLES)
     }
 
     fn fill(&mut self, nodes: &[Node], constants: &[BigRational]) {
@@ -135,13 +135,13 @@ impl Shadow {
         nodes: &[Node],
         constants: &[BigRational],
         ids: &[NodeId],
-    ) -> Option<Shadow> {
-        let mut shadow = ids
+    ) -> Option<RealValues> {
+        let mut real_values = ids
             .iter()
             .any(|&id| self.rooted[id as usize])
             .then(|| self.clone())?;
-        shadow.fill(nodes, constants);
-        Some(shadow)
+        real_values.fill(nodes, constants);
+        Some(real_values)
     }
 
     /// Whether `other` cannot replace a node whose samples have been computed: it is a different number, or
@@ -244,10 +244,11 @@ impl Numbers for Samples<'_> {
             }
             // A stand-in for the external function: whatever holds for all functions holds for this one.
             Step::Listed(rest, a) => pair(rest, a, |rest, a| {
-                rest.times(Real::new(external::WEIGHT, 0.0)).plus(a)
+                rest.times(Real::new(external::STAND_IN_WEIGHT, 0.0))
+                    .plus(a)
             }),
             Step::External(component, list, _) => {
-                let [constant, factor] = component.likeness().map(|c| Real::new(c, 0.0));
+                let [constant, factor] = component.stand_in().map(|c| Real::new(c, 0.0));
                 list.map(|list| list.times(factor).plus(constant))
             }
         })

@@ -1,4 +1,4 @@
-//! Sizes of equations, relative to which residuals are large or small, whatever the units.
+//! Scales of equations, relative to which residuals are large or small, whatever the units.
 
 use super::graph::{Edge, Graph};
 use super::numbers::{Numbers, Step};
@@ -54,7 +54,12 @@ impl Numbers for Sized<'_> {
 /// Returns the sizes of equations, given the value of every symbol: the effect of a change of 1 along the
 /// symbols at these places, plus the size of the terms that cancel, to which rounding errors are
 /// proportional. A size that would not be finite is 0.
-pub fn sizes(graph: &Graph, equations: &[Edge], symbols: &[f64], places: Range<usize>) -> Vec<f64> {
+pub fn residual_scales(
+    graph: &Graph,
+    equations: &[Edge],
+    symbols: &[f64],
+    places: Range<usize>,
+) -> Vec<f64> {
     let directions = places.map(|place| {
         let mut direction = vec![0.0; place + 1];
         direction[place] = 1.0;
@@ -72,19 +77,20 @@ pub fn sizes(graph: &Graph, equations: &[Edge], symbols: &[f64], places: Range<u
     (0..equations.len()).map(size).collect()
 }
 
-/// Returns the residuals of equations relative to their [`sizes`], by [`beside`].
-pub fn relative(
+/// Returns the residuals of equations relative to their [scales](residual_scales), by [`relative_residual`].
+pub fn relative_residuals(
     graph: &Graph,
     equations: &[Edge],
     symbols: &[f64],
     places: Range<usize>,
 ) -> Vec<f64> {
-    let sizes = sizes(graph, equations, symbols, places);
+    let sizes = residual_scales(graph, equations, symbols, places);
     let left = evaluate(graph, equations, symbols).into_iter().zip(sizes);
-    left.map(|(left, size)| beside(left, size)).collect()
+    left.map(|(left, size)| relative_residual(left, size))
+        .collect()
 }
 
 /// Returns the residual of an equation relative to its size, or the residual itself if the size is 0.
-pub fn beside(left: f64, size: f64) -> f64 {
+pub fn relative_residual(left: f64, size: f64) -> f64 {
     left / if size > 0.0 { size } else { 1.0 }
 }

@@ -1,22 +1,22 @@
 //! Values of functions at a point: like terms are combined, and twelfths of a turn are exact.
 
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Function;
-use hamel_algebra::lane::Lane;
 use num_rational::BigRational;
 
 /// Values that are 0 at a point are 0 in arguments of functions, and like terms of written-out arguments are combined.
 #[test]
 fn forms_are_collected() {
-    let mut lane = Lane::new();
+    let mut point = FieldPoint::new();
     let [a, b, zero] = [Fp::new(7), Fp::new(5), Fp::ZERO];
     let rational = |n: i64, d: i64| BigRational::new(n.into(), d.into());
     // b = −2/3 a, so that a/3 − b/3 = 5/9 a.
-    lane.write_out(b, vec![(a, rational(-2, 3))]);
+    point.set_linear_form(b, vec![(a, rational(-2, 3))]);
     for function in [Function::Sin, Function::Exp, Function::Tanh] {
         let mut at = |form: &[(Fp, i64, i64)]| {
             let form = form.iter().map(|&(atom, n, d)| (atom, rational(n, d)));
-            lane.function(function, Fp::ZERO, &form.collect())
+            point.function(function, Fp::ZERO, &form.collect())
         };
         assert_eq!(at(&[(a, 1, 3), (b, -1, 3)]), at(&[(a, 5, 9)]));
         assert_eq!(at(&[(a, 1, 3), (-a, 1, 3)]), at(&[]));
@@ -27,10 +27,10 @@ fn forms_are_collected() {
 /// Sines and cosines of twelfths of π are the expected roots, in both fields.
 #[test]
 fn twelfths_of_a_turn_are_exact() {
-    let mut lane = Lane::new();
+    let mut point = FieldPoint::new();
     let mut at = |function, n: i64| {
         let form = vec![(Fp::PI, BigRational::new(n.into(), 12.into()))];
-        lane.function(function, Fp::ZERO, &form)
+        point.function(function, Fp::ZERO, &form)
     };
     let half = Fp::new(2).inv().expect("odd");
     assert_eq!(at(Function::Sin, 2), half);

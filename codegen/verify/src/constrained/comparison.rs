@@ -2,25 +2,25 @@
 
 use super::Claim;
 use super::frame::Full;
-use super::point::{At, Values};
+use super::point::{ConstrainedPoint, Values};
 use crate::charts::Charts;
 use crate::kernel::{dot, virtual_velocity};
 use crate::{centroidal, derivatives, frames, outputs, states};
+use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
-use hamel_algebra::lane::Lane;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_dynamics::accel::saddle::{self, Solved};
 use hamel_dynamics::reduction::Reduction;
 use hamel_program::{FunctionId, Program};
 
 /// A point with the numbers that several comparisons need.
-pub(super) struct Seen<'a> {
+pub(super) struct PointComparison<'a> {
     full: &'a Full,
     reduction: &'a Reduction,
     program: &'a Program,
     charts: &'a Charts,
-    at: At<'a>,
+    at: ConstrainedPoint<'a>,
     values: Values,
     /// B of the full frame, by rows.
     rows: Vec<Fp>,
@@ -38,18 +38,18 @@ pub(super) struct Seen<'a> {
     state_rates: Vec<Fp>,
 }
 
-impl<'a> Seen<'a> {
-    /// Evaluates the numbers at the point of a lane; `None` if something has no value there.
+impl<'a> PointComparison<'a> {
+    /// Evaluates the numbers at a point; `None` if something has no value there.
     pub(super) fn new(
         full: &'a Full,
         reduction: &'a Reduction,
         (program, charts): (&'a Program, &'a Charts),
-        lane: &Lane,
+        point: &FieldPoint,
     ) -> Option<Self> {
         let (n, na) = (full.reference.model.n(), reduction.active.len());
-        let at = At::new(full, reduction, program, lane)?;
+        let at = ConstrainedPoint::new(full, reduction, program, point)?;
         let values = at.values()?;
-        let rows = evaluate_at(&full.reference.model.graph, &full.rows, &mut lane.clone())?;
+        let rows = evaluate_at(&full.reference.model.graph, &full.rows, &mut point.clone())?;
         let reduced = &full.reduced;
         let inner = |edges: &[Edge]| evaluate_at(&reduced.graph, edges, &mut at.inner.clone());
         let constraints = reduced.constraints.iter();
@@ -82,7 +82,7 @@ impl<'a> Seen<'a> {
         };
         let mut xi_dot = accel;
         let state_rates = xi_dot.as_mut().map(|rates| rates.split_off(na));
-        Some(Seen {
+        Some(PointComparison {
             full,
             reduction,
             program,
@@ -232,7 +232,7 @@ impl<'a> Seen<'a> {
             (emitted, _) => emitted.clone(),
         };
         if let (Some(xi_dot), Some(lambda)) = (&xi_dot, &lambda)
-            && !(self.bonds_balance(xi_dot, lambda)? && self.shared_is_implied(lambda)?)
+            && !(self.bonds_balance(xi_dot, lambda)? && self.dependent_multipliers_hold(lambda)?)
         {
             return Some(false);
         }
@@ -276,26 +276,26 @@ impl<'a> Seen<'a> {
 
     /// Returns whether rates are given and constraint rows depend on one another. Where loops are not closed, such rows
     /// contradict one another and the given rates, which hold exactly.
-    fn is_shared(&self) -> bool {
+    fn has_dependent_rows(&self) -> bool {
         let reduced = &self.full.reduced;
         reduced.overconstrained && !reduced.accelerated.is_empty()
     }
 
     /// Returns whether the row of a velocity balances only where the loops are closed: that of an active velocity whose
-    /// rate is not given, if [`Self::is_shared`].
+    /// rate is not given, if [`Self::has_dependent_rows`].
     fn contradicts(&self, velocity: usize) -> bool {
         let model = &self.full.reference.model;
         let driven = model
             .accelerated
             .iter()
             .any(|&(place, _)| place == velocity);
-        self.is_shared() && !driven && self.reduction.active.contains(&velocity)
+        self.has_dependent_rows() && !driven && self.reduction.active.contains(&velocity)
     }
 
-    /// Returns whether the multipliers of kept rows are those of the elimination in numbers, if [`Self::is_shared`], so
+    /// Returns whether the multipliers of kept rows are those of the elimination in numbers, if [`Self::has_dependent_rows`], so
     /// that some rows of the balance are not compared. The compared rows determine all other multipliers.
-    fn shared_is_implied(&self, lambda: &[Fp]) -> Option<bool> {
-        if !self.is_shared() {
+    fn dependent_multipliers_hold(&self, lambda: &[Fp]) -> Option<bool> {
+        if !self.has_dependent_rows() {
             return Some(true);
         }
         let implied = self.implied()?.multipliers;

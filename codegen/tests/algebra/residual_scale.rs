@@ -2,7 +2,7 @@
 
 use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
-use hamel_algebra::sizes::{relative, sizes};
+use hamel_algebra::residual_scale::{relative_residuals, residual_scales};
 
 /// x² + z² = r² has terms of size r², and slopes 2 x and 2 z.
 #[test]
@@ -16,9 +16,9 @@ fn a_circle_is_as_large_as_its_radius() {
     let circle = graph.sub(sum, squares[2]);
     for r in [1e-6, 1.0, 1e4] {
         let numbers = [0.0, r, 0.6 * r, 0.8 * r];
-        let size = sizes(&graph, &[circle], &numbers, 2..4)[0];
+        let size = residual_scales(&graph, &[circle], &numbers, 2..4)[0];
         assert!((size / (2.8 * r + 2.0 * r * r) - 1.0).abs() < 1e-12);
-        assert!(relative(&graph, &[circle], &numbers, 2..4)[0].abs() < 1e-15);
+        assert!(relative_residuals(&graph, &[circle], &numbers, 2..4)[0].abs() < 1e-15);
     }
-    assert_eq!(sizes(&graph, &[circle], &[0.0; 4], 2..4), [0.0]);
+    assert_eq!(residual_scales(&graph, &[circle], &[0.0; 4], 2..4), [0.0]);
 }
