@@ -4,7 +4,7 @@
 use crate::methods;
 use crate::peers::{self, Peers};
 use crate::runner::{BenchError, Effort, Runner};
-use hamel::{Canonical, Split, State, System, so3};
+use hamel::{Canonical, Energies, Split, State, System, so3};
 use hamel_cases::case::Inputs;
 use hamel_cases::models::CHOICES;
 use hamel_cases::{Case, Measure, bodies, mechanisms};
@@ -109,7 +109,8 @@ fn angular<'a, Sys: System<Scalar = f64>>(
 fn top<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
 where
     Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
-        + Canonical,
+        + Canonical
+        + Energies,
 {
     let momentum = angular(case);
     let vertical = Box::new(move |x: &[f64], xi: &[f64]| vec![momentum(x, xi)[2]]);
@@ -126,7 +127,8 @@ where
 fn free<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
 where
     Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
-        + Canonical,
+        + Canonical
+        + Energies,
 {
     let momentum = angular(case);
     let all = Box::new(move |x: &[f64], xi: &[f64]| momentum(x, xi).to_vec());
@@ -142,7 +144,7 @@ where
 /// Other bodies in potentials, or under loads that are given.
 fn flight<Sys>(runner: &mut Runner, case: &Case<Sys>, conservative: bool) -> Result<(), BenchError>
 where
-    Sys: Split<Scalar = f64> + Canonical,
+    Sys: Split<Scalar = f64> + Canonical + Energies,
 {
     let problem = problem(runner, case, Box::new(|_, _| Vec::new()), conservative);
     let mut entries = methods::general(&problem);
@@ -155,7 +157,7 @@ where
 /// Several bodies, whose M depends on x.
 fn chain<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
-    Sys: Canonical<Scalar = f64>,
+    Sys: Canonical<Scalar = f64> + Energies,
 {
     let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
     let mut entries = methods::general(&problem);
@@ -167,7 +169,7 @@ where
 /// Bodies whose velocities are constrained.
 fn rolling<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
-    Sys: System<Scalar = f64>,
+    Sys: Energies<Scalar = f64>,
 {
     let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
     runner.entries(&methods::general(&problem), None);

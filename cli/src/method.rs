@@ -5,7 +5,7 @@ use crate::mechanism::{Instance, Numbers};
 use crate::number::short;
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, General, Lgvi, Method, Scheme, Splitting};
-use hamel::{Canonical, Split, State, StepError, System};
+use hamel::{Canonical, Energies, Split, State, StepError, System};
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;
 use hamel_report::baselines::{Baseline, Buss, Slide};
@@ -282,7 +282,7 @@ impl Stepper {
 
 impl<Sys> Method<Sys> for Stepper
 where
-    Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
+    Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical + Energies,
 {
     fn order(&self) -> u32 {
         match self {
@@ -347,7 +347,8 @@ impl Stepper {
         inputs: Given<Sys>,
     ) -> Result<State<Sys>, StepError>
     where
-        Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
+        Sys:
+            Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical + Energies,
     {
         let inputs = &inputs;
         match self {
@@ -376,7 +377,8 @@ impl Stepper {
         force: &mut Option<Sys::Chart>,
     ) -> Result<State<Sys>, StepError>
     where
-        Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
+        Sys:
+            Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical + Energies,
     {
         match self {
             Stepper::Splitting(method) => method.follow(system, state, h, &inputs, force),

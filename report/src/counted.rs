@@ -1,9 +1,9 @@
 //! A system that counts how often its forces are evaluated.
 
-use hamel::{Block, Canonical, Singular, Split, System};
+use hamel::{Block, Canonical, Energies, Singular, Split, System};
 use std::cell::Cell;
 
-/// A system, with a count of its evaluations of ξ̇ ([`System::accel`]), of forces alone
+/// A system, with a count of its evaluations of ξ̇ ([`System::forward_dynamics`]), of forces alone
 /// ([`Split::kick`]) and of ṗ ([`Canonical::momentum_rate`]): what grows with the loads of a scene.
 ///
 /// Everything is forwarded; the count costs well below a nanosecond a call.
@@ -96,14 +96,14 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     }
 
     #[inline]
-    fn accel(
+    fn forward_dynamics(
         &self,
         x: &Self::Coordinates,
         xi: &Self::Velocities,
         u: &Self::Inputs,
     ) -> Result<Self::Velocities, Singular> {
         self.count();
-        self.system.accel(x, xi, u)
+        self.system.forward_dynamics(x, xi, u)
     }
 
     #[inline]
@@ -137,7 +137,9 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar {
         self.system.constraint_norm(x)
     }
+}
 
+impl<Sys: Energies + ?Sized> Energies for Counted<'_, Sys> {
     #[inline]
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar {
         self.system.kinetic_energy(x, xi)

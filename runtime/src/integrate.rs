@@ -253,7 +253,7 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let u = inputs(time + offset, x, xi);
-    system.accel(x, xi, &u).map_err(|cause| {
+    system.forward_dynamics(x, xi, &u).map_err(|cause| {
         if is_finite(x.as_ref()) && is_finite(xi.as_ref()) {
             StepError::Singular { cause, time }
         } else {

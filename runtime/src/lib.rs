@@ -42,7 +42,7 @@
 //!
 //! ```
 //! use hamel::methods::Rkmk4;
-//! use hamel::{integrate, s1, Block, Monitor, Singular, State, System};
+//! use hamel::{integrate, s1, Block, Energies, Monitor, Singular, State, System};
 //!
 //! struct Pendulum { g: f64, l: f64 }
 //!
@@ -54,18 +54,14 @@
 //!     type Inputs = [f64; 0];
 //!
 //!     fn blocks(&self) -> &[Block] { &[Block::Circle] }
-//!     fn zero_coordinates(&self) -> [f64; 2] { [0.0; 2] }
-//!     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
-//!     fn zero_chart(&self) -> [f64; 1] { [0.0] }
-//!     fn zero_inputs(&self) -> [f64; 0] { [] }
 //!     fn start(&self) -> ([f64; 2], [f64; 1]) { (s1::exp(1.0), [0.0]) }
-//!     fn rate(&self, x: &[f64; 2], xi: &[f64; 1]) -> [f64; 2] { s1::rate(*x, xi[0]) }
 //!     fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] { *xi }
-//!     fn accel(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
+//!     fn forward_dynamics(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
 //!         Ok([-self.g / self.l * x[1]])
 //!     }
-//!     fn correction(&self, x: &[f64; 2]) -> [f64; 2] { s1::correction(*x) }
-//!     fn constraint_norm(&self, x: &[f64; 2]) -> f64 { s1::defect(*x) }
+//! }
+//!
+//! impl Energies for Pendulum {
 //!     fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 1]) -> f64 {
 //!         0.5 * (self.l * xi[0]).powi(2)
 //!     }
@@ -142,4 +138,4 @@ pub use slopes::{
 pub use split::Split;
 pub use state::State;
 pub use store::{Store, Table};
-pub use system::{Block, System};
+pub use system::{Block, Energies, System};

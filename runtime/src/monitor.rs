@@ -2,7 +2,7 @@
 
 use crate::scalar::Scalar;
 use crate::state::State;
-use crate::system::System;
+use crate::system::Energies;
 
 /// Records the largest deviation of the energy T + V and the largest violation of the constraints, over all observed
 /// states.
@@ -21,7 +21,7 @@ impl<S: Scalar> Monitor<S> {
     /// Creates a monitor whose reference is the energy at `state`.
     pub fn new<Sys>(system: &Sys, state: &State<Sys>) -> Self
     where
-        Sys: System<Scalar = S> + ?Sized,
+        Sys: Energies<Scalar = S> + ?Sized,
     {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
         let initial = kinetic + system.potential_energy(&state.x);
@@ -37,7 +37,7 @@ impl<S: Scalar> Monitor<S> {
     #[inline]
     pub fn observe<Sys>(&mut self, system: &Sys, state: &State<Sys>)
     where
-        Sys: System<Scalar = S> + ?Sized,
+        Sys: Energies<Scalar = S> + ?Sized,
     {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
         let potential = system.potential_energy(&state.x);

@@ -23,18 +23,8 @@ use crate::system::System;
 /// #     type Scalar = f64; type Coordinates = [f64; 1]; type Velocities = [f64; 1]; type Chart = [f64; 1];
 /// #     type Inputs = [f64; 1];
 /// #     fn blocks(&self) -> &[Block] { &[Block::Flat(1)] }
-/// #     fn zero_coordinates(&self) -> [f64; 1] { [0.0] }
-/// #     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
-/// #     fn zero_chart(&self) -> [f64; 1] { [0.0] }
-/// #     fn zero_inputs(&self) -> [f64; 1] { [0.0] }
-/// #     fn start(&self) -> ([f64; 1], [f64; 1]) { ([0.0], [0.0]) }
-/// #     fn rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] { *xi }
 /// #     fn chart_rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] { *xi }
-/// #     fn accel(&self, _: &[f64; 1], _: &[f64; 1], u: &[f64; 1]) -> Result<[f64; 1], Singular> { Ok(*u) }
-/// #     fn correction(&self, _: &[f64; 1]) -> [f64; 1] { [0.0] }
-/// #     fn constraint_norm(&self, _: &[f64; 1]) -> f64 { 0.0 }
-/// #     fn kinetic_energy(&self, _: &[f64; 1], xi: &[f64; 1]) -> f64 { 0.5 * xi[0] * xi[0] }
-/// #     fn potential_energy(&self, _: &[f64; 1]) -> f64 { 0.0 }
+/// #     fn forward_dynamics(&self, _: &[f64; 1], _: &[f64; 1], u: &[f64; 1]) -> Result<[f64; 1], Singular> { Ok(*u) }
 /// # }
 /// # fn main() -> Result<(), hamel::StepError> {
 /// // A controller with integral action, called every 10 ms, holds a cart of mass 1 at the position 1.

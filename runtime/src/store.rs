@@ -6,12 +6,33 @@ use crate::Scalar;
 
 /// A list of numbers whose length is fixed by the system: `[S; N]` in generated code, `Vec<S>` in
 /// code that interprets a description read at run time (feature `std`).
-pub trait Store<S>: Clone + Debug + AsRef<[S]> + AsMut<[S]> {}
+///
+/// ```
+/// use hamel::Store;
+///
+/// let fixed: [f64; 3] = Store::zeros(3);
+/// let listed: Vec<f64> = Store::zeros(3);
+/// assert_eq!(listed, fixed);
+/// ```
+pub trait Store<S>: Clone + Debug + AsRef<[S]> + AsMut<[S]> {
+    /// Returns `length` zeros. Storage of a fixed length, such as `[S; N]`, has its own length and ignores `length`.
+    fn zeros(length: usize) -> Self;
+}
 
-impl<S: Scalar, const N: usize> Store<S> for [S; N] {}
+impl<S: Scalar, const N: usize> Store<S> for [S; N] {
+    #[inline(always)]
+    fn zeros(_: usize) -> Self {
+        [S::default(); N]
+    }
+}
 
 #[cfg(feature = "std")]
-impl<S: Scalar> Store<S> for Vec<S> {}
+impl<S: Scalar> Store<S> for Vec<S> {
+    #[inline]
+    fn zeros(length: usize) -> Self {
+        vec![S::default(); length]
+    }
+}
 
 /// A matrix, stored by rows, whose size is fixed by the system: `[[S; COLUMNS]; ROWS]`.
 pub trait Table<S>: Clone + Debug {

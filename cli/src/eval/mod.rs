@@ -15,7 +15,7 @@ use crate::state::file::File;
 use crate::state::joints::{joints, rows};
 use clap::Args;
 use geometry::Geometry;
-use hamel::System;
+use hamel::{Energies, System};
 use hamel_codegen::derive::undetermined::undetermined;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;

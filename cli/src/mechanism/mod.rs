@@ -15,7 +15,7 @@ use crate::singular::{self, Failed};
 use crate::state::State;
 pub use functions::{Functions, Place, compiled, place};
 use hamel::rotor::Rotor;
-use hamel::{Block, Singular, System};
+use hamel::{Block, Energies, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout;
@@ -409,16 +409,8 @@ impl System for Instance {
         &self.of.blocks
     }
 
-    fn zero_coordinates(&self) -> Numbers {
-        Numbers::filled(0.0, self.start.0.len())
-    }
-
     fn zero_velocities(&self) -> Numbers {
         Numbers::filled(0.0, self.start.1.len())
-    }
-
-    fn zero_chart(&self) -> Numbers {
-        Numbers::filled(0.0, self.of.chart)
     }
 
     fn zero_inputs(&self) -> Numbers {
@@ -441,7 +433,12 @@ impl System for Instance {
         self.value(self.of.chart_rate, x, xi, &[])
     }
 
-    fn accel(&self, x: &Numbers, xi: &Numbers, u: &Numbers) -> Result<Numbers, Singular> {
+    fn forward_dynamics(
+        &self,
+        x: &Numbers,
+        xi: &Numbers,
+        u: &Numbers,
+    ) -> Result<Numbers, Singular> {
         self.count();
         let Some(accel) = self.of.accel else {
             return Err(Singular::Mass);
@@ -480,7 +477,9 @@ impl System for Instance {
     fn constraint_norm(&self, x: &Numbers) -> f64 {
         largest(&self.constraint(x))
     }
+}
 
+impl Energies for Instance {
     fn kinetic_energy(&self, x: &Numbers, xi: &Numbers) -> f64 {
         match self.of.kinetic {
             Some(kinetic) => self.scalar(kinetic, x, xi),

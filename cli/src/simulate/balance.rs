@@ -2,7 +2,7 @@
 //! step has jumped across a singularity, or is far too long.
 
 use crate::mechanism::Instance;
-use hamel::{State, System};
+use hamel::{Energies, State};
 
 /// A change of energy that no load accounts for means that the motion is lost where it is larger than this
 /// part of the energy that moves on average, or than so many tolerances of what moves here.

@@ -1,7 +1,7 @@
 //! The state of a run at one time, and what follows from it.
 
 use crate::mechanism::{Instance, Output};
-use hamel::{State, System};
+use hamel::{Energies, State};
 
 /// The state at one time, and what follows from it.
 #[derive(Clone, Debug)]

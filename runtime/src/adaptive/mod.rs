@@ -15,20 +15,11 @@
 //! #     type Chart = [f64; 1];
 //! #     type Inputs = [f64; 0];
 //! #     fn blocks(&self) -> &[Block] { &[Block::Circle] }
-//! #     fn zero_coordinates(&self) -> [f64; 2] { [0.0; 2] }
-//! #     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
-//! #     fn zero_chart(&self) -> [f64; 1] { [0.0] }
-//! #     fn zero_inputs(&self) -> [f64; 0] { [] }
 //! #     fn start(&self) -> ([f64; 2], [f64; 1]) { (s1::exp(1.0), [0.0]) }
-//! #     fn rate(&self, x: &[f64; 2], xi: &[f64; 1]) -> [f64; 2] { s1::rate(*x, xi[0]) }
 //! #     fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] { *xi }
-//! #     fn accel(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
+//! #     fn forward_dynamics(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
 //! #         Ok([-9.81 * x[1]])
 //! #     }
-//! #     fn correction(&self, x: &[f64; 2]) -> [f64; 2] { s1::correction(*x) }
-//! #     fn constraint_norm(&self, x: &[f64; 2]) -> f64 { s1::defect(*x) }
-//! #     fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 1]) -> f64 { 0.5 * xi[0] * xi[0] }
-//! #     fn potential_energy(&self, x: &[f64; 2]) -> f64 { -9.81 * x[0] }
 //! # }
 //! # fn main() -> Result<(), hamel::StepError> {
 //! use hamel::adaptive::{Adaptive, Event, Report};

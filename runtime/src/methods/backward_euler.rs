@@ -19,7 +19,7 @@ use crate::methods::{Method, arrive};
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::store::{add_scaled, scale};
-use crate::system::System;
+use crate::system::{Energies, System};
 
 /// Implicit Euler method: order 1, about six evaluations of ξ̇ per step, more if the system is stiff.
 ///
@@ -40,7 +40,7 @@ const MOST: u32 = 64;
 /// Largest size of an iterate relative to that of the first, explicit one; beyond it the iteration has failed.
 const FAR: f64 = 1e3;
 
-impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
+impl<Sys: Energies + ?Sized> Method<Sys> for BackwardEuler {
     fn order(&self) -> u32 {
         1
     }

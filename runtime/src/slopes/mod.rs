@@ -22,7 +22,7 @@ use crate::scalar::Scalar;
 use crate::split::Split;
 use crate::state::State;
 use crate::store::Table;
-use crate::system::{Block, System};
+use crate::system::{Block, Energies, System};
 
 /// Dual numbers with any number of directions.
 pub trait Directions: Scalar {
@@ -131,7 +131,7 @@ pub struct Sparsity {
     label = "slopes and `StiffEuler` need it",
     note = "ask for it in the description: `generate all, linearize;`"
 )]
-pub trait Tangent: System + Clone {
+pub trait Tangent: Energies + Clone {
     /// Whether the kinds of coordinates alone keep φ(x) = 0: then all points that a method reaches in the chart lie on
     /// the manifold, where the linearisation is valid.
     const CHARTED: bool;
@@ -147,7 +147,7 @@ pub trait Tangent: System + Clone {
     /// Dual numbers with a slope for each entry of η, ξ, z and u, in this order.
     type Number: Directions<Value = Self::Scalar>;
     /// The same system in these dual numbers.
-    type Dual: System<Scalar = Self::Number>;
+    type Dual: Energies<Scalar = Self::Number>;
     /// Compressed dual numbers, with a slope for each direction that occurs in [`Sparsity::seeds`].
     type CompressedNumber: Directions<Value = Self::Scalar>;
     /// The same system in compressed numbers.
@@ -175,7 +175,7 @@ pub trait Tangent: System + Clone {
     /// `slopes`.
     ///
     /// # Errors
-    /// Those of [`accel`](System::accel).
+    /// Those of [`forward_dynamics`](System::forward_dynamics).
     fn slopes(
         &self,
         x: &Self::Coordinates,
@@ -282,14 +282,14 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
 
     /// Returns ξ̇ with slopes ∂ξ̇/∂(η, ξ, z, u) times those of the displacements Y δx and of ξ, z and u; if coordinates
     /// may be off the manifold, evaluates ξ̇ in dual numbers instead.
-    fn accel(
+    fn forward_dynamics(
         &self,
         x: &Self::Coordinates,
         xi: &Self::Velocities,
         u: &Self::Inputs,
     ) -> Result<Self::Velocities, Singular> {
         if !Sys::CHARTED {
-            return self.dual.accel(x, xi, u);
+            return self.dual.forward_dynamics(x, xi, u);
         }
         let system = &self.system;
         let mut here = system.zero_coordinates();
@@ -362,7 +362,9 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar {
         self.dual.constraint_norm(x)
     }
+}
 
+impl<Sys: Tangent> Energies for TangentSystem<Sys> {
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar {
         self.dual.kinetic_energy(x, xi)
     }

@@ -10,7 +10,7 @@ use crate::methods::implicit::equations::{Equations, Point};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::scalar::Scalar;
 use crate::store::{Store, largest};
-use crate::system::System;
+use crate::system::Energies;
 
 /// A square matrix with a row for each velocity.
 pub(in crate::methods) struct Grid<V>(Vec<V>);
@@ -28,7 +28,7 @@ impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
 /// Finite-difference derivatives, at one evaluation per velocity.
 pub(in crate::methods) struct Differences;
 
-impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
+impl<Sys: Energies + ?Sized> Derivative<Sys> for Differences {
     type Factors = Factors<Sys::Scalar, Grid<Sys::Velocities>, Sys::Velocities>;
 
     const KNOWS_INPUTS: bool = true;

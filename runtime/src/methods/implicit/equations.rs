@@ -7,7 +7,7 @@ use crate::methods::implicit::unknowns::Unknowns;
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::store::{add_scaled, largest, scale};
-use crate::system::System;
+use crate::system::{Energies, System};
 
 /// Largest number of fixed-point iterations for the coordinates of a step.
 pub(in crate::methods) const TURNS: u32 = 64;
@@ -69,7 +69,7 @@ pub(in crate::methods) fn reach<Sys: System + ?Sized>(
 ///
 /// This is exact, since the kinetic energy T is a quadratic polynomial of the velocities; s makes both parts about
 /// equally large.
-pub(super) fn weigh<Sys: System + ?Sized>(
+pub(super) fn weigh<Sys: Energies + ?Sized>(
     system: &Sys,
     x: &Sys::Coordinates,
     g: &mut Sys::Velocities,
@@ -117,7 +117,7 @@ pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized> {
     pub(in crate::methods) weighed: bool,
 }
 
-impl<Sys: System + ?Sized> Equations<'_, Sys> {
+impl<Sys: Energies + ?Sized> Equations<'_, Sys> {
     /// Returns the coordinates to which ξ₁ leads, and the inputs there; the iteration for u starts from the guess in z.
     pub(super) fn place(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);

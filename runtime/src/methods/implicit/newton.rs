@@ -8,7 +8,7 @@ use crate::methods::implicit::equations::{Equations, reach};
 use crate::methods::implicit::unknowns::{ENOUGH, MEMORY, Progress, Unknowns, ratio};
 use crate::scalar::Scalar;
 use crate::store::{is_finite, largest};
-use crate::system::System;
+use crate::system::{Energies, System};
 
 /// Largest number of corrections for one step length.
 const MOST: u32 = 64;
@@ -24,7 +24,7 @@ const LEAST: f64 = 0.1;
 /// Fraction of the step that is tried first if the whole step is too long, and the smallest increment of this fraction.
 const PARTS: (f64, f64) = (0.25, 1e-4);
 
-impl<Sys: System + ?Sized> Equations<'_, Sys> {
+impl<Sys: Energies + ?Sized> Equations<'_, Sys> {
     /// Solves the equations and returns (x₁, ξ₁): starts from ξ, and if that fails, follows the solutions of shorter
     /// steps.
     pub(in crate::methods) fn solve<D: Derivative<Sys>>(
@@ -157,7 +157,7 @@ enum Followed<Sys: System + ?Sized> {
     Slower,
 }
 
-impl<Sys: System + ?Sized> Iteration<Sys> {
+impl<Sys: Energies + ?Sized> Iteration<Sys> {
     fn new(equations: &Equations<'_, Sys>, xi: Sys::Velocities) -> Self {
         let system = equations.system;
         Iteration {
