@@ -11,7 +11,8 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`Sampled`] | runs in equal steps, single steps, and runs with a controller that has a period of its own |
+//! | [`Run`] | runs built by chained calls: method, inputs or controller, observers, events |
+//! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`Sampled`] | the plain functions beneath: runs in equal steps, single steps, controllers with a period of their own |
 //! | [`methods`] | the integrators: explicit and implicit Runge-Kutta methods on Lie groups, variational and splitting methods |
 //! | [`adaptive`] | error control, events and dense output |
 //! | [`Monitor`] | how well a run conserves energy and satisfies constraints |
@@ -37,12 +38,12 @@
 //!
 //! # A system written by hand
 //!
-//! The integrators work for any [`System`], whether it was generated or not.
-//! This is a pendulum of length l, with x = (cos θ, sin θ), ξ = θ̇ and l θ̈ = −g sin θ:
+//! The integrators work for any [`System`], whether it was generated or not. Three methods are required; [`Energies`] are
+//! for the monitor. This is a pendulum of length l, with x = (cos θ, sin θ), ξ = θ̇ and l θ̈ = −g sin θ:
 //!
 //! ```
 //! use hamel::methods::Rkmk4;
-//! use hamel::{integrate, s1, Block, Energies, Monitor, Singular, State, System};
+//! use hamel::{s1, Block, Energies, Monitor, Run, Singular, State, System};
 //!
 //! struct Pendulum { g: f64, l: f64 }
 //!
@@ -70,12 +71,13 @@
 //!
 //! # fn main() -> Result<(), hamel::StepError> {
 //! let pendulum = Pendulum { g: 9.81, l: 0.5 };
-//! let mut state = State::start(&pendulum);
-//! let mut monitor = Monitor::new(&pendulum, &state);
-//! integrate(&pendulum, Rkmk4, &mut state, 1e-3, 10.0, |_, _, _| [], |state| {
-//!     monitor.observe(&pendulum, state);
-//! })?;
-//! assert_eq!(state.t, 10.0);
+//! let mut monitor = Monitor::new(&pendulum, &State::start(&pendulum));
+//! let end = Run::new(&pendulum)
+//!     .method(Rkmk4)
+//!     .step(1e-3)
+//!     .observe(|state| monitor.observe(&pendulum, state))
+//!     .until(10.0)?;
+//! assert_eq!(end.t, 10.0);
 //! assert!(monitor.relative_energy_deviation() < 1e-10);
 //! assert!(monitor.constraint() < 1e-15);
 //! # Ok(())
@@ -102,6 +104,7 @@ pub mod manifold;
 pub mod methods;
 mod monitor;
 pub mod rotor;
+pub mod run;
 pub mod s1;
 pub mod s3;
 mod sampled;
@@ -129,6 +132,7 @@ pub use monitor::Monitor;
 #[cfg(feature = "nalgebra")]
 pub use nalgebra;
 pub use rotor::Rotor;
+pub use run::Run;
 pub use sampled::Sampled;
 pub use scalar::Scalar;
 pub use slopes::{

@@ -1,9 +1,11 @@
 //! Digital controllers, which are called at a fixed period and hold their output in between.
 
+use core::ops::ControlFlow;
+
 use crate::adaptive::{Adaptive, Statistics};
 use crate::clock::Clock;
 use crate::error::StepError;
-use crate::integrate::integrate;
+use crate::integrate::integrate_while;
 use crate::methods::Method;
 use crate::state::State;
 use crate::system::System;
@@ -52,7 +54,7 @@ impl<C> Sampled<C> {
         Self { period, controller }
     }
 
-    /// Integrates `state` to the time `until`, in steps no longer than `length`, as [`integrate`](integrate()) does;
+    /// Integrates `state` to the time `until`, in steps no longer than `length`, as [`integrate`](crate::integrate()) does;
     /// the steps within a period are equal. `observe` is called with the first state and after every step.
     ///
     /// # Errors
@@ -73,17 +75,45 @@ impl<C> Sampled<C> {
         C: FnMut(&State<Sys>) -> Sys::Inputs,
         O: FnMut(&State<Sys>),
     {
-        observe(state);
+        let observe = |state: &State<Sys>| {
+            observe(state);
+            ControlFlow::Continue(())
+        };
+        self.integrate_while(system, method, state, length, until, observe)
+    }
+
+    /// Integrates like [`integrate`](Self::integrate) until `observe` breaks.
+    pub(crate) fn integrate_while<Sys, M, O>(
+        &mut self,
+        system: &Sys,
+        method: M,
+        state: &mut State<Sys>,
+        length: f64,
+        until: f64,
+        mut observe: O,
+    ) -> Result<(), StepError>
+    where
+        Sys: System + ?Sized,
+        M: Method<Sys>,
+        C: FnMut(&State<Sys>) -> Sys::Inputs,
+        O: FnMut(&State<Sys>) -> ControlFlow<()>,
+    {
+        if observe(state).is_break() {
+            return Ok(());
+        }
         self.periods(system, state, until, |state, end, u| {
             let from = state.t;
             let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
+            let mut flow = ControlFlow::Continue(());
             // `observe` has already seen the first state of this period, at the end of the previous one.
             let observe = |state: &State<Sys>| {
                 if state.t != from {
-                    observe(state);
+                    flow = observe(state);
                 }
+                flow
             };
-            integrate(system, &method, state, length, end, inputs, observe)
+            integrate_while(system, &method, state, length, end, inputs, observe)?;
+            Ok(flow)
         })
     }
 
@@ -109,23 +139,20 @@ impl<C> Sampled<C> {
         let mut all = Statistics::default();
         self.periods(system, state, until, |state, end, u| {
             let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
-            let part = method.run(system, state, end, inputs)?;
-            all.accepted += part.accepted;
-            all.rejected += part.rejected;
-            all.evaluations += part.evaluations;
+            all += method.run(system, state, end, inputs)?;
             observe(state);
-            Ok(())
+            Ok(ControlFlow::Continue(()))
         })?;
         Ok(all)
     }
 
-    /// Loops over the periods: calls the controller, and moves the state to the end of the period.
-    fn periods<Sys>(
+    /// Loops over the periods until `run` breaks: calls the controller, and moves the state to the end of the period.
+    pub(crate) fn periods<Sys>(
         &mut self,
         system: &Sys,
         state: &mut State<Sys>,
         until: f64,
-        mut run: impl FnMut(&mut State<Sys>, f64, &Sys::Inputs) -> Result<(), StepError>,
+        mut run: impl FnMut(&mut State<Sys>, f64, &Sys::Inputs) -> Result<ControlFlow<()>, StepError>,
     ) -> Result<(), StepError>
     where
         Sys: System + ?Sized,
@@ -151,9 +178,12 @@ impl<C> Sampled<C> {
                 true => until,
                 false => from + index as f64 * step,
             };
-            run(state, end, &u)?;
+            let flow = run(state, end, &u)?;
             if let Some(clock) = &clock {
                 clock.set(state);
+            }
+            if flow.is_break() {
+                break;
             }
         }
         Ok(())

@@ -22,6 +22,7 @@ mod lanes;
 mod oscillator;
 mod rotations;
 mod rotor_slopes;
+mod run;
 mod sampled;
 #[path = "../../../codegen/tests/suite/common/size.rs"]
 mod size;
