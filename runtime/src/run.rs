@@ -88,6 +88,12 @@ pub struct ErrorControl<'e, Sys: System + ?Sized, R, const M: usize, const D: us
     dense: bool,
 }
 
+/// An observer that lets a run go on.
+type Observer<Sys> = fn(&State<Sys>) -> ControlFlow<()>;
+
+/// A report that is not read.
+type Unread<Sys, const D: usize> = fn(Report<'_, Sys, D>);
+
 impl<'s, Sys: System + ?Sized> Run<'s, Sys> {
     /// Creates a run from the initial state of the system, with u = 0.
     pub fn new(
@@ -97,14 +103,14 @@ impl<'s, Sys: System + ?Sized> Run<'s, Sys> {
         Sys,
         (),
         impl Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-        impl FnMut(&State<Sys>) -> ControlFlow<()>,
+        Observer<Sys>,
     > {
         Run {
             system,
             state: State::start(system),
             method: (),
             inputs: |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| system.zero_inputs(),
-            observe: |_: &State<Sys>| ControlFlow::Continue(()),
+            observe: |_| ControlFlow::Continue(()),
         }
     }
 }
@@ -250,11 +256,12 @@ impl<'s, Sys: System + ?Sized, U, O> Run<'s, Sys, (), U, O> {
     pub fn adaptive<const M: usize, const D: usize>(
         self,
         method: Adaptive<M, D>,
-    ) -> Run<'s, Sys, ErrorControl<'s, Sys, impl FnMut(Report<'_, Sys, D>), M, D>, U, O> {
+    ) -> Run<'s, Sys, ErrorControl<'s, Sys, Unread<Sys, D>, M, D>, U, O> {
+        let report: Unread<Sys, D> = |_| {};
         self.with_method(|()| ErrorControl {
             method,
             events: &[],
-            report: |_: Report<'_, Sys, D>| {},
+            report,
             dense: false,
         })
     }
