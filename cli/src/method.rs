@@ -298,9 +298,9 @@ where
         }
     }
 
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         match self {
-            Stepper::General(method) => Method::<Sys>::stays_near(method),
+            Stepper::General(method) => Method::<Sys>::preserves_constraints(method),
             Stepper::Slide | Stepper::Buss(_) => false,
             _ => true,
         }
@@ -319,7 +319,7 @@ where
         self.stepped(system, state, h, inputs)
     }
 
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,
@@ -381,9 +381,11 @@ impl Stepper {
             Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical + Energies,
     {
         match self {
-            Stepper::Splitting(method) => method.follow(system, state, h, &inputs, force),
-            Stepper::Lgvi => Lgvi.follow(system, state, h, &inputs, force),
-            Stepper::Buss(method) => method.follow(system, state, h, &inputs, force),
+            Stepper::Splitting(method) => {
+                method.step_reusing_force(system, state, h, &inputs, force)
+            }
+            Stepper::Lgvi => Lgvi.step_reusing_force(system, state, h, &inputs, force),
+            Stepper::Buss(method) => method.step_reusing_force(system, state, h, &inputs, force),
             _ => self.stepped(system, state, h, inputs),
         }
     }

@@ -14,7 +14,7 @@ use core::cell::Cell;
 
 use crate::adaptive::control::power;
 use crate::error::StepError;
-use crate::integrate::{acceleration, lead_back, project};
+use crate::integrate::{acceleration, project, project_coordinates};
 use crate::manifold;
 use crate::scalar::Scalar;
 use crate::state::State;
@@ -71,7 +71,7 @@ where
         manifold::normalise(self.system.blocks(), x.as_mut());
         let mut state = State { t, x, xi };
         if state.is_finite() {
-            lead_back(self.system, &mut state);
+            project_coordinates(self.system, &mut state);
             project(self.system, &mut state)?;
             Ok(state)
         } else {
@@ -107,7 +107,7 @@ where
         // The entry that moves most relative to its own size determines δ. For v = 0, δ does not matter.
         let zero = Sys::Scalar::default();
         let fastest = y.iter().zip(v).fold(zero, |most, (y, v)| {
-            Scalar::max(most, v.size() / (number(1.0) + y.size()))
+            Scalar::max(most, v.magnitude() / (number(1.0) + y.magnitude()))
         });
         let delta = reach / zero.select_lt(fastest, fastest, number(1.0));
         let side = |delta: Sys::Scalar| {

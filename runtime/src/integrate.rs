@@ -30,8 +30,8 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let mut next = method.step(system, state, h, inputs)?;
-    if !method.stays_near() {
-        lead_back(system, &mut next);
+    if !method.preserves_constraints() {
+        project_coordinates(system, &mut next);
     }
     project(system, &mut next)?;
     *state = next;
@@ -41,7 +41,7 @@ where
 /// Corrects x by one Newton step towards the part of φ(x) = 0 that no chart preserves; returns whether there is such a
 /// constraint.
 #[inline]
-pub(crate) fn lead_back<Sys>(system: &Sys, state: &mut State<Sys>) -> bool
+pub(crate) fn project_coordinates<Sys>(system: &Sys, state: &mut State<Sys>) -> bool
 where
     Sys: System + ?Sized,
 {
@@ -96,7 +96,7 @@ where
 /// number. All steps are therefore equal, the method keeps its order, and the last state is at `until` exactly.
 /// `inputs(t, x, ξ)` returns u and is called at every point that the method visits; `observe` is called with the first
 /// state and after every step. A method that evaluates the forces both at the end of a step and at the start of the
-/// next evaluates them only once ([`Method::follow`]).
+/// next evaluates them only once ([`Method::step_reusing_force`]).
 ///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
@@ -155,12 +155,13 @@ where
     let clock = Clock::new(system, state);
     let mut force = None;
     for index in 1..=grid.count {
-        let mut next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
+        let mut next =
+            method.step_reusing_force(system, state, grid.step(), &inputs, &mut force)?;
         next.t = grid.time(index);
         if let Some(clock) = &clock {
             clock.set(&mut next);
         }
-        let led_back = !method.stays_near() && lead_back(system, &mut next);
+        let led_back = !method.preserves_constraints() && project_coordinates(system, &mut next);
         if project(system, &mut next)? || led_back {
             force = None;
         }
@@ -219,11 +220,11 @@ impl Grid {
 /// Returns the smallest number of equal steps, no longer than `step`, that cover `span`.
 fn count_steps(span: f64, step: f64) -> Result<u64, StepError> {
     /// Largest number of steps; beyond it, rounding hardly distinguishes the times of neighbouring steps.
-    const MOST: f64 = (1_u64 << 52) as f64;
+    const MAX_STEPS: f64 = (1_u64 << 52) as f64;
     let ratio = (span / step).abs();
     if span == 0.0 {
         Ok(0)
-    } else if !span.is_finite() || !step.is_finite() || step == 0.0 || ratio > MOST {
+    } else if !span.is_finite() || !step.is_finite() || step == 0.0 || ratio > MAX_STEPS {
         Err(StepError::InvalidStep { step, span })
     } else {
         let nearest = (ratio + 0.5) as u64;

@@ -12,7 +12,7 @@
 //! | | |
 //! |---|---|
 //! | [`Run`] | runs built by chained calls: method, inputs or controller, observers, events |
-//! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`Sampled`] | the plain functions beneath: runs in equal steps, single steps, controllers with a period of their own |
+//! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`ZeroOrderHold`] | the plain functions beneath: runs in equal steps, single steps, controllers with a period of their own |
 //! | [`methods`] | the integrators: explicit and implicit Runge-Kutta methods on Lie groups, variational and splitting methods |
 //! | [`adaptive`] | error control, events and dense output |
 //! | [`Monitor`] | how well a run conserves energy and satisfies constraints |
@@ -32,7 +32,7 @@
 //! |---|---|---|
 //! | `std` | yes | mathematical functions of the standard library, `Vec` as a [`Store`], and differences in [`BackwardEuler`](methods::BackwardEuler). Without it the crate is `no_std` and takes them from `libm` |
 //! | `macros` | yes | [`rigid_eom!`] |
-//! | `nalgebra` | yes | conversions of states to nalgebra types, in `edge` |
+//! | `nalgebra` | yes | conversions of states to nalgebra types, in `nalgebra_interop` |
 //! | `wide` | no | SIMD lanes as scalars, in `wide` |
 //! | `ensemble` | no | many states at once on SIMD lanes and threads, in `ensemble`; implies `std` and `wide` |
 //!
@@ -92,8 +92,6 @@ pub mod adaptive;
 mod canonical;
 mod clock;
 mod dual;
-#[cfg(feature = "nalgebra")]
-pub mod edge;
 #[cfg(feature = "ensemble")]
 pub mod ensemble;
 mod error;
@@ -103,11 +101,12 @@ mod lanes;
 pub mod manifold;
 pub mod methods;
 mod monitor;
+#[cfg(feature = "nalgebra")]
+pub mod nalgebra_interop;
 pub mod rotor;
 pub mod run;
 pub mod s1;
 pub mod s3;
-mod sampled;
 mod scalar;
 mod slopes;
 pub mod so3;
@@ -118,6 +117,7 @@ mod system;
 pub mod trig;
 #[cfg(feature = "wide")]
 pub mod wide;
+mod zero_order_hold;
 
 pub use canonical::Canonical;
 pub use clock::Clock;
@@ -133,7 +133,6 @@ pub use monitor::Monitor;
 pub use nalgebra;
 pub use rotor::Rotor;
 pub use run::Run;
-pub use sampled::Sampled;
 pub use scalar::Scalar;
 pub use slopes::{
     Directions, Sparsity, Stepped, Tangent, TangentStep, TangentSystem, step_slopes,
@@ -143,3 +142,4 @@ pub use split::Split;
 pub use state::State;
 pub use store::{Store, Table};
 pub use system::{Block, Energies, System};
+pub use zero_order_hold::ZeroOrderHold;

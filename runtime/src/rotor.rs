@@ -58,7 +58,7 @@ impl<S: Scalar> Rotor<S> {
         let mut j: Matrix<S> = from_fn(|k| half * (inertia[k] + inertia[3 * (k % 3) + k / 3]));
         if [j[1], j[2], j[5]]
             .iter()
-            .all(|entry| entry.size().largest_lane() == 0.0)
+            .all(|entry| entry.magnitude().largest_lane() == 0.0)
         {
             return Self::of_moments([j[0], j[4], j[8]]);
         }
@@ -118,7 +118,7 @@ fn symmetry<S: Scalar>(moments: Vector<S>, ulps: f64) -> Symmetry {
     let [a, b, c] = moments;
     let largest = Scalar::max(Scalar::max(a.abs(), b.abs()), c.abs());
     let limit = S::from_f64(ulps) * epsilon::<S>();
-    let equal = |a: S, b: S| (limit * largest.size() - (a - b).size()).is_positive();
+    let equal = |a: S, b: S| (limit * largest.magnitude() - (a - b).magnitude()).is_positive();
     match (equal(b, c), equal(c, a), equal(a, b)) {
         (true, true, true) => Symmetry::Spherical,
         (true, _, false) => Symmetry::Axial(0),

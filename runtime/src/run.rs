@@ -7,9 +7,9 @@ use crate::adaptive::{Adaptive, Event, Outcome, Report, Step};
 use crate::error::StepError;
 use crate::integrate::integrate_while;
 use crate::methods::Method;
-use crate::sampled::Sampled;
 use crate::state::State;
 use crate::system::System;
+use crate::zero_order_hold::ZeroOrderHold;
 
 /// A run of a system, built by chained calls; `until` starts it and returns the state at its end.
 ///
@@ -64,7 +64,7 @@ use crate::system::System;
 /// # }
 /// ```
 #[must_use = "a run starts when `until` is called"]
-pub struct Run<'s, Sys: System + ?Sized, M = (), U = (), O = ()> {
+pub struct Run<'s, Sys: System + ?Sized, M = (), U = (), O = Observer<Sys>> {
     system: &'s Sys,
     state: State<Sys>,
     method: M,
@@ -88,6 +88,19 @@ pub struct ErrorControl<'e, Sys: System + ?Sized, R, const M: usize, const D: us
     dense: bool,
 }
 
+/// A function u(t, x, ξ); every closure of this form is one.
+pub trait InputFunction<Sys: System + ?Sized>:
+    Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs
+{
+}
+
+impl<Sys, F> InputFunction<Sys> for F
+where
+    Sys: System + ?Sized,
+    F: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+}
+
 /// An observer that lets a run go on.
 type Observer<Sys> = fn(&State<Sys>) -> ControlFlow<()>;
 
@@ -96,15 +109,7 @@ type Unread<Sys, const D: usize> = fn(Report<'_, Sys, D>);
 
 impl<'s, Sys: System + ?Sized> Run<'s, Sys> {
     /// Creates a run from the initial state of the system, with u = 0.
-    pub fn new(
-        system: &'s Sys,
-    ) -> Run<
-        's,
-        Sys,
-        (),
-        impl Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-        Observer<Sys>,
-    > {
+    pub fn new(system: &'s Sys) -> Run<'s, Sys, (), impl InputFunction<Sys>> {
         Run {
             system,
             state: State::start(system),
@@ -139,7 +144,11 @@ impl<'s, Sys: System + ?Sized, M, U, O> Run<'s, Sys, M, U, O> {
     /// Sets a digital controller, which is called for u at the start and at every multiple of `period` after that; u is
     /// constant in between. Calls come in order of time, so the controller may have a state of its own. The run is
     /// forwards in time.
-    pub fn zero_order_hold<C>(self, period: f64, controller: C) -> Run<'s, Sys, M, Sampled<C>, O>
+    pub fn zero_order_hold<C>(
+        self,
+        period: f64,
+        controller: C,
+    ) -> Run<'s, Sys, M, ZeroOrderHold<C>, O>
     where
         C: FnMut(&State<Sys>) -> Sys::Inputs,
     {
@@ -147,7 +156,7 @@ impl<'s, Sys: System + ?Sized, M, U, O> Run<'s, Sys, M, U, O> {
             system: self.system,
             state: self.state,
             method: self.method,
-            inputs: Sampled::new(period, controller),
+            inputs: ZeroOrderHold::new(period, controller),
             observe: self.observe,
         }
     }
@@ -357,7 +366,7 @@ where
     }
 }
 
-impl<Sys, M, C, O> Run<'_, Sys, FixedStep<M>, Sampled<C>, O>
+impl<Sys, M, C, O> Run<'_, Sys, FixedStep<M>, ZeroOrderHold<C>, O>
 where
     Sys: System + ?Sized,
     M: Method<Sys>,
@@ -367,7 +376,7 @@ where
     /// Runs to the time `until` and returns the state there, or where a condition stopped the run.
     ///
     /// # Errors
-    /// Those of [`Sampled::integrate`].
+    /// Those of [`ZeroOrderHold::integrate`].
     pub fn until(mut self, until: f64) -> Result<State<Sys>, StepError> {
         let FixedStep { method, length } = self.method;
         self.inputs.integrate_while(
@@ -407,7 +416,7 @@ where
 }
 
 impl<Sys, R, const M: usize, const D: usize, C, O>
-    Run<'_, Sys, ErrorControl<'_, Sys, R, M, D>, Sampled<C>, O>
+    Run<'_, Sys, ErrorControl<'_, Sys, R, M, D>, ZeroOrderHold<C>, O>
 where
     Sys: System + ?Sized,
     R: FnMut(Report<'_, Sys, D>),
@@ -417,7 +426,7 @@ where
     /// Runs to the time `until` and returns the state there, or where an event or a condition stopped the run.
     ///
     /// # Errors
-    /// Those of [`Sampled::adapt`].
+    /// Those of [`ZeroOrderHold::adapt`].
     pub fn until(mut self, until: f64) -> Result<(State<Sys>, Outcome), StepError> {
         let mut outcome = Outcome::default();
         if (self.observe)(&self.state).is_break() {

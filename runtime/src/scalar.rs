@@ -82,14 +82,14 @@ pub trait Scalar:
     /// Returns the size of the number for convergence tests and error estimates: |self|. For a dual number it is the
     /// largest of |value| and |slopes|, as a constant (with zero slopes).
     #[inline]
-    fn size(self) -> Self {
+    fn magnitude(self) -> Self {
         self.abs()
     }
 
     /// Returns the error `self` relative to two numbers, |self|/(|a| + |b|), and 0 where `self` is 0. For dual numbers
     /// it is the larger of this ratio for the values and for the largest slopes, as a constant.
     #[inline]
-    fn beside(self, a: Self, b: Self) -> Self {
+    fn relative_to(self, a: Self, b: Self) -> Self {
         let error = self.abs();
         Self::default().select_lt(error, error / (a.abs() + b.abs()), error)
     }
@@ -153,7 +153,7 @@ pub trait Scalar:
     /// Returns self (1 + 2⁻²⁶), or self (1 + 2⁻¹⁵) for `f32`: larger by a small part that exceeds rounding. This makes
     /// a pivot that may consist of rounding alone safe to divide by.
     #[inline]
-    fn raised(self) -> Self {
+    fn inflated(self) -> Self {
         let double = Self::EPSILON < 1e-10;
         let parts = if double { 1u32 << 26 } else { 1 << 15 };
         self * Self::from_f64(1.0 + 1.0 / f64::from(parts))
@@ -283,9 +283,9 @@ macro_rules! scalar {
             fn is_positive(self) -> bool {
                 // Compares bit patterns, from that of the smallest normal number to that of infinity: for two
                 // comparisons of numbers the compiler generates three times as many instructions.
-                const LEAST: $float = $float::MIN_POSITIVE;
-                self.to_bits().wrapping_sub(LEAST.to_bits())
-                    < $float::INFINITY.to_bits() - LEAST.to_bits()
+                const SMALLEST_NORMAL: $float = $float::MIN_POSITIVE;
+                self.to_bits().wrapping_sub(SMALLEST_NORMAL.to_bits())
+                    < $float::INFINITY.to_bits() - SMALLEST_NORMAL.to_bits()
             }
 
             #[inline]

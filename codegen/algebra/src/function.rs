@@ -225,7 +225,7 @@ table! {
         "extern" "" "" Other Plain Free [None] [Two]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     Raised "a larger by a small part that rounding does not hide, 2⁻²⁶ of it in `f64`: a pivot that may be nothing but rounding becomes one that can be divided by"
-        "(1 + ε) " "raised()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [OfOne]
+        "(1 + ε) " "inflated()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [OfOne]
         |a| a * RAISED, |a| a * Double::new(RAISED), |a| a.times(Real::new(RAISED, 0.0)),
         |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISED)?)));
 }

@@ -51,7 +51,7 @@ impl<Sys: System + ?Sized> Method<Sys> for Baseline {
 
     /// They are here to show what is not led back, or is in other ways.
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         true
     }
 

@@ -91,8 +91,8 @@ pub(crate) struct Controller {
 }
 
 const SAFETY: f64 = 0.9;
-const SMALLEST: f64 = 0.2;
-const LARGEST: f64 = 5.0;
+const MIN_FACTOR: f64 = 0.2;
+const MAX_FACTOR: f64 = 5.0;
 
 impl Controller {
     pub(crate) fn new(order: u32) -> Self {
@@ -109,17 +109,21 @@ impl Controller {
         // Below 1e-10 the factor has reached its limit anyway, and zero has no logarithm.
         let q = q.max(1e-10);
         let factor = SAFETY * power(q, -0.7 / self.order) * power(self.before, 0.4 / self.order);
-        let most = if self.refused { 1.0 } else { LARGEST };
+        let most = if self.refused { 1.0 } else { MAX_FACTOR };
         self.before = q.max(1e-4);
         self.refused = false;
-        factor.clamp(SMALLEST, most)
+        factor.clamp(MIN_FACTOR, most)
     }
 
     /// Returns the factor for another attempt, after one with the scaled error q > 1, or with none (NaN).
     pub(crate) fn refuse(&mut self, q: f64) -> f64 {
         self.refused = true;
         let factor = SAFETY * power(q, -1.0 / self.order);
-        if factor > SMALLEST { factor } else { SMALLEST }
+        if factor > MIN_FACTOR {
+            factor
+        } else {
+            MIN_FACTOR
+        }
     }
 }
 

@@ -60,7 +60,7 @@ use crate::adaptive::control::{Controller, power};
 use crate::adaptive::stiff::Stiffness;
 use crate::clock::Clock;
 use crate::error::StepError;
-use crate::integrate::{acceleration, lead_back, project};
+use crate::integrate::{acceleration, project, project_coordinates};
 use crate::methods::tableau::{Stages, Sums};
 use crate::methods::{rkmk8, rkmk54};
 use crate::scalar::Scalar;
@@ -250,7 +250,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
                 return Ok(None);
             };
             let mut state = step.at(time);
-            lead_back(step.system, &mut state);
+            project_coordinates(step.system, &mut state);
             project(step.system, &mut state)?;
             observe(Report::Event {
                 index,
@@ -345,7 +345,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             if let Some(clock) = &clock {
                 clock.set(&mut end);
             }
-            let led_back = lead_back(system, &mut end);
+            let led_back = project_coordinates(system, &mut end);
             let moved = project(system, &mut end)? || led_back;
             let mut stopped_by = None;
             if dense {

@@ -52,7 +52,7 @@ impl<Sys: Split + ?Sized> Method<Sys> for Free {
     }
 
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         true
     }
 

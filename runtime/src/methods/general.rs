@@ -43,10 +43,10 @@ macro_rules! general {
             }
 
             #[inline]
-            fn stays_near(&self) -> bool {
+            fn preserves_constraints(&self) -> bool {
                 match self {
-                    Self::Rk4 { lambda } => Method::<Sys>::stays_near(&Rk4 { lambda: *lambda }),
-                    $(Self::$variant => Method::<Sys>::stays_near(&$variant),)*
+                    Self::Rk4 { lambda } => Method::<Sys>::preserves_constraints(&Rk4 { lambda: *lambda }),
+                    $(Self::$variant => Method::<Sys>::preserves_constraints(&$variant),)*
                 }
             }
 

@@ -71,7 +71,7 @@ pub trait Method<Sys: System + ?Sized> {
     /// Symmetric methods do, but lose this property if x is corrected after each step. For all other methods, x is
     /// corrected towards φ(x) = 0 after each step ([`System::project_coordinates`]).
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         false
     }
 
@@ -104,7 +104,7 @@ pub trait Method<Sys: System + ?Sized> {
     /// # Errors
     /// Those of [`step`](Self::step).
     #[inline]
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,
@@ -171,8 +171,8 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     }
 
     #[inline]
-    fn stays_near(&self) -> bool {
-        (**self).stays_near()
+    fn preserves_constraints(&self) -> bool {
+        (**self).preserves_constraints()
     }
 
     #[inline]
@@ -190,7 +190,7 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     }
 
     #[inline]
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,
@@ -201,7 +201,7 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        (**self).follow(system, state, h, inputs, force)
+        (**self).step_reusing_force(system, state, h, inputs, force)
     }
 }
 

@@ -42,10 +42,10 @@ pub trait Directions: Scalar {
     fn slopes(&self) -> &[Self::Value];
 
     /// Adds `factor` times the slopes of another number; the value is unchanged.
-    fn follow(&mut self, factor: Self::Value, other: &Self);
+    fn add_slopes(&mut self, factor: Self::Value, other: &Self);
 
     /// Adds to the slope along one direction; the value is unchanged.
-    fn lean(&mut self, by: Self::Value, direction: usize);
+    fn add_slope(&mut self, by: Self::Value, direction: usize);
 
     /// Returns whether the slopes are 1 along one direction and 0 along all others.
     fn is_along(&self, direction: usize) -> bool;
@@ -86,14 +86,14 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     }
 
     #[inline]
-    fn follow(&mut self, factor: S, other: &Self) {
+    fn add_slopes(&mut self, factor: S, other: &Self) {
         for (own, slope) in self.slopes.iter_mut().zip(&other.slopes) {
             *own = factor.mul_add(*slope, *own);
         }
     }
 
     #[inline]
-    fn lean(&mut self, by: S, direction: usize) {
+    fn add_slope(&mut self, by: S, direction: usize) {
         if let Some(slope) = self.slopes.get_mut(direction) {
             *slope += by;
         }
@@ -231,7 +231,7 @@ where
         if let Some(factor) = coframe.row(i).get(entry)
             && let Some(moved) = x.get(entry)
         {
-            sum.follow(*factor, moved);
+            sum.add_slopes(*factor, moved);
         }
     }
     sum
@@ -311,8 +311,8 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
             let alone = by.is_along(column);
             for (i, number) in result.as_mut().iter_mut().enumerate() {
                 match table.row(displacements + i).get(column) {
-                    Some(slope) if alone => number.lean(*slope, column),
-                    Some(slope) if !is_zero(*slope) => number.follow(*slope, by),
+                    Some(slope) if alone => number.add_slope(*slope, column),
+                    Some(slope) if !is_zero(*slope) => number.add_slopes(*slope, by),
                     _ => {}
                 }
             }

@@ -2,7 +2,7 @@
 
 use hamel::adaptive::Adaptive;
 use hamel::methods::Rkmk4;
-use hamel::{Block, Clock, Energies, Sampled, Scalar, Singular, State, System};
+use hamel::{Block, Clock, Energies, Scalar, Singular, State, System, ZeroOrderHold};
 use std::marker::PhantomData;
 
 /// Where the clock starts.
@@ -117,7 +117,7 @@ fn a_tolerance() {
 #[test]
 fn a_controller() {
     let mut state = State::start(&ALONE);
-    let mut idle = Sampled::new(0.003, |_: &State<Driven<f64>>| []);
+    let mut idle = ZeroOrderHold::new(0.003, |_: &State<Driven<f64>>| []);
     idle.integrate(&ALONE, Rkmk4, &mut state, 1e-3, 1.0, |_| {})
         .expect("a run");
     check(&state, 0.0);

@@ -23,7 +23,6 @@ mod oscillator;
 mod rotations;
 mod rotor_slopes;
 mod run;
-mod sampled;
 #[path = "../../../codegen/tests/suite/common/size.rs"]
 mod size;
 mod stiff;
@@ -33,3 +32,4 @@ mod tableaux;
 mod trigonometry;
 #[cfg(feature = "wide")]
 mod wide;
+mod zero_order_hold;

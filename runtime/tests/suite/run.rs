@@ -3,7 +3,7 @@
 use crate::oscillator::Oscillator;
 use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::{Rkmk4, Rkmk8};
-use hamel::{Run, Sampled, State, StepError, integrate};
+use hamel::{Run, State, StepError, ZeroOrderHold, integrate};
 
 const OSCILLATOR: Oscillator = Oscillator {
     frequency: 3.0,
@@ -118,7 +118,14 @@ fn error_control_is_that_of_adaptive() -> Result<(), StepError> {
 fn a_controller_acts_as_in_the_plain_functions() -> Result<(), StepError> {
     let control = |state: &State<Oscillator>| [1.0 - state.x[0]];
     let mut state = State::start(&OSCILLATOR);
-    Sampled::new(0.1, control).integrate(&OSCILLATOR, Rkmk4, &mut state, 0.03, 1.0, |_| {})?;
+    ZeroOrderHold::new(0.1, control).integrate(
+        &OSCILLATOR,
+        Rkmk4,
+        &mut state,
+        0.03,
+        1.0,
+        |_| {},
+    )?;
     let run = Run::new(&OSCILLATOR).method(Rkmk4).step(0.03);
     let end = run.zero_order_hold(0.1, control).until(1.0)?;
     assert_eq!(bits(&end), bits(&state));
@@ -126,7 +133,7 @@ fn a_controller_acts_as_in_the_plain_functions() -> Result<(), StepError> {
     let method = Adaptive::rkmk54(1e-8);
     let mut state = State::start(&OSCILLATOR);
     let statistics =
-        Sampled::new(0.1, control).adapt(&OSCILLATOR, &method, &mut state, 1.0, |_| {})?;
+        ZeroOrderHold::new(0.1, control).adapt(&OSCILLATOR, &method, &mut state, 1.0, |_| {})?;
     let run = Run::new(&OSCILLATOR).adaptive(method);
     let (end, outcome) = run.zero_order_hold(0.1, control).until(1.0)?;
     assert_eq!(bits(&end), bits(&state));

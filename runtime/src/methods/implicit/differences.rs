@@ -13,9 +13,9 @@ use crate::store::{Store, largest};
 use crate::system::Energies;
 
 /// A square matrix with a row for each velocity.
-pub(in crate::methods) struct Grid<V>(Vec<V>);
+pub(in crate::methods) struct SquareMatrix<V>(Vec<V>);
 
-impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
+impl<S: Scalar, V: Store<S>> Square<S> for SquareMatrix<V> {
     fn row(&self, i: usize) -> &[S] {
         self.0.get(i).map_or(&[], |row| row.as_ref())
     }
@@ -29,7 +29,7 @@ impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
 pub(in crate::methods) struct Differences;
 
 impl<Sys: Energies + ?Sized> Derivative<Sys> for Differences {
-    type Factors = Factors<Sys::Scalar, Grid<Sys::Velocities>, Sys::Velocities>;
+    type Factors = Factors<Sys::Scalar, SquareMatrix<Sys::Velocities>, Sys::Velocities>;
 
     const KNOWS_INPUTS: bool = true;
 
@@ -42,11 +42,11 @@ impl<Sys: Energies + ?Sized> Derivative<Sys> for Differences {
         *iterations += 1;
         let here = equations.point(z)?;
         let zeros = equations.system.zero_velocities();
-        let mut grid = Grid(vec![zeros.clone(); zeros.as_ref().len()]);
+        let mut grid = SquareMatrix(vec![zeros.clone(); zeros.as_ref().len()]);
         let of = Sys::Scalar::from_f64;
         // The perturbation uses half of the digits: of ξ, or of x/h if that is larger.
         let half = of(Sys::Scalar::EPSILON.sqrt());
-        let reach = largest(equations.state.x.as_ref()).size() / of(equations.h.abs());
+        let reach = largest(equations.state.x.as_ref()).magnitude() / of(equations.h.abs());
         for j in 0..zeros.as_ref().len() {
             *iterations += 1;
             let mut near = z.clone();
@@ -54,7 +54,7 @@ impl<Sys: Energies + ?Sized> Derivative<Sys> for Differences {
                 continue;
             };
             let before = *entry;
-            let by = half * Scalar::max(reach, entry.size());
+            let by = half * Scalar::max(reach, entry.magnitude());
             *entry += of(0.0).select_lt(by, by, half);
             let by = *entry - before;
             let there = equations.point(&mut near)?;

@@ -65,7 +65,7 @@ pub fn rows<S: nalgebra::Scalar + Copy>(matrix: &Matrix3<S>) -> Matrix<S> {
 /// Converts three components to an nalgebra vector.
 ///
 /// ```
-/// let axis = hamel::edge::vector3([3.0, 0.0, 4.0]).normalize();
+/// let axis = hamel::nalgebra_interop::vector3([3.0, 0.0, 4.0]).normalize();
 /// assert_eq!(axis, hamel::nalgebra::Vector3::new(0.6, 0.0, 0.8));
 /// ```
 pub fn vector3<S: nalgebra::Scalar>(components: so3::Vector<S>) -> Vector3<S> {

@@ -33,7 +33,7 @@ use crate::system::System;
 /// let cart = Cart;
 /// let mut state = State::start(&cart);
 /// let mut integral = 0.0;
-/// let mut controller = hamel::Sampled::new(0.01, |state: &State<Cart>| {
+/// let mut controller = hamel::ZeroOrderHold::new(0.01, |state: &State<Cart>| {
 ///     integral += 0.01 * (1.0 - state.x[0]);
 ///     [3.0 * (1.0 - state.x[0]) + 1.0 * integral - 3.0 * state.xi[0]]
 /// });
@@ -43,12 +43,12 @@ use crate::system::System;
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Sampled<C> {
+pub struct ZeroOrderHold<C> {
     period: f64,
     controller: C,
 }
 
-impl<C> Sampled<C> {
+impl<C> ZeroOrderHold<C> {
     /// Creates a controller that is called once per `period`, in the time unit of the description.
     pub const fn new(period: f64, controller: C) -> Self {
         Self { period, controller }
