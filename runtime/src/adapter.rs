@@ -9,6 +9,39 @@
 //! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads back to it, and
 //! [`Equations::state`] projects each state onto it. If λ is far above the rates of the motion, the equations are
 //! stiff, which stiff solvers handle.
+//!
+//! ```
+//! # #[cfg(feature = "macros")] {
+//! # hamel::rigid_eom! {
+//! #     system Pendulum {
+//! #         coord q;
+//! #         velocity w;
+//! #         rate q = w;
+//! #         kinetic w^2 / 2;
+//! #         potential -cos(q);
+//! #         input tau;
+//! #         generalized force w = tau;
+//! #         start q = 1;
+//! #     }
+//! # }
+//!
+//! use hamel::{State, adapter::Equations};
+//!
+//! let pendulum = Pendulum::<f64>::default();
+//! let equations = Equations::new(&pendulum, |_, _, _| [0.0], 0.0);
+//! let mut y = vec![0.0; equations.unknowns()];
+//! equations.write(&State::start(&pendulum), &mut y);
+//! // Euler's method, in the place of a solver.
+//! let mut y_dot = y.clone();
+//! for step in 0..100 {
+//!     equations.rates(1e-3 * f64::from(step), &y, &mut y_dot);
+//!     y.iter_mut().zip(&y_dot).for_each(|(y, rate)| *y += 1e-3 * rate);
+//! }
+//! let end = equations.state(0.1, &y)?;
+//! assert!(end.x[0] < 1.0);
+//! # }
+//! # Ok::<(), hamel::StepError>(())
+//! ```
 
 use core::cell::Cell;
 

@@ -14,6 +14,32 @@ use core::ops::ControlFlow;
 /// The result is projected onto the constraints that no chart preserves: those among the coordinates, and those that
 /// multipliers enforce. `inputs(t, x, ξ)` returns u.
 ///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{State, methods::Rkmk4, step};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut state = State::start(&pendulum);
+/// // One step of 10 ms, braked in proportion to the speed.
+/// step(&pendulum, Rkmk4, &mut state, 0.01, &|_, _, xi| [-0.1 * xi[0]])?;
+/// assert_eq!(state.t, 0.01);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
+///
 /// # Errors
 /// [`StepError`]; `state` is then unchanged.
 #[inline]
@@ -98,6 +124,35 @@ where
 /// state and after every step. A method that evaluates the forces both at the end of a step and at the start of the
 /// next evaluates them only once ([`Method::step_reusing_force`]).
 ///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{State, integrate, methods::Rkmk4};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut state = State::start(&pendulum);
+/// let mut lowest: f64 = 1.0;
+/// let inputs = |_, _: &_, _: &_| [0.0];
+/// integrate(&pendulum, Rkmk4, &mut state, 0.01, 10.0, inputs, |state| {
+///     lowest = lowest.min(state.x[0]);
+/// })?;
+/// assert!((lowest + 1.0).abs() < 1e-4);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
+///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
 #[inline]
@@ -125,6 +180,35 @@ where
 
 /// Integrates like [`integrate`] until `observe` breaks: a run that is stopped ends in the state that `observe` saw
 /// last.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use core::ops::ControlFlow;
+/// use hamel::{State, integrate_while, methods::Rkmk4};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut state = State::start(&pendulum);
+/// let inputs = |_, _: &_, _: &_| [0.0];
+/// integrate_while(&pendulum, Rkmk4, &mut state, 0.01, 10.0, inputs, |state| {
+///     if state.x[0] < 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+/// })?;
+/// assert!(state.x[0] < 0.0 && state.t < 2.0);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 ///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
@@ -174,6 +258,12 @@ where
 }
 
 /// Equal steps that [`integrate`] takes from one time to another.
+///
+/// ```
+/// let grid = hamel::Grid::new(0.0, 1.0, 0.3)?;
+/// assert_eq!((grid.count(), grid.step(), grid.time(2)), (4, 0.25, 0.5));
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     from: f64,

@@ -114,6 +114,7 @@ mod split;
 mod state;
 mod store;
 mod system;
+#[doc(hidden)]
 pub mod trig;
 #[cfg(feature = "wide")]
 pub mod wide;

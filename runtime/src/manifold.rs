@@ -6,6 +6,17 @@
 //! All functions that move x are `inline(always)`, down to single entries: the kinds of blocks are constants of a
 //! generated system, and a call would pass matrices through memory, which costs a step of `Rkmk4` more than its
 //! accelerations.
+//!
+//! ```
+//! use hamel::{Block, manifold, s1};
+//!
+//! let blocks = [Block::Flat(1), Block::Circle];
+//! let mut x = [0.0; 3];
+//! manifold::origin(&blocks, &mut x);
+//! manifold::retract(&blocks, &mut x, &[2.0, 0.5]);
+//! assert_eq!(x, [2.0, 0.5_f64.cos(), 0.5_f64.sin()]);
+//! assert!(manifold::defect(&blocks, &x) < 1e-15);
+//! ```
 
 use crate::scalar::Scalar;
 use crate::store::add;

@@ -9,6 +9,33 @@ use crate::system::Energies;
 ///
 /// T + V is conserved only if there is no dissipation and neither inputs nor other loads do work. Once a value is NaN
 /// it remains NaN, so that a run that failed cannot look good.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{Monitor, Run, State, methods::Rkmk8};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut monitor = Monitor::new(&pendulum, &State::start(&pendulum));
+/// let run = Run::new(&pendulum).method(Rkmk8).step(0.01);
+/// run.observe(|state| monitor.observe(&pendulum, state)).until(10.0)?;
+/// assert!(monitor.relative_energy_deviation() < 1e-12);
+/// assert_eq!(monitor.constraint(), 0.0);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Monitor<S> {
     initial: S,

@@ -17,6 +17,18 @@ pub enum Symmetry {
 }
 
 /// A torque-free rotor.
+///
+/// ```
+/// use hamel::Rotor;
+/// use hamel::rotor::Symmetry;
+///
+/// let wheel = Rotor::of_moments([0.2, 0.2, 0.4]);
+/// assert_eq!(wheel.symmetry, Symmetry::Axial(2));
+/// let body = Rotor::general([2.0, 0.5, 0.0, 0.5, 2.0, 0.0, 0.0, 0.0, 1.0]);
+/// let mut moments: [f64; 3] = body.moments;
+/// moments.sort_by(f64::total_cmp);
+/// assert!((moments[2] - 2.5).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor<S> {
     /// The principal moments J₁, J₂, J₃.

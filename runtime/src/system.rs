@@ -9,6 +9,16 @@ use crate::store::Store;
 ///
 /// Each kind has a *chart*: local coordinates u in which an integrator computes one step. A step starts at u = 0 and
 /// ends with a retraction, which moves x along u; see [`manifold`](crate::manifold).
+///
+/// ```
+/// use hamel::Block;
+///
+/// // A free body with a wheel: position, attitude, and the angle of the wheel.
+/// let blocks = [Block::Flat(3), Block::Rotation, Block::Circle];
+/// let entries: usize = blocks.iter().map(|block| block.coordinates()).sum();
+/// let directions: usize = blocks.iter().map(|block| block.chart()).sum();
+/// assert_eq!((entries, directions), (14, 7));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Block {
     /// That many plain coordinates; the chart holds their changes.
@@ -244,6 +254,33 @@ pub trait System {
 ///
 /// [`Monitor`](crate::Monitor) compares T + V along a run;
 /// [`BackwardEuler`](crate::methods::BackwardEuler) and [`StiffEuler`](crate::methods::StiffEuler) take inertia from T.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{Energies, State};
+///
+/// fn energy<Sys: Energies<Scalar = f64>>(system: &Sys, state: &State<Sys>) -> f64 {
+///     system.kinetic_energy(&state.x, &state.xi) + system.potential_energy(&state.x)
+/// }
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// assert_eq!(energy(&pendulum, &State::start(&pendulum)), -1.0_f64.cos());
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "the energies of `{Self}` are not known",
     label = "a monitor needs T and V, and implicit methods need T",

@@ -12,6 +12,14 @@ use crate::system::Block;
 ///
 /// A step is accepted if each entry of its estimated error is below the tolerance of its kind. Errors at the end of a
 /// run are proportional to the tolerance.
+///
+/// ```
+/// use hamel::adaptive::{Adaptive, Tolerance};
+///
+/// // Positions to a micrometre whatever their size, angles to a milliradian.
+/// let mut method = Adaptive::rkmk54(1e-6);
+/// method.tolerance = Tolerance { angle: 1e-3, absolute: 1e-6, relative: 0.0 };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Tolerance of circles, quaternions and rotations, in rad; at least the rounding unit of the scalar.

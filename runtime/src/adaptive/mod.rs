@@ -68,6 +68,33 @@ use crate::state::State;
 use crate::system::System;
 
 /// An embedded Runge-Kutta pair with the settings of its step-size control.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{State, adaptive::Adaptive};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut method = Adaptive::rkmk8(1e-10);
+/// method.longest = 0.5;
+/// let mut state = State::start(&pendulum);
+/// let statistics = method.run(&pendulum, &mut state, 10.0, |_, _, _| [0.0])?;
+/// assert!(statistics.accepted >= 20);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Adaptive<const M: usize, const D: usize> {
     pair: &'static Pair<M, D>,

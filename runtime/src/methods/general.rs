@@ -87,6 +87,13 @@ general! {
 
 impl General {
     /// Returns the method of this name; `rk4` is without stabilisation.
+    ///
+    /// ```
+    /// use hamel::methods::General;
+    ///
+    /// assert_eq!(General::named("rkmk8"), Some(General::Rkmk8));
+    /// assert!(General::ALL.contains(&General::Rkmk4));
+    /// ```
     pub fn named(name: &str) -> Option<Self> {
         let mut all = Self::ALL.iter().copied();
         all.find(|method| method.name() == name)

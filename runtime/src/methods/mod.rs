@@ -19,6 +19,38 @@
 //! | [`SemiImplicitEuler`] | 1 | short steps, such as those of controllers; one evaluation |
 //!
 //! [`Adaptive`](crate::adaptive::Adaptive) runs [`Rkmk54`] and [`Rkmk8`] with step-size control.
+//!
+//! ```
+//! # #[cfg(feature = "macros")] {
+//! # hamel::rigid_eom! {
+//! #     system Pendulum {
+//! #         coord q;
+//! #         velocity w;
+//! #         rate q = w;
+//! #         kinetic w^2 / 2;
+//! #         potential -cos(q);
+//! #         input tau;
+//! #         generalized force w = tau;
+//! #         start q = 1;
+//! #     }
+//! # }
+//!
+//! use hamel::methods::{BackwardEuler, Gauss4, Rkmk4, Rkmk8, SemiImplicitEuler};
+//! use hamel::{Method, Run, StepError};
+//!
+//! let pendulum = Pendulum::<f64>::default();
+//! fn end<M: Method<Pendulum<f64>>>(system: &Pendulum<f64>, method: M) -> Result<f64, StepError> {
+//!     Ok(Run::new(system).method(method).step(0.01).until(1.0)?.x[0])
+//! }
+//!
+//! let exact = end(&pendulum, Rkmk8)?;
+//! assert!((end(&pendulum, Rkmk4)? - exact).abs() < 1e-9);
+//! assert!((end(&pendulum, Gauss4)? - exact).abs() < 1e-9);
+//! assert!((end(&pendulum, SemiImplicitEuler)? - exact).abs() < 1e-2);
+//! assert!((end(&pendulum, BackwardEuler)? - exact).abs() < 1e-2);
+//! # }
+//! # Ok::<(), hamel::StepError>(())
+//! ```
 
 mod backward_euler;
 mod cf4;

@@ -26,6 +26,7 @@ use crate::system::System;
 
 /// A step of length h from a state, with inputs held over it, whose slopes are to be computed.
 #[derive(Clone, Copy)]
+#[doc(hidden)]
 pub struct TangentStep<'a, Sys: Tangent> {
     pub(crate) system: &'a Sys,
     /// The system in dual numbers; if it is `None` and needed, it is created.

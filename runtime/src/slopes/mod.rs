@@ -25,6 +25,7 @@ use crate::store::Table;
 use crate::system::{Block, Energies, System};
 
 /// Dual numbers with any number of directions.
+#[doc(hidden)]
 pub trait Directions: Scalar {
     /// Type of the value and of each slope.
     type Value: Scalar;
@@ -113,6 +114,7 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
 /// Source: A. R. Curtis, M. J. D. Powell, J. K. Reid, *On the estimation of sparse Jacobian matrices*, J. Inst. Maths
 /// Applics 13 (1974).
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct Sparsity {
     /// Nonzero entries of each row of the frame A(x).
     pub frame: &'static [&'static [usize]],
@@ -126,6 +128,35 @@ pub struct Sparsity {
 }
 
 /// A system whose steps have slopes; generated code implements it if the description asks for `linearize`.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #         generate all, linearize;
+/// #     }
+/// # }
+///
+/// use hamel::{State, Tangent};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let State { x, xi, .. } = State::start(&pendulum);
+/// let mut slopes = [[0.0; 3]; 2];
+/// let accel = pendulum.slopes(&x, &xi, &[0.0], &mut slopes)?;
+/// assert_eq!(accel, [-1.0_f64.sin()]);
+/// // d(δw)/dt = −cos(q) δq + δτ.
+/// assert_eq!(slopes[1], [-1.0_f64.cos(), 0.0, 1.0]);
+/// # }
+/// # Ok::<(), hamel::Singular>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no linearisation",
     label = "slopes and `StiffEuler` need it",
@@ -411,6 +442,34 @@ impl<Sys: Tangent<Dual: Split>> Split for TangentSystem<Sys> {
 /// constraints that multipliers enforce, as in [`step`](crate::step()). Implicit methods iterate until the slopes have
 /// converged, too. For many steps, create [`TangentSystem`] once and call [`step_slopes_into`].
 ///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #         generate all, linearize;
+/// #     }
+/// # }
+///
+/// use hamel::{State, methods::Rkmk4, step_slopes};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let start = State::start(&pendulum);
+/// let (end, slopes) = step_slopes(&Rkmk4, &pendulum, &start, &[0.0], 0.01)?;
+/// assert_eq!(end.t, 0.01);
+/// // Rows of q and w, columns of q, w and tau: ∂q⁺/∂w is nearly h.
+/// assert!((slopes[0][1] - 0.01).abs() < 1e-6);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
+///
 /// # Errors
 /// Those of [`step`](crate::step()).
 pub fn step_slopes<Sys, M>(
@@ -459,6 +518,35 @@ fn varying<Sys: Tangent>(
 }
 
 /// Makes the step of [`step_slopes`] with a dual system that already exists, and overwrites `slopes` with `[A_d B_d]`.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #         generate all, linearize;
+/// #     }
+/// # }
+///
+/// use hamel::{State, Table, TangentSystem, methods::Rkmk4, step_slopes_into};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let tangent = TangentSystem::new(&pendulum);
+/// let (mut state, mut slopes) = (State::start(&pendulum), Table::zero());
+/// for _ in 0..100 {
+///     state = step_slopes_into(&Rkmk4, &tangent, &state, &[0.0], 0.01, &mut slopes)?;
+/// }
+/// assert!((slopes[0][2] - 0.5e-4).abs() < 1e-8);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 ///
 /// # Errors
 /// Those of [`step`](crate::step()); the content of `slopes` is then unspecified.
