@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::mechanism::{Instance, Numbers};
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, General, Lgvi, Method, Scheme, Splitting};
-use hamel::{Canonical, Split, State, StepError, System};
+use hamel::{Canonical, Energies, Split, State, StepError, System};
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;
 use hamel_files::number::short;
@@ -299,7 +299,7 @@ impl Stepper {
 
 impl<Sys> Method<Sys> for Stepper
 where
-    Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
+    Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical + Energies,
 {
     fn order(&self) -> u32 {
         match self {
@@ -315,9 +315,9 @@ where
         }
     }
 
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         match self {
-            Stepper::General(method) => Method::<Sys>::stays_near(method),
+            Stepper::General(method) => Method::<Sys>::preserves_constraints(method),
             Stepper::Slide | Stepper::Buss(_) => false,
             _ => true,
         }
@@ -336,7 +336,7 @@ where
         self.stepped(system, state, h, inputs)
     }
 
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,
@@ -364,7 +364,8 @@ impl Stepper {
         inputs: Given<Sys>,
     ) -> Result<State<Sys>, StepError>
     where
-        Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
+        Sys:
+            Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical + Energies,
     {
         let inputs = &inputs;
         match self {
@@ -393,12 +394,15 @@ impl Stepper {
         force: &mut Option<Sys::Chart>,
     ) -> Result<State<Sys>, StepError>
     where
-        Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
+        Sys:
+            Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical + Energies,
     {
         match self {
-            Stepper::Splitting(method) => method.follow(system, state, h, &inputs, force),
-            Stepper::Lgvi => Lgvi.follow(system, state, h, &inputs, force),
-            Stepper::Buss(method) => method.follow(system, state, h, &inputs, force),
+            Stepper::Splitting(method) => {
+                method.step_reusing_force(system, state, h, &inputs, force)
+            }
+            Stepper::Lgvi => Lgvi.step_reusing_force(system, state, h, &inputs, force),
+            Stepper::Buss(method) => method.step_reusing_force(system, state, h, &inputs, force),
             _ => self.stepped(system, state, h, inputs),
         }
     }

@@ -9,12 +9,45 @@
 //! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads back to it, and
 //! [`Equations::state`] projects each state onto it. If λ is far above the rates of the motion, the equations are
 //! stiff, which stiff solvers handle.
+//!
+//! ```
+//! # #[cfg(feature = "macros")] {
+//! # hamel::rigid_eom! {
+//! #     system Pendulum {
+//! #         coord q;
+//! #         velocity w;
+//! #         rate q = w;
+//! #         kinetic w^2 / 2;
+//! #         potential -cos(q);
+//! #         input tau;
+//! #         generalized force w = tau;
+//! #         start q = 1;
+//! #     }
+//! # }
+//!
+//! use hamel::{State, adapter::Equations};
+//!
+//! let pendulum = Pendulum::<f64>::default();
+//! let equations = Equations::new(&pendulum, |_, _, _| [0.0], 0.0);
+//! let mut y = vec![0.0; equations.unknowns()];
+//! equations.write(&State::start(&pendulum), &mut y);
+//! // Euler's method, in the place of a solver.
+//! let mut y_dot = y.clone();
+//! for step in 0..100 {
+//!     equations.rates(1e-3 * f64::from(step), &y, &mut y_dot);
+//!     y.iter_mut().zip(&y_dot).for_each(|(y, rate)| *y += 1e-3 * rate);
+//! }
+//! let end = equations.state(0.1, &y)?;
+//! assert!(end.x[0] < 1.0);
+//! # }
+//! # Ok::<(), hamel::StepError>(())
+//! ```
 
 use core::cell::Cell;
 
 use crate::adaptive::control::power;
 use crate::error::StepError;
-use crate::integrate::{acceleration, lead_back, project};
+use crate::integrate::{acceleration, project, project_coordinates};
 use crate::manifold;
 use crate::scalar::Scalar;
 use crate::state::State;
@@ -71,7 +104,7 @@ where
         manifold::normalise(self.system.blocks(), x.as_mut());
         let mut state = State { t, x, xi };
         if state.is_finite() {
-            lead_back(self.system, &mut state);
+            project_coordinates(self.system, &mut state);
             project(self.system, &mut state)?;
             Ok(state)
         } else {
@@ -107,7 +140,7 @@ where
         // The entry that moves most relative to its own size determines δ. For v = 0, δ does not matter.
         let zero = Sys::Scalar::default();
         let fastest = y.iter().zip(v).fold(zero, |most, (y, v)| {
-            Scalar::max(most, v.size() / (number(1.0) + y.size()))
+            Scalar::max(most, v.magnitude() / (number(1.0) + y.magnitude()))
         });
         let delta = reach / zero.select_lt(fastest, fastest, number(1.0));
         let side = |delta: Sys::Scalar| {

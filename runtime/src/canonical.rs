@@ -6,6 +6,32 @@ use crate::system::System;
 /// A system that also provides its equations of motion in generalised momenta p = M(x) ξ, KR18 (30a).
 ///
 /// Symplectic methods for long runs integrate (x, p): if M depends on x, the motion is symplectic in p, not in ξ.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{Canonical, Run, State, methods::Gauss4};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let end = Run::new(&pendulum).method(Gauss4).step(0.1).until(10.0)?;
+/// let p = Canonical::momentum(&pendulum, &end.x, &end.xi);
+/// assert_eq!(p, end.xi); // M = 1
+/// # let _: State<Pendulum<f64>> = end;
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "the momenta of `{Self}` are not generated",
     label = "this method steps generalised momenta",

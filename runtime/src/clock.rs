@@ -10,6 +10,35 @@ use crate::system::System;
 ///
 /// [`integrate`](crate::integrate()) and the other runs of this crate use a clock themselves. Create one only for a
 /// loop of your own over [`step`](crate::step()).
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// use hamel::{Clock, State, methods::Rkmk4, step};
+///
+/// hamel::rigid_eom! {
+///     /// A mass that is pushed in time with a motor.
+///     system Shaker {
+///         time t;
+///         coord q;
+///         velocity v;
+///         rate q = v;
+///         kinetic v^2 / 2;
+///         generalized force v = sin(t);
+///     }
+/// }
+///
+/// let shaker = Shaker::<f64>::default();
+/// let mut state = State::start(&shaker);
+/// let clock = Clock::new(&shaker, &state).expect("the description declares time");
+/// for index in 1..=1000 {
+///     step(&shaker, Rkmk4, &mut state, 0.01, &|_, _, _| [])?;
+///     state.t = 0.01 * f64::from(index);
+///     clock.set(&mut state);
+/// }
+/// assert_eq!(ShakerState::from(&state).t, 10.0);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock<S> {
     place: usize,

@@ -16,7 +16,7 @@ use crate::{s3, so3};
 ///
 /// Branches are decided by the value: at a jump or a corner the slope is that of the side taken. |a| has the slope 0 at
 /// 0, and so has a length √(a·a) at a = 0, as in generated code; √a of a number that grows from 0 has a large slope.
-/// Convergence tests ([`size`](Scalar::size), [`beside`](Scalar::beside), [`largest_lane`](Scalar::largest_lane)) take
+/// Convergence tests ([`size`](Scalar::magnitude), [`beside`](Scalar::relative_to), [`largest_lane`](Scalar::largest_lane)) take
 /// slopes and value into account alike.
 ///
 /// ```
@@ -69,7 +69,9 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
     #[inline]
     fn steepest(self) -> S {
         let slopes = self.slopes.into_iter();
-        slopes.fold(S::default(), |largest, slope| largest.max(slope.size()))
+        slopes.fold(S::default(), |largest, slope| {
+            largest.max(slope.magnitude())
+        })
     }
 
     /// Selects value and slopes from two numbers by `choose`.
@@ -237,14 +239,14 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     }
 
     #[inline]
-    fn size(self) -> Self {
-        Dual::constant(self.value.size().max(self.steepest()))
+    fn magnitude(self) -> Self {
+        Dual::constant(self.value.magnitude().max(self.steepest()))
     }
 
     #[inline]
-    fn beside(self, a: Self, b: Self) -> Self {
-        let of_value = self.value.beside(a.value, b.value);
-        let of_slopes = self.steepest().beside(a.steepest(), b.steepest());
+    fn relative_to(self, a: Self, b: Self) -> Self {
+        let of_value = self.value.relative_to(a.value, b.value);
+        let of_slopes = self.steepest().relative_to(a.steepest(), b.steepest());
         Dual::constant(of_value.max(of_slopes))
     }
 
@@ -386,7 +388,7 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
 
     #[inline]
     fn largest_lane(self) -> f64 {
-        self.size().value.largest_lane()
+        self.magnitude().value.largest_lane()
     }
 }
 

@@ -6,6 +6,16 @@ use core::fmt;
 /// Reason why ξ̇ cannot be computed: a pivot that has to be positive is zero, negative or not finite.
 ///
 /// Rows and pivots are counted from 0.
+///
+/// ```
+/// use hamel::Singular;
+///
+/// let error = Singular::Inertia { velocity: "w" };
+/// assert_eq!(
+///     error.to_string(),
+///     "the mass matrix is not positive definite: the velocity `w` has no inertia"
+/// );
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Singular {
@@ -32,21 +42,25 @@ pub enum Singular {
 
 impl Singular {
     /// Creates [`Inertia`](Self::Inertia); for generated code.
+    #[doc(hidden)]
     pub const fn inertia(velocity: &'static str) -> Self {
         Self::Inertia { velocity }
     }
 
     /// Creates [`Mass`](Self::Mass); for generated code.
+    #[doc(hidden)]
     pub const fn mass() -> Self {
         Self::Mass
     }
 
     /// Creates [`Constraints`](Self::Constraints); for generated code.
+    #[doc(hidden)]
     pub const fn constraints(row: usize) -> Self {
         Self::Constraints { row }
     }
 
     /// Creates [`Kinematics`](Self::Kinematics); for generated code.
+    #[doc(hidden)]
     pub const fn kinematics(pivot: usize) -> Self {
         Self::Kinematics { pivot }
     }
@@ -76,6 +90,30 @@ impl Error for Singular {}
 
 /// Reason why a step could not be taken. All times are those of the state at the start of the step, which is the last
 /// valid one.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{Run, StepError, methods::Rkmk4};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let error = Run::new(&pendulum).method(Rkmk4).step(0.0).until(1.0);
+/// assert!(matches!(error, Err(StepError::InvalidStep { span: 1.0, .. })));
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {

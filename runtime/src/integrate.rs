@@ -14,6 +14,32 @@ use core::ops::ControlFlow;
 /// The result is projected onto the constraints that no chart preserves: those among the coordinates, and those that
 /// multipliers enforce. `inputs(t, x, ξ)` returns u.
 ///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{State, methods::Rkmk4, step};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut state = State::start(&pendulum);
+/// // One step of 10 ms, braked in proportion to the speed.
+/// step(&pendulum, Rkmk4, &mut state, 0.01, &|_, _, xi| [-0.1 * xi[0]])?;
+/// assert_eq!(state.t, 0.01);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
+///
 /// # Errors
 /// [`StepError`]; `state` is then unchanged.
 #[inline]
@@ -30,8 +56,8 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let mut next = method.step(system, state, h, inputs)?;
-    if !method.stays_near() {
-        lead_back(system, &mut next);
+    if !method.preserves_constraints() {
+        project_coordinates(system, &mut next);
     }
     project(system, &mut next)?;
     *state = next;
@@ -41,7 +67,7 @@ where
 /// Corrects x by one Newton step towards the part of φ(x) = 0 that no chart preserves; returns whether there is such a
 /// constraint.
 #[inline]
-pub(crate) fn lead_back<Sys>(system: &Sys, state: &mut State<Sys>) -> bool
+pub(crate) fn project_coordinates<Sys>(system: &Sys, state: &mut State<Sys>) -> bool
 where
     Sys: System + ?Sized,
 {
@@ -96,7 +122,36 @@ where
 /// number. All steps are therefore equal, the method keeps its order, and the last state is at `until` exactly.
 /// `inputs(t, x, ξ)` returns u and is called at every point that the method visits; `observe` is called with the first
 /// state and after every step. A method that evaluates the forces both at the end of a step and at the start of the
-/// next evaluates them only once ([`Method::follow`]).
+/// next evaluates them only once ([`Method::step_reusing_force`]).
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{State, integrate, methods::Rkmk4};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut state = State::start(&pendulum);
+/// let mut lowest: f64 = 1.0;
+/// let inputs = |_, _: &_, _: &_| [0.0];
+/// integrate(&pendulum, Rkmk4, &mut state, 0.01, 10.0, inputs, |state| {
+///     lowest = lowest.min(state.x[0]);
+/// })?;
+/// assert!((lowest + 1.0).abs() < 1e-4);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 ///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
@@ -125,6 +180,35 @@ where
 
 /// Integrates like [`integrate`] until `observe` breaks: a run that is stopped ends in the state that `observe` saw
 /// last.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use core::ops::ControlFlow;
+/// use hamel::{State, integrate_while, methods::Rkmk4};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut state = State::start(&pendulum);
+/// let inputs = |_, _: &_, _: &_| [0.0];
+/// integrate_while(&pendulum, Rkmk4, &mut state, 0.01, 10.0, inputs, |state| {
+///     if state.x[0] < 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+/// })?;
+/// assert!(state.x[0] < 0.0 && state.t < 2.0);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 ///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
@@ -155,12 +239,13 @@ where
     let clock = Clock::new(system, state);
     let mut force = None;
     for index in 1..=grid.count {
-        let mut next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
+        let mut next =
+            method.step_reusing_force(system, state, grid.step(), &inputs, &mut force)?;
         next.t = grid.time(index);
         if let Some(clock) = &clock {
             clock.set(&mut next);
         }
-        let led_back = !method.stays_near() && lead_back(system, &mut next);
+        let led_back = !method.preserves_constraints() && project_coordinates(system, &mut next);
         if project(system, &mut next)? || led_back {
             force = None;
         }
@@ -173,6 +258,12 @@ where
 }
 
 /// Equal steps that [`integrate`] takes from one time to another.
+///
+/// ```
+/// let grid = hamel::Grid::new(0.0, 1.0, 0.3)?;
+/// assert_eq!((grid.count(), grid.step(), grid.time(2)), (4, 0.25, 0.5));
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     from: f64,
@@ -219,11 +310,11 @@ impl Grid {
 /// Returns the smallest number of equal steps, no longer than `step`, that cover `span`.
 fn count_steps(span: f64, step: f64) -> Result<u64, StepError> {
     /// Largest number of steps; beyond it, rounding hardly distinguishes the times of neighbouring steps.
-    const MOST: f64 = (1_u64 << 52) as f64;
+    const MAX_STEPS: f64 = (1_u64 << 52) as f64;
     let ratio = (span / step).abs();
     if span == 0.0 {
         Ok(0)
-    } else if !span.is_finite() || !step.is_finite() || step == 0.0 || ratio > MOST {
+    } else if !span.is_finite() || !step.is_finite() || step == 0.0 || ratio > MAX_STEPS {
         Err(StepError::InvalidStep { step, span })
     } else {
         let nearest = (ratio + 0.5) as u64;
@@ -253,7 +344,7 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let u = inputs(time + offset, x, xi);
-    system.accel(x, xi, &u).map_err(|cause| {
+    system.forward_dynamics(x, xi, &u).map_err(|cause| {
         if is_finite(x.as_ref()) && is_finite(xi.as_ref()) {
             StepError::Singular { cause, time }
         } else {

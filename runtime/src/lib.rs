@@ -11,7 +11,8 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`Sampled`] | runs in equal steps, single steps, and runs with a controller that has a period of its own |
+//! | [`Run`] | runs built by chained calls: method, inputs or controller, observers, events |
+//! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`ZeroOrderHold`] | the plain functions beneath: runs in equal steps, single steps, controllers with a period of their own |
 //! | [`methods`] | the integrators: explicit and implicit Runge-Kutta methods on Lie groups, variational and splitting methods |
 //! | [`adaptive`] | error control, events and dense output |
 //! | [`Monitor`] | how well a run conserves energy and satisfies constraints |
@@ -31,18 +32,18 @@
 //! |---|---|---|
 //! | `std` | yes | mathematical functions of the standard library, `Vec` as a [`Store`], and differences in [`BackwardEuler`](methods::BackwardEuler). Without it the crate is `no_std` and takes them from `libm` |
 //! | `macros` | yes | [`rigid_eom!`] |
-//! | `nalgebra` | yes | conversions of states to nalgebra types, in `edge` |
+//! | `nalgebra` | yes | conversions of states to nalgebra types, in `nalgebra_interop` |
 //! | `wide` | no | SIMD lanes as scalars, in `wide` |
 //! | `ensemble` | no | many states at once on SIMD lanes and threads, in `ensemble`; implies `std` and `wide` |
 //!
 //! # A system written by hand
 //!
-//! The integrators work for any [`System`], whether it was generated or not.
-//! This is a pendulum of length l, with x = (cos θ, sin θ), ξ = θ̇ and l θ̈ = −g sin θ:
+//! The integrators work for any [`System`], whether it was generated or not. Three methods are required; [`Energies`] are
+//! for the monitor. This is a pendulum of length l, with x = (cos θ, sin θ), ξ = θ̇ and l θ̈ = −g sin θ:
 //!
 //! ```
 //! use hamel::methods::Rkmk4;
-//! use hamel::{integrate, s1, Block, Monitor, Singular, State, System};
+//! use hamel::{s1, Block, Energies, Monitor, Run, Singular, State, System};
 //!
 //! struct Pendulum { g: f64, l: f64 }
 //!
@@ -54,18 +55,14 @@
 //!     type Inputs = [f64; 0];
 //!
 //!     fn blocks(&self) -> &[Block] { &[Block::Circle] }
-//!     fn zero_coordinates(&self) -> [f64; 2] { [0.0; 2] }
-//!     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
-//!     fn zero_chart(&self) -> [f64; 1] { [0.0] }
-//!     fn zero_inputs(&self) -> [f64; 0] { [] }
 //!     fn start(&self) -> ([f64; 2], [f64; 1]) { (s1::exp(1.0), [0.0]) }
-//!     fn rate(&self, x: &[f64; 2], xi: &[f64; 1]) -> [f64; 2] { s1::rate(*x, xi[0]) }
 //!     fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] { *xi }
-//!     fn accel(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
+//!     fn forward_dynamics(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
 //!         Ok([-self.g / self.l * x[1]])
 //!     }
-//!     fn correction(&self, x: &[f64; 2]) -> [f64; 2] { s1::correction(*x) }
-//!     fn constraint_norm(&self, x: &[f64; 2]) -> f64 { s1::defect(*x) }
+//! }
+//!
+//! impl Energies for Pendulum {
 //!     fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 1]) -> f64 {
 //!         0.5 * (self.l * xi[0]).powi(2)
 //!     }
@@ -74,12 +71,13 @@
 //!
 //! # fn main() -> Result<(), hamel::StepError> {
 //! let pendulum = Pendulum { g: 9.81, l: 0.5 };
-//! let mut state = State::start(&pendulum);
-//! let mut monitor = Monitor::new(&pendulum, &state);
-//! integrate(&pendulum, Rkmk4, &mut state, 1e-3, 10.0, |_, _, _| [], |state| {
-//!     monitor.observe(&pendulum, state);
-//! })?;
-//! assert_eq!(state.t, 10.0);
+//! let mut monitor = Monitor::new(&pendulum, &State::start(&pendulum));
+//! let end = Run::new(&pendulum)
+//!     .method(Rkmk4)
+//!     .step(1e-3)
+//!     .observe(|state| monitor.observe(&pendulum, state))
+//!     .until(10.0)?;
+//! assert_eq!(end.t, 10.0);
 //! assert!(monitor.relative_energy_deviation() < 1e-10);
 //! assert!(monitor.constraint() < 1e-15);
 //! # Ok(())
@@ -94,8 +92,6 @@ pub mod adaptive;
 mod canonical;
 mod clock;
 mod dual;
-#[cfg(feature = "nalgebra")]
-pub mod edge;
 #[cfg(feature = "ensemble")]
 pub mod ensemble;
 mod error;
@@ -105,10 +101,12 @@ mod lanes;
 pub mod manifold;
 pub mod methods;
 mod monitor;
+#[cfg(feature = "nalgebra")]
+pub mod nalgebra_interop;
 pub mod rotor;
+pub mod run;
 pub mod s1;
 pub mod s3;
-mod sampled;
 mod scalar;
 mod slopes;
 pub mod so3;
@@ -116,9 +114,11 @@ mod split;
 mod state;
 mod store;
 mod system;
+#[doc(hidden)]
 pub mod trig;
 #[cfg(feature = "wide")]
 pub mod wide;
+mod zero_order_hold;
 
 pub use canonical::Canonical;
 pub use clock::Clock;
@@ -133,7 +133,7 @@ pub use monitor::Monitor;
 #[cfg(feature = "nalgebra")]
 pub use nalgebra;
 pub use rotor::Rotor;
-pub use sampled::Sampled;
+pub use run::Run;
 pub use scalar::Scalar;
 pub use slopes::{
     Directions, Sparsity, Stepped, Tangent, TangentStep, TangentSystem, step_slopes,
@@ -142,4 +142,5 @@ pub use slopes::{
 pub use split::Split;
 pub use state::State;
 pub use store::{Store, Table};
-pub use system::{Block, System};
+pub use system::{Block, Energies, System};
+pub use zero_order_hold::ZeroOrderHold;

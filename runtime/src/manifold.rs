@@ -6,6 +6,17 @@
 //! All functions that move x are `inline(always)`, down to single entries: the kinds of blocks are constants of a
 //! generated system, and a call would pass matrices through memory, which costs a step of `Rkmk4` more than its
 //! accelerations.
+//!
+//! ```
+//! use hamel::{Block, manifold, s1};
+//!
+//! let blocks = [Block::Flat(1), Block::Circle];
+//! let mut x = [0.0; 3];
+//! manifold::origin(&blocks, &mut x);
+//! manifold::retract(&blocks, &mut x, &[2.0, 0.5]);
+//! assert_eq!(x, [2.0, 0.5_f64.cos(), 0.5_f64.sin()]);
+//! assert!(manifold::defect(&blocks, &x) < 1e-15);
+//! ```
 
 use crate::scalar::Scalar;
 use crate::store::add;
@@ -22,6 +33,120 @@ pub fn coordinates(blocks: &[Block]) -> usize {
 #[inline]
 pub fn chart(blocks: &[Block]) -> usize {
     blocks.iter().map(|block| block.chart()).sum()
+}
+
+/// Sets x, a list of zeros, to the origin of its manifold: 0 (flat), the angle 0 (circle), and the identity (quaternion,
+/// rotation).
+pub fn origin<S: Scalar>(blocks: &[Block], x: &mut [S]) {
+    let mut x = x;
+    for block in blocks {
+        let Some((here, rest)) = x.split_at_mut_checked(block.coordinates()) else {
+            return;
+        };
+        match block {
+            Block::Flat(_) => {}
+            Block::Circle | Block::Quaternion => {
+                if let Some(first) = here.first_mut() {
+                    *first = S::from_f64(1.0);
+                }
+            }
+            Block::Rotation => {
+                if let Some(r) = here.first_chunk_mut() {
+                    *r = so3::identity();
+                }
+            }
+        }
+        x = rest;
+    }
+}
+
+/// Replaces x by its rate ẋ for the chart rate w: w (flat), θ̇ (−s, c) (circle), ½ q ⊗ (0, ω) (quaternion), R ω̂
+/// (rotation).
+#[inline(always)]
+pub fn rate<S: Scalar>(blocks: &[Block], x: &mut [S], w: &[S]) {
+    let (mut x, mut w) = (x, w);
+    for block in blocks {
+        let (Some((here, x_rest)), Some((along, w_rest))) = (
+            x.split_at_mut_checked(block.coordinates()),
+            w.split_at_checked(block.chart()),
+        ) else {
+            return;
+        };
+        match block {
+            Block::Flat(_) => {
+                for (entry, w) in here.iter_mut().zip(along) {
+                    *entry = *w;
+                }
+            }
+            Block::Circle => {
+                if let (Some(p), [theta_dot]) = (here.first_chunk_mut(), along) {
+                    *p = s1::rate(*p, *theta_dot);
+                }
+            }
+            Block::Quaternion => {
+                if let (Some(q), Some(w)) = (here.first_chunk_mut(), along.first_chunk()) {
+                    *q = s3::rate(*q, *w);
+                }
+            }
+            Block::Rotation => {
+                if let (Some(r), Some(w)) = (here.first_chunk_mut(), along.first_chunk()) {
+                    *r = so3::rate(*r, *w);
+                }
+            }
+        }
+        (x, w) = (x_rest, w_rest);
+    }
+}
+
+/// Replaces x by −Ψ φ of KR18 (8) for the constraints of its blocks: unit length (circle, quaternion) and RᵀR = I
+/// (rotation); 0 for flat blocks.
+pub fn correction<S: Scalar>(blocks: &[Block], x: &mut [S]) {
+    let mut x = x;
+    for block in blocks {
+        let Some((here, rest)) = x.split_at_mut_checked(block.coordinates()) else {
+            return;
+        };
+        match block {
+            Block::Flat(_) => here.fill(S::default()),
+            Block::Circle => {
+                if let Some(p) = here.first_chunk_mut() {
+                    *p = s1::correction(*p);
+                }
+            }
+            Block::Quaternion => {
+                if let Some(q) = here.first_chunk_mut() {
+                    *q = s3::correction(*q);
+                }
+            }
+            Block::Rotation => {
+                if let Some(r) = here.first_chunk_mut() {
+                    *r = so3::correction(*r);
+                }
+            }
+        }
+        x = rest;
+    }
+}
+
+/// Returns the largest violation of the constraints of the blocks: | |x|² − 1 | (circle, quaternion) and
+/// max |RᵀR − I| (rotation).
+pub fn defect<S: Scalar>(blocks: &[Block], x: &[S]) -> S {
+    let mut largest = S::default();
+    let mut x = x;
+    for block in blocks {
+        let Some((here, rest)) = x.split_at_checked(block.coordinates()) else {
+            break;
+        };
+        let defect = match block {
+            Block::Flat(_) => None,
+            Block::Circle => here.first_chunk().map(|p| s1::defect(*p)),
+            Block::Quaternion => here.first_chunk().map(|q| s3::defect(*q)),
+            Block::Rotation => here.first_chunk().map(|r| so3::defect(*r)),
+        };
+        largest = defect.map_or(largest, |defect| Scalar::max(largest, defect));
+        x = rest;
+    }
+    largest
 }
 
 /// Moves x along the chart vector u: x + u (flat), turned by u (circle), q ⊗ exp(u) (quaternion),

@@ -2,13 +2,40 @@
 
 use crate::scalar::Scalar;
 use crate::state::State;
-use crate::system::System;
+use crate::system::Energies;
 
 /// Records the largest deviation of the energy T + V and the largest violation of the constraints, over all observed
 /// states.
 ///
 /// T + V is conserved only if there is no dissipation and neither inputs nor other loads do work. Once a value is NaN
 /// it remains NaN, so that a run that failed cannot look good.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{Monitor, Run, State, methods::Rkmk8};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut monitor = Monitor::new(&pendulum, &State::start(&pendulum));
+/// let run = Run::new(&pendulum).method(Rkmk8).step(0.01);
+/// run.observe(|state| monitor.observe(&pendulum, state)).until(10.0)?;
+/// assert!(monitor.relative_energy_deviation() < 1e-12);
+/// assert_eq!(monitor.constraint(), 0.0);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Monitor<S> {
     initial: S,
@@ -21,7 +48,7 @@ impl<S: Scalar> Monitor<S> {
     /// Creates a monitor whose reference is the energy at `state`.
     pub fn new<Sys>(system: &Sys, state: &State<Sys>) -> Self
     where
-        Sys: System<Scalar = S> + ?Sized,
+        Sys: Energies<Scalar = S> + ?Sized,
     {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
         let initial = kinetic + system.potential_energy(&state.x);
@@ -37,7 +64,7 @@ impl<S: Scalar> Monitor<S> {
     #[inline]
     pub fn observe<Sys>(&mut self, system: &Sys, state: &State<Sys>)
     where
-        Sys: System<Scalar = S> + ?Sized,
+        Sys: Energies<Scalar = S> + ?Sized,
     {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
         let potential = system.potential_energy(&state.x);

@@ -17,6 +17,18 @@ pub enum Symmetry {
 }
 
 /// A torque-free rotor.
+///
+/// ```
+/// use hamel::Rotor;
+/// use hamel::rotor::Symmetry;
+///
+/// let wheel = Rotor::of_moments([0.2, 0.2, 0.4]);
+/// assert_eq!(wheel.symmetry, Symmetry::Axial(2));
+/// let body = Rotor::general([2.0, 0.5, 0.0, 0.5, 2.0, 0.0, 0.0, 0.0, 1.0]);
+/// let mut moments: [f64; 3] = body.moments;
+/// moments.sort_by(f64::total_cmp);
+/// assert!((moments[2] - 2.5).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor<S> {
     /// The principal moments J₁, J₂, J₃.
@@ -58,7 +70,7 @@ impl<S: Scalar> Rotor<S> {
         let mut j: Matrix<S> = from_fn(|k| half * (inertia[k] + inertia[3 * (k % 3) + k / 3]));
         if [j[1], j[2], j[5]]
             .iter()
-            .all(|entry| entry.size().largest_lane() == 0.0)
+            .all(|entry| entry.magnitude().largest_lane() == 0.0)
         {
             return Self::of_moments([j[0], j[4], j[8]]);
         }
@@ -118,7 +130,7 @@ fn symmetry<S: Scalar>(moments: Vector<S>, ulps: f64) -> Symmetry {
     let [a, b, c] = moments;
     let largest = Scalar::max(Scalar::max(a.abs(), b.abs()), c.abs());
     let limit = S::from_f64(ulps) * epsilon::<S>();
-    let equal = |a: S, b: S| (limit * largest.size() - (a - b).size()).is_positive();
+    let equal = |a: S, b: S| (limit * largest.magnitude() - (a - b).magnitude()).is_positive();
     match (equal(b, c), equal(c, a), equal(a, b)) {
         (true, true, true) => Symmetry::Spherical,
         (true, _, false) => Symmetry::Axial(0),

@@ -1,4 +1,11 @@
 //! Angles as points (c, s) = (cos θ, sin θ) of the unit circle; d/dt (c, s) = θ̇ (−s, c).
+//!
+//! ```
+//! use hamel::s1;
+//!
+//! let p = s1::retract(s1::exp(0.5_f64), 0.25);
+//! assert!((s1::log(p) - 0.75).abs() < 1e-15);
+//! ```
 
 use crate::scalar::Scalar;
 

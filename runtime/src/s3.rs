@@ -3,6 +3,17 @@
 //! q̇ = ½ q ⊗ (0, ω) with ω in body axes; q and −q are the same rotation. A chart vector is the
 //! rotation vector of [`so3`](crate::so3), in rad, so that [`so3::dexpinv`](crate::so3::dexpinv)
 //! serves here too.
+//!
+//! ```
+//! use hamel::{s3, so3};
+//!
+//! let u = [0.1, -0.2, 0.3];
+//! let q = s3::exp(u);
+//! // The same rotation as a matrix.
+//! let (a, b): ([f64; 9], _) = (s3::to_matrix(q), so3::exp(u));
+//! assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15));
+//! assert!(s3::defect(s3::product(q, q)) < 1e-15);
+//! ```
 
 use core::array::from_fn;
 

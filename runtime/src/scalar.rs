@@ -10,6 +10,18 @@ use crate::{s3, so3};
 /// There is no ordering and no equality: a condition can differ from lane to lane, so code computes both branches and
 /// selects with [`select_lt`](Scalar::select_lt). `Default` is zero in every lane. Functions follow IEEE 754: outside
 /// their domain they return NaN and never panic.
+///
+/// ```
+/// use hamel::{Dual, Scalar};
+///
+/// /// Smaller of two numbers, whatever they are.
+/// fn smaller<S: Scalar>(a: S, b: S) -> S {
+///     a.select_lt(b, a, b)
+/// }
+///
+/// assert_eq!(smaller(1.0_f32, 2.0), 1.0);
+/// assert_eq!(smaller(Dual::<f64, 1>::along(3.0, 0), Dual::constant(2.0)).slopes, [0.0]);
+/// ```
 pub trait Scalar:
     Copy
     + Debug
@@ -82,14 +94,14 @@ pub trait Scalar:
     /// Returns the size of the number for convergence tests and error estimates: |self|. For a dual number it is the
     /// largest of |value| and |slopes|, as a constant (with zero slopes).
     #[inline]
-    fn size(self) -> Self {
+    fn magnitude(self) -> Self {
         self.abs()
     }
 
     /// Returns the error `self` relative to two numbers, |self|/(|a| + |b|), and 0 where `self` is 0. For dual numbers
     /// it is the larger of this ratio for the values and for the largest slopes, as a constant.
     #[inline]
-    fn beside(self, a: Self, b: Self) -> Self {
+    fn relative_to(self, a: Self, b: Self) -> Self {
         let error = self.abs();
         Self::default().select_lt(error, error / (a.abs() + b.abs()), error)
     }
@@ -144,6 +156,7 @@ pub trait Scalar:
     /// Returns 1/self if |self| ≥ 1e-100 (1e-12 for `f32`), otherwise the inverse of this limit: a large finite number,
     /// which gives 0 when multiplied by 0. The derivative of a length √(a·a) at a = 0 is therefore 0.
     #[inline]
+    #[doc(hidden)]
     fn inverse_of_length(self) -> Self {
         let shortest = Self::from_f64(if Self::EPSILON < 1e-10 { 1e-100 } else { 1e-12 });
         let one = Self::from_f64(1.0);
@@ -153,7 +166,8 @@ pub trait Scalar:
     /// Returns self (1 + 2⁻²⁶), or self (1 + 2⁻¹⁵) for `f32`: larger by a small part that exceeds rounding. This makes
     /// a pivot that may consist of rounding alone safe to divide by.
     #[inline]
-    fn raised(self) -> Self {
+    #[doc(hidden)]
+    fn inflated(self) -> Self {
         let double = Self::EPSILON < 1e-10;
         let parts = if double { 1u32 << 26 } else { 1 << 15 };
         self * Self::from_f64(1.0 + 1.0 / f64::from(parts))
@@ -161,18 +175,21 @@ pub trait Scalar:
 
     /// Implements [`so3::retract`]; dual numbers use the derivative of exp.
     #[inline(always)]
+    #[doc(hidden)]
     fn turned_matrix(r: so3::Matrix<Self>, u: so3::Vector<Self>) -> so3::Matrix<Self> {
         so3::product(r, so3::exp(u))
     }
 
     /// Implements [`s3::retract`]; dual numbers use the derivative of exp.
     #[inline(always)]
+    #[doc(hidden)]
     fn turned_quaternion(q: s3::Quaternion<Self>, u: so3::Vector<Self>) -> s3::Quaternion<Self> {
         s3::product(q, s3::exp(u))
     }
 
     /// Implements [`so3::dexpinv`]; dual numbers with many slopes use its six partial derivatives.
     #[inline(always)]
+    #[doc(hidden)]
     fn chart_velocity(u: so3::Vector<Self>, w: so3::Vector<Self>) -> so3::Vector<Self> {
         so3::chart_velocity(u, w)
     }
@@ -182,6 +199,7 @@ pub trait Scalar:
 
     /// Returns the nearest whole number, for numbers in the range where whole numbers are exact; its slopes are zero.
     #[inline]
+    #[doc(hidden)]
     fn nearest_whole(self) -> Self {
         let large = Self::from_f64(1.5 / Self::EPSILON);
         self + large - large
@@ -283,9 +301,9 @@ macro_rules! scalar {
             fn is_positive(self) -> bool {
                 // Compares bit patterns, from that of the smallest normal number to that of infinity: for two
                 // comparisons of numbers the compiler generates three times as many instructions.
-                const LEAST: $float = $float::MIN_POSITIVE;
-                self.to_bits().wrapping_sub(LEAST.to_bits())
-                    < $float::INFINITY.to_bits() - LEAST.to_bits()
+                const SMALLEST_NORMAL: $float = $float::MIN_POSITIVE;
+                self.to_bits().wrapping_sub(SMALLEST_NORMAL.to_bits())
+                    < $float::INFINITY.to_bits() - SMALLEST_NORMAL.to_bits()
             }
 
             #[inline]

@@ -5,6 +5,17 @@
 //! neither a square root nor a sine. The truncation error of the series is below 5e-17. Sources: H. Munthe-Kaas, *High
 //! order Runge-Kutta methods on manifolds*, Appl. Numer. Math. 29 (1999) 115; E. Hairer, C. Lubich, G. Wanner,
 //! *Geometric Numerical Integration* (2006), IV.7-8.
+//!
+//! ```
+//! use hamel::so3;
+//!
+//! // A quarter turn about the z axis takes x to y.
+//! let r = so3::exp([0.0, 0.0, std::f64::consts::FRAC_PI_2]);
+//! let y = so3::apply(r, [1.0, 0.0, 0.0]);
+//! assert!(y[0].abs() < 1e-15 && (y[1] - 1.0).abs() < 1e-15);
+//! assert!((so3::log(r)[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+//! assert!(so3::defect(so3::product(r, r)) < 1e-15);
+//! ```
 
 use core::array::from_fn;
 

@@ -15,6 +15,32 @@ use crate::system::System;
 /// centre of mass. The *momenta* p are laid out like the chart: ẏ for flat blocks, θ̇ for circles, and
 /// for quaternions and rotations the angular momentum P of the rotor in body axes, about the centre
 /// of mass or the fixed point. Between kicks ẏ, θ̇ and R P are constant.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Body {
+/// #         param Theta: sym3 = [[2.1, 0.1, 0], [0.1, 1.7, 0], [0, 0, 1.2]];
+/// #         coord R: SO3;
+/// #         velocity w: vec3;
+/// #         rate R = R * hat(w);
+/// #         frame hull = pose(R, [0, 0, 0]);
+/// #         body on hull { mass 1; inertia Theta about origin; }
+/// #         start w = [0.01, 2, 0.01];
+/// #     }
+/// # }
+///
+/// use hamel::{Run, Split};
+/// use hamel::methods::{Scheme, Splitting};
+///
+/// let body = Body::<f64>::default();
+/// assert_eq!(body.rotors().len(), 1);
+/// let method = Splitting::new(&body, Scheme::Strang);
+/// let end = Run::new(&body).method(method).step(0.1).until(10.0)?;
+/// assert!(end.is_finite());
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "the equations of `{Self}` do not split into free motion and kicks",
     label = "this method needs a torque-free flow in closed form",

@@ -11,6 +11,35 @@ use crate::system::System;
 ///
 /// Time is an `f64` whatever the scalar type: it is common to all lanes, and an `f32` clock would stop advancing in
 /// steps of 1 ms after some hours.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::State;
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut state = State::start(&pendulum);
+/// assert_eq!((state.t, state.x, state.xi), (0.0, [1.0], [0.0]));
+/// // Fields may be set, by name or by place.
+/// state.xi[0] = 2.0;
+/// let same = State { t: 0.0, ..State::from(PendulumState { w: 2.0, ..Default::default() }) };
+/// assert_eq!(state.xi, same.xi);
+/// # let _: State<Pendulum<f64>> = same;
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 pub struct State<Sys: System + ?Sized> {
     /// Time, in the unit of the description (s in SI).
     pub t: f64,

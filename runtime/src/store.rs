@@ -6,12 +6,33 @@ use crate::Scalar;
 
 /// A list of numbers whose length is fixed by the system: `[S; N]` in generated code, `Vec<S>` in
 /// code that interprets a description read at run time (feature `std`).
-pub trait Store<S>: Clone + Debug + AsRef<[S]> + AsMut<[S]> {}
+///
+/// ```
+/// use hamel::Store;
+///
+/// let fixed: [f64; 3] = Store::zeros(3);
+/// let listed: Vec<f64> = Store::zeros(3);
+/// assert_eq!(listed, fixed);
+/// ```
+pub trait Store<S>: Clone + Debug + AsRef<[S]> + AsMut<[S]> {
+    /// Returns `length` zeros. Storage of a fixed length, such as `[S; N]`, has its own length and ignores `length`.
+    fn zeros(length: usize) -> Self;
+}
 
-impl<S: Scalar, const N: usize> Store<S> for [S; N] {}
+impl<S: Scalar, const N: usize> Store<S> for [S; N] {
+    #[inline(always)]
+    fn zeros(_: usize) -> Self {
+        [S::default(); N]
+    }
+}
 
 #[cfg(feature = "std")]
-impl<S: Scalar> Store<S> for Vec<S> {}
+impl<S: Scalar> Store<S> for Vec<S> {
+    #[inline]
+    fn zeros(length: usize) -> Self {
+        vec![S::default(); length]
+    }
+}
 
 /// A matrix, stored by rows, whose size is fixed by the system: `[[S; COLUMNS]; ROWS]`.
 pub trait Table<S>: Clone + Debug {
@@ -29,7 +50,7 @@ pub trait Table<S>: Clone + Debug {
 
     /// Adds to row `i` the rows of `other` from row `k` on, each multiplied by its factor. Rows with the factor 0 are
     /// skipped.
-    fn follow(&mut self, i: usize, factors: &[S], other: &Self, k: usize);
+    fn add_combination(&mut self, i: usize, factors: &[S], other: &Self, k: usize);
 
     /// Adds `factor` times another row, `k`, to row `i`.
     fn add_scaled(&mut self, i: usize, factor: S, k: usize);
@@ -63,7 +84,7 @@ impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUM
     }
 
     #[inline]
-    fn follow(&mut self, i: usize, factors: &[S], other: &Self, k: usize) {
+    fn add_combination(&mut self, i: usize, factors: &[S], other: &Self, k: usize) {
         let Some(own) = self.get_mut(i) else { return };
         let mut sum = *own;
         for (factor, row) in factors.iter().zip(other.iter().skip(k)) {
@@ -124,11 +145,11 @@ pub(crate) fn scale<S: Scalar>(y: &mut [S], a: f64) {
     }
 }
 
-/// Returns the largest [`size`](Scalar::size) of an element.
+/// Returns the largest [`size`](Scalar::magnitude) of an element.
 #[inline]
 pub(crate) fn largest<S: Scalar>(x: &[S]) -> S {
     x.iter()
-        .fold(S::default(), |most, x| Scalar::max(most, x.size()))
+        .fold(S::default(), |most, x| Scalar::max(most, x.magnitude()))
 }
 
 /// Returns whether every element is finite. There is no early exit, so the processor can test several elements at a

@@ -58,7 +58,7 @@ fn accel<Sys: System<Scalar: Lanes>>(bencher: Bencher, system: &Sys) {
     let cases = cases(system);
     bencher.counter(STATES).bench_local(|| {
         for (x, xi, u) in &cases {
-            let _ = black_box(system.accel(black_box(x), black_box(xi), black_box(u)));
+            let _ = black_box(system.forward_dynamics(black_box(x), black_box(xi), black_box(u)));
         }
     });
 }

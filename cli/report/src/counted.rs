@@ -1,9 +1,9 @@
 //! A system that counts the evaluations of its forces.
 
-use hamel::{Block, Canonical, Singular, Split, System};
+use hamel::{Block, Canonical, Energies, Singular, Split, System};
 use std::cell::Cell;
 
-/// A system that counts the evaluations of ξ̇ ([`System::accel`]), of forces ([`Split::kick`]) and of ṗ
+/// A system that counts the evaluations of ξ̇ ([`System::forward_dynamics`]), of forces ([`Split::kick`]) and of ṗ
 /// ([`Canonical::momentum_rate`]), whose cost grows with the loads of a scene.
 ///
 /// All calls are forwarded; counting costs well below a nanosecond a call.
@@ -96,14 +96,14 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     }
 
     #[inline]
-    fn accel(
+    fn forward_dynamics(
         &self,
         x: &Self::Coordinates,
         xi: &Self::Velocities,
         u: &Self::Inputs,
     ) -> Result<Self::Velocities, Singular> {
         self.count();
-        self.system.accel(x, xi, u)
+        self.system.forward_dynamics(x, xi, u)
     }
 
     #[inline]
@@ -137,7 +137,9 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar {
         self.system.constraint_norm(x)
     }
+}
 
+impl<Sys: Energies + ?Sized> Energies for Counted<'_, Sys> {
     #[inline]
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar {
         self.system.kinetic_energy(x, xi)

@@ -4,7 +4,7 @@ use crate::counted::Counted;
 use crate::data::Kind;
 use crate::entry::{Deviation, Entry, Outcome, Watch};
 use hamel::adaptive::{Adaptive, Report};
-use hamel::{Method, State, StepError, System, integrate};
+use hamel::{Energies, Method, State, StepError, System, integrate};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -43,7 +43,7 @@ pub type Quantities<'a> = Box<dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a>;
 
 impl<'a, Sys, U> Problem<'a, Sys, U>
 where
-    Sys: System<Scalar = f64>,
+    Sys: Energies<Scalar = f64>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     /// Returns the initial state.

@@ -2,7 +2,7 @@
 
 use hamel::adaptive::Adaptive;
 use hamel::methods::{General, Rkmk4};
-use hamel::{Block, Canonical, Singular, Split, State, System, integrate, s1};
+use hamel::{Block, Canonical, Energies, Singular, Split, State, System, integrate, s1};
 use hamel_report::counted::Counted;
 use hamel_report::data::Kind;
 use hamel_report::entry::{Division, Worst};
@@ -24,36 +24,23 @@ impl System for Pendulum {
     fn blocks(&self) -> &[Block] {
         &[Block::Circle]
     }
-    fn zero_coordinates(&self) -> [f64; 2] {
-        [0.0; 2]
-    }
-    fn zero_velocities(&self) -> [f64; 1] {
-        [0.0]
-    }
-    fn zero_chart(&self) -> [f64; 1] {
-        [0.0]
-    }
-    fn zero_inputs(&self) -> [f64; 0] {
-        []
-    }
     fn start(&self) -> ([f64; 2], [f64; 1]) {
         (s1::exp(1.0), [0.5])
-    }
-    fn rate(&self, x: &[f64; 2], xi: &[f64; 1]) -> [f64; 2] {
-        s1::rate(*x, xi[0])
     }
     fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] {
         *xi
     }
-    fn accel(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
+    fn forward_dynamics(
+        &self,
+        x: &[f64; 2],
+        _: &[f64; 1],
+        _: &[f64; 0],
+    ) -> Result<[f64; 1], Singular> {
         Ok([-self.g / self.l * x[1]])
     }
-    fn correction(&self, x: &[f64; 2]) -> [f64; 2] {
-        s1::correction(*x)
-    }
-    fn constraint_norm(&self, x: &[f64; 2]) -> f64 {
-        s1::defect(*x)
-    }
+}
+
+impl Energies for Pendulum {
     fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 1]) -> f64 {
         0.5 * (self.l * xi[0]).powi(2)
     }
@@ -104,7 +91,10 @@ fn each_kind_of_force_counts_once() {
     let counted = Counted::new(&PENDULUM);
     let (x, xi) = counted.start();
     assert_eq!(counted.evaluations(), 0);
-    assert_eq!(counted.accel(&x, &xi, &[]), PENDULUM.accel(&x, &xi, &[]));
+    assert_eq!(
+        counted.forward_dynamics(&x, &xi, &[]),
+        PENDULUM.forward_dynamics(&x, &xi, &[])
+    );
     assert_eq!(counted.kick(&x, &[]), PENDULUM.kick(&x, &[]));
     let rate = counted.momentum_rate(&x, &xi, &[]);
     assert_eq!(rate, PENDULUM.momentum_rate(&x, &xi, &[]));

@@ -226,7 +226,7 @@ table! {
         "extern" "" "" Other Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     Raised "a larger by a small part that rounding does not hide, 2⁻²⁶ of it in `f64`: a pivot that may be nothing but rounding becomes one that can be divided by"
-        "(1 + ε) " "raised()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [ValueAtOne]
+        "(1 + ε) " "inflated()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [ValueAtOne]
         |a| a * RAISE_FACTOR, |a| a * Double::new(RAISE_FACTOR), |a| a.times(Real::new(RAISE_FACTOR, 0.0)),
         |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISE_FACTOR)?)));
 }

@@ -18,7 +18,7 @@
 //! | `together` | one function that computes both ξ̇ and [A B] |
 //! | `structure` | the type: fields, sizes, constructor, defaults |
 //! | `parameters` | accessors of the parameters, and the constants computed from them |
-//! | `system` | `impl hamel::System` |
+//! | `system` | `impl hamel::System`, `impl hamel::Energies` |
 //! | `externals` | external functions (implemented in Rust by the user): the trait that declares them |
 //! | `views` | structures with the parameters, states and inputs by name |
 //! | `methods` | `impl hamel::Split`, `impl hamel::Canonical`, `impl hamel::Tangent` |
@@ -193,7 +193,7 @@ pub fn rust(program: &Program, options: &Options) -> String {
     let emitter = Emitter::new(program, options.chunk);
     let mut methods = structure::sizes(&emitter);
     methods.push_str(&limits::constants(program));
-    let system = system::implementation(&emitter);
+    let system = system::implementations(&emitter);
     let together = together::of(&emitter).filter(|_| !system.is_empty());
     for (index, spec) in emitter.specs().iter().enumerate() {
         methods.push_str(&match &together {

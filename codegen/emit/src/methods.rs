@@ -1,6 +1,6 @@
 //! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, if all functions that they need are generated.
 
-use super::{Emitter, externals, names, structure, together};
+use super::{Emitter, externals, names, structure, system, together};
 use hamel_algebra::graph::Edge;
 use hamel_language::model::layout::Block;
 use hamel_language::syntax::ast::ShapeKind;
@@ -28,8 +28,13 @@ fn generated<'a>(emitter: &'a Emitter, name: &str) -> Option<&'a str> {
 }
 
 fn head(emitter: &Emitter, of: &str, body: &str) -> String {
+    format!("{} {{\n{body}}}\n\n", header(emitter, of))
+}
+
+/// Returns the first line of the implementation of a trait of `hamel`, with its attributes.
+pub fn header(emitter: &Emitter, of: &str) -> String {
     format!(
-        "{}impl{} ::hamel::{of} for {} {{\n{body}}}\n\n",
+        "{}impl{} ::hamel::{of} for {}",
         structure::ALLOW_TRAIT,
         externals::generics(emitter),
         externals::applied(emitter)
@@ -126,6 +131,9 @@ fn canonical(emitter: &Emitter) -> Option<String> {
 
 /// Steps with slopes: the system in dual numbers, the frame of displacements, and the sparsity of a step in the chart.
 fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
+    if !system::has_energies(emitter) {
+        return None;
+    }
     let program = emitter.program;
     let matrix = |id: FunctionId| match program.function(id)?.shape {
         Shape::Matrix(rows, columns) => Some((rows, columns)),

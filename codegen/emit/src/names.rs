@@ -81,6 +81,7 @@ const METHODS: &[&str] = &[
     "zero_inputs",
     "start",
     "constraint_norm",
+    "forward_dynamics",
     "rotors",
     super::together::NAME,
 ];

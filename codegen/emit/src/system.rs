@@ -1,15 +1,18 @@
-//! `impl hamel::System`, if all functions that it needs are generated.
+//! `impl hamel::System` and `impl hamel::Energies`, each if all functions that it needs are generated.
 
-use super::function::zeros;
-use super::{Emitter, docs, externals, names, number, structure};
+use super::methods::header;
+use super::{Emitter, docs, names, number};
 use hamel_program::{Argument, Shape};
 
 const X: Argument = Argument::Coordinates;
 const XI: Argument = Argument::Velocities;
 const U: Argument = Argument::Inputs;
 
-/// Methods of the trait that evaluate functions: name, arguments, and result type.
-const METHODS: &[(&str, &[Argument], &str)] = &[
+/// A method that evaluates a function: name of the function, arguments, and result type.
+type Method = (&'static str, &'static [Argument], &'static str);
+
+/// Methods of `System` that evaluate functions.
+const SYSTEM: &[Method] = &[
     ("rate", &[X, XI], "Self::Coordinates"),
     ("chart_rate", &[X, XI], "Self::Chart"),
     (
@@ -19,21 +22,36 @@ const METHODS: &[(&str, &[Argument], &str)] = &[
     ),
     ("correction", &[X], "Self::Coordinates"),
     ("constraint", &[X], "S"),
+];
+
+/// Methods of `Energies`.
+const ENERGIES: &[Method] = &[
     ("kinetic_energy", &[X, XI], "S"),
     ("potential_energy", &[X], "S"),
 ];
 
-/// Prints the implementation; empty if a function is missing.
-pub fn implementation(emitter: &Emitter) -> String {
-    let program = emitter.program;
-    let Some(methods) = METHODS
-        .iter()
-        .map(|row| method(emitter, row))
-        .collect::<Option<String>>()
-    else {
+/// Prints the implementations; empty if a function of `System` is missing.
+pub fn implementations(emitter: &Emitter) -> String {
+    let Some(motion) = methods(emitter, SYSTEM) else {
         return String::new();
     };
-    let mut methods = methods;
+    let energies = methods(emitter, ENERGIES)
+        .map(|methods| format!("\n{} {{\n{methods}}}\n", header(emitter, "Energies")));
+    system(emitter, motion) + &energies.unwrap_or_default()
+}
+
+/// Whether the type implements `Energies`, if it implements `System`.
+pub fn has_energies(emitter: &Emitter) -> bool {
+    methods(emitter, ENERGIES).is_some()
+}
+
+/// Prints the methods of a trait; `None` if a function is missing.
+fn methods(emitter: &Emitter, rows: &[Method]) -> Option<String> {
+    rows.iter().map(|row| method(emitter, row)).collect()
+}
+
+fn system(emitter: &Emitter, mut methods: String) -> String {
+    let program = emitter.program;
     if let Some(place) = program.clock {
         methods.push_str(&format!(
             "fn clock(&self) -> ::core::option::Option<usize> {{\n::core::option::Option::Some({place})\n}}\n\n"
@@ -58,16 +76,6 @@ pub fn implementation(emitter: &Emitter) -> String {
         .iter()
         .map(|(name, n)| format!("type {name} = [S; {n}];\n"))
         .collect();
-    let zeros: String = sizes
-        .iter()
-        .map(|(name, n)| {
-            let value = zeros(Shape::Vector(*n));
-            format!(
-                "fn zero_{}(&self) -> Self::{name} {{\n{value}\n}}\n\n",
-                name.to_ascii_lowercase()
-            )
-        })
-        .collect();
     let blocks: Vec<String> = program
         .blocks
         .iter()
@@ -78,15 +86,14 @@ pub fn implementation(emitter: &Emitter) -> String {
         entries.join(", ")
     });
     format!(
-        "{}impl{} ::hamel::System for {} {{\ntype Scalar = S;\n{types}\nfn blocks(&self) -> &[::hamel::Block] {{\n&[{}]\n}}\n\n{zeros}fn start(&self) -> (Self::Coordinates, Self::Velocities) {{\n([{x}], [{xi}])\n}}\n\n{methods}}}\n",
-        structure::ALLOW_TRAIT,
-        externals::generics(emitter),
-        externals::applied(emitter),
+        "{} {{\ntype Scalar = S;\n{types}\nfn blocks(&self) -> &[::hamel::Block] {{\n&[{}]\n}}\n\nfn start(&self) -> (Self::Coordinates, Self::Velocities) {{\n([{x}], [{xi}])\n}}\n\n{methods}}}\n",
+        header(emitter, "System"),
         blocks.join(", ")
     )
 }
 
-fn method(emitter: &Emitter, row: &(&str, &[Argument], &str)) -> Option<String> {
+/// Prints one method, which calls the generated function.
+fn method(emitter: &Emitter, row: &Method) -> Option<String> {
     let &(name, arguments, result) = row;
     let index = emitter
         .program
@@ -130,7 +137,10 @@ fn method(emitter: &Emitter, row: &(&str, &[Argument], &str)) -> Option<String> 
     }
     Some(match name {
         "accel" if !function.fallible => {
-            format!("fn accel(&self, {signature}) -> {result} {{\nOk({call})\n}}\n\n")
+            format!("fn forward_dynamics(&self, {signature}) -> {result} {{\nOk({call})\n}}\n\n")
+        }
+        "accel" => {
+            format!("fn forward_dynamics(&self, {signature}) -> {result} {{\n{call}\n}}\n\n")
         }
         "constraint" => format!(
             "fn constraint_norm(&self, {signature}) -> {result} {{\nlet mut norm = S::default();\nfor value in {call} {{\nnorm = norm.max(value.abs());\n}}\nnorm\n}}\n\n"

@@ -188,7 +188,7 @@ pub fn apply<S: Scalar>(function: Function, a: S) -> S {
         Function::Sign => a.sign(),
         Function::Abs => a.abs(),
         Function::Inverse => a.inverse_of_length(),
-        Function::Raised => a.raised(),
+        Function::Raised => a.inflated(),
         // These have separate steps.
         Function::Atan2 | Function::Select | Function::Listed | Function::External => {
             S::from_f64(f64::NAN)

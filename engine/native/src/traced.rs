@@ -286,7 +286,7 @@ impl Scalar for Traced {
         self.apply(Function::Inverse)
     }
 
-    fn raised(self) -> Self {
+    fn inflated(self) -> Self {
         self.apply(Function::Raised)
     }
 

@@ -78,11 +78,11 @@ impl<Sys: Split + ?Sized> Method<Sys> for Buss {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        self.follow(system, state, h, inputs, &mut None)
+        self.step_reusing_force(system, state, h, inputs, &mut None)
     }
 
     #[inline]
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,

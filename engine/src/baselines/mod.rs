@@ -51,7 +51,7 @@ impl<Sys: System + ?Sized> Method<Sys> for Baseline {
 
     /// Returns true, so that no run stabilises them: baselines show their drift, or project by themselves.
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         true
     }
 

@@ -124,7 +124,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
 }
 
 /// A kick of h/2, motion without forces, a kick of h/2: order 2. `force` has the meaning of
-/// [`Method::follow`](hamel::Method::follow).
+/// [`Method::step_reusing_force`](hamel::Method::step_reusing_force).
 #[inline(always)]
 pub(super) fn strang<Sys, U>(
     system: &Sys,

@@ -35,7 +35,7 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let u = inputs(time + offset, x, xi);
-    system.accel(x, xi, &u).map_err(|cause| {
+    system.forward_dynamics(x, xi, &u).map_err(|cause| {
         let mut entries = x.as_ref().iter().chain(xi.as_ref());
         if entries.all(|entry| entry.is_finite()) {
             StepError::Singular { cause, time }

@@ -16,7 +16,7 @@ use crate::state::State;
 use divided::Divisors;
 pub use functions::{Functions, Place, compiled, place};
 use hamel::rotor::Rotor;
-use hamel::{Block, Singular, System};
+use hamel::{Block, Energies, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout;
@@ -415,16 +415,8 @@ impl System for Instance {
         &self.of.blocks
     }
 
-    fn zero_coordinates(&self) -> Numbers {
-        Numbers::filled(0.0, self.start.0.len())
-    }
-
     fn zero_velocities(&self) -> Numbers {
         Numbers::filled(0.0, self.start.1.len())
-    }
-
-    fn zero_chart(&self) -> Numbers {
-        Numbers::filled(0.0, self.of.chart)
     }
 
     fn zero_inputs(&self) -> Numbers {
@@ -447,7 +439,12 @@ impl System for Instance {
         self.value(self.of.chart_rate, x, xi, &[])
     }
 
-    fn accel(&self, x: &Numbers, xi: &Numbers, u: &Numbers) -> Result<Numbers, Singular> {
+    fn forward_dynamics(
+        &self,
+        x: &Numbers,
+        xi: &Numbers,
+        u: &Numbers,
+    ) -> Result<Numbers, Singular> {
         self.count();
         let Some(accel) = self.of.accel else {
             return Err(Singular::Mass);
@@ -486,7 +483,9 @@ impl System for Instance {
     fn constraint_norm(&self, x: &Numbers) -> f64 {
         largest(&self.constraint(x))
     }
+}
 
+impl Energies for Instance {
     fn kinetic_energy(&self, x: &Numbers, xi: &Numbers) -> f64 {
         match self.of.kinetic {
             Some(kinetic) => self.scalar(kinetic, x, xi),

@@ -46,7 +46,12 @@ impl AsMut<[f64]> for Numbers {
     }
 }
 
-impl Store<f64> for Numbers {}
+impl Store<f64> for Numbers {
+    #[inline]
+    fn zeros(length: usize) -> Self {
+        Numbers::filled(0.0, length)
+    }
+}
 
 impl Deref for Numbers {
     type Target = [f64];

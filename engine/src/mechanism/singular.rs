@@ -172,7 +172,7 @@ impl Instance {
 
     /// ξ̇, or the reason why it has no value.
     pub fn motion(&self, x: &[f64], xi: &[f64], u: &[f64]) -> Result<Vec<f64>, SingularState> {
-        match self.accel(&x.into(), &xi.into(), &u.into()) {
+        match self.forward_dynamics(&x.into(), &xi.into(), &u.into()) {
             Ok(_) if self.constant_singular() => Err(self.state_message(x)),
             Ok(xi_dot) => Ok(xi_dot.to_vec()),
             Err(cause) => Err(self.singular_message(cause)),

@@ -1,7 +1,7 @@
 //! A mechanism over another number type: its functions are tapes, which the implementor of [`Tapes`] evaluates.
 
 use super::singular;
-use hamel::{Block, Scalar, Singular, System};
+use hamel::{Block, Energies, Scalar, Singular, System};
 use hamel_codegen::program::Cause;
 
 /// Indices of functions among the tapes, and the shapes of their arguments.
@@ -77,24 +77,12 @@ impl<T: Tapes> System for Taped<T> {
         &self.0.places().blocks
     }
 
-    fn zero_coordinates(&self) -> Self::Coordinates {
-        Self::zeros(self.0.places().lengths[0])
-    }
-
     fn zero_velocities(&self) -> Self::Velocities {
         Self::zeros(self.0.places().lengths[1])
     }
 
-    fn zero_chart(&self) -> Self::Chart {
-        Self::zeros(self.0.places().chart)
-    }
-
     fn zero_inputs(&self) -> Self::Inputs {
         Self::zeros(self.0.places().lengths[2])
-    }
-
-    fn start(&self) -> (Self::Coordinates, Self::Velocities) {
-        (self.zero_coordinates(), self.zero_velocities())
     }
 
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates {
@@ -107,7 +95,7 @@ impl<T: Tapes> System for Taped<T> {
         self.value(places.chart_rate, places.chart, x, xi)
     }
 
-    fn accel(
+    fn forward_dynamics(
         &self,
         x: &Self::Coordinates,
         xi: &Self::Velocities,
@@ -150,7 +138,9 @@ impl<T: Tapes> System for Taped<T> {
         let sizes = residuals.into_iter().map(Scalar::abs);
         sizes.fold(T::Number::default(), Scalar::max)
     }
+}
 
+impl<T: Tapes> Energies for Taped<T> {
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> T::Number {
         self.number(self.0.places().kinetic, x, xi)
     }

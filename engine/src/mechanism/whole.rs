@@ -232,8 +232,8 @@ impl Method<Instance> for Whole<'_> {
         Method::<Instance>::order(self.stepper)
     }
 
-    fn stays_near(&self) -> bool {
-        Method::<Instance>::stays_near(self.stepper)
+    fn preserves_constraints(&self) -> bool {
+        Method::<Instance>::preserves_constraints(self.stepper)
     }
 
     fn step<U>(
@@ -250,10 +250,10 @@ impl Method<Instance> for Whole<'_> {
             &<Instance as System>::Velocities,
         ) -> <Instance as System>::Inputs,
     {
-        self.follow(system, state, h, inputs, &mut None)
+        self.step_reusing_force(system, state, h, inputs, &mut None)
     }
 
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Instance,
         state: &State<Instance>,
@@ -293,7 +293,8 @@ impl Method<Instance> for Whole<'_> {
                 });
             }
         }
-        self.stepper.follow(system, state, h, inputs, force)
+        self.stepper
+            .step_reusing_force(system, state, h, inputs, force)
     }
 }
 

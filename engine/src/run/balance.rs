@@ -2,7 +2,7 @@
 //! across a singularity, or is far too long.
 
 use crate::mechanism::Instance;
-use hamel::{State, System};
+use hamel::{Energies, State};
 
 /// Largest unexplained change of energy relative to the mean kinetic energy, and the same in multiples of the
 /// tolerance.

@@ -1,7 +1,7 @@
 //! The state of a run at one time, and derived quantities.
 
 use crate::mechanism::{Instance, Output};
-use hamel::{State, System};
+use hamel::{Energies, State};
 
 /// The state at one time, and derived quantities.
 #[derive(Clone, Debug)]

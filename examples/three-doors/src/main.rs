@@ -2,7 +2,7 @@
 //! third front end is the command line: `hamel emit examples/three-doors/pendulum.eom`.
 
 use hamel::methods::Rkmk4;
-use hamel::{Monitor, State, integrate};
+use hamel::{Monitor, Run, State};
 
 /// The code written by the build script.
 mod built {
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         built::Pendulum::<f64>::default(),
         expanded::Pendulum::<f64>::default(),
     );
-    let mut state = State::start(&built);
+    let state = State::start(&built);
     println!(
         "ξ̇ of the built one    {:?}",
         built.accel(&state.x, &state.xi, &[])?
@@ -44,20 +44,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
 
     let mut monitor = Monitor::new(&built, &state);
-    integrate(
-        &built,
-        Rkmk4,
-        &mut state,
-        1e-3,
-        10.0,
-        |_, _, _| [],
-        |state| monitor.observe(&built, state),
-    )?;
-    println!(
-        "after {} s the mass is at {:?}",
-        state.t,
-        built.bob(&state.x)
-    );
+    let end = Run::new(&built)
+        .method(Rkmk4)
+        .step(1e-3)
+        .observe(|state| monitor.observe(&built, state))
+        .until(10.0)?;
+    println!("after {} s the mass is at {:?}", end.t, built.bob(&end.x));
     println!("energy kept to {:.1e}", monitor.relative_energy_deviation());
     Ok(())
 }

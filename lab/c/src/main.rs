@@ -158,7 +158,7 @@ impl<'a> InC<'a> {
             &mut <S as Tangent>::Slopes,
         ) -> Result<<S as System>::Velocities, Singular>;
         let inputs: Vec<Input<S>> = (0..INPUTS).map(|k| input(system, k)).collect();
-        let accel: Forward<S> = black_box(|system, x, xi, u| system.accel(x, xi, u));
+        let accel: Forward<S> = black_box(|system, x, xi, u| system.forward_dynamics(x, xi, u));
         let slopes: Slopes<S> =
             black_box(|system, x, xi, u, slopes| system.slopes(x, xi, u, slopes));
         Ok([
@@ -168,7 +168,7 @@ impl<'a> InC<'a> {
                 |at, _| {
                     black_box(&accel(black_box(system), &at.x, &at.xi, &at.u));
                 },
-                |at| Ok(system.accel(&at.x, &at.xi, &at.u)?.as_ref().to_vec()),
+                |at| Ok(system.forward_dynamics(&at.x, &at.xi, &at.u)?.as_ref().to_vec()),
             )?,
             self.row(
                 "linearize",

@@ -49,7 +49,7 @@ pub struct Generated<Sys: System> {
 impl<Sys: System<Scalar = f64>> Generated<Sys> {
     pub fn new(name: &'static str, system: Sys, inverse: Option<Inverse<Sys>>) -> Self {
         let inputs = (0..INPUTS).map(|k| input(&system, k)).collect();
-        let forward: Forward<Sys> = |system, x, xi, u| system.accel(x, xi, u);
+        let forward: Forward<Sys> = |system, x, xi, u| system.forward_dynamics(x, xi, u);
         Self {
             name,
             system,

@@ -3,7 +3,7 @@
 use crate::methods;
 use crate::peers::{self, Peers};
 use crate::runner::{BenchError, Effort, Runner};
-use hamel::{Canonical, Split, State, System, so3};
+use hamel::{Canonical, Energies, Split, State, System, so3};
 use hamel_cases::case::Inputs;
 use hamel_cases::models::CHOICES;
 use hamel_cases::{Case, Measure, bodies, mechanisms};
@@ -108,7 +108,8 @@ fn angular<'a, Sys: System<Scalar = f64>>(
 fn top<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
 where
     Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
-        + Canonical,
+        + Canonical
+        + Energies,
 {
     let momentum = angular(case);
     let vertical = Box::new(move |x: &[f64], xi: &[f64]| vec![momentum(x, xi)[2]]);
@@ -125,7 +126,8 @@ where
 fn free<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
 where
     Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
-        + Canonical,
+        + Canonical
+        + Energies,
 {
     let momentum = angular(case);
     let all = Box::new(move |x: &[f64], xi: &[f64]| momentum(x, xi).to_vec());
@@ -141,7 +143,7 @@ where
 /// Runs another body in a potential or under given loads.
 fn flight<Sys>(runner: &mut Runner, case: &Case<Sys>, conservative: bool) -> Result<(), BenchError>
 where
-    Sys: Split<Scalar = f64> + Canonical,
+    Sys: Split<Scalar = f64> + Canonical + Energies,
 {
     let problem = problem(runner, case, Box::new(|_, _| Vec::new()), conservative);
     let mut entries = methods::general(&problem);
@@ -154,7 +156,7 @@ where
 /// Runs several bodies, whose M depends on x.
 fn chain<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
-    Sys: Canonical<Scalar = f64>,
+    Sys: Canonical<Scalar = f64> + Energies,
 {
     let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
     let mut entries = methods::general(&problem);
@@ -166,7 +168,7 @@ where
 /// Runs bodies with constrained velocities.
 fn rolling<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
-    Sys: System<Scalar = f64>,
+    Sys: Energies<Scalar = f64>,
 {
     let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
     runner.entries(&methods::general(&problem), None);

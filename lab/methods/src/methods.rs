@@ -5,7 +5,7 @@ use hamel::methods::{
     BackwardEuler, Cf4, Gauss4, Gauss6, Lgvi, Rk4, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler,
     Splitting, free,
 };
-use hamel::{Canonical, Split, System};
+use hamel::{Canonical, Energies, Split};
 use hamel_engine::baselines::{Buss, ForwardEuler, Rk4Added, Rk4Projected, Slide};
 use hamel_report::data::Kind;
 use hamel_report::entry::{Entry, Outcome, Watch};
@@ -23,7 +23,7 @@ macro_rules! table {
 /// Methods for any system.
 pub fn general<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Vec<Entry<'p>>
 where
-    Sys: System<Scalar = f64>,
+    Sys: Energies<Scalar = f64>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let mut entries = table! { problem;
@@ -49,7 +49,7 @@ where
 /// Methods that integrate momenta.
 pub fn canonical<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Vec<Entry<'p>>
 where
-    Sys: Canonical<Scalar = f64>,
+    Sys: Canonical<Scalar = f64> + Energies,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     table! { problem;
@@ -61,7 +61,7 @@ where
 /// Methods for bodies in potentials.
 pub fn split<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Vec<Entry<'p>>
 where
-    Sys: Split<Scalar = f64>,
+    Sys: Split<Scalar = f64> + Energies,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let kicks = |scheme| Splitting::new(&problem.system, scheme);
@@ -89,7 +89,7 @@ where
 /// The closed form, which takes one evaluation for any number of steps.
 fn closed<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Entry<'p>
 where
-    Sys: Split<Scalar = f64>,
+    Sys: Split<Scalar = f64> + Energies,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     Entry::new(

@@ -7,7 +7,7 @@ mod ode;
 mod rapier;
 
 use crate::runner::{BenchError, Runner};
-use hamel::System;
+use hamel::Energies;
 use hamel_report::data::{Case, MethodRuns, Missing, Peer};
 use hamel_report::entry::Entry;
 use hamel_report::problem::Problem;
@@ -100,7 +100,7 @@ pub fn free<'p, Sys, U>(
     problem: &'p Problem<'_, Sys, U>,
 ) -> Result<Vec<Entry<'p>>, BenchError>
 where
-    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
     U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     peers(runner, problem, false)
@@ -115,7 +115,7 @@ pub fn tops<'p, Sys, U>(
     problem: &'p Problem<'_, Sys, U>,
 ) -> Result<Vec<Entry<'p>>, BenchError>
 where
-    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
     U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     peers(runner, problem, true)
@@ -127,7 +127,7 @@ fn peers<'p, Sys, U>(
     joint: bool,
 ) -> Result<Vec<Entry<'p>>, BenchError>
 where
-    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
     U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     #[allow(unused_mut)]

@@ -12,6 +12,14 @@ use crate::system::Block;
 ///
 /// A step is accepted if each entry of its estimated error is below the tolerance of its kind. Errors at the end of a
 /// run are proportional to the tolerance.
+///
+/// ```
+/// use hamel::adaptive::{Adaptive, Tolerance};
+///
+/// // Positions to a micrometre whatever their size, angles to a milliradian.
+/// let mut method = Adaptive::rkmk54(1e-6);
+/// method.tolerance = Tolerance { angle: 1e-3, absolute: 1e-6, relative: 0.0 };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Tolerance of circles, quaternions and rotations, in rad; at least the rounding unit of the scalar.
@@ -91,8 +99,8 @@ pub(crate) struct Controller {
 }
 
 const SAFETY: f64 = 0.9;
-const SMALLEST: f64 = 0.2;
-const LARGEST: f64 = 5.0;
+const MIN_FACTOR: f64 = 0.2;
+const MAX_FACTOR: f64 = 5.0;
 
 impl Controller {
     pub(crate) fn new(order: u32) -> Self {
@@ -109,17 +117,21 @@ impl Controller {
         // Below 1e-10 the factor has reached its limit anyway, and zero has no logarithm.
         let q = q.max(1e-10);
         let factor = SAFETY * power(q, -0.7 / self.order) * power(self.before, 0.4 / self.order);
-        let most = if self.refused { 1.0 } else { LARGEST };
+        let most = if self.refused { 1.0 } else { MAX_FACTOR };
         self.before = q.max(1e-4);
         self.refused = false;
-        factor.clamp(SMALLEST, most)
+        factor.clamp(MIN_FACTOR, most)
     }
 
     /// Returns the factor for another attempt, after one with the scaled error q > 1, or with none (NaN).
     pub(crate) fn refuse(&mut self, q: f64) -> f64 {
         self.refused = true;
         let factor = SAFETY * power(q, -1.0 / self.order);
-        if factor > SMALLEST { factor } else { SMALLEST }
+        if factor > MIN_FACTOR {
+            factor
+        } else {
+            MIN_FACTOR
+        }
     }
 }
 

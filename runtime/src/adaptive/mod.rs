@@ -15,39 +15,29 @@
 //! #     type Chart = [f64; 1];
 //! #     type Inputs = [f64; 0];
 //! #     fn blocks(&self) -> &[Block] { &[Block::Circle] }
-//! #     fn zero_coordinates(&self) -> [f64; 2] { [0.0; 2] }
-//! #     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
-//! #     fn zero_chart(&self) -> [f64; 1] { [0.0] }
-//! #     fn zero_inputs(&self) -> [f64; 0] { [] }
 //! #     fn start(&self) -> ([f64; 2], [f64; 1]) { (s1::exp(1.0), [0.0]) }
-//! #     fn rate(&self, x: &[f64; 2], xi: &[f64; 1]) -> [f64; 2] { s1::rate(*x, xi[0]) }
 //! #     fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] { *xi }
-//! #     fn accel(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
+//! #     fn forward_dynamics(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
 //! #         Ok([-9.81 * x[1]])
 //! #     }
-//! #     fn correction(&self, x: &[f64; 2]) -> [f64; 2] { s1::correction(*x) }
-//! #     fn constraint_norm(&self, x: &[f64; 2]) -> f64 { s1::defect(*x) }
-//! #     fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 1]) -> f64 { 0.5 * xi[0] * xi[0] }
-//! #     fn potential_energy(&self, x: &[f64; 2]) -> f64 { -9.81 * x[0] }
 //! # }
 //! # fn main() -> Result<(), hamel::StepError> {
+//! use hamel::Run;
 //! use hamel::adaptive::{Adaptive, Event, Report};
 //!
 //! // A pendulum of length 1, x = (cos θ, sin θ), let go at θ = 1: where does it first hang straight?
-//! let mut state = State::start(&Pendulum);
-//! let lowest = |state: &State<Pendulum>| state.x[1];
-//! let events = [Event::new(&lowest).stopping()];
 //! let mut greatest: f64 = 0.0;
-//! let outcome = Adaptive::rkmk54(1e-9).integrate(
-//!     &Pendulum, &mut state, 10.0, |_, _, _| [], &events,
-//!     |report| if let Report::Step(step) = report {
+//! let (end, outcome) = Run::new(&Pendulum)
+//!     .adaptive(Adaptive::rkmk54(1e-9))
+//!     .events(&[Event::new(&|state: &State<Pendulum>| state.x[1]).stopping()])
+//!     .report(|report| if let Report::Step(step) = report {
 //!         // Between the ends of the step, too.
 //!         let middle = 0.5 * (step.start().t + step.end().t);
 //!         greatest = greatest.max(step.at(middle).xi[0].abs());
-//!     },
-//! )?;
+//!     })
+//!     .until(10.0)?;
 //! assert_eq!(outcome.stopped_by, Some(0));
-//! assert!(state.x[1].abs() < 1e-8 && state.t < 1.0);
+//! assert!(end.x[1].abs() < 1e-8 && end.t < 1.0);
 //! # Ok(())
 //! # }
 //! ```
@@ -64,11 +54,13 @@ pub use events::{Direction, Event};
 pub use pair::Pair;
 pub use step::Step;
 
+use core::ops::{AddAssign, ControlFlow};
+
 use crate::adaptive::control::{Controller, power};
 use crate::adaptive::stiff::Stiffness;
 use crate::clock::Clock;
 use crate::error::StepError;
-use crate::integrate::{acceleration, lead_back, project};
+use crate::integrate::{acceleration, project, project_coordinates};
 use crate::methods::tableau::{Stages, Sums};
 use crate::methods::{rkmk8, rkmk54};
 use crate::scalar::Scalar;
@@ -76,6 +68,33 @@ use crate::state::State;
 use crate::system::System;
 
 /// An embedded Runge-Kutta pair with the settings of its step-size control.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #     }
+/// # }
+///
+/// use hamel::{State, adaptive::Adaptive};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let mut method = Adaptive::rkmk8(1e-10);
+/// method.longest = 0.5;
+/// let mut state = State::start(&pendulum);
+/// let statistics = method.run(&pendulum, &mut state, 10.0, |_, _, _| [0.0])?;
+/// assert!(statistics.accepted >= 20);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Adaptive<const M: usize, const D: usize> {
     pair: &'static Pair<M, D>,
@@ -117,6 +136,14 @@ pub struct Statistics {
     pub rejected: u64,
     /// Evaluations of ξ̇.
     pub evaluations: u64,
+}
+
+impl AddAssign for Statistics {
+    fn add_assign(&mut self, other: Self) {
+        self.accepted += other.accepted;
+        self.rejected += other.rejected;
+        self.evaluations += other.evaluations;
+    }
 }
 
 /// Result of a run.
@@ -171,7 +198,9 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         Sys: System + ?Sized,
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        let outcome = self.drive(system, state, until, &inputs, false, |_| Ok(None))?;
+        let nothing = |_: &mut Step<'_, Sys, D>| Ok(None);
+        let observe = |_: &State<Sys>| ControlFlow::Continue(());
+        let (outcome, _) = self.drive(system, state, until, &inputs, false, nothing, observe)?;
         Ok(outcome.statistics)
     }
 
@@ -194,11 +223,26 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
         O: FnMut(Report<'_, Sys, D>),
     {
-        self.drive(system, state, until, &inputs, true, |step| {
-            let stopped_by = self.happen(step, events, &mut observe)?;
-            observe(Report::Step(step));
-            Ok(stopped_by)
-        })
+        let report = |step: &mut Step<'_, Sys, D>| self.report(step, events, &mut observe);
+        let observe = |_: &State<Sys>| ControlFlow::Continue(());
+        let (outcome, _) = self.drive(system, state, until, &inputs, true, report, observe)?;
+        Ok(outcome)
+    }
+
+    /// Reports the events of a step and the step itself; returns the index of an event that stops the run.
+    pub(crate) fn report<Sys, O>(
+        &self,
+        step: &mut Step<'_, Sys, D>,
+        events: &[Event<'_, Sys>],
+        observe: &mut O,
+    ) -> Result<Option<usize>, StepError>
+    where
+        Sys: System + ?Sized,
+        O: FnMut(Report<'_, Sys, D>),
+    {
+        let stopped_by = self.happen(step, events, observe)?;
+        observe(Report::Step(step));
+        Ok(stopped_by)
     }
 
     /// Reports the events of a step in order of time. An event that stops the run becomes the end of the step; its
@@ -233,7 +277,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
                 return Ok(None);
             };
             let mut state = step.at(time);
-            lead_back(step.system, &mut state);
+            project_coordinates(step.system, &mut state);
             project(step.system, &mut state)?;
             observe(Report::Event {
                 index,
@@ -248,8 +292,9 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
     }
 
     /// Runs the loop over attempted steps. If `dense`, `accept` sees every accepted step together with its dense
-    /// output, and may shorten the step and end the run.
-    fn drive<Sys, U>(
+    /// output, and may shorten the step and end the run. `observe` sees the state after every step. Also returns whether
+    /// either of them ended the run.
+    pub(crate) fn drive<Sys, U>(
         &self,
         system: &Sys,
         state: &mut State<Sys>,
@@ -257,7 +302,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         inputs: &U,
         dense: bool,
         mut accept: impl FnMut(&mut Step<'_, Sys, D>) -> Result<Option<usize>, StepError>,
-    ) -> Result<Outcome, StepError>
+        mut observe: impl FnMut(&State<Sys>) -> ControlFlow<()>,
+    ) -> Result<(Outcome, ControlFlow<()>), StepError>
     where
         Sys: System + ?Sized,
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
@@ -277,7 +323,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         }
         let mut outcome = Outcome::default();
         if span == 0.0 {
-            return Ok(outcome);
+            return Ok((outcome, ControlFlow::Continue(())));
         }
         let statistics = &mut outcome.statistics;
         let mut stages: Stages<Sys, M> = Stages::start(system, state, inputs)?;
@@ -326,7 +372,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             if let Some(clock) = &clock {
                 clock.set(&mut end);
             }
-            let led_back = lead_back(system, &mut end);
+            let led_back = project_coordinates(system, &mut end);
             let moved = project(system, &mut end)? || led_back;
             let mut stopped_by = None;
             if dense {
@@ -337,15 +383,16 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             }
             *state = end;
             statistics.accepted += 1;
+            let observed = observe(state);
             if left > self.stiff * h.abs()
                 && let Some(rate) = stiffness.after(system, &stages, self.pair, h)
             {
                 let (time, step) = (state.t, h);
                 return Err(StepError::Stiff { time, step, rate });
             }
-            if stopped_by.is_some() {
+            if stopped_by.is_some() || observed.is_break() {
                 outcome.stopped_by = stopped_by;
-                return Ok(outcome);
+                return Ok((outcome, ControlFlow::Break(())));
             }
             length = (h.abs() * controller.accept(q)).min(longest);
 
@@ -362,7 +409,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
                 stages.set(0, system.chart_rate(&state.x, &state.xi), f);
             }
         }
-        Ok(outcome)
+        Ok((outcome, ControlFlow::Continue(())))
     }
 
     /// Evaluates the stages of one step; returns its end, its change, and its estimated error divided by the tolerance.

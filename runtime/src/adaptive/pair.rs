@@ -10,6 +10,8 @@ pub struct Pair<const M: usize, const D: usize> {
     /// Index of the stage at the end of the step: its row is b, and it is the first stage of the next step. Later
     /// stages are only for dense output.
     pub end: usize,
+    /// Value of h |ρ| at the bound of the stability region, where ρ < 0 is the rate of y′ = ρ y.
+    pub stability: f64,
     /// The stages; the first has no weights.
     pub rows: [Row; M],
     /// Error weights e, the difference of two closing formulas: the estimate is h Σ eⱼ kⱼ. If there are two estimates,

@@ -13,7 +13,7 @@ use crate::system::System;
 
 /// Excess of steps at the stability bound over steps within it, at which the motion counts as stiff. A passage near a
 /// singularity takes fewer such steps.
-const OFTEN: u32 = 1000;
+const MAX_STEPS_AT_BOUND: u32 = 1000;
 
 /// Counter of steps at the stability bound.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,14 +31,12 @@ impl Stiffness {
         h: f64,
     ) -> Option<f64> {
         let rate = rate(system, stages, pair, h)?;
-        // Values of h |ρ| at the bound of the stability region, for the pairs of orders 8 and 5.
-        let bound = if pair.order > 6 { 6.1 } else { 3.25 };
-        if rate * h.abs() < 0.8 * bound {
+        if rate * h.abs() < 0.8 * pair.stability {
             self.count = self.count.saturating_sub(1);
             return None;
         }
         self.count += 1;
-        (self.count >= OFTEN).then_some(rate)
+        (self.count >= MAX_STEPS_AT_BOUND).then_some(rate)
     }
 }
 

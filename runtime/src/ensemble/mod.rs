@@ -28,20 +28,10 @@
 //! #   type Chart = [S; 1];
 //! #   type Inputs = [S; 0];
 //! #   fn blocks(&self) -> &[Block] { &[Block::Flat(1)] }
-//! #   fn zero_coordinates(&self) -> [S; 1] { [S::default()] }
-//! #   fn zero_velocities(&self) -> [S; 1] { [S::default()] }
-//! #   fn zero_chart(&self) -> [S; 1] { [S::default()] }
-//! #   fn zero_inputs(&self) -> [S; 0] { [] }
-//! #   fn start(&self) -> ([S; 1], [S; 1]) { ([S::default()], [S::default()]) }
-//! #   fn rate(&self, _: &[S; 1], xi: &[S; 1]) -> [S; 1] { *xi }
 //! #   fn chart_rate(&self, _: &[S; 1], xi: &[S; 1]) -> [S; 1] { *xi }
-//! #   fn accel(&self, x: &[S; 1], _: &[S; 1], _: &[S; 0]) -> Result<[S; 1], Singular> {
+//! #   fn forward_dynamics(&self, x: &[S; 1], _: &[S; 1], _: &[S; 0]) -> Result<[S; 1], Singular> {
 //! #       Ok([-self.rate * x[0].sin_cos().0])
 //! #   }
-//! #   fn correction(&self, _: &[S; 1]) -> [S; 1] { [S::default()] }
-//! #   fn constraint_norm(&self, _: &[S; 1]) -> S { S::default() }
-//! #   fn kinetic_energy(&self, _: &[S; 1], xi: &[S; 1]) -> S { S::from_f64(0.5) * xi[0] * xi[0] }
-//! #   fn potential_energy(&self, x: &[S; 1]) -> S { -self.rate * x[0].sin_cos().1 }
 //! }
 //!
 //! let mut states: Vec<State<Pendulum<f64>>> = (0..1000)

@@ -14,7 +14,7 @@ use crate::state::State;
 use crate::system::System;
 
 /// Steps of a group between two calls of the progress callback.
-const PACE: u64 = 256;
+const STEPS_PER_PROGRESS: u64 = 256;
 
 /// Data shared by all threads: the steps done, and whether the run is cancelled.
 pub(super) struct Watch<'a, P> {
@@ -205,9 +205,9 @@ where
             if let Some(clock) = &clock {
                 clock.set(&mut state);
             }
-            if index - told == PACE {
+            if index - told == STEPS_PER_PROGRESS {
                 told = index;
-                if !self.watch.advance(PACE * members) {
+                if !self.watch.advance(STEPS_PER_PROGRESS * members) {
                     break;
                 }
             }

@@ -11,6 +11,18 @@
 //! The flows act on an [`Attitude`] (matrix or quaternion) and on the angular momentum P, in principal axes, and
 //! conserve R P, the angular momentum in world axes. [`Flow`] selects one of them and also handles rotors whose body
 //! axes are not principal.
+//!
+//! ```
+//! use hamel::{Rotor, flows::Flow, so3};
+//!
+//! let rotor = Rotor::of_moments([1.0, 2.0, 3.0]);
+//! let (r, mut p) = (so3::identity(), [0.01, 4.0, 0.01]);
+//! let before = so3::apply(r, p);
+//! let r = Flow::Exact.turn(&rotor, r, &mut p, 100.0);
+//! // The angular momentum in world axes stays.
+//! let after: [f64; 3] = so3::apply(r, p);
+//! assert!(after.iter().zip(before).all(|(a, b)| (a - b).abs() < 1e-12));
+//! ```
 
 mod attitude;
 mod carlson;

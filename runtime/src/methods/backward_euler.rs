@@ -12,14 +12,14 @@ use core::array::from_fn;
 use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
-use crate::methods::implicit::unknowns::{MEMORY, Progress, Unknowns, ratio};
+use crate::methods::implicit::unknowns::{MAX_REMEMBERED_STEPS, Progress, Unknowns, ratio};
 #[cfg(feature = "std")]
 use crate::methods::implicit::{differences::Differences, equations::Equations};
 use crate::methods::{Method, arrive};
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::store::{add_scaled, scale};
-use crate::system::System;
+use crate::system::{Energies, System};
 
 /// Implicit Euler method: order 1, about six evaluations of ξ̇ per step, more if the system is stiff.
 ///
@@ -36,11 +36,11 @@ use crate::system::System;
 pub struct BackwardEuler;
 
 /// Evaluation budget of Broyden's method.
-const MOST: u32 = 64;
+const MAX_EVALUATIONS: u32 = 64;
 /// Largest size of an iterate relative to that of the first, explicit one; beyond it the iteration has failed.
-const FAR: f64 = 1e3;
+const MAX_GROWTH: f64 = 1e3;
 
-impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
+impl<Sys: Energies + ?Sized> Method<Sys> for BackwardEuler {
     fn order(&self) -> u32 {
         1
     }
@@ -111,12 +111,12 @@ where
         xi: state.xi.clone(),
     };
     scale(z.u.as_mut(), h);
-    let mut steps: [Unknowns<Sys>; MEMORY] = from_fn(|_| Unknowns::zero(system));
+    let mut steps: [Unknowns<Sys>; MAX_REMEMBERED_STEPS] = from_fn(|_| Unknowns::zero(system));
     // A step whose square is not above this value is hidden by rounding.
-    let mut rests = [Sys::Scalar::default(); MEMORY];
+    let mut rests = [Sys::Scalar::default(); MAX_REMEMBERED_STEPS];
     let (mut known, mut farthest) = (0, zero);
     let mut progress = Progress::new(system, state);
-    for iterations in 1..=MOST {
+    for iterations in 1..=MAX_EVALUATIONS {
         let mut next = defect(&z)?;
         if !next.is_finite() {
             return Err(StepError::NotConverged {
@@ -143,7 +143,7 @@ where
         // Diverging iterates end the iteration: wrongly learnt directions can lead anywhere.
         let size = z.length(h);
         farthest = if iterations == 1 {
-            of(FAR) * size
+            of(MAX_GROWTH) * size
         } else {
             farthest
         };
@@ -167,7 +167,11 @@ where
                 iterations,
             });
         }
-        known = if known == MEMORY { 0 } else { known };
+        known = if known == MAX_REMEMBERED_STEPS {
+            0
+        } else {
+            known
+        };
         if let (Some(slot), Some(rest)) = (steps.get_mut(known), rests.get_mut(known)) {
             *rest = rounding * z.dot(&z, Scalar::inner_plus);
             *slot = next;
@@ -176,6 +180,6 @@ where
     }
     Err(StepError::NotConverged {
         time: state.t,
-        iterations: MOST,
+        iterations: MAX_EVALUATIONS,
     })
 }

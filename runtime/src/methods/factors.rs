@@ -60,7 +60,7 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
         };
         let mut units = factors.units(zeros.clone());
         let mut above = zeros;
-        for column in 0..factors.size() {
+        for column in 0..factors.magnitude() {
             factors.exchange(column, units.as_mut());
             for (own, entry) in above.as_mut().iter_mut().zip(factors.matrix.row(column)) {
                 *own = *entry;
@@ -70,7 +70,7 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
         factors
     }
 
-    fn size(&self) -> usize {
+    fn magnitude(&self) -> usize {
         self.pivots.as_ref().len()
     }
 
@@ -105,16 +105,16 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
             factors.entry(i, column).abs() * units.get(i).copied().unwrap_or_default()
         };
         let (mut largest, mut pivot) = (part(self, column), S::from_f64(column as f64));
-        for i in column + 1..self.size() {
+        for i in column + 1..self.magnitude() {
             let other = part(self, i);
             pivot = largest.select_lt(other, S::from_f64(i as f64), pivot);
             largest = largest.select_lt(other, other, largest);
         }
-        for i in column + 1..self.size() {
+        for i in column + 1..self.magnitude() {
             let Some(chosen) = chosen(pivot, i) else {
                 continue;
             };
-            for j in 0..self.size() {
+            for j in 0..self.magnitude() {
                 let (mut upper, mut lower) = (self.entry(column, j), self.entry(i, j));
                 swap(chosen, &mut upper, &mut lower);
                 self.put(column, j, upper);
@@ -139,7 +139,7 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
     /// zeros.
     fn eliminate(&mut self, column: usize, above: &[S]) {
         let pivot = above.get(column).copied().unwrap_or_default();
-        for i in column + 1..self.size() {
+        for i in column + 1..self.magnitude() {
             let Some((first, rest)) = self
                 .matrix
                 .row_mut(i)
@@ -159,7 +159,7 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
     /// Solves J a = b in place: b ← J⁻¹ b.
     pub(super) fn solve(&self, b: &mut [S]) {
         for (column, pivot) in self.pivots.as_ref().iter().enumerate() {
-            for i in column + 1..self.size() {
+            for i in column + 1..self.magnitude() {
                 if let Some(chosen) = chosen(*pivot, i)
                     && let Ok([upper, lower]) = b.get_disjoint_mut([column, i])
                 {
@@ -167,14 +167,14 @@ impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
                 }
             }
         }
-        for i in 0..self.size() {
+        for i in 0..self.magnitude() {
             let (above, rest) = b.split_at_mut(i.min(b.len()));
             if let Some(own) = rest.first_mut() {
                 let known = self.matrix.row(i).iter().zip(above.iter());
                 *own = known.fold(*own, |sum, (factor, b)| (-*factor).mul_add(*b, sum));
             }
         }
-        for i in (0..self.size()).rev() {
+        for i in (0..self.magnitude()).rev() {
             let Some((own, below)) = b.get_mut(i..).and_then(<[S]>::split_first_mut) else {
                 continue;
             };

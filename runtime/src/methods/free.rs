@@ -18,6 +18,32 @@ pub struct Free;
 
 /// Returns the state at the time `t`, before or after that of `start`.
 ///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Body {
+/// #         param Theta: sym3 = [[2.1, 0.1, 0], [0.1, 1.7, 0], [0, 0, 1.2]];
+/// #         coord R: SO3;
+/// #         velocity w: vec3;
+/// #         rate R = R * hat(w);
+/// #         frame hull = pose(R, [0, 0, 0]);
+/// #         body on hull { mass 1; inertia Theta about origin; }
+/// #         start w = [0.01, 2, 0.01];
+/// #     }
+/// # }
+///
+/// use hamel::{State, methods::free};
+///
+/// let body = Body::<f64>::default();
+/// let start = State::start(&body);
+/// // A thousand time units ahead, and back again.
+/// let later = free::at(&body, &start, 1000.0)?;
+/// let back = free::at(&body, &later, 0.0)?;
+/// assert!(back.xi.iter().zip(start.xi).all(|(a, b)| (a - b).abs() < 1e-9));
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
+///
 /// # Errors
 /// [`StepError::Forces`] if forces may act; [`StepError::NonFinite`], [`StepError::Shape`].
 pub fn at<Sys: Split + ?Sized>(
@@ -52,7 +78,7 @@ impl<Sys: Split + ?Sized> Method<Sys> for Free {
     }
 
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         true
     }
 

@@ -83,7 +83,7 @@ macro_rules! method {
             }
 
             #[inline]
-            fn stays_near(&self) -> bool {
+            fn preserves_constraints(&self) -> bool {
                 true
             }
 
@@ -312,7 +312,7 @@ fn is_below<S: Scalar>(change: S, ulps: f64) -> bool {
 #[inline]
 fn largest_difference<S: Scalar>(a: &[S], b: &[S]) -> S {
     a.iter().zip(b).fold(S::default(), |largest, (a, b)| {
-        Scalar::max(largest, (*a - *b).size())
+        Scalar::max(largest, (*a - *b).magnitude())
     })
 }
 
@@ -342,7 +342,7 @@ fn still_moving<S: Scalar>(length: S, (old, new, sizes): (&[S], &[S], &[S]), lea
     let rounding = S::from_f64(ULPS) * epsilon();
     let entries = old.iter().zip(new).zip(sizes.iter().zip(least));
     entries.fold(zero, |moving, ((old, new), (size, least))| {
-        let change = (length * (*new - *old)).beside(*size, length * *new);
+        let change = (length * (*new - *old)).relative_to(*size, length * *new);
         let shrinks = change.select_lt(S::from_f64(0.75) * *least, one, zero);
         let unsteady = (S::from_f64(16.0) * *least).select_lt(change, one, shrinks);
         // At the first iteration there is no earlier change to compare with.

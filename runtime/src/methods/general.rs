@@ -1,14 +1,15 @@
-//! A method for any system, chosen at run time.
+//! A method for any system with energies, chosen at run time.
 
 use crate::error::StepError;
 use crate::methods::{BackwardEuler, Cf4, Method, Rk4, Rkmk4, Rkmk8, Rkmk54, SemiImplicitEuler};
 use crate::state::State;
-use crate::system::System;
+use crate::system::Energies;
 
 /// Declares [`General`], the names of its variants, and the calls of the methods.
 macro_rules! general {
     ($($(#[$note:meta])* $variant:ident $name:literal,)*) => {
-        /// Any method that needs nothing but [`System`], as one type.
+        /// Any method for systems with [`Energies`], as one type; all but [`BackwardEuler`] need [`System`](crate::System)
+        /// alone.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum General {
@@ -33,7 +34,7 @@ macro_rules! general {
             }
         }
 
-        impl<Sys: System + ?Sized> Method<Sys> for General {
+        impl<Sys: Energies + ?Sized> Method<Sys> for General {
             fn order(&self) -> u32 {
                 match self {
                     Self::Rk4 { lambda } => Method::<Sys>::order(&Rk4 { lambda: *lambda }),
@@ -42,10 +43,10 @@ macro_rules! general {
             }
 
             #[inline]
-            fn stays_near(&self) -> bool {
+            fn preserves_constraints(&self) -> bool {
                 match self {
-                    Self::Rk4 { lambda } => Method::<Sys>::stays_near(&Rk4 { lambda: *lambda }),
-                    $(Self::$variant => Method::<Sys>::stays_near(&$variant),)*
+                    Self::Rk4 { lambda } => Method::<Sys>::preserves_constraints(&Rk4 { lambda: *lambda }),
+                    $(Self::$variant => Method::<Sys>::preserves_constraints(&$variant),)*
                 }
             }
 
@@ -86,6 +87,13 @@ general! {
 
 impl General {
     /// Returns the method of this name; `rk4` is without stabilisation.
+    ///
+    /// ```
+    /// use hamel::methods::General;
+    ///
+    /// assert_eq!(General::named("rkmk8"), Some(General::Rkmk8));
+    /// assert!(General::ALL.contains(&General::Rkmk4));
+    /// ```
     pub fn named(name: &str) -> Option<Self> {
         let mut all = Self::ALL.iter().copied();
         all.find(|method| method.name() == name)

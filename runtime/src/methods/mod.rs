@@ -19,6 +19,38 @@
 //! | [`SemiImplicitEuler`] | 1 | short steps, such as those of controllers; one evaluation |
 //!
 //! [`Adaptive`](crate::adaptive::Adaptive) runs [`Rkmk54`] and [`Rkmk8`] with step-size control.
+//!
+//! ```
+//! # #[cfg(feature = "macros")] {
+//! # hamel::rigid_eom! {
+//! #     system Pendulum {
+//! #         coord q;
+//! #         velocity w;
+//! #         rate q = w;
+//! #         kinetic w^2 / 2;
+//! #         potential -cos(q);
+//! #         input tau;
+//! #         generalized force w = tau;
+//! #         start q = 1;
+//! #     }
+//! # }
+//!
+//! use hamel::methods::{BackwardEuler, Gauss4, Rkmk4, Rkmk8, SemiImplicitEuler};
+//! use hamel::{Method, Run, StepError};
+//!
+//! let pendulum = Pendulum::<f64>::default();
+//! fn end<M: Method<Pendulum<f64>>>(system: &Pendulum<f64>, method: M) -> Result<f64, StepError> {
+//!     Ok(Run::new(system).method(method).step(0.01).until(1.0)?.x[0])
+//! }
+//!
+//! let exact = end(&pendulum, Rkmk8)?;
+//! assert!((end(&pendulum, Rkmk4)? - exact).abs() < 1e-9);
+//! assert!((end(&pendulum, Gauss4)? - exact).abs() < 1e-9);
+//! assert!((end(&pendulum, SemiImplicitEuler)? - exact).abs() < 1e-2);
+//! assert!((end(&pendulum, BackwardEuler)? - exact).abs() < 1e-2);
+//! # }
+//! # Ok::<(), hamel::StepError>(())
+//! ```
 
 mod backward_euler;
 mod cf4;
@@ -71,7 +103,7 @@ pub trait Method<Sys: System + ?Sized> {
     /// Symmetric methods do, but lose this property if x is corrected after each step. For all other methods, x is
     /// corrected towards φ(x) = 0 after each step ([`System::project_coordinates`]).
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         false
     }
 
@@ -104,7 +136,7 @@ pub trait Method<Sys: System + ?Sized> {
     /// # Errors
     /// Those of [`step`](Self::step).
     #[inline]
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,
@@ -171,8 +203,8 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     }
 
     #[inline]
-    fn stays_near(&self) -> bool {
-        (**self).stays_near()
+    fn preserves_constraints(&self) -> bool {
+        (**self).preserves_constraints()
     }
 
     #[inline]
@@ -190,7 +222,7 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     }
 
     #[inline]
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,
@@ -201,7 +233,7 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        (**self).follow(system, state, h, inputs, force)
+        (**self).step_reusing_force(system, state, h, inputs, force)
     }
 }
 

@@ -148,7 +148,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
 }
 
 /// Makes a Strang step: a kick of h/2, free motion, a kick of h/2. Order 2, symmetric, and symplectic if the free
-/// motion is. `force` is that of [`Method::follow`](crate::Method::follow). Returns `None` if the free motion does not
+/// motion is. `force` is that of [`Method::step_reusing_force`](crate::Method::step_reusing_force). Returns `None` if the free motion does not
 /// converge.
 #[inline(always)]
 pub(crate) fn strang<Sys, D, U>(

@@ -26,7 +26,7 @@ impl<Sys: System + ?Sized> Method<Sys> for Rk4 {
 
     /// Returns true, so that x is not corrected after a step: the stabilising term does that at the rate λ.
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         true
     }
 

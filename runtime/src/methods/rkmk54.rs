@@ -72,6 +72,7 @@ const CLOSING: &[(usize, f64)] = &[
 pub static PAIR: Pair<7, 1> = Pair {
     order: 5,
     end: 6,
+    stability: 3.25,
     rows: [
         Row {
             node: 0.0,

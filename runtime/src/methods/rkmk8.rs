@@ -76,6 +76,7 @@ const CLOSING: &[(usize, f64)] = &[
 pub static PAIR: Pair<16, 4> = Pair {
     order: 8,
     end: 12,
+    stability: 6.1,
     rows: [
         Row {
             node: 0.0,

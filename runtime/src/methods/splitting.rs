@@ -18,6 +18,32 @@ use crate::state::State;
 /// A step evaluates the forces [`Scheme::drifts`] + 1 times, the last time at the point where the next step starts: a
 /// run by [`integrate`](crate::integrate()) reuses that evaluation. Torques that depend on velocities are not of this
 /// form: u is evaluated with the momenta at the kick, so that inputs depending on ξ lower the order.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Body {
+/// #         param Theta: sym3 = [[2.1, 0.1, 0], [0.1, 1.7, 0], [0, 0, 1.2]];
+/// #         coord R: SO3;
+/// #         velocity w: vec3;
+/// #         rate R = R * hat(w);
+/// #         frame hull = pose(R, [0, 0, 0]);
+/// #         body on hull { mass 1; inertia Theta about origin; }
+/// #         start w = [0.01, 2, 0.01];
+/// #     }
+/// # }
+///
+/// use hamel::methods::{Scheme, Splitting};
+/// use hamel::{Monitor, Run, State};
+///
+/// let body = Body::<f64>::default();
+/// let mut monitor = Monitor::new(&body, &State::start(&body));
+/// let run = Run::new(&body).method(Splitting::new(&body, Scheme::Nystrom4)).step(0.1);
+/// run.observe(|state| monitor.observe(&body, state)).until(100.0)?;
+/// assert!(monitor.relative_energy_deviation() < 1e-12);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Splitting {
     /// Scheme by which kicks and drifts are composed.
@@ -61,7 +87,7 @@ impl<Sys: Split + ?Sized> Method<Sys> for Splitting {
     }
 
     #[inline]
-    fn stays_near(&self) -> bool {
+    fn preserves_constraints(&self) -> bool {
         true
     }
 
@@ -76,11 +102,11 @@ impl<Sys: Split + ?Sized> Method<Sys> for Splitting {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        self.follow(system, state, h, inputs, &mut None)
+        self.step_reusing_force(system, state, h, inputs, &mut None)
     }
 
     #[inline]
-    fn follow<U>(
+    fn step_reusing_force<U>(
         &self,
         system: &Sys,
         state: &State<Sys>,

@@ -2,7 +2,7 @@
 //! [`implicit`](crate::methods::implicit).
 
 use crate::error::StepError;
-use crate::methods::implicit::equations::{Equations, TURNS, reach};
+use crate::methods::implicit::equations::{Equations, MAX_FIXED_POINT_ITERATIONS, reach};
 use crate::methods::implicit::exact::{Exact, factored, still, varied};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::methods::{Method, arrive};
@@ -177,12 +177,12 @@ impl<Sys: Tangent> Method<TangentSystem<Sys>> for StiffEuler {
             }
             factors.solve(by.as_mut());
             for (number, by) in z.xi.as_mut().iter_mut().zip(by.as_ref()) {
-                number.lean(-*by, direction);
+                number.add_slope(-*by, direction);
             }
         }
         let x = reach(tangent, &state.x, h, &z.xi, &mut z.u).ok_or(StepError::NotConverged {
             time: state.t,
-            iterations: TURNS,
+            iterations: MAX_FIXED_POINT_ITERATIONS,
         })?;
         arrive(tangent, state, h, x, z.xi)
     }

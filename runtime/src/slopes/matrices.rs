@@ -14,7 +14,7 @@ use core::array::from_fn;
 use core::fmt;
 
 use crate::error::StepError;
-use crate::integrate::{lead_back, project};
+use crate::integrate::{project, project_coordinates};
 use crate::manifold;
 use crate::methods::tableau::{Row, Stages, Weights};
 use crate::methods::{InChart, Method, arrive};
@@ -26,6 +26,7 @@ use crate::system::System;
 
 /// A step of length h from a state, with inputs held over it, whose slopes are to be computed.
 #[derive(Clone, Copy)]
+#[doc(hidden)]
 pub struct TangentStep<'a, Sys: Tangent> {
     pub(crate) system: &'a Sys,
     /// The system in dual numbers; if it is `None` and needed, it is created.
@@ -94,8 +95,8 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
             *varied = Sys::Number::along(*value, first + i);
         }
         let mut varied = method.step(tangent, &begin, self.h, &|_, _, _| held.clone())?;
-        if !method.stays_near() {
-            lead_back(tangent, &mut varied);
+        if !method.preserves_constraints() {
+            project_coordinates(tangent, &mut varied);
         }
         project(tangent, &mut varied)?;
         let mut end = State::<Sys> {
@@ -207,7 +208,7 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
                 if let Some(factor) = frame.row(i).get(entry)
                     && let Some(seed) = sparsity.seeds.get(entry)
                 {
-                    number.lean(*factor, *seed);
+                    number.add_slope(*factor, *seed);
                 }
             }
         }
@@ -302,7 +303,7 @@ fn moved<S: Scalar, T: Table<S>>(g: &[T], weights: Weights, h: f64) -> T {
                 w.row_mut(i).copy_from_slice(rates.row(i));
                 scale(w.row_mut(i), h * weight);
             } else {
-                w.follow(i, &[S::from_f64(h * weight)], rates, i);
+                w.add_combination(i, &[S::from_f64(h * weight)], rates, i);
             }
         }
     }
@@ -324,7 +325,7 @@ fn later<S: Scalar, T: Table<S>>(table: &T, w: &T, n: usize) -> T {
         let entries = table.row(i);
         let inputs = g.row_mut(i).iter_mut().zip(entries).skip(size);
         inputs.for_each(|(g, entry)| *g = *entry);
-        g.follow(i, entries, w, 0);
+        g.add_combination(i, entries, w, 0);
     }
     g
 }
@@ -334,7 +335,7 @@ fn later<S: Scalar, T: Table<S>>(table: &T, w: &T, n: usize) -> T {
 fn second<S: Scalar, T: Table<S>>(table: &T, first: &T, n: usize, a: f64) -> T {
     let mut g = table.clone();
     for i in 0..n {
-        g.follow(i, &[S::from_f64(a)], first, n + i);
+        g.add_combination(i, &[S::from_f64(a)], first, n + i);
     }
     let mut scaled = table.clone();
     for i in n..table.rows() {
@@ -342,7 +343,7 @@ fn second<S: Scalar, T: Table<S>>(table: &T, first: &T, n: usize, a: f64) -> T {
         let own = g.row_mut(i).iter_mut().skip(n);
         let of_xi = own.zip(scaled.row(i).iter().take(n));
         of_xi.for_each(|(own, entry)| *own += *entry);
-        g.follow(i, scaled.row(i).get(n..).unwrap_or(&[]), first, n);
+        g.add_combination(i, scaled.row(i).get(n..).unwrap_or(&[]), first, n);
     }
     g
 }

@@ -22,9 +22,10 @@ use crate::scalar::Scalar;
 use crate::split::Split;
 use crate::state::State;
 use crate::store::Table;
-use crate::system::{Block, System};
+use crate::system::{Block, Energies, System};
 
 /// Dual numbers with any number of directions.
+#[doc(hidden)]
 pub trait Directions: Scalar {
     /// Type of the value and of each slope.
     type Value: Scalar;
@@ -42,10 +43,10 @@ pub trait Directions: Scalar {
     fn slopes(&self) -> &[Self::Value];
 
     /// Adds `factor` times the slopes of another number; the value is unchanged.
-    fn follow(&mut self, factor: Self::Value, other: &Self);
+    fn add_slopes(&mut self, factor: Self::Value, other: &Self);
 
     /// Adds to the slope along one direction; the value is unchanged.
-    fn lean(&mut self, by: Self::Value, direction: usize);
+    fn add_slope(&mut self, by: Self::Value, direction: usize);
 
     /// Returns whether the slopes are 1 along one direction and 0 along all others.
     fn is_along(&self, direction: usize) -> bool;
@@ -86,14 +87,14 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     }
 
     #[inline]
-    fn follow(&mut self, factor: S, other: &Self) {
+    fn add_slopes(&mut self, factor: S, other: &Self) {
         for (own, slope) in self.slopes.iter_mut().zip(&other.slopes) {
             *own = factor.mul_add(*slope, *own);
         }
     }
 
     #[inline]
-    fn lean(&mut self, by: S, direction: usize) {
+    fn add_slope(&mut self, by: S, direction: usize) {
         if let Some(slope) = self.slopes.get_mut(direction) {
             *slope += by;
         }
@@ -113,6 +114,7 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
 /// Source: A. R. Curtis, M. J. D. Powell, J. K. Reid, *On the estimation of sparse Jacobian matrices*, J. Inst. Maths
 /// Applics 13 (1974).
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct Sparsity {
     /// Nonzero entries of each row of the frame A(x).
     pub frame: &'static [&'static [usize]],
@@ -126,12 +128,41 @@ pub struct Sparsity {
 }
 
 /// A system whose steps have slopes; generated code implements it if the description asks for `linearize`.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #         generate all, linearize;
+/// #     }
+/// # }
+///
+/// use hamel::{State, Tangent};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let State { x, xi, .. } = State::start(&pendulum);
+/// let mut slopes = [[0.0; 3]; 2];
+/// let accel = pendulum.slopes(&x, &xi, &[0.0], &mut slopes)?;
+/// assert_eq!(accel, [-1.0_f64.sin()]);
+/// // d(δw)/dt = −cos(q) δq + δτ.
+/// assert_eq!(slopes[1], [-1.0_f64.cos(), 0.0, 1.0]);
+/// # }
+/// # Ok::<(), hamel::Singular>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no linearisation",
     label = "slopes and `StiffEuler` need it",
     note = "ask for it in the description: `generate all, linearize;`"
 )]
-pub trait Tangent: System + Clone {
+pub trait Tangent: Energies + Clone {
     /// Whether the kinds of coordinates alone keep φ(x) = 0: then all points that a method reaches in the chart lie on
     /// the manifold, where the linearisation is valid.
     const CHARTED: bool;
@@ -147,7 +178,7 @@ pub trait Tangent: System + Clone {
     /// Dual numbers with a slope for each entry of η, ξ, z and u, in this order.
     type Number: Directions<Value = Self::Scalar>;
     /// The same system in these dual numbers.
-    type Dual: System<Scalar = Self::Number>;
+    type Dual: Energies<Scalar = Self::Number>;
     /// Compressed dual numbers, with a slope for each direction that occurs in [`Sparsity::seeds`].
     type CompressedNumber: Directions<Value = Self::Scalar>;
     /// The same system in compressed numbers.
@@ -175,7 +206,7 @@ pub trait Tangent: System + Clone {
     /// `slopes`.
     ///
     /// # Errors
-    /// Those of [`accel`](System::accel).
+    /// Those of [`forward_dynamics`](System::forward_dynamics).
     fn slopes(
         &self,
         x: &Self::Coordinates,
@@ -231,7 +262,7 @@ where
         if let Some(factor) = coframe.row(i).get(entry)
             && let Some(moved) = x.get(entry)
         {
-            sum.follow(*factor, moved);
+            sum.add_slopes(*factor, moved);
         }
     }
     sum
@@ -282,14 +313,14 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
 
     /// Returns ξ̇ with slopes ∂ξ̇/∂(η, ξ, z, u) times those of the displacements Y δx and of ξ, z and u; if coordinates
     /// may be off the manifold, evaluates ξ̇ in dual numbers instead.
-    fn accel(
+    fn forward_dynamics(
         &self,
         x: &Self::Coordinates,
         xi: &Self::Velocities,
         u: &Self::Inputs,
     ) -> Result<Self::Velocities, Singular> {
         if !Sys::CHARTED {
-            return self.dual.accel(x, xi, u);
+            return self.dual.forward_dynamics(x, xi, u);
         }
         let system = &self.system;
         let mut here = system.zero_coordinates();
@@ -311,8 +342,8 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
             let alone = by.is_along(column);
             for (i, number) in result.as_mut().iter_mut().enumerate() {
                 match table.row(displacements + i).get(column) {
-                    Some(slope) if alone => number.lean(*slope, column),
-                    Some(slope) if !is_zero(*slope) => number.follow(*slope, by),
+                    Some(slope) if alone => number.add_slope(*slope, column),
+                    Some(slope) if !is_zero(*slope) => number.add_slopes(*slope, by),
                     _ => {}
                 }
             }
@@ -362,7 +393,9 @@ impl<Sys: Tangent> System for TangentSystem<Sys> {
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar {
         self.dual.constraint_norm(x)
     }
+}
 
+impl<Sys: Tangent> Energies for TangentSystem<Sys> {
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar {
         self.dual.kinetic_energy(x, xi)
     }
@@ -408,6 +441,34 @@ impl<Sys: Tangent<Dual: Split>> Split for TangentSystem<Sys> {
 /// [`BackwardEuler`](crate::methods::BackwardEuler) on a stiff system. The state and its slopes are projected onto the
 /// constraints that multipliers enforce, as in [`step`](crate::step()). Implicit methods iterate until the slopes have
 /// converged, too. For many steps, create [`TangentSystem`] once and call [`step_slopes_into`].
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #         generate all, linearize;
+/// #     }
+/// # }
+///
+/// use hamel::{State, methods::Rkmk4, step_slopes};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let start = State::start(&pendulum);
+/// let (end, slopes) = step_slopes(&Rkmk4, &pendulum, &start, &[0.0], 0.01)?;
+/// assert_eq!(end.t, 0.01);
+/// // Rows of q and w, columns of q, w and tau: ∂q⁺/∂w is nearly h.
+/// assert!((slopes[0][1] - 0.01).abs() < 1e-6);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 ///
 /// # Errors
 /// Those of [`step`](crate::step()).
@@ -457,6 +518,35 @@ fn varying<Sys: Tangent>(
 }
 
 /// Makes the step of [`step_slopes`] with a dual system that already exists, and overwrites `slopes` with `[A_d B_d]`.
+///
+/// ```
+/// # #[cfg(feature = "macros")] {
+/// # hamel::rigid_eom! {
+/// #     system Pendulum {
+/// #         coord q;
+/// #         velocity w;
+/// #         rate q = w;
+/// #         kinetic w^2 / 2;
+/// #         potential -cos(q);
+/// #         input tau;
+/// #         generalized force w = tau;
+/// #         start q = 1;
+/// #         generate all, linearize;
+/// #     }
+/// # }
+///
+/// use hamel::{State, Table, TangentSystem, methods::Rkmk4, step_slopes_into};
+///
+/// let pendulum = Pendulum::<f64>::default();
+/// let tangent = TangentSystem::new(&pendulum);
+/// let (mut state, mut slopes) = (State::start(&pendulum), Table::zero());
+/// for _ in 0..100 {
+///     state = step_slopes_into(&Rkmk4, &tangent, &state, &[0.0], 0.01, &mut slopes)?;
+/// }
+/// assert!((slopes[0][2] - 0.5e-4).abs() < 1e-8);
+/// # }
+/// # Ok::<(), hamel::StepError>(())
+/// ```
 ///
 /// # Errors
 /// Those of [`step`](crate::step()); the content of `slopes` is then unspecified.

@@ -25,7 +25,9 @@ fn rates_are_those_of_the_system_with_the_stabilising_term() {
     for k in 0..9 {
         assert!((y_dot[k] - (rate[k] + 10.0 * correction[k])).abs() < 1e-15);
     }
-    let accel = system.accel(&state.x, &state.xi, &[]).expect("a body");
+    let accel = system
+        .forward_dynamics(&state.x, &state.xi, &[])
+        .expect("a body");
     assert_eq!(y_dot[9..], accel);
 
     let back = equations.state(0.5, &y).expect("a state");

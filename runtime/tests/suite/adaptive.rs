@@ -4,7 +4,7 @@ use crate::common::points::Points;
 use crate::common::{Body, FreeBody, Reference, Top, distance, run};
 use hamel::adaptive::{Adaptive, Report, Statistics, Tolerance};
 use hamel::methods::General;
-use hamel::{Block, Monitor, Singular, State, StepError, System};
+use hamel::{Block, Energies, Monitor, Singular, State, StepError, System};
 
 const CASES: [(&str, f64); 2] = [("heavy-top-benchmark-150", 1.0), ("kovalevskaya-top", 20.0)];
 
@@ -387,37 +387,24 @@ impl System for Ring {
     fn blocks(&self) -> &[Block] {
         &[Block::Flat(2)]
     }
-    fn zero_coordinates(&self) -> [f64; 2] {
-        [0.0; 2]
-    }
-    fn zero_velocities(&self) -> [f64; 2] {
-        [0.0; 2]
-    }
-    fn zero_chart(&self) -> [f64; 2] {
-        [0.0; 2]
-    }
-    fn zero_inputs(&self) -> [f64; 0] {
-        []
-    }
     fn start(&self) -> ([f64; 2], [f64; 2]) {
         ([1.0, 0.0], [0.0, 0.0])
-    }
-    fn rate(&self, _: &[f64; 2], xi: &[f64; 2]) -> [f64; 2] {
-        *xi
     }
     fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 2]) -> [f64; 2] {
         *xi
     }
-    fn accel(&self, x: &[f64; 2], xi: &[f64; 2], _: &[f64; 0]) -> Result<[f64; 2], Singular> {
+    fn forward_dynamics(
+        &self,
+        x: &[f64; 2],
+        xi: &[f64; 2],
+        _: &[f64; 0],
+    ) -> Result<[f64; 2], Singular> {
         let square = xi[0] * xi[0] + xi[1] * xi[1];
         let multiplier = square + Self::G[0] * x[0] + Self::G[1] * x[1];
         Ok([
             Self::G[0] - multiplier * x[0],
             Self::G[1] - multiplier * x[1],
         ])
-    }
-    fn correction(&self, _: &[f64; 2]) -> [f64; 2] {
-        [0.0; 2]
     }
     fn project_position(&self, x: &[f64; 2]) -> Result<Option<[f64; 2]>, Singular> {
         let factor = -0.5 * self.constraint(x);
@@ -430,6 +417,9 @@ impl System for Ring {
     fn constraint_norm(&self, x: &[f64; 2]) -> f64 {
         self.constraint(x).abs()
     }
+}
+
+impl Energies for Ring {
     fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 2]) -> f64 {
         0.5 * (xi[0] * xi[0] + xi[1] * xi[1])
     }

@@ -2,7 +2,7 @@
 
 use crate::common::{FreeBody, Pendulum, Reference, distance, slopes};
 use hamel::methods::{Gauss4, Gauss6, Lgvi, Rkmk4, Scheme, Splitting};
-use hamel::{Method, State, StepError, System, integrate};
+use hamel::{Energies, Method, State, StepError, System, integrate};
 
 fn pendulum() -> Pendulum {
     Pendulum {

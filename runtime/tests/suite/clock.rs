@@ -2,7 +2,7 @@
 
 use hamel::adaptive::Adaptive;
 use hamel::methods::Rkmk4;
-use hamel::{Block, Clock, Sampled, Scalar, Singular, State, System};
+use hamel::{Block, Clock, Energies, Scalar, Singular, State, System, ZeroOrderHold};
 use std::marker::PhantomData;
 
 /// Where the clock starts.
@@ -25,39 +25,21 @@ impl<S: Scalar> System for Driven<S> {
     fn blocks(&self) -> &[Block] {
         &[Block::Flat(2)]
     }
-    fn zero_coordinates(&self) -> [S; 2] {
-        Default::default()
-    }
-    fn zero_velocities(&self) -> [S; 1] {
-        Default::default()
-    }
-    fn zero_chart(&self) -> [S; 2] {
-        Default::default()
-    }
-    fn zero_inputs(&self) -> [S; 0] {
-        []
-    }
     fn start(&self) -> ([S; 2], [S; 1]) {
         ([S::from_f64(BEGIN), S::default()], [S::default()])
     }
     fn clock(&self) -> Option<usize> {
         Some(0)
     }
-    fn rate(&self, _: &[S; 2], xi: &[S; 1]) -> [S; 2] {
+    fn chart_rate(&self, _: &[S; 2], xi: &[S; 1]) -> [S; 2] {
         [S::from_f64(1.0), xi[0]]
     }
-    fn chart_rate(&self, x: &[S; 2], xi: &[S; 1]) -> [S; 2] {
-        self.rate(x, xi)
-    }
-    fn accel(&self, x: &[S; 2], _: &[S; 1], _: &[S; 0]) -> Result<[S; 1], Singular> {
+    fn forward_dynamics(&self, x: &[S; 2], _: &[S; 1], _: &[S; 0]) -> Result<[S; 1], Singular> {
         Ok([(x[0] - S::from_f64(BEGIN)).sin_cos().1])
     }
-    fn correction(&self, _: &[S; 2]) -> [S; 2] {
-        Default::default()
-    }
-    fn constraint_norm(&self, _: &[S; 2]) -> S {
-        S::default()
-    }
+}
+
+impl<S: Scalar> Energies for Driven<S> {
     fn kinetic_energy(&self, _: &[S; 2], xi: &[S; 1]) -> S {
         S::from_f64(0.5) * xi[0] * xi[0]
     }
@@ -135,7 +117,7 @@ fn a_tolerance() {
 #[test]
 fn a_controller() {
     let mut state = State::start(&ALONE);
-    let mut idle = Sampled::new(0.003, |_: &State<Driven<f64>>| []);
+    let mut idle = ZeroOrderHold::new(0.003, |_: &State<Driven<f64>>| []);
     idle.integrate(&ALONE, Rkmk4, &mut state, 1e-3, 1.0, |_| {})
         .expect("a run");
     check(&state, 0.0);

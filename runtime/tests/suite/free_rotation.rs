@@ -4,7 +4,7 @@ use crate::common::{Body, QuaternionTop, Reference, Spin, Top, distance};
 use crate::size::size;
 use hamel::methods::{Free, free};
 use hamel::rotor::Symmetry;
-use hamel::{Rotor, State, StepError, System, flows, s3, so3};
+use hamel::{Energies, Rotor, State, StepError, System, flows, s3, so3};
 
 /// ω over the largest of one and |ω₀|, at the last sample: rounding of the phase and of the period.
 const VELOCITY: f64 = 1e-13;

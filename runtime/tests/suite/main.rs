@@ -22,7 +22,7 @@ mod lanes;
 mod oscillator;
 mod rotations;
 mod rotor_slopes;
-mod sampled;
+mod run;
 #[path = "../../../codegen/tests/suite/common/size.rs"]
 mod size;
 mod stiff;
@@ -32,3 +32,4 @@ mod tableaux;
 mod trigonometry;
 #[cfg(feature = "wide")]
 mod wide;
+mod zero_order_hold;

@@ -307,9 +307,9 @@ fn scalar_conventions() {
 }
 
 #[cfg(feature = "nalgebra")]
-mod edge {
+mod nalgebra_interop {
     use super::*;
-    use hamel::edge;
+    use hamel::nalgebra_interop;
 
     #[test]
     fn views_of_blocks() {
@@ -319,23 +319,23 @@ mod edge {
         x.extend(so3::exp(u));
         x.extend(s3::exp(u));
 
-        let r = edge::rotation(&blocks, &x, 1).expect("a rotation");
+        let r = nalgebra_interop::rotation(&blocks, &x, 1).expect("a rotation");
         assert_eq!(r[(0, 1)], x[2]);
-        assert_eq!(edge::rows(&r), so3::exp(u));
-        let from_quaternion = edge::rotation(&blocks, &x, 2).expect("a quaternion");
+        assert_eq!(nalgebra_interop::rows(&r), so3::exp(u));
+        let from_quaternion = nalgebra_interop::rotation(&blocks, &x, 2).expect("a quaternion");
         assert!((r - from_quaternion).amax() < 1e-15);
-        let q = edge::quaternion(&blocks, &x, 2).expect("a quaternion");
+        let q = nalgebra_interop::quaternion(&blocks, &x, 2).expect("a quaternion");
         assert_eq!([q.w, q.i, q.j, q.k], s3::exp(u));
         assert_eq!(
-            edge::vector::<f64, 3>(&x, 1).expect("three entries")[1],
+            nalgebra_interop::vector::<f64, 3>(&x, 1).expect("three entries")[1],
             x[2]
         );
-        assert_eq!(edge::vector3(u)[2], 0.6);
-        assert_eq!(edge::matrix(so3::exp(u)), r);
+        assert_eq!(nalgebra_interop::vector3(u)[2], 0.6);
+        assert_eq!(nalgebra_interop::matrix(so3::exp(u)), r);
 
-        assert!(edge::rotation(&blocks, &x, 0).is_none());
-        assert!(edge::rotation(&blocks, &x[..5], 1).is_none());
-        assert!(edge::quaternion(&blocks, &x, 9).is_none());
-        assert!(edge::vector::<f64, 3>(&x, usize::MAX).is_none());
+        assert!(nalgebra_interop::rotation(&blocks, &x, 0).is_none());
+        assert!(nalgebra_interop::rotation(&blocks, &x[..5], 1).is_none());
+        assert!(nalgebra_interop::quaternion(&blocks, &x, 9).is_none());
+        assert!(nalgebra_interop::vector::<f64, 3>(&x, usize::MAX).is_none());
     }
 }

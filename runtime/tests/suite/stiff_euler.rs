@@ -424,7 +424,7 @@ fn holds<Sys: System<Scalar = f64>>(
     for (a, b) in place.as_ref().iter().zip(end.x.as_ref()) {
         assert!((a - b).abs() < 1e-13, "{start:?}: {a} {b}");
     }
-    let f = system.accel(&end.x, &end.xi, &system.zero_inputs());
+    let f = system.forward_dynamics(&end.x, &end.xi, &system.zero_inputs());
     let f = f.expect("a force");
     let pairs = end.xi.as_ref().iter().zip(start.xi.as_ref());
     for ((new, old), f) in pairs.zip(f.as_ref()) {

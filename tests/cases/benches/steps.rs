@@ -80,7 +80,7 @@ where
         .bench_local_values(|mut state| {
             let step = black_box(0.25 * step);
             for _ in 0..4 * STEPS {
-                if let Ok(rate) = system.accel(&state.x, &state.xi, &[]) {
+                if let Ok(rate) = system.forward_dynamics(&state.x, &state.xi, &[]) {
                     state.x = so3::retract(state.x, state.xi.map(|w| step * w));
                     state.xi = std::array::from_fn(|i| state.xi[i] + step * rate[i]);
                 }

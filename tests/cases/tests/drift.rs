@@ -7,7 +7,7 @@ mod size;
 
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, Lgvi, Rkmk4, Scheme, Splitting};
-use hamel::{Method, State, System, so3};
+use hamel::{Energies, Method, State, so3};
 use hamel_cases::by_hand::{Body, QuaternionTop, Reference, Spin, Top};
 use size::size;
 
@@ -39,7 +39,7 @@ struct Drift {
 }
 
 /// The quantities that differ between bodies.
-trait Watched: System<Scalar = f64> {
+trait Watched: Energies<Scalar = f64> {
     fn body(&self) -> &Body<f64>;
     fn rotation(x: &Self::Coordinates) -> so3::Matrix<f64>;
     fn velocity(xi: &Self::Velocities) -> so3::Vector<f64>;

@@ -6,7 +6,7 @@
 #![forbid(unsafe_code)]
 
 use hamel::methods::Rkmk4;
-use hamel::{State, StepError, integrate};
+use hamel::{Run, State, StepError};
 
 hamel::rigid_eom! {
     /// A top on a fixed point, its centre of mass on its axis.
@@ -45,17 +45,7 @@ hamel::rigid_eom! {
 /// If the integrator fails.
 pub fn spin(until: f64) -> Result<State<Top<f32>>, StepError> {
     let top = Top::<f32>::default();
-    let mut state = State::start(&top);
-    integrate(
-        &top,
-        Rkmk4,
-        &mut state,
-        1e-3,
-        until,
-        |_, _, _| [],
-        |_| {},
-    )?;
-    Ok(state)
+    Run::new(&top).method(Rkmk4).step(1e-3).until(until)
 }
 
 /// Takes one step of the cart with a controller as its inputs.

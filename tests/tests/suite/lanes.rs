@@ -344,8 +344,8 @@ fn choices_of_numbers_and_lanes() {
     assert_eq!(0.0f32 * Scalar::inverse_of_length(0.0f32), 0.0);
     assert!(Scalar::inverse_of_length(f64::NAN).is_nan());
     // The increment is significant in either precision, and the same in every lane.
-    assert_eq!(Scalar::raised(1.0f64) - 1.0, 2f64.powi(-26));
-    assert_eq!(Scalar::raised(1.0f32) - 1.0, 2f32.powi(-15));
-    let lanes = f64x4::from_f64(-3.0).raised();
-    assert_eq!(lanes.lanes(), [Scalar::raised(-3.0f64); 4]);
+    assert_eq!(Scalar::inflated(1.0f64) - 1.0, 2f64.powi(-26));
+    assert_eq!(Scalar::inflated(1.0f32) - 1.0, 2f32.powi(-15));
+    let lanes = f64x4::from_f64(-3.0).inflated();
+    assert_eq!(lanes.lanes(), [Scalar::inflated(-3.0f64); 4]);
 }

@@ -1,7 +1,7 @@
 //! Systems with velocity constraints, compared with reference solutions, published states and conservation laws.
 
 use hamel::methods::Rkmk4;
-use hamel::{Singular, State, StepError, System, integrate};
+use hamel::{Energies, Singular, State, StepError, System, integrate};
 use hamel_tests::bicycle::Bicycle;
 use hamel_tests::bricard::Bricard;
 use hamel_tests::double_four_bar::DoubleFourBar;
@@ -13,7 +13,7 @@ use hamel_tests::snakeboard::Snakeboard;
 use hamel_tests::spherical_pendulum_frame::SphericalPendulum;
 use hamel_tests::squeezer::Squeezer;
 
-fn energy<Sys: System<Scalar = f64>>(system: &Sys, state: &State<Sys>) -> f64 {
+fn energy<Sys: Energies<Scalar = f64>>(system: &Sys, state: &State<Sys>) -> f64 {
     system.kinetic_energy(&state.x, &state.xi) + system.potential_energy(&state.x)
 }
 

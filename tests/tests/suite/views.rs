@@ -1,7 +1,7 @@
 //! Parameters, states and inputs by name: the views of generated types, as used in a program.
 
 use hamel::methods::Rkmk8;
-use hamel::{Sampled, State, System, integrate};
+use hamel::{State, System, ZeroOrderHold, integrate};
 use hamel_tests::free_body::{FreeBody, FreeBodyInputs, FreeBodyParameters, FreeBodyState};
 use hamel_tests::wheel_motors::{WheelMotors, WheelMotorsState};
 
@@ -37,7 +37,7 @@ fn a_program_needs_no_index() {
         ..Default::default()
     });
     let mut asked = 0;
-    let mut controller = Sampled::new(0.01, |state: &State<FreeBody<f64>>| {
+    let mut controller = ZeroOrderHold::new(0.01, |state: &State<FreeBody<f64>>| {
         asked += 1;
         let here = FreeBodyState::from(state);
         FreeBodyInputs {

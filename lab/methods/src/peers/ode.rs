@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method of the crate `ode_solvers` on the entries of (R, ω), with the
 //! generated ẋ and ξ̇.
 
-use hamel::System;
+use hamel::{Energies, System};
 use hamel_report::data::Kind;
 use hamel_report::entry::{Deviation, Entry, Outcome};
 use hamel_report::problem::Problem;
@@ -12,16 +12,20 @@ use std::time::Instant;
 type Entries = SVector<f64, 12>;
 
 /// Adapts a system to the crate.
-struct Raw<'p, 'a, Sys: System<Scalar = f64>, U>(&'p Problem<'a, Sys, U>);
+struct Raw<'p, 'a, Sys: Energies<Scalar = f64>, U>(&'p Problem<'a, Sys, U>);
 
 impl<Sys, U> ode_solvers::System<f64, Entries> for Raw<'_, '_, Sys, U>
 where
-    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
 {
     fn system(&self, _: f64, y: &Entries, dy: &mut Entries) {
         let (x, xi) = split(y);
         let rate = self.0.system.rate(&x, &xi);
-        let accel = self.0.system.accel(&x, &xi, &[]).unwrap_or([f64::NAN; 3]);
+        let accel = self
+            .0
+            .system
+            .forward_dynamics(&x, &xi, &[])
+            .unwrap_or([f64::NAN; 3]);
         for (entry, value) in dy.iter_mut().zip(rate.into_iter().chain(accel)) {
             *entry = value;
         }
@@ -42,7 +46,7 @@ fn solve<Sys, U>(
     until: f64,
 ) -> Result<Vec<Entries>, String>
 where
-    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
 {
     let start = Entries::from_iterator(problem.x.into_iter().chain(problem.xi));
     // Subtracts half a step, since the crate rounds the number of steps up.
@@ -55,7 +59,7 @@ where
 /// The entry of this method for a problem.
 pub fn rk4<'p, Sys, U>(problem: &'p Problem<'_, Sys, U>) -> Entry<'p>
 where
-    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
     U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     Entry::new(

@@ -1,7 +1,7 @@
 //! Rapier: its rigid body, free or on a ball joint, stepped by its full pipeline without colliders.
 
 use crate::runner::{BenchError, Runner, rows};
-use hamel::{System, so3};
+use hamel::{Energies, so3};
 use hamel_report::data::Kind;
 use hamel_report::entry::{Deviation, Entry, Outcome};
 use hamel_report::problem::Problem;
@@ -25,7 +25,7 @@ pub fn entry<'p, Sys, U>(
     joint: bool,
 ) -> Result<Entry<'p>, BenchError>
 where
-    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
     U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     let mut body = Body {
@@ -102,7 +102,7 @@ impl Body {
         step: f64,
     ) -> (PhysicsWorld, RigidBodyHandle)
     where
-        Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+        Sys: Energies<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
     {
         let (r, w) = (problem.x, so3::apply(problem.x, problem.xi));
         let centre = so3::apply(r, self.centre);

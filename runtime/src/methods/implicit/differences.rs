@@ -10,12 +10,12 @@ use crate::methods::implicit::equations::{Equations, Point};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::scalar::Scalar;
 use crate::store::{Store, largest};
-use crate::system::System;
+use crate::system::Energies;
 
 /// A square matrix with a row for each velocity.
-pub(in crate::methods) struct Grid<V>(Vec<V>);
+pub(in crate::methods) struct SquareMatrix<V>(Vec<V>);
 
-impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
+impl<S: Scalar, V: Store<S>> Square<S> for SquareMatrix<V> {
     fn row(&self, i: usize) -> &[S] {
         self.0.get(i).map_or(&[], |row| row.as_ref())
     }
@@ -28,8 +28,8 @@ impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
 /// Finite-difference derivatives, at one evaluation per velocity.
 pub(in crate::methods) struct Differences;
 
-impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
-    type Factors = Factors<Sys::Scalar, Grid<Sys::Velocities>, Sys::Velocities>;
+impl<Sys: Energies + ?Sized> Derivative<Sys> for Differences {
+    type Factors = Factors<Sys::Scalar, SquareMatrix<Sys::Velocities>, Sys::Velocities>;
 
     const KNOWS_INPUTS: bool = true;
 
@@ -42,11 +42,11 @@ impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
         *iterations += 1;
         let here = equations.point(z)?;
         let zeros = equations.system.zero_velocities();
-        let mut grid = Grid(vec![zeros.clone(); zeros.as_ref().len()]);
+        let mut grid = SquareMatrix(vec![zeros.clone(); zeros.as_ref().len()]);
         let of = Sys::Scalar::from_f64;
         // The perturbation uses half of the digits: of ξ, or of x/h if that is larger.
         let half = of(Sys::Scalar::EPSILON.sqrt());
-        let reach = largest(equations.state.x.as_ref()).size() / of(equations.h.abs());
+        let reach = largest(equations.state.x.as_ref()).magnitude() / of(equations.h.abs());
         for j in 0..zeros.as_ref().len() {
             *iterations += 1;
             let mut near = z.clone();
@@ -54,7 +54,7 @@ impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
                 continue;
             };
             let before = *entry;
-            let by = half * Scalar::max(reach, entry.size());
+            let by = half * Scalar::max(reach, entry.magnitude());
             *entry += of(0.0).select_lt(by, by, half);
             let by = *entry - before;
             let there = equations.point(&mut near)?;

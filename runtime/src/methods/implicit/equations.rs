@@ -7,10 +7,10 @@ use crate::methods::implicit::unknowns::Unknowns;
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::store::{add_scaled, largest, scale};
-use crate::system::System;
+use crate::system::{Energies, System};
 
 /// Largest number of fixed-point iterations for the coordinates of a step.
-pub(in crate::methods) const TURNS: u32 = 64;
+pub(in crate::methods) const MAX_FIXED_POINT_ITERATIONS: u32 = 64;
 /// Accuracy of the coordinates of a step, in rounding units.
 const ULPS: f64 = 4.0;
 
@@ -38,21 +38,21 @@ pub(in crate::methods) fn reach<Sys: System + ?Sized>(
     let (zero, one) = (Sys::Scalar::default(), Sys::Scalar::from_f64(1.0));
     let rounding = Sys::Scalar::from_f64(ULPS * Sys::Scalar::EPSILON);
     let mut nearest = one;
-    for _ in 0..TURNS {
+    for _ in 0..MAX_FIXED_POINT_ITERATIONS {
         let place = moved(system, x, u);
         let mut next = system.chart_rate(&place, xi);
         scale(next.as_mut(), h);
         let (mut own, mut change) = (zero, zero);
         for (old, new) in u.as_ref().iter().zip(next.as_ref()) {
-            own = Scalar::max(own, (*new - *old).beside(*new, *old));
-            change = Scalar::max(change, (*new - *old).size());
+            own = Scalar::max(own, (*new - *old).relative_to(*new, *old));
+            change = Scalar::max(change, (*new - *old).magnitude());
         }
         *u = next;
         if own.largest_lane() == 0.0 {
             return Some(place);
         }
         // Converged entries have changes that are small compared with all of u and no longer shrink: rounding.
-        let whole = change.beside(largest(u.as_ref()), zero);
+        let whole = change.relative_to(largest(u.as_ref()), zero);
         let unsettled = rounding.select_lt(whole, one, zero);
         let shrinks = own.select_lt(Sys::Scalar::from_f64(0.5) * nearest, one, unsettled);
         let moves = rounding.select_lt(own, shrinks, zero);
@@ -69,7 +69,7 @@ pub(in crate::methods) fn reach<Sys: System + ?Sized>(
 ///
 /// This is exact, since the kinetic energy T is a quadratic polynomial of the velocities; s makes both parts about
 /// equally large.
-pub(super) fn weigh<Sys: System + ?Sized>(
+pub(super) fn weigh<Sys: Energies + ?Sized>(
     system: &Sys,
     x: &Sys::Coordinates,
     g: &mut Sys::Velocities,
@@ -87,8 +87,8 @@ pub(super) fn weigh<Sys: System + ?Sized>(
             }
             system.kinetic_energy(x, &of) - at_rest
         };
-        let inertia = (along(&none, one) + along(&none, -one)).size();
-        let square = zero.select_lt(inertia, whole.size() / inertia, zero);
+        let inertia = (along(&none, one) + along(&none, -one)).magnitude();
+        let square = zero.select_lt(inertia, whole.magnitude() / inertia, zero);
         let s = zero.select_lt(square, square, one).sqrt();
         let momentum = (along(&before, s) - whole - along(&none, s)) / s;
         *entry = zero.select_lt(inertia, momentum, *entry);
@@ -117,13 +117,13 @@ pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized> {
     pub(in crate::methods) weighed: bool,
 }
 
-impl<Sys: System + ?Sized> Equations<'_, Sys> {
+impl<Sys: Energies + ?Sized> Equations<'_, Sys> {
     /// Returns the coordinates to which ξ₁ leads, and the inputs there; the iteration for u starts from the guess in z.
     pub(super) fn place(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);
         let x = reach(system, &state.x, h, &z.xi, &mut z.u).ok_or(StepError::NotConverged {
             time: state.t,
-            iterations: TURNS,
+            iterations: MAX_FIXED_POINT_ITERATIONS,
         })?;
         let inputs = (self.inputs)(state.t + h, &x, &z.xi);
         let defect = z.xi.clone();

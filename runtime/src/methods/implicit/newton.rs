@@ -5,26 +5,30 @@ use core::array::from_fn;
 use crate::error::StepError;
 use crate::methods::implicit::Derivative;
 use crate::methods::implicit::equations::{Equations, reach};
-use crate::methods::implicit::unknowns::{ENOUGH, MEMORY, Progress, Unknowns, ratio};
+use crate::methods::implicit::unknowns::{
+    CONVERGED_ULPS, MAX_REMEMBERED_STEPS, Progress, Unknowns, ratio,
+};
 use crate::scalar::Scalar;
 use crate::store::{is_finite, largest};
-use crate::system::System;
+use crate::system::{Energies, System};
 
 /// Largest number of corrections for one step length.
-const MOST: u32 = 64;
+const MAX_CORRECTIONS: u32 = 64;
 /// Budget of evaluations for all step lengths together.
-const MOST_OF_ALL: u32 = 1024;
+const MAX_EVALUATIONS: u32 = 1024;
 /// Ratio of successive corrections above which new factors are computed.
-const SLOW: f64 = 0.1;
+const REFACTOR_RATIO: f64 = 0.1;
 /// Ratio of successive corrections by exact factors above which the iteration is not approaching a solution.
-const ASTRAY: f64 = 0.75;
+const DIVERGENCE_RATIO: f64 = 0.75;
 /// Smallest fraction of a correction that is tried for the whole step. For shorter steps, which start near their
 /// solutions, only full corrections are taken.
-const LEAST: f64 = 0.1;
-/// Fraction of the step that is tried first if the whole step is too long, and the smallest increment of this fraction.
-const PARTS: (f64, f64) = (0.25, 1e-4);
+const MIN_DAMPING: f64 = 0.1;
+/// Fraction of the step that is tried first if the whole step is too long.
+const FIRST_FRACTION: f64 = 0.25;
+/// Smallest increment of this fraction.
+const MIN_INCREMENT: f64 = 1e-4;
 
-impl<Sys: System + ?Sized> Equations<'_, Sys> {
+impl<Sys: Energies + ?Sized> Equations<'_, Sys> {
     /// Solves the equations and returns (x₁, ξ₁): starts from ξ, and if that fails, follows the solutions of shorter
     /// steps.
     pub(in crate::methods) fn solve<D: Derivative<Sys>>(
@@ -33,14 +37,18 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
     ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
         let (whole, time) = (self.h, self.state.t);
         let mut iterations = 0;
-        let mut failure =
-            match self.newton(derivative, self.state.xi.clone(), LEAST, &mut iterations) {
-                Ok(found) => return Ok(found),
-                Err(failure) => failure,
-            };
-        let (mut part, least) = PARTS;
+        let mut failure = match self.newton(
+            derivative,
+            self.state.xi.clone(),
+            MIN_DAMPING,
+            &mut iterations,
+        ) {
+            Ok(found) => return Ok(found),
+            Err(failure) => failure,
+        };
+        let mut part = FIRST_FRACTION;
         let (mut last, mut here) = ((0.0, self.state.xi.clone()), (0.0, self.state.xi.clone()));
-        while part > least && iterations < MOST_OF_ALL {
+        while part > MIN_INCREMENT && iterations < MAX_EVALUATIONS {
             let next = f64::min(here.0 + part, 1.0);
             let mut xi = here.1.clone();
             if here.0 > last.0 {
@@ -78,7 +86,7 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
     ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
         let mut iteration = Iteration::new(self, xi);
         let mut factors = None;
-        for _ in 0..=MOST {
+        for _ in 0..=MAX_CORRECTIONS {
             let kept = match factors.take() {
                 Some(kept) => kept,
                 None => iteration.begin(self, derivative, iterations)?,
@@ -130,7 +138,7 @@ struct Iteration<Sys: System + ?Sized> {
     /// Whether the factors were computed at this point.
     fresh: bool,
     /// Steps since the factors were computed, of which `known` are in use.
-    steps: [Sys::Velocities; MEMORY],
+    steps: [Sys::Velocities; MAX_REMEMBERED_STEPS],
     known: usize,
     progress: Progress<Sys>,
 }
@@ -157,7 +165,7 @@ enum Followed<Sys: System + ?Sized> {
     Slower,
 }
 
-impl<Sys: System + ?Sized> Iteration<Sys> {
+impl<Sys: Energies + ?Sized> Iteration<Sys> {
     fn new(equations: &Equations<'_, Sys>, xi: Sys::Velocities) -> Self {
         let system = equations.system;
         Iteration {
@@ -214,8 +222,8 @@ impl<Sys: System + ?Sized> Iteration<Sys> {
             xi: self.step.clone(),
         };
         let whole = self.progress.whole(&z, &small, equations.h);
-        let moves = of(ENOUGH * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
-        let limit = of(1.0 - self.part * (1.0 - ASTRAY)) * largest(self.step.as_ref());
+        let moves = of(CONVERGED_ULPS * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
+        let limit = of(1.0 - self.part * (1.0 - DIVERGENCE_RATIO)) * largest(self.step.as_ref());
         let astray = largest(step.as_ref()).select_lt(limit, zero, moves);
         if !is_finite(step.as_ref()) || !fed && astray.largest_lane() != 0.0 {
             return Err(farther);
@@ -266,7 +274,7 @@ impl<Sys: System + ?Sized> Iteration<Sys> {
         let shrinks =
             self.progress.idle == 0 && !slow::<Sys>(&after, &self.step, &state.xi, &self.z.xi);
         self.step = after;
-        match self.known < MEMORY && (fed || shrinks || self.progress.idle > 1) {
+        match self.known < MAX_REMEMBERED_STEPS && (fed || shrinks || self.progress.idle > 1) {
             true => Followed::Nearer,
             false => Followed::Slower,
         }
@@ -323,14 +331,15 @@ fn slow<Sys: System + ?Sized>(
 ) -> bool {
     let of = Sys::Scalar::from_f64;
     let (zero, one) = (of(0.0), of(1.0));
-    let enough = of(ENOUGH * Sys::Scalar::EPSILON);
+    let enough = of(CONVERGED_ULPS * Sys::Scalar::EPSILON);
     let entries = new.as_ref().iter().zip(old.as_ref());
     let sizes = start.as_ref().iter().zip(xi.as_ref());
     let slow = entries
         .zip(sizes)
         .fold(zero, |slow, ((new, old), (start, xi))| {
-            let moves = enough.select_lt(new.beside(*start, *xi - *start), one, zero);
-            let lags = (of(SLOW) * old.size()).select_lt(new.size(), moves, zero);
+            let moves = enough.select_lt(new.relative_to(*start, *xi - *start), one, zero);
+            let lags =
+                (of(REFACTOR_RATIO) * old.magnitude()).select_lt(new.magnitude(), moves, zero);
             Scalar::max(slow, lags)
         });
     slow.largest_lane() != 0.0
@@ -339,5 +348,5 @@ fn slow<Sys: System + ?Sized>(
 /// Returns whether any numbers differ.
 fn differ<S: Scalar>(a: &[S], b: &[S]) -> bool {
     let mut pairs = a.iter().zip(b);
-    pairs.any(|(a, b)| (*a - *b).size().largest_lane() != 0.0)
+    pairs.any(|(a, b)| (*a - *b).magnitude().largest_lane() != 0.0)
 }

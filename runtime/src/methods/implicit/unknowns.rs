@@ -6,15 +6,15 @@ use crate::store::{is_finite, largest};
 use crate::system::{Block, System};
 
 /// Number of steps that Broyden's method remembers before it starts anew.
-pub(in crate::methods) const MEMORY: usize = 16;
+pub(in crate::methods) const MAX_REMEMBERED_STEPS: usize = 16;
 /// Correction at which an iteration ends, in rounding units; the remaining error is smaller by the rate of convergence.
-pub(in crate::methods) const ENOUGH: f64 = 256.0;
+pub(in crate::methods) const CONVERGED_ULPS: f64 = 256.0;
 /// Factor by which a residual may exceed the correction times the largest growth seen.
-const MARGIN: f64 = 10.0;
+const GROWTH_MARGIN: f64 = 10.0;
 /// Growth of residuals above which a system counts as stiff.
-const STIFF: f64 = 100.0;
+const STIFF_GROWTH: f64 = 100.0;
 /// Number of successive corrections that bring no entry nearer, after which the remaining changes count as rounding.
-const PATIENCE: u32 = 4;
+const MAX_IDLE_CORRECTIONS: u32 = 4;
 
 /// The unknowns (u, ξ₁), or a change or residual of them.
 pub(in crate::methods) struct Unknowns<Sys: System + ?Sized> {
@@ -150,10 +150,10 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         h: f64,
     ) -> bool {
         let (zero, one) = (Sys::Scalar::default(), Sys::Scalar::from_f64(1.0));
-        let enough = Sys::Scalar::from_f64(ENOUGH * Sys::Scalar::EPSILON);
+        let enough = Sys::Scalar::from_f64(CONVERGED_ULPS * Sys::Scalar::EPSILON);
         let (mut moving, mut nearer) = (zero, zero);
         let mut judge = |correction: Sys::Scalar, start, change, least: &mut Sys::Scalar| {
-            let part = correction.beside(start, change);
+            let part = correction.relative_to(start, change);
             let moves = enough.select_lt(part, one, zero);
             let shrinks = part.select_lt(Sys::Scalar::from_f64(0.9) * *least, moves, zero);
             moving = Scalar::max(moving, moves);
@@ -175,7 +175,7 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         let grown = ratio(defect - self.last.0, self.last.1);
         self.growth = Scalar::max(self.growth, grown);
         self.last = (defect, length);
-        let credible = Sys::Scalar::from_f64(MARGIN) * self.growth * length;
+        let credible = Sys::Scalar::from_f64(GROWTH_MARGIN) * self.growth * length;
         let trusted = credible.select_lt(defect, one, zero).largest_lane() == 0.0;
         if moving.largest_lane() == 0.0 {
             return trusted;
@@ -186,12 +186,14 @@ impl<Sys: System + ?Sized> Progress<Sys> {
             0
         };
         let whole = self.whole(z, correction, h).largest_lane();
-        trusted && self.idle >= PATIENCE && whole <= ENOUGH * Sys::Scalar::EPSILON
+        trusted
+            && self.idle >= MAX_IDLE_CORRECTIONS
+            && whole <= CONVERGED_ULPS * Sys::Scalar::EPSILON
     }
 
     /// Returns whether residuals grew so much per correction that the system is stiff.
     pub(in crate::methods) fn is_stiff(&self) -> bool {
-        self.growth.largest_lane() > STIFF
+        self.growth.largest_lane() > STIFF_GROWTH
     }
 
     /// Returns whether a residual is no more than the effect of rounding in z along the stiffest direction seen.
@@ -202,7 +204,8 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         h: f64,
     ) -> bool {
         let part = self.whole(z, defect, h) / self.growth;
-        defect.is_finite() && part.largest_lane() <= STIFF * ENOUGH * Sys::Scalar::EPSILON
+        defect.is_finite()
+            && part.largest_lane() <= STIFF_GROWTH * CONVERGED_ULPS * Sys::Scalar::EPSILON
     }
 
     /// Returns the size of a correction relative to all of z and the start of the step; rounding is of the size ε.

@@ -4,7 +4,7 @@ pub mod points;
 
 #[cfg(feature = "std")]
 use hamel::s1;
-use hamel::{Block, Scalar, Singular, State, System, s3, so3};
+use hamel::{Block, Energies, Scalar, Singular, State, System, s3, so3};
 use serde_json::Value;
 use so3::{Matrix, Vector};
 
@@ -90,23 +90,6 @@ impl<S: Scalar> Body<S> {
     }
 }
 
-macro_rules! zeros {
-    () => {
-        fn zero_coordinates(&self) -> Self::Coordinates {
-            Default::default()
-        }
-        fn zero_velocities(&self) -> Self::Velocities {
-            Default::default()
-        }
-        fn zero_chart(&self) -> Self::Chart {
-            Default::default()
-        }
-        fn zero_inputs(&self) -> Self::Inputs {
-            Default::default()
-        }
-    };
-}
-
 /// Heavy top, x = R, ξ = ω (body axes), no input.
 #[derive(Clone, Debug)]
 pub struct Top<S>(pub Body<S>);
@@ -118,29 +101,21 @@ impl<S: Scalar> System for Top<S> {
     type Chart = [S; 3];
     type Inputs = [S; 0];
 
-    zeros!();
-
     fn blocks(&self) -> &[Block] {
         &[Block::Rotation]
     }
     fn start(&self) -> ([S; 9], [S; 3]) {
         (self.0.r0, self.0.w0)
     }
-    fn rate(&self, x: &[S; 9], xi: &[S; 3]) -> [S; 9] {
-        so3::rate(*x, *xi)
-    }
     fn chart_rate(&self, _: &[S; 9], xi: &[S; 3]) -> [S; 3] {
         *xi
     }
-    fn accel(&self, x: &[S; 9], xi: &[S; 3], _: &[S; 0]) -> Result<[S; 3], Singular> {
+    fn forward_dynamics(&self, x: &[S; 9], xi: &[S; 3], _: &[S; 0]) -> Result<[S; 3], Singular> {
         self.0.accel(*x, *xi)
     }
-    fn correction(&self, x: &[S; 9]) -> [S; 9] {
-        so3::correction(*x)
-    }
-    fn constraint_norm(&self, x: &[S; 9]) -> S {
-        so3::defect(*x)
-    }
+}
+
+impl<S: Scalar> Energies for Top<S> {
     fn kinetic_energy(&self, _: &[S; 9], xi: &[S; 3]) -> S {
         self.0.kinetic(*xi)
     }
@@ -160,29 +135,21 @@ impl<S: Scalar> System for QuaternionTop<S> {
     type Chart = [S; 3];
     type Inputs = [S; 0];
 
-    zeros!();
-
     fn blocks(&self) -> &[Block] {
         &[Block::Quaternion]
     }
     fn start(&self) -> ([S; 4], [S; 3]) {
         (s3::from_matrix(self.0.r0), self.0.w0)
     }
-    fn rate(&self, x: &[S; 4], xi: &[S; 3]) -> [S; 4] {
-        s3::rate(*x, *xi)
-    }
     fn chart_rate(&self, _: &[S; 4], xi: &[S; 3]) -> [S; 3] {
         *xi
     }
-    fn accel(&self, x: &[S; 4], xi: &[S; 3], _: &[S; 0]) -> Result<[S; 3], Singular> {
+    fn forward_dynamics(&self, x: &[S; 4], xi: &[S; 3], _: &[S; 0]) -> Result<[S; 3], Singular> {
         self.0.accel(s3::to_matrix(*x), *xi)
     }
-    fn correction(&self, x: &[S; 4]) -> [S; 4] {
-        s3::correction(*x)
-    }
-    fn constraint_norm(&self, x: &[S; 4]) -> S {
-        s3::defect(*x)
-    }
+}
+
+impl<S: Scalar> Energies for QuaternionTop<S> {
     fn kinetic_energy(&self, _: &[S; 4], xi: &[S; 3]) -> S {
         self.0.kinetic(*xi)
     }
@@ -253,8 +220,6 @@ impl System for FreeBody {
     type Chart = [f64; 6];
     type Inputs = [f64; 6];
 
-    zeros!();
-
     fn blocks(&self) -> &[Block] {
         &[Block::Flat(3), Block::Rotation]
     }
@@ -262,16 +227,17 @@ impl System for FreeBody {
         let ([a, b, c], [d, e, f]) = (self.v0, self.body.w0);
         (pose(self.r0, self.body.r0), [a, b, c, d, e, f])
     }
-    fn rate(&self, x: &[f64; 12], xi: &[f64; 6]) -> [f64; 12] {
-        let (v, w) = twist(xi);
-        pose(so3::apply(rotation(x), v), so3::rate(rotation(x), w))
-    }
     fn chart_rate(&self, x: &[f64; 12], xi: &[f64; 6]) -> [f64; 6] {
         let (v, [d, e, f]) = twist(xi);
         let [a, b, c] = so3::apply(rotation(x), v);
         [a, b, c, d, e, f]
     }
-    fn accel(&self, x: &[f64; 12], xi: &[f64; 6], u: &[f64; 6]) -> Result<[f64; 6], Singular> {
+    fn forward_dynamics(
+        &self,
+        x: &[f64; 12],
+        xi: &[f64; 6],
+        u: &[f64; 6],
+    ) -> Result<[f64; 6], Singular> {
         let Body { m, s, g, .. } = self.body;
         let (v, w) = twist(xi);
         let (force, torque) = twist(u);
@@ -284,12 +250,9 @@ impl System for FreeBody {
         let ([a, b, c], [d, e, f]) = (linear, angular);
         solve(self.mass(), [a, b, c, d, e, f])
     }
-    fn correction(&self, x: &[f64; 12]) -> [f64; 12] {
-        pose([0.0; 3], so3::correction(rotation(x)))
-    }
-    fn constraint_norm(&self, x: &[f64; 12]) -> f64 {
-        so3::defect(rotation(x))
-    }
+}
+
+impl Energies for FreeBody {
     fn kinetic_energy(&self, _: &[f64; 12], xi: &[f64; 6]) -> f64 {
         let (v, w) = twist(xi);
         let (p, l) = self.momentum(v, w);
@@ -313,11 +276,6 @@ pub struct Pendulum {
 }
 
 #[cfg(feature = "std")]
-fn circle(x: &[f64]) -> [f64; 2] {
-    [x[0], x[1]]
-}
-
-#[cfg(feature = "std")]
 impl System for Pendulum {
     type Scalar = f64;
     type Coordinates = Vec<f64>;
@@ -328,37 +286,28 @@ impl System for Pendulum {
     fn blocks(&self) -> &[Block] {
         &[Block::Circle]
     }
-    fn zero_coordinates(&self) -> Vec<f64> {
-        vec![0.0; 2]
-    }
-    fn zero_velocities(&self) -> Vec<f64> {
-        vec![0.0]
-    }
-    fn zero_chart(&self) -> Vec<f64> {
-        vec![0.0]
-    }
     fn zero_inputs(&self) -> Vec<f64> {
         vec![0.0]
     }
     fn start(&self) -> (Vec<f64>, Vec<f64>) {
         (s1::exp(self.theta0).to_vec(), vec![self.rate0])
     }
-    fn rate(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
-        s1::rate(circle(x), xi[0]).to_vec()
-    }
     fn chart_rate(&self, _: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
         xi.clone()
     }
-    fn accel(&self, x: &Vec<f64>, _: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
+    fn forward_dynamics(
+        &self,
+        x: &Vec<f64>,
+        _: &Vec<f64>,
+        u: &Vec<f64>,
+    ) -> Result<Vec<f64>, Singular> {
         let torque = u[0] - self.g * self.l * x[1];
         solve([[self.l * self.l]], [torque]).map(|a| a.to_vec())
     }
-    fn correction(&self, x: &Vec<f64>) -> Vec<f64> {
-        s1::correction(circle(x)).to_vec()
-    }
-    fn constraint_norm(&self, x: &Vec<f64>) -> f64 {
-        s1::defect(circle(x))
-    }
+}
+
+#[cfg(feature = "std")]
+impl Energies for Pendulum {
     fn kinetic_energy(&self, _: &Vec<f64>, xi: &Vec<f64>) -> f64 {
         0.5 * (self.l * xi[0]).powi(2)
     }

@@ -1,6 +1,6 @@
 //! Points on lines: N flat coordinates with ẋ = ξ, and any acceleration.
 
-use hamel::{Block, Singular, System};
+use hamel::{Block, Energies, Singular, System};
 
 /// ξ̇ of (x, ξ)
 pub type Accel<const N: usize> = fn(&[f64; N], &[f64; N]) -> Result<[f64; N], Singular>;
@@ -20,36 +20,23 @@ impl<const N: usize> System for Points<N> {
     fn blocks(&self) -> &[Block] {
         &[const { Block::Flat(N) }]
     }
-    fn zero_coordinates(&self) -> [f64; N] {
-        [0.0; N]
-    }
-    fn zero_velocities(&self) -> [f64; N] {
-        [0.0; N]
-    }
-    fn zero_chart(&self) -> [f64; N] {
-        [0.0; N]
-    }
-    fn zero_inputs(&self) -> [f64; 0] {
-        []
-    }
     fn start(&self) -> ([f64; N], [f64; N]) {
         self.start
-    }
-    fn rate(&self, _: &[f64; N], xi: &[f64; N]) -> [f64; N] {
-        *xi
     }
     fn chart_rate(&self, _: &[f64; N], xi: &[f64; N]) -> [f64; N] {
         *xi
     }
-    fn accel(&self, x: &[f64; N], xi: &[f64; N], _: &[f64; 0]) -> Result<[f64; N], Singular> {
+    fn forward_dynamics(
+        &self,
+        x: &[f64; N],
+        xi: &[f64; N],
+        _: &[f64; 0],
+    ) -> Result<[f64; N], Singular> {
         (self.accel)(x, xi)
     }
-    fn correction(&self, _: &[f64; N]) -> [f64; N] {
-        [0.0; N]
-    }
-    fn constraint_norm(&self, _: &[f64; N]) -> f64 {
-        0.0
-    }
+}
+
+impl<const N: usize> Energies for Points<N> {
     fn kinetic_energy(&self, _: &[f64; N], xi: &[f64; N]) -> f64 {
         0.5 * xi.iter().map(|v| v * v).sum::<f64>()
     }

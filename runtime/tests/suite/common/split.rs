@@ -1,6 +1,6 @@
 //! What the hand-written bodies offer to methods of their structure.
 
-use hamel::{Block, Canonical, Rotor, Scalar, Singular, Split, System, s3, so3};
+use hamel::{Block, Canonical, Energies, Rotor, Scalar, Singular, Split, System, s3, so3};
 use so3::{Matrix, Vector};
 
 #[cfg(feature = "std")]
@@ -52,41 +52,23 @@ macro_rules! delegate {
             fn blocks(&self) -> &[Block] {
                 self.0.blocks()
             }
-            fn zero_coordinates(&self) -> Self::Coordinates {
-                self.0.zero_coordinates()
-            }
-            fn zero_velocities(&self) -> [S; 3] {
-                self.0.zero_velocities()
-            }
-            fn zero_chart(&self) -> [S; 3] {
-                self.0.zero_chart()
-            }
-            fn zero_inputs(&self) -> [S; 0] {
-                self.0.zero_inputs()
-            }
             fn start(&self) -> (Self::Coordinates, [S; 3]) {
                 self.0.start()
-            }
-            fn rate(&self, x: &Self::Coordinates, xi: &[S; 3]) -> Self::Coordinates {
-                self.0.rate(x, xi)
             }
             fn chart_rate(&self, x: &Self::Coordinates, xi: &[S; 3]) -> [S; 3] {
                 self.0.chart_rate(x, xi)
             }
-            fn accel(
+            fn forward_dynamics(
                 &self,
                 x: &Self::Coordinates,
                 xi: &[S; 3],
                 u: &[S; 0],
             ) -> Result<[S; 3], Singular> {
-                self.0.accel(x, xi, u)
+                self.0.forward_dynamics(x, xi, u)
             }
-            fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates {
-                self.0.correction(x)
-            }
-            fn constraint_norm(&self, x: &Self::Coordinates) -> S {
-                self.0.constraint_norm(x)
-            }
+        }
+
+        impl<S: Scalar> Energies for Spin<$top<S>> {
             fn kinetic_energy(&self, x: &Self::Coordinates, xi: &[S; 3]) -> S {
                 self.0.kinetic_energy(x, xi)
             }

@@ -86,7 +86,7 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
             let usual = largest(&columns(&system, &State::start(&system).x).concat());
             let moderate = largest(&columns(&system, &state.x).concat()) <= 2.0 * usual.max(1.0);
             // A linkage may have reached its other assembly, in which the kinematics are refused.
-            let assembled = system.accel(&state.x, &state.xi, &system.zero_inputs());
+            let assembled = system.forward_dynamics(&state.x, &state.xi, &system.zero_inputs());
             let assembled = !matches!(assembled, Err(Singular::Kinematics { .. }));
             if moderate && assembled {
                 random.fill(state.xi.as_mut(), 2.0);
@@ -97,7 +97,7 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
         random.fill(inputs.as_mut(), 2.0);
         // Light parts get small inputs.
         for _ in 0..HALVINGS {
-            let accel = system.accel(&state.x, &state.xi, &inputs);
+            let accel = system.forward_dynamics(&state.x, &state.xi, &inputs);
             if accel.is_ok_and(|accel| largest(accel.as_ref()) <= MAX_ACCELERATION) {
                 break;
             }
@@ -373,8 +373,8 @@ where
     narrow(x64.as_ref(), x.as_mut());
     narrow(xi64.as_ref(), xi.as_mut());
     narrow(double.inputs.as_ref(), u.as_mut());
-    let narrow = system.accel(&x, &xi, &u).expect(&double.label);
-    let wide = double.system.accel(x64, xi64, &double.inputs);
+    let narrow = system.forward_dynamics(&x, &xi, &u).expect(&double.label);
+    let wide = double.system.forward_dynamics(x64, xi64, &double.inputs);
     let narrow: Vec<f64> = narrow.as_ref().iter().map(|v| f64::from(*v)).collect();
     let wide = wide.expect(&double.label);
     let scale = largest(wide.as_ref()).max(1.0);

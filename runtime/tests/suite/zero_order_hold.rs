@@ -3,7 +3,7 @@
 use crate::oscillator::Oscillator;
 use hamel::adaptive::Adaptive;
 use hamel::methods::General;
-use hamel::{Sampled, State, StepError};
+use hamel::{State, StepError, ZeroOrderHold};
 
 const W: f64 = 1.7;
 const FREE: Oscillator = Oscillator {
@@ -47,7 +47,7 @@ fn methods_keep_their_orders() {
             let system = FREE;
             let mut state = State::start(&system);
             let (mut integral, mut calls, mut seen) = (0.0, 0, Vec::new());
-            let mut controller = Sampled::new(PERIOD, |state: &State<Oscillator>| {
+            let mut controller = ZeroOrderHold::new(PERIOD, |state: &State<Oscillator>| {
                 calls += 1;
                 [law(&mut integral, state.x[0], state.xi[0])]
             });
@@ -82,7 +82,7 @@ fn error_control_meets_no_jump() {
     let system = FREE;
     let mut state = State::start(&system);
     let mut integral = 0.0;
-    let mut controller = Sampled::new(PERIOD, |state: &State<Oscillator>| {
+    let mut controller = ZeroOrderHold::new(PERIOD, |state: &State<Oscillator>| {
         [law(&mut integral, state.x[0], state.xi[0])]
     });
     let mut ends = 0;
@@ -110,7 +110,7 @@ fn periods_are_positive_and_finite() {
         (1e-300, 1.0),
     ] {
         let mut state = State::start(&system);
-        let mut controller = Sampled::new(period, |_: &State<Oscillator>| [0.0]);
+        let mut controller = ZeroOrderHold::new(period, |_: &State<Oscillator>| [0.0]);
         let result = controller.integrate(&system, General::Rkmk4, &mut state, 0.1, until, |_| {});
         assert!(
             matches!(result, Err(StepError::InvalidStep { .. })),
@@ -120,7 +120,8 @@ fn periods_are_positive_and_finite() {
     }
     // No time, no question.
     let mut state = State::start(&system);
-    let mut controller = Sampled::new(0.1, |_: &State<Oscillator>| -> [f64; 1] { panic!("asked") });
+    let mut controller =
+        ZeroOrderHold::new(0.1, |_: &State<Oscillator>| -> [f64; 1] { panic!("asked") });
     let result = controller.integrate(&system, General::Rkmk4, &mut state, 0.1, 0.0, |_| {});
     assert_eq!(result, Ok(()));
 }
@@ -132,7 +133,7 @@ fn spans_far_below_a_period_are_reached() {
     let mut state = State::start(&system);
     let mut calls = 0;
     let until = 1e-12 * PERIOD;
-    let mut controller = Sampled::new(PERIOD, |_: &State<Oscillator>| {
+    let mut controller = ZeroOrderHold::new(PERIOD, |_: &State<Oscillator>| {
         calls += 1;
         [0.0]
     });

@@ -1,9 +1,11 @@
 //! Digital controllers, which are called at a fixed period and hold their output in between.
 
+use core::ops::ControlFlow;
+
 use crate::adaptive::{Adaptive, Statistics};
 use crate::clock::Clock;
 use crate::error::StepError;
-use crate::integrate::integrate;
+use crate::integrate::integrate_while;
 use crate::methods::Method;
 use crate::state::State;
 use crate::system::System;
@@ -23,25 +25,15 @@ use crate::system::System;
 /// #     type Scalar = f64; type Coordinates = [f64; 1]; type Velocities = [f64; 1]; type Chart = [f64; 1];
 /// #     type Inputs = [f64; 1];
 /// #     fn blocks(&self) -> &[Block] { &[Block::Flat(1)] }
-/// #     fn zero_coordinates(&self) -> [f64; 1] { [0.0] }
-/// #     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
-/// #     fn zero_chart(&self) -> [f64; 1] { [0.0] }
-/// #     fn zero_inputs(&self) -> [f64; 1] { [0.0] }
-/// #     fn start(&self) -> ([f64; 1], [f64; 1]) { ([0.0], [0.0]) }
-/// #     fn rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] { *xi }
 /// #     fn chart_rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] { *xi }
-/// #     fn accel(&self, _: &[f64; 1], _: &[f64; 1], u: &[f64; 1]) -> Result<[f64; 1], Singular> { Ok(*u) }
-/// #     fn correction(&self, _: &[f64; 1]) -> [f64; 1] { [0.0] }
-/// #     fn constraint_norm(&self, _: &[f64; 1]) -> f64 { 0.0 }
-/// #     fn kinetic_energy(&self, _: &[f64; 1], xi: &[f64; 1]) -> f64 { 0.5 * xi[0] * xi[0] }
-/// #     fn potential_energy(&self, _: &[f64; 1]) -> f64 { 0.0 }
+/// #     fn forward_dynamics(&self, _: &[f64; 1], _: &[f64; 1], u: &[f64; 1]) -> Result<[f64; 1], Singular> { Ok(*u) }
 /// # }
 /// # fn main() -> Result<(), hamel::StepError> {
 /// // A controller with integral action, called every 10 ms, holds a cart of mass 1 at the position 1.
 /// let cart = Cart;
 /// let mut state = State::start(&cart);
 /// let mut integral = 0.0;
-/// let mut controller = hamel::Sampled::new(0.01, |state: &State<Cart>| {
+/// let mut controller = hamel::ZeroOrderHold::new(0.01, |state: &State<Cart>| {
 ///     integral += 0.01 * (1.0 - state.x[0]);
 ///     [3.0 * (1.0 - state.x[0]) + 1.0 * integral - 3.0 * state.xi[0]]
 /// });
@@ -51,18 +43,18 @@ use crate::system::System;
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Sampled<C> {
+pub struct ZeroOrderHold<C> {
     period: f64,
     controller: C,
 }
 
-impl<C> Sampled<C> {
+impl<C> ZeroOrderHold<C> {
     /// Creates a controller that is called once per `period`, in the time unit of the description.
     pub const fn new(period: f64, controller: C) -> Self {
         Self { period, controller }
     }
 
-    /// Integrates `state` to the time `until`, in steps no longer than `length`, as [`integrate`](integrate()) does;
+    /// Integrates `state` to the time `until`, in steps no longer than `length`, as [`integrate`](crate::integrate()) does;
     /// the steps within a period are equal. `observe` is called with the first state and after every step.
     ///
     /// # Errors
@@ -83,17 +75,45 @@ impl<C> Sampled<C> {
         C: FnMut(&State<Sys>) -> Sys::Inputs,
         O: FnMut(&State<Sys>),
     {
-        observe(state);
+        let observe = |state: &State<Sys>| {
+            observe(state);
+            ControlFlow::Continue(())
+        };
+        self.integrate_while(system, method, state, length, until, observe)
+    }
+
+    /// Integrates like [`integrate`](Self::integrate) until `observe` breaks.
+    pub(crate) fn integrate_while<Sys, M, O>(
+        &mut self,
+        system: &Sys,
+        method: M,
+        state: &mut State<Sys>,
+        length: f64,
+        until: f64,
+        mut observe: O,
+    ) -> Result<(), StepError>
+    where
+        Sys: System + ?Sized,
+        M: Method<Sys>,
+        C: FnMut(&State<Sys>) -> Sys::Inputs,
+        O: FnMut(&State<Sys>) -> ControlFlow<()>,
+    {
+        if observe(state).is_break() {
+            return Ok(());
+        }
         self.periods(system, state, until, |state, end, u| {
             let from = state.t;
             let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
+            let mut flow = ControlFlow::Continue(());
             // `observe` has already seen the first state of this period, at the end of the previous one.
             let observe = |state: &State<Sys>| {
                 if state.t != from {
-                    observe(state);
+                    flow = observe(state);
                 }
+                flow
             };
-            integrate(system, &method, state, length, end, inputs, observe)
+            integrate_while(system, &method, state, length, end, inputs, observe)?;
+            Ok(flow)
         })
     }
 
@@ -119,23 +139,20 @@ impl<C> Sampled<C> {
         let mut all = Statistics::default();
         self.periods(system, state, until, |state, end, u| {
             let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
-            let part = method.run(system, state, end, inputs)?;
-            all.accepted += part.accepted;
-            all.rejected += part.rejected;
-            all.evaluations += part.evaluations;
+            all += method.run(system, state, end, inputs)?;
             observe(state);
-            Ok(())
+            Ok(ControlFlow::Continue(()))
         })?;
         Ok(all)
     }
 
-    /// Loops over the periods: calls the controller, and moves the state to the end of the period.
-    fn periods<Sys>(
+    /// Loops over the periods until `run` breaks: calls the controller, and moves the state to the end of the period.
+    pub(crate) fn periods<Sys>(
         &mut self,
         system: &Sys,
         state: &mut State<Sys>,
         until: f64,
-        mut run: impl FnMut(&mut State<Sys>, f64, &Sys::Inputs) -> Result<(), StepError>,
+        mut run: impl FnMut(&mut State<Sys>, f64, &Sys::Inputs) -> Result<ControlFlow<()>, StepError>,
     ) -> Result<(), StepError>
     where
         Sys: System + ?Sized,
@@ -161,9 +178,12 @@ impl<C> Sampled<C> {
                 true => until,
                 false => from + index as f64 * step,
             };
-            run(state, end, &u)?;
+            let flow = run(state, end, &u)?;
             if let Some(clock) = &clock {
                 clock.set(state);
+            }
+            if flow.is_break() {
+                break;
             }
         }
         Ok(())

@@ -2,6 +2,18 @@
 //!
 //! nalgebra is re-exported as [`hamel::nalgebra`](crate::nalgebra), so a program may also depend on another version of
 //! it.
+//!
+//! ```
+//! use hamel::{Block, nalgebra_interop, so3};
+//!
+//! let blocks = [Block::Flat(3), Block::Rotation];
+//! let mut x = vec![1.0, 2.0, 3.0];
+//! x.extend(so3::exp([0.0, 0.0, 0.5]));
+//! let position = nalgebra_interop::vector::<f64, 3>(&x, 0).expect("three entries");
+//! let attitude = nalgebra_interop::rotation(&blocks, &x, 1).expect("a rotation");
+//! assert!((attitude.transpose() * attitude).trace() - 3.0 < 1e-14);
+//! assert_eq!(position.norm_squared(), 14.0);
+//! ```
 
 use nalgebra::{Matrix3, Quaternion, SVectorView, Vector3};
 
@@ -65,7 +77,7 @@ pub fn rows<S: nalgebra::Scalar + Copy>(matrix: &Matrix3<S>) -> Matrix<S> {
 /// Converts three components to an nalgebra vector.
 ///
 /// ```
-/// let axis = hamel::edge::vector3([3.0, 0.0, 4.0]).normalize();
+/// let axis = hamel::nalgebra_interop::vector3([3.0, 0.0, 4.0]).normalize();
 /// assert_eq!(axis, hamel::nalgebra::Vector3::new(0.6, 0.0, 0.8));
 /// ```
 pub fn vector3<S: nalgebra::Scalar>(components: so3::Vector<S>) -> Vector3<S> {
