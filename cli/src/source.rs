@@ -178,7 +178,7 @@ impl Source {
                 Err(why) => unknown.push(why),
             }
         }
-        self.text.clone_from(&robot.imported.text);
+        self.text = robot.imported.text();
         match unknown.is_empty() {
             true => Ok(frames),
             false => Err(Failure::failed(format!(
@@ -194,7 +194,7 @@ impl Source {
         let robot = Robot::read(self.text, &self.path, options)?;
         Ok(Source {
             path: self.path,
-            text: robot.imported.text.clone(),
+            text: robot.imported.text(),
             robot: Some(robot),
             warned: self.warned,
             evaluated: self.evaluated,
@@ -210,8 +210,11 @@ impl Source {
 
     /// Other files that the description has statements or numbers of.
     pub fn files(&self) -> Result<Vec<PathBuf>, Failure> {
-        let folder = Path::new(&self.path).parent().unwrap_or(Path::new(""));
         let mut files = Vec::new();
+        if self.robot.is_some() {
+            return Ok(files);
+        }
+        let folder = Path::new(&self.path).parent().unwrap_or(Path::new(""));
         let read = syntax::parse_text(&self.text).and_then(|mut system| {
             syntax::read_files(&mut system, &mut |name| {
                 files.push(folder.join(name));
@@ -224,13 +227,18 @@ impl Source {
 
     /// The description with what it has in other files, and the texts of these.
     fn parsed(&self) -> Result<(System, Vec<String>), Vec<Diagnostic>> {
-        let mut system = syntax::parse_text(&self.text)?;
-        let texts = syntax::read_files(&mut system, &mut |name| self.file(name))?;
+        let (mut system, texts) = match &self.robot {
+            Some(robot) => (robot.imported.system.clone(), Vec::new()),
+            None => {
+                let mut system = syntax::parse_text(&self.text)?;
+                let texts = syntax::read_files(&mut system, &mut |name| self.file(name))?;
+                (system, texts)
+            }
+        };
         if self.evaluated {
             system.evaluate();
         }
         system.shows_frames = self.shows_frames;
-        system.starts_anywhere = self.robot.is_some();
         Ok((system, texts))
     }
 
@@ -355,8 +363,8 @@ impl Source {
     /// Derives the functions that the description asks for; for a robot, which asks for nothing by itself, all
     /// that exist.
     pub fn derive(&self) -> Result<Generated, Failure> {
-        if self.robot.is_some() {
-            let derived = progress::during(DERIVING, || available_in(&self.text));
+        if let Some(robot) = &self.robot {
+            let derived = progress::during(DERIVING, || available_in(&robot.imported.system));
             let (generated, left_out) = derived.map_err(|errors| self.refused(&errors))?;
             self.warn_of(left_out);
             return Ok(generated);
@@ -452,7 +460,7 @@ impl Source {
     pub fn refused(&self, errors: &[Diagnostic]) -> Failure {
         failure::mark(errors, true);
         Failure::Failed(match &self.robot {
-            Some(robot) => urdf::refused(errors, &robot.imported, &self.path, &robot.urdf, true),
+            Some(robot) => urdf::refused(errors, &self.path, &robot.urdf, true),
             None => render(errors, &self.path, &self.text, true),
         })
     }
