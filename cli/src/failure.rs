@@ -122,9 +122,8 @@ fn underlined(error: &Error, color: bool) -> Option<String> {
         Error::Robot {
             path,
             urdf,
-            imported,
             diagnostics,
-        } => urdf::refused(diagnostics, imported, path, urdf, color),
+        } => urdf::refused(diagnostics, path, urdf, color),
         Error::Import {
             path,
             urdf,

@@ -300,9 +300,8 @@ impl Builder {
                 let imported = import(&text, options, &shown, false)?;
                 warn(&warnings(&imported, &shown, &text, false));
                 let description = name(&path.with_extension("eom"));
-                let refused =
-                    |errors: Vec<Diagnostic>| refused(&errors, &imported, &shown, &text, false);
-                let (generated, left_out) = available_in(&imported.text).map_err(refused)?;
+                let refused = |errors: Vec<Diagnostic>| refused(&errors, &shown, &text, false);
+                let (generated, left_out) = available_in(&imported.system).map_err(refused)?;
                 // The import has warned already if there are no masses.
                 if let Some(left_out) = left_out.filter(|_| imported.has_masses) {
                     warn(&format!("{shown}: {}", left_out.said()));

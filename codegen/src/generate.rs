@@ -75,18 +75,17 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
     derive(&system, fingerprint(&(canonical(text) + &texts.concat())))
 }
 
-/// Derives the description in a text as far as possible. If M is not positive definite, functions that need M⁻¹ are
+/// Derives the description of a robot as far as possible. If M is not positive definite, functions that need M⁻¹ are
 /// left out; if nothing has inertia, all functions that need inertia. Then the error of the functions that are left out
 /// is returned, too. This is for robots, whose files do not say which functions are wanted.
 ///
 /// # Errors
 /// Everything else that is wrong with the description.
 #[cfg(feature = "files")]
-pub fn available_in(text: &str) -> Result<(Generated, Option<LeftOut>), Vec<Diagnostic>> {
-    let mut system = syntax::parse_text(text)?;
-    system.starts_anywhere = true;
-    let hash = fingerprint(&canonical(text));
-    at_some_point(&system, |model| Generated::available(model, hash))
+pub fn available_in(system: &ast::System) -> Result<(Generated, Option<LeftOut>), Vec<Diagnostic>> {
+    // The hash is that of the printed description, so that the code generated from it is the same.
+    let hash = fingerprint(&canonical(&syntax::print::text(system)));
+    at_some_point(system, |model| Generated::available(model, hash))
 }
 
 /// What was left out because M is not positive definite, or because nothing has inertia.

@@ -1,13 +1,12 @@
-//! The front end for robots in URDF. `hamel_import` converts them to descriptions; errors about such a
-//! description are shown at the place in the URDF from which its line was made.
+//! The front end for robots in URDF. `hamel_import` converts them to descriptions, whose statements have their places
+//! in the URDF.
 
 mod idle;
 
 use crate::diagnostics::Diagnostic;
 use crate::functions::Needs;
-use crate::render::{Level, Note, notes, render, span_bytes};
+use crate::render::{Level, Note, notes, render};
 pub use hamel_import::{Imported, Mimic, Options, Problem, TOLERANCE, Undecoded, decode};
-use std::ops::Range;
 use std::path::Path;
 
 /// Whether a path has the extension of a URDF file.
@@ -59,53 +58,18 @@ fn shown(problems: &[Problem], level: Level, path: &str, text: &str, color: bool
 /// Help for a robot without masses.
 const BARE: &str = "no link of the robot that moves has mass: give the links their `<inertial>`";
 
-/// Shows errors about the description at their places in the URDF; those without a place there are shown
-/// in the text of the description.
-pub fn refused(
-    errors: &[Diagnostic],
-    imported: &Imported,
-    path: &str,
-    text: &str,
-    color: bool,
-) -> String {
-    let mut placed = Vec::new();
-    let mut rest = Vec::new();
-    for error in errors {
-        let Some((origin, line)) = origin(error, imported) else {
-            rest.push(error.clone());
-            continue;
-        };
-        let help = match error.lacking {
-            Some(Needs::Inertia) => vec![BARE.to_string()],
-            _ => {
-                let help = error.help.iter().cloned();
-                let line = format!("the description made from it has `{line}`");
-                help.chain([line]).collect()
-            }
-        };
-        placed.push(Note {
-            range: origin,
-            message: error.message.clone(),
-            help,
-        });
-    }
-    let mut rendered = String::new();
-    if !placed.is_empty() {
-        rendered.push_str(&notes(&placed, Level::Error, path, text, color));
-    }
-    if !rest.is_empty() {
-        let name = format!("{path}, as a description");
-        rendered.push_str(&render(&rest, &name, &imported.text, color));
-    }
-    rendered
+/// Shows errors about the description of a robot, each at the part of the URDF from which the statement was made, under
+/// the name `path`.
+pub fn refused(errors: &[Diagnostic], path: &str, text: &str, color: bool) -> String {
+    let errors: Vec<Diagnostic> = errors.iter().cloned().map(about_the_robot).collect();
+    render(&errors, path, text, color)
 }
 
-/// Returns the byte range in the URDF from which an error's line was made, and that line.
-fn origin(error: &Diagnostic, imported: &Imported) -> Option<(Range<usize>, String)> {
-    let place = span_bytes(error.span, &imported.text)?;
-    let before = imported.text.get(..place.start)?;
-    let number = before.matches('\n').count();
-    let origin = imported.origins.get(number)?.clone()?;
-    let line = imported.text.lines().nth(number)?.trim().to_string();
-    Some((origin, line))
+/// Replaces help about statements, which the user has not written, where the robot lacks masses.
+fn about_the_robot(mut error: Diagnostic) -> Diagnostic {
+    if error.lacking == Some(Needs::Inertia) {
+        error.help = Some(BARE.to_string());
+        error.statement = None;
+    }
+    error
 }

@@ -7,7 +7,7 @@ use crate::state::StateProblem;
 use hamel::StepError;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::render::render;
-use hamel_codegen::urdf::{self, Imported, Undecoded};
+use hamel_codegen::urdf::{self, Undecoded};
 use std::fmt;
 
 /// Why something cannot be derived, read or run.
@@ -46,9 +46,7 @@ pub enum Error {
         path: String,
         /// The text of that file.
         urdf: String,
-        /// The description, with the places in the file from which its lines were made.
-        imported: Box<Imported>,
-        /// The errors, with their places in the description.
+        /// The errors, with their places in the text of the file.
         diagnostics: Vec<Diagnostic>,
     },
     /// A robot in URDF has errors.
@@ -301,15 +299,8 @@ impl fmt::Display for Error {
             Error::Robot {
                 path,
                 urdf,
-                imported,
                 diagnostics,
-            } => f.write_str(bare(&urdf::refused(
-                diagnostics,
-                imported,
-                path,
-                urdf,
-                false,
-            ))),
+            } => f.write_str(bare(&urdf::refused(diagnostics, path, urdf, false))),
             Error::Import {
                 path,
                 urdf,

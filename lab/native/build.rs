@@ -45,7 +45,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let text = std::fs::read_to_string(&path)?;
         let imported =
             hamel_codegen::urdf::import(&text, &options, &path.to_string_lossy(), false)?;
-        let body = imported.text.trim_end().strip_suffix('}').ok_or("no end")?;
+        let text = imported.text();
+        let body = text.trim_end().strip_suffix('}').ok_or("no end")?;
         let text = format!("{body}    generate {wanted};\n}}\n");
         builder = builder.file(keep(&folder, &path, &text)?);
     }

@@ -46,7 +46,8 @@ fn imported(folder: &Path, robot: &robots::Robot) -> Result<String, Box<dyn Erro
     };
     let text = std::fs::read_to_string(folder.join(robot.urdf))?;
     let imported = hamel_codegen::urdf::import(&text, &options, robot.urdf, false)?;
-    let body = imported.text.trim_end().strip_suffix('}').ok_or("no end")?;
+    let text = imported.text();
+    let body = text.trim_end().strip_suffix('}').ok_or("no end")?;
     let lines = body.split_inclusive('\n').filter(|line| {
         !["damping ", "limit "]
             .iter()

@@ -203,7 +203,8 @@ fn jacobians_cost_no_more_than_they_did() {
             ..Options::default()
         };
         let imported = import(&text, &options, "robot.urdf", false).expect("a robot");
-        let (text, _) = imported.text.rsplit_once('}').expect("a description");
+        let text = imported.text();
+        let (text, _) = text.rsplit_once('}').expect("a description");
         let asked = format!("generate jacobian {link}, jacobian {link} in {link};");
         let generated = from_text(&format!("{text} {asked} }}")).expect("a program");
         let program = &generated.program;

@@ -380,7 +380,7 @@ fn agrees(folder: &Path, reference: &Value) {
         ..Options::default()
     };
     let imported = import(&urdf, &options, "robot.urdf", false).expect("a robot");
-    let found = found(&imported.text);
+    let found = found(&imported.text());
     let model = &found.model;
     let joints = &imported.joints;
     let (mut worst, mut size) = (0.0_f64, 0.0_f64);

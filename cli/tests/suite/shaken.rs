@@ -230,7 +230,7 @@ fn robots_keep_their_digits() {
                     continue;
                 };
                 let case = format!("{name}, {how}, floating {floating}, rounding {tolerance}");
-                let errors = errors(&imported.text, 7);
+                let errors = errors(&imported.text(), 7);
                 if full() {
                     eprintln!("{case}: {errors:?}");
                 }

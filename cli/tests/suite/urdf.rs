@@ -2,7 +2,7 @@
 
 use crate::common::{hamel, text};
 use hamel_codegen::urdf::Options;
-use hamel_codegen::{lower, syntax, vocabulary};
+use hamel_codegen::{lower, vocabulary};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -280,7 +280,7 @@ fn words_of_the_language_are_names_of_robots() {
             imported.expect("a sound robot")
         };
         for imported in [robot(word, "rod"), robot("hinge", word)] {
-            let built = syntax::parse_text(&imported.text).and_then(|system| lower::build(&system));
+            let built = lower::build(&imported.system);
             if let Err(errors) = built {
                 refused.push(format!("{word}: {}", errors[0].message));
             }

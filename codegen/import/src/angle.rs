@@ -1,6 +1,8 @@
 //! Angles and rotations; rounded multiples of a right angle become exact.
 
 use crate::decimal::Decimal;
+use hamel_language::expression::call;
+use hamel_language::syntax::ast::Expr;
 use std::f64::consts::FRAC_PI_2;
 
 /// An angle in radians.
@@ -36,13 +38,14 @@ impl Angle {
     }
 
     /// Returns the angle as it is written in a description.
-    pub(crate) fn text(&self) -> String {
+    pub(crate) fn expr(&self) -> Expr {
+        let pi = Expr::name("pi");
         match self {
-            Angle::Right(0) => "0".into(),
-            Angle::Right(1) => "pi / 2".into(),
-            Angle::Right(2) => "pi".into(),
-            Angle::Right(_) => "-pi / 2".into(),
-            Angle::Decimal(number) => number.text.clone(),
+            Angle::Right(0) => 0.into(),
+            Angle::Right(1) => pi / 2,
+            Angle::Right(2) => pi,
+            Angle::Right(_) => -pi / 2,
+            Angle::Decimal(number) => number.into(),
         }
     }
 }
@@ -58,7 +61,7 @@ impl Rotation {
     }
 
     /// Returns the rotation as it is written in a description; `None` for the identity.
-    pub(crate) fn text(&self) -> Option<String> {
+    pub(crate) fn expr(&self) -> Option<Expr> {
         let turns: Vec<(&str, &Angle)> = ["rotx", "roty", "rotz"]
             .into_iter()
             .zip(&self.0)
@@ -66,11 +69,8 @@ impl Rotation {
             .collect();
         match turns.as_slice() {
             [] => None,
-            [(function, angle)] => Some(format!("{function}({})", angle.text())),
-            _ => {
-                let angles: Vec<String> = self.0.iter().map(Angle::text).collect();
-                Some(format!("rpy({})", angles.join(", ")))
-            }
+            [(function, angle)] => Some(call(function, [angle.expr()])),
+            _ => Some(call("rpy", self.0.iter().map(Angle::expr))),
         }
     }
 
@@ -128,7 +128,7 @@ mod tests {
             ("1.57079", "1.57079"),
             ("0.3", "0.3"),
         ] {
-            assert_eq!(angle(written).text(), text);
+            assert_eq!(angle(written).expr().to_string(), text);
         }
     }
 
@@ -142,7 +142,8 @@ mod tests {
         ]);
         // Roll takes e_y to e_z, where yaw leaves it; yaw takes e_x to e_y.
         assert_eq!(turned.exact(), Some([[0, 0, 1], [1, 0, 0], [0, 1, 0]]));
-        assert_eq!(turned.text().as_deref(), Some("rpy(pi / 2, 0, pi / 2)"));
+        let text = turned.expr().map(|rotation| rotation.to_string());
+        assert_eq!(text.as_deref(), Some("rpy(pi / 2, 0, pi / 2)"));
         assert_eq!(
             Rotation([angle("0.1"), angle("0"), angle("0")]).exact(),
             None

@@ -1,5 +1,8 @@
 //! Exact decimal numbers that keep the spelling of the file.
 
+use hamel_language::expression::spelled;
+use hamel_language::syntax::ast::Expr;
+
 /// Largest size of an exponent: beyond it a number is no length, mass or angle, and later computations would
 /// overflow.
 const MOST_EXPONENT: i32 = 300;
@@ -94,10 +97,16 @@ impl Decimal {
     }
 }
 
-/// Writes a vector as `[a, b, c]`.
-pub(crate) fn vector(entries: &[Decimal; 3]) -> String {
-    let texts: Vec<&str> = entries.iter().map(|entry| entry.text.as_str()).collect();
-    format!("[{}]", texts.join(", "))
+/// Returns the number as an expression with the same digits.
+impl From<&Decimal> for Expr {
+    fn from(number: &Decimal) -> Expr {
+        spelled(&number.text).unwrap_or_else(|| number.value.into())
+    }
+}
+
+/// Returns the vector `[a, b, c]`.
+pub(crate) fn vector(entries: &[Decimal; 3]) -> Expr {
+    Expr::from(entries.each_ref())
 }
 
 #[cfg(test)]

@@ -4,10 +4,12 @@
 //!
 //! # What is imported
 //!
-//! [`import`] reads the tree of links and joints and writes an `.eom` text: one `joint` statement for each joint, one
-//! `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for rounded
-//! multiples of π/2 and rounded zeros; the text says which numbers were changed. `read/list.rs` lists the elements
-//! and attributes that a file may contain.
+//! [`import`] reads the tree of links and joints and builds a description from it: one `joint` statement for each
+//! joint, one `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for rounded
+//! multiples of π/2 and rounded zeros; a comment says which numbers were changed. `read/list.rs` lists the elements and
+//! attributes that a file may contain.
+//!
+//! Each statement knows the part of the file that it was made from, and later errors about it have their place there.
 //!
 //! XML is parsed by `roxmltree`, which keeps the position of every attribute, so that every error names its place.
 
@@ -31,7 +33,7 @@ pub use problem::Problem;
 use problem::Problems;
 use std::collections::BTreeMap;
 
-/// Reads a robot and writes its description.
+/// Reads a robot and builds its description.
 ///
 /// # Errors
 /// Returns all independent errors at once, in the order of the text.
@@ -42,7 +44,7 @@ pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
 /// Imports a robot as [`import`] does, but leaves out redundant equations of loop-closing joints.
 ///
 /// The keys of `idle` are indices into the [`equations`](Imported::equations) that [`import`] gives; the values are
-/// the reasons. The text keeps the equations as comments, with the reason. The caller has to find them, since that
+/// the reasons. The description keeps the equations as comments, with the reason. The caller has to find them, since that
 /// takes derivatives of the equations along the tree.
 ///
 /// # Errors

@@ -1,7 +1,9 @@
 //! Options and results of an import.
 
 use crate::problem::Problem;
-use std::ops::Range;
+use hamel_language::expression::shifted;
+use hamel_language::syntax::ast::{Ident, Item, ItemKind, System};
+use hamel_language::syntax::print;
 
 /// Default of [`Options::tolerance`], for numbers that are rounded in the file.
 ///
@@ -56,10 +58,8 @@ impl Default for Options {
 /// A robot that was imported: its description, and the names in it.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// The description, an `.eom` text.
-    pub text: String,
-    /// Name of the system in the description.
-    pub name: String,
+    /// The description. An error about a statement of it has the place in the URDF from which the statement was made.
+    pub system: System,
     /// Joints with coordinates of their own: name in the URDF and name in the description.
     pub joints: Vec<(String, String)>,
     /// Links that are frames of the description: name in the URDF and name in the description.
@@ -73,10 +73,39 @@ pub struct Imported {
     pub cleaned: Vec<String>,
     /// Warnings about input that is legal but looks wrong.
     pub warnings: Vec<Problem>,
-    /// For each line of the text, the byte range of the URDF that it was made from.
-    pub origins: Vec<Option<Range<usize>>>,
-    /// Line numbers in the text, from 0, of the equations of loop-closing joints.
+    /// Indices of the statements that are equations of loop-closing joints.
     pub equations: Vec<usize>,
+}
+
+impl Imported {
+    /// Returns the name of the system.
+    pub fn name(&self) -> &str {
+        &self.system.name.name
+    }
+
+    /// Declares the link that is fixed to the world as a frame, if there is one.
+    pub fn add_ground_frame(&mut self) {
+        let Some(link) = self.ground.take() else {
+            return;
+        };
+        let span = self.system.name.span;
+        let name = Ident {
+            name: link.1.clone(),
+            span,
+        };
+        let kind = ItemKind::Frame {
+            name,
+            on: None,
+            pose: shifted([0, 0, 0]),
+        };
+        self.system.items.push(Item { kind, span });
+        self.links.push(link);
+    }
+
+    /// Prints the description as an `.eom` text, with comments: changed numbers, warnings, and what was left out.
+    pub fn text(&self) -> String {
+        print::text(&self.system)
+    }
 }
 
 /// Why an equation of a loop-closing joint is redundant.

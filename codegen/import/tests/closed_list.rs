@@ -87,12 +87,13 @@ fn read(text: &str) -> Imported {
     }
 }
 
-/// Returns the description without its comments.
-fn statements(imported: &Imported) -> Vec<&str> {
-    let lines = imported.text.lines();
-    lines
-        .filter(|line| !line.trim_start().starts_with("//"))
-        .collect()
+/// The description without its comments.
+fn statements(imported: &Imported) -> Vec<String> {
+    let text = imported.text();
+    let lines = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"));
+    lines.map(str::to_string).collect()
 }
 
 /// Returns the elements whose contents are compared with the list.
@@ -137,7 +138,11 @@ fn the_base_of_the_trials_holds_every_level() {
         "spring stiffness 7 length 0.3 from [0.1, 0, 0] on world to [0, 0, 0.2] on upper;",
         "damper coefficient 0.5 from",
     ] {
-        assert!(imported.text.contains(part), "{part}\n{}", imported.text);
+        assert!(
+            imported.text().contains(part),
+            "{part}\n{}",
+            imported.text()
+        );
     }
 }
 
@@ -197,7 +202,8 @@ fn words_that_are_not_on_the_list_are_named_once() {
         );
         assert_eq!(found.warnings.len(), base.warnings.len() + 1, "{word}");
         let comment = format!("// - {}: {quoted} is", lines[0]);
-        assert!(found.text.contains(&comment), "{comment}\n{}", found.text);
+        let text = found.text();
+        assert!(text.contains(&comment), "{comment}\n{text}");
         assert_eq!(statements(&found), statements(&base), "{word}");
     }
     let all: BTreeSet<String> = elements
@@ -302,7 +308,7 @@ fn planar_joints_of_drake() {
     let other = joint("<axis xyz=\"1 0 0\"/>");
     assert!(
         plain
-            .text
+            .text()
             .contains("joint wrist: planar [0, 0, 1] on fore moves hand")
     );
     assert_eq!(statements(&plain), statements(&same));

@@ -1,7 +1,9 @@
 //! The description written for a robot, as people read it.
 
 use hamel_import::{Idle, Imported, Mimic, Options, import, import_without};
-use std::collections::BTreeMap;
+use hamel_language::syntax::ast::ItemKind;
+use hamel_language::syntax::{parse_text, print};
+use std::collections::{BTreeMap, BTreeSet};
 
 const EVERY_JOINT: &str = include_str!("files/every_joint.urdf");
 
@@ -19,7 +21,7 @@ fn options() -> Options {
 #[test]
 fn every_joint_on_a_fixed_base() {
     let imported = imported(&options());
-    insta::assert_snapshot!("fixed_base", imported.text);
+    insta::assert_snapshot!("fixed_base", imported.text());
     let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
     insta::assert_snapshot!("warnings", warnings.join("\n"));
 }
@@ -38,7 +40,7 @@ fn every_option() {
         params: true,
         ..options()
     });
-    insta::assert_snapshot!("every_option", imported.text);
+    insta::assert_snapshot!("every_option", imported.text());
 }
 
 #[test]
@@ -50,7 +52,7 @@ fn joints_that_mimic_may_be_free() {
     let names: Vec<&str> = free.joints.iter().map(|(name, _)| name.as_str()).collect();
     assert!(names.contains(&"finger_r_joint"));
     assert!(
-        free.text
+        free.text()
             .contains("// In the URDF it follows 0.5 * finger_l_joint - 0.01.")
     );
 }
@@ -63,8 +65,12 @@ fn a_tolerance_of_zero_changes_nothing() {
         ..options()
     });
     assert!(exact.cleaned.is_empty(), "{:?}", exact.cleaned);
-    assert!(exact.text.contains("rpy(3.14159265359, -1.57079632679, 0)"));
-    assert!(exact.text.contains("1e-20"));
+    assert!(
+        exact
+            .text()
+            .contains("rpy(3.14159265359, -1.57079632679, 0)")
+    );
+    assert!(exact.text().contains("1e-20"));
 }
 
 /// Directions and inertias are compared with their largest entry only; lengths have an absolute tolerance.
@@ -89,13 +95,13 @@ fn small_is_what_is_small_beside_the_largest() {
         ["1e-16 is read as 0 (line 1)", "1e-26 is read as 0 (line 1)"]
     );
     assert!(
-        light.text.contains("diag(4e-16, 4e-16, 4e-16)"),
+        light.text().contains("diag(4e-16, 4e-16, 4e-16)"),
         "{}",
-        light.text
+        light.text()
     );
     assert!(
         light
-            .text
+            .text()
             .contains("joint j: revolute [1e-16, 0, 0] moves b")
     );
 }
@@ -111,7 +117,8 @@ fn quaternions() {
     assert_ne!(angles, quaternion);
     let text = |urdf: &str| {
         let imported = import(urdf, &options()).expect("a sound robot");
-        let lines = imported.text.lines().filter(|line| !line.starts_with("//"));
+        let text = imported.text();
+        let lines = text.lines().filter(|line| !line.starts_with("//"));
         lines.map(str::to_string).collect::<Vec<String>>()
     };
     assert_eq!(text(&angles), text(&quaternion));
@@ -128,7 +135,7 @@ fn names_with_line_breaks_stay_in_comments() {
         mimic: Mimic::Free,
         ..options()
     };
-    let text = import(&broken, &free).expect("a sound robot").text;
+    let text = import(&broken, &free).expect("a sound robot").text();
     for line in text.lines().filter(|line| line.contains(" = 1;")) {
         assert!(line.trim_start().starts_with("//"), "{line}");
     }
@@ -155,58 +162,82 @@ fn links_are_known_by_both_names() {
     assert_eq!(floating.links[0], base);
     assert_eq!(floating.links[1..], fixed.links);
     for (_, name) in &fixed.links {
-        assert!(fixed.text.contains(&format!("moves {name}")), "{name}");
+        assert!(fixed.text().contains(&format!("moves {name}")), "{name}");
     }
-    assert!(!fixed.text.contains(&format!("moves {}", base.1)));
+    assert!(!fixed.text().contains(&format!("moves {}", base.1)));
 }
 
-/// Every line made from an element has the range of its origin.
+/// The printed description reads back as the same statements.
 #[test]
-fn lines_know_their_origin() {
-    let imported = imported(&options());
-    assert_eq!(imported.text.lines().count(), imported.origins.len());
-    for (line, origin) in imported.text.lines().zip(&imported.origins) {
-        let Some(origin) = origin else { continue };
-        let source = &EVERY_JOINT[origin.clone()];
-        // The name of a joint as written, or the element of an inertia.
-        if line.trim_start().starts_with("body ") {
-            assert_eq!(source, "<inertial", "{line}");
+fn the_text_says_what_was_built() {
+    let every_level = include_str!("files/every_level.urdf");
+    for urdf in [EVERY_JOINT, every_level] {
+        for (params, mimic) in [(false, Mimic::Follow), (true, Mimic::Free)] {
+            let options = Options {
+                params,
+                mimic,
+                ..options()
+            };
+            let imported = import(urdf, &options).expect("a sound robot");
+            let text = imported.text();
+            let mut read = parse_text(&text).expect("a description");
+            read.starts_anywhere = true;
+            assert_eq!(read, imported.system, "{text}");
         }
-        if line.trim_start().starts_with("joint roll:") {
-            assert_eq!(source, "roll");
+    }
+}
+
+/// Every statement has places of its own, which lead to the element that it is made from.
+#[test]
+fn statements_know_their_origin() {
+    let Imported { system, .. } = imported(&options());
+    let mut places = BTreeSet::new();
+    for item in &system.items {
+        let place = item.span.range().expect("a place");
+        assert!(places.insert(place.start), "{item:?}");
+        let origin = system.origins.source(item.span).range();
+        let source = &EVERY_JOINT[origin.expect("an origin")];
+        // A joint's name, as written, or the element of an inertia.
+        match &item.kind {
+            ItemKind::Body(_) => assert_eq!(source, "<inertial"),
+            ItemKind::Joint(joint) if joint.name.name == "roll" => assert_eq!(source, "roll"),
+            ItemKind::Gravity(_) => assert_eq!(source, "every-joint"),
+            _ => {}
         }
     }
 }
 
 #[test]
 fn the_same_file_gives_the_same_text() {
-    assert_eq!(imported(&options()).text, imported(&options()).text);
+    assert_eq!(imported(&options()).text(), imported(&options()).text());
 }
 
-/// Equations of closing joints are on separate lines; idle ones are comments with the reason, and a closing joint
-/// without equations has no frames.
+/// Equations of closing joints that are said to be idle are comments with the reason, and a closing joint without any has
+/// no frames.
 #[test]
 fn idle_equations_are_comments() {
     let urdf = include_str!("files/every_level.urdf");
+    let equations = |imported: &Imported| {
+        let places = imported.equations.iter();
+        let items = places.map(|&place| print::statement(&imported.system.items[place]));
+        items.collect::<Vec<String>>()
+    };
     let all = import(urdf, &options()).expect("a sound robot");
-    let lines: Vec<&str> = all.text.lines().collect();
-    let equations: Vec<&str> = all.equations.iter().map(|&line| lines[line]).collect();
-    // A hinge has five, a ball joint three.
-    assert_eq!(equations.len(), 8, "{equations:?}");
-    assert!(equations.iter().all(|line| line.contains(" = ")));
-    assert!(!all.text.contains("Left out of"), "{}", all.text);
+    let before = equations(&all);
+    // A hinge has five, a ball three.
+    assert_eq!(before.len(), 8, "{before:?}");
+    assert!(before.iter().all(|equation| equation.starts_with("loop ")));
+    assert!(!all.text().contains("Left out of"), "{}", all.text());
     let ball = (5..8).map(|place| (place, Idle::Holds));
     let idle: BTreeMap<usize, Idle> = ball.chain([(1, Idle::Follows)]).collect();
     let fewer = import_without(urdf, &options(), &idle).expect("a sound robot");
-    let lines: Vec<&str> = fewer.text.lines().collect();
-    let kept: Vec<&str> = fewer.equations.iter().map(|&line| lines[line]).collect();
-    let plain = |line: &&str| line.trim_end_matches([',', ';']).to_string();
-    let expected = [0, 2, 3, 4].map(|place| plain(&equations[place]));
-    assert_eq!(kept.iter().map(plain).collect::<Vec<_>>(), expected);
+    let expected = [0, 2, 3, 4].map(|place| before[place].clone());
+    assert_eq!(equations(&fewer), expected);
+    let text = fewer.text();
+    let lines: Vec<&str> = text.lines().collect();
     assert!(lines.contains(&"    // - along [0, 1, 0] of the world: `position(pin_1)[2] = position(pin_2)[2]` follows from the others"));
     assert!(lines.contains(
         &"    // Left out of `ball_constraint`, since it says nothing new wherever the tree is:"
     ));
-    assert!(!fewer.text.contains("frame ball_constraint"));
-    assert_eq!(lines.len(), fewer.origins.len());
+    assert!(!text.contains("frame ball_constraint"));
 }

@@ -18,7 +18,7 @@ fn hinge(inside: &str) -> String {
 /// Returns the messages, one per line.
 fn messages(text: &str, options: &Options) -> String {
     match import(text, options) {
-        Ok(imported) => panic!("nothing is wrong: {}", imported.text),
+        Ok(imported) => panic!("nothing is wrong: {}", imported.text()),
         Err(problems) => {
             let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
             lines.join("\n")
@@ -190,7 +190,7 @@ fn robots_that_look_wrong() {
         let imported = import(text, &Options::default()).expect("legal");
         assert_eq!(
             imported.has_masses,
-            imported.text.contains("body on"),
+            imported.text().contains("body on"),
             "{name}"
         );
         let lines: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
@@ -226,7 +226,11 @@ fn limits_of_joints_that_have_none() {
             warnings.iter().any(|w| w.contains("exchange them")),
             "{warnings:?}"
         );
-        assert!(!imported.text.contains("    limit "), "{}", imported.text);
+        assert!(
+            !imported.text().contains("    limit "),
+            "{}",
+            imported.text()
+        );
     }
 }
 
@@ -237,9 +241,9 @@ fn bounds_and_names_may_be_wrong() {
     let imported = import(&pendulum(&hinge(bounds), BODY), &Options::default()).expect("legal");
     assert_eq!(imported.warnings.len(), 4, "{:?}", imported.warnings);
     assert!(
-        imported.text.contains("force j_tau;\n    };"),
+        imported.text().contains("force j_tau;\n    };"),
         "{}",
-        imported.text
+        imported.text()
     );
     for name in ["<robot>", "<robot name=''>", "<robot name=' '>"] {
         let text = pendulum(&hinge(""), BODY).replace("<robot name='r'>", name);
@@ -249,7 +253,7 @@ fn bounds_and_names_may_be_wrong() {
             ..Options::default()
         };
         let imported = import(&text, &named).expect("it has another name");
-        assert!(imported.text.contains("pub system Arm {"));
+        assert!(imported.text().contains("pub system Arm {"));
         let warnings: Vec<&str> = imported
             .warnings
             .iter()
@@ -279,7 +283,7 @@ fn damaged_files() {
         }
         if let Ok(text) = String::from_utf8(bytes) {
             match import(&text, &Options::default()) {
-                Ok(imported) => assert!(imported.text.ends_with("}\n")),
+                Ok(imported) => assert!(imported.text().ends_with("}\n")),
                 Err(problems) => assert!(!problems.is_empty()),
             }
         }

@@ -1,7 +1,7 @@
 //! Building expressions in Rust code: numbers, arrays, operators and the functions of the language.
 
-use crate::syntax::ast::{BinaryOp, Choice, Comparison, Expr, ExprKind, Ident, Span};
-use crate::syntax::path;
+use crate::syntax::ast::{BinaryOp, Choice, Comparison, Expr, ExprKind, Ident, Literal, Span};
+use crate::syntax::{number_value, path};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -36,8 +36,33 @@ fn not_finite(value: f64) -> Expr {
 }
 
 fn number(number: BigRational) -> Expr {
-    let size = expr(ExprKind::Number(number.abs()));
+    let size = expr(ExprKind::Number(number.abs().into()));
     if number.is_negative() { -size } else { size }
+}
+
+/// Returns a name as it stands, also one that the parser would not read as one word.
+pub fn named(name: &str) -> Expr {
+    expr(ExprKind::Name(name.to_string()))
+}
+
+/// Returns a decimal that is printed with the digits given: `1.50` and not `1.5`. Returns `None` for a text that is no
+/// number of the language, with or without a minus sign.
+///
+/// ```
+/// use hamel_language::expression::spelled;
+/// assert_eq!(spelled("-1.50").map(|number| number.to_string()).as_deref(), Some("-1.50"));
+/// assert_eq!(spelled("1.50 m"), None);
+/// ```
+pub fn spelled(text: &str) -> Option<Expr> {
+    let digits = text.strip_prefix('-').unwrap_or(text);
+    let value = number_value(digits)?;
+    let spelling = Some(digits.into());
+    let size = expr(ExprKind::Number(Literal { value, spelling }));
+    Some(if digits.len() < text.len() {
+        -size
+    } else {
+        size
+    })
 }
 
 /// Calls a function of the language, such as `sin`, `norm` or `axis_angle`. The reference of the language lists all

@@ -5,7 +5,7 @@ use super::parts::{Body, Element, Frame, Joint, Load};
 use super::{Scene, SceneError, check};
 use crate::syntax::ast::{
     Between, Beyond, Condition, CoordKind, Declaration, Expr, External, Function, Item, ItemKind,
-    Origins, Shape, ShapeKind, Source, Span, System, Table, Target, Wanted,
+    Origins, Remarks, Shape, ShapeKind, Source, Span, System, Table, Target, Wanted,
 };
 use crate::syntax::parse_text;
 use hamel_language::expression::ident;
@@ -28,6 +28,7 @@ impl SceneBuilder {
                 name: ident(name),
                 items: Vec::new(),
                 origins: Origins::default(),
+                remarks: Remarks::default(),
                 shows_frames: false,
                 starts_anywhere: false,
             },

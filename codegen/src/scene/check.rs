@@ -4,7 +4,7 @@
 //! Anything that cannot be written as text is stored in the scene as a name that no valid text contains. So its
 //! position in the printed scene is that of the error.
 
-use super::{Scene, SceneError, print};
+use super::{Scene, SceneError};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::visit::{Visit, parts, visit};
 use crate::syntax::ast::{Counter, Expr, ExprKind, Ident, Item, ItemKind, Span, System, Target};
@@ -23,7 +23,7 @@ fn named(name: &str) -> Expr {
 
 /// Returns the scene of a system's statements, if its text reads back as the same statements.
 pub(super) fn checked(system: &System) -> Result<Scene, SceneError> {
-    let text = print::text(system);
+    let text = crate::syntax::print::text(system);
     // Docs may contain anything, one line each.
     let docs = text.split_inclusive('\n').take(system.docs.len());
     let mut errors = strange(&text, docs.map(str::len).sum());

@@ -176,7 +176,7 @@ impl Maker {
         Maker::of(match self.below(3) {
             0 => {
                 let (n, d) = (self.below(5) as i64, 1 + (self.below(8) / 7) as i64);
-                ExprKind::Number(BigRational::new(BigInt::from(n), BigInt::from(d)))
+                ExprKind::Number(BigRational::new(BigInt::from(n), BigInt::from(d)).into())
             }
             _ => ExprKind::Name(LEAVES[self.below(LEAVES.len())].into()),
         })

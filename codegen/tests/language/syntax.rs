@@ -34,7 +34,7 @@ fn statement(text: &str) -> ItemKind {
 fn spelled(expr: &Expr) -> String {
     let list = |entries: &[Expr]| entries.iter().map(spelled).collect::<Vec<_>>().join(", ");
     match &expr.kind {
-        ExprKind::Number(number) => number.to_string(),
+        ExprKind::Number(number) => number.value.to_string(),
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(of, field) => format!("{}.{}", spelled(of), field.name),
         ExprKind::Index(of, indices) => format!("{}[{}]", spelled(of), list(indices)),

@@ -204,7 +204,7 @@ pub system Cart {
     param l = 0.5;
     param big = 1.5;
     input u;
-    joint rail: prismatic [1, 0, 0] moves base { force u; damping 0.1; }
+    joint rail: prismatic [1, 0, 0] moves base { force u; damping 0.1; };
     joint hinge: revolute [0, 1, 0] on base at pose(identity(3), [0, 0, 0.1]) moves pole;
     body on base { mass big; }
     particle mass m at [0, 0, l] on pole;

@@ -197,7 +197,8 @@ impl<'a> Steady<'a> {
                 }
             }
             // If the code fails, the method reports the reason.
-            let mut next = whole.step_reusing_force(system, self.state, grid.step(), &inputs, &mut None)?;
+            let mut next =
+                whole.step_reusing_force(system, self.state, grid.step(), &inputs, &mut None)?;
             if !next.is_finite() {
                 return Err(StepError::NonFinite { time: next.t });
             }

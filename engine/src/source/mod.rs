@@ -196,7 +196,7 @@ impl Source {
                 Err(why) => unknown.push(why),
             }
         }
-        self.text.clone_from(&robot.imported.text);
+        self.text = robot.imported.text();
         match unknown.is_empty() {
             true => Ok(frames),
             false => Err(Error::Links {
@@ -210,7 +210,7 @@ impl Source {
     pub fn robot(self, options: &OpenOptions) -> Result<Self, Error> {
         let robot = Robot::read(self.text, &self.path, options, &*self.reporter)?;
         Ok(Source {
-            text: robot.imported.text.clone(),
+            text: robot.imported.text(),
             robot: Some(robot),
             ..self
         })
@@ -224,8 +224,11 @@ impl Source {
 
     /// The other files from which the description takes statements or numbers.
     pub fn files(&self) -> Result<Vec<PathBuf>, Error> {
-        let folder = Path::new(&self.path).parent().unwrap_or(Path::new(""));
         let mut files = Vec::new();
+        if self.robot.is_some() {
+            return Ok(files);
+        }
+        let folder = Path::new(&self.path).parent().unwrap_or(Path::new(""));
         let read = syntax::parse_text(&self.text).and_then(|mut system| {
             syntax::read_files(&mut system, &mut |name| {
                 files.push(folder.join(name));
@@ -238,13 +241,18 @@ impl Source {
 
     /// The parsed description including its other files, and the texts of these.
     fn parsed(&self) -> Result<(System, Vec<String>), Vec<Diagnostic>> {
-        let mut system = syntax::parse_text(&self.text)?;
-        let texts = syntax::read_files(&mut system, &mut |name| self.file(name))?;
+        let (mut system, texts) = match &self.robot {
+            Some(robot) => (robot.imported.system.clone(), Vec::new()),
+            None => {
+                let mut system = syntax::parse_text(&self.text)?;
+                let texts = syntax::read_files(&mut system, &mut |name| self.file(name))?;
+                (system, texts)
+            }
+        };
         if self.evaluated {
             system.evaluate();
         }
         system.shows_frames = self.shows_frames;
-        system.starts_anywhere = self.robot.is_some();
         Ok((system, texts))
     }
 
@@ -376,8 +384,8 @@ impl Source {
 
     /// Derives the functions that the description requests; for a robot, which requests none, all that exist.
     pub fn derive(&self) -> Result<Generated, Error> {
-        if self.robot.is_some() {
-            let derived = self.during(|| available_in(&self.text));
+        if let Some(robot) = &self.robot {
+            let derived = self.during(|| available_in(&robot.imported.system));
             let (generated, left_out) = derived.map_err(|errors| self.refused(&errors))?;
             self.warn_of(left_out);
             return Ok(generated);
@@ -478,7 +486,6 @@ impl Source {
             Some(robot) => Error::Robot {
                 path,
                 urdf: robot.urdf.clone(),
-                imported: Box::new(robot.imported.clone()),
                 diagnostics,
             },
             None => Error::Description {

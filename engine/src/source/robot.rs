@@ -80,28 +80,8 @@ impl Robot {
         };
         let frame = frame.clone();
         if ground.as_ref().is_some_and(|(_, name)| *name == frame) {
-            self.stand();
+            self.imported.add_ground_frame();
         }
         Ok(frame)
-    }
-
-    /// Makes the link that is fixed in the world a frame of the description.
-    fn stand(&mut self) {
-        let Imported {
-            text,
-            origins,
-            links,
-            ground,
-            ..
-        } = &mut self.imported;
-        let (Some(place), Some(link)) = (text.rfind('}'), ground.take()) else {
-            return;
-        };
-        text.insert_str(
-            place,
-            &format!("    frame {} = pose(identity(3), [0, 0, 0]);\n", link.1),
-        );
-        origins.insert(origins.len().saturating_sub(1), None);
-        links.push(link);
     }
 }

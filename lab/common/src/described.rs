@@ -12,7 +12,7 @@ pub fn imported(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> 
     };
     let text = std::fs::read_to_string(robot)?;
     let imported = hamel_codegen::urdf::import(&text, &options, &robot.to_string_lossy(), false)?;
-    Ok(imported.text)
+    Ok(imported.text())
 }
 
 /// Adds the request for the linearisation to a description.

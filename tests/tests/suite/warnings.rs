@@ -58,12 +58,12 @@ fn imports_use_what_they_declare() {
                     ..Options::default()
                 };
                 let imported = import(&text, &options, "robot.urdf", false).expect("a robot");
-                let model = read(&imported.text, Path::new(""));
+                let model = read(&imported.text(), Path::new(""));
                 let reduction = reduce(&model).expect("a robot that moves");
                 let dropped = reduction.map_or(Vec::new(), |reduction| reduction.dropped);
                 let mut list = model.warnings;
                 list.extend(redundant(&model.constraints, &dropped));
-                let said = warnings(&list, "robot.eom", &imported.text, false);
+                let said = warnings(&list, "robot.eom", &imported.text(), false);
                 assert!(said.is_empty(), "{said}");
             }
         }

@@ -280,7 +280,7 @@ fn sizes(kind: JointKind) -> (usize, usize) {
 /// Values of expressions as the descriptions of robots write them.
 fn number(expression: &Expr) -> Double {
     match &expression.kind {
-        ExprKind::Number(value) => Double::of_rational(value),
+        ExprKind::Number(number) => Double::of_rational(&number.value),
         ExprKind::Name(name) if name == "pi" => Double::PI,
         ExprKind::Neg(inner) => -number(inner),
         ExprKind::Binary(op, a, b) => {

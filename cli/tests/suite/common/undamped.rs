@@ -14,7 +14,8 @@ pub fn undamped(folder: &Path, reference: &Value) -> (String, Vec<(String, Strin
         ..Options::default()
     };
     let imported = import(&urdf, &options, "robot.urdf", false).expect("a robot");
-    let statements = imported.text.split(';');
+    let text = imported.text();
+    let statements = text.split(';');
     let kept: Vec<&str> = statements
         .filter(|part| !part.trim().starts_with("damping"))
         .collect();

@@ -352,7 +352,7 @@ impl<'a> Reader<'a, '_, '_> {
     fn angle(&mut self, number: &Decimal, range: &Range<usize>) -> Angle {
         let angle = Angle::read(number, self.tolerance);
         if matches!(angle, Angle::Right(_)) && !number.is_zero() {
-            self.changed(number, &angle.text(), range);
+            self.changed(number, &angle.expr().to_string(), range);
         }
         angle
     }

@@ -1,16 +1,17 @@
 //! Writes `body on link { mass; com; inertia }`.
 
-use super::Writer;
-use super::page::WIDTH;
+use super::{Writer, declared};
 use crate::angle::Rotation;
 use crate::decimal::{Decimal, vector};
 use crate::robot::{Inertial, Origin};
+use hamel_language::expression::{call, diagonal, ident};
+use hamel_language::syntax::ast::{About, Body, Expr, ItemKind, ShapeKind};
 
 impl Writer<'_> {
     /// Writes the body of a link; nothing if it has no mass.
     pub(super) fn body(&mut self, link: usize) {
         let robot = self.robot;
-        let frame = self.names.links[link].clone();
+        let frame = &self.names.links[link];
         let link = &robot.links[link];
         let Some(inertial) = link
             .inertial
@@ -20,64 +21,57 @@ impl Writer<'_> {
             // A frame without mass costs nothing and needs no explanation.
             return;
         };
-        let mut fields = Vec::new();
-        let params = self.options.params;
-        let given = |name: &str, value: String| match params {
-            true => format!("{frame}_{name}"),
-            false => value,
+        let Origin { position, rotation } = &inertial.origin;
+        let body = if self.options.params {
+            let parameter = |name: &str| Expr::name(&format!("{frame}_{name}"));
+            let inertia = turned(parameter("inertia"), rotation);
+            Body {
+                frame: ident(frame),
+                mass: Some(parameter("mass")),
+                com: Some(parameter("com")),
+                inertia: Some((inertia, Some(About::Com))),
+            }
+        } else {
+            let is_zero = |entries: &[Decimal]| entries.iter().all(Decimal::is_zero);
+            let about_com = |inertia| (inertia, Some(About::Com));
+            Body {
+                frame: ident(frame),
+                mass: Some((&inertial.mass).into()),
+                com: (!is_zero(position)).then(|| vector(position)),
+                inertia: (!is_zero(&inertial.inertia)).then(|| about_com(inertia(inertial))),
+            }
         };
-        fields.push(format!(
-            "mass {};",
-            given("mass", inertial.mass.text.clone())
-        ));
-        if params
-            || inertial
-                .origin
-                .position
-                .iter()
-                .any(|entry| !entry.is_zero())
-        {
-            let com = given("com", vector(&inertial.origin.position));
-            fields.push(format!("com {com};"));
-        }
-        if params || inertial.inertia.iter().any(|entry| !entry.is_zero()) {
-            let inertia = match params {
-                true => turned(format!("{frame}_inertia"), &inertial.origin.rotation),
-                false => inertia(inertial),
-            };
-            fields.push(format!("inertia {inertia} about com;"));
-        }
-        let (head, range) = (format!("body on {frame} {{"), Some(&inertial.range));
-        let text = format!("{head} {} }}", fields.join(" "));
-        if text.len() <= WIDTH {
-            return self.page.line(range, &text);
-        }
-        self.page.line(range, &head);
-        for field in fields {
-            self.page.line(range, &format!("    {field}"));
-        }
-        self.page.line(range, "}");
+        self.draft.statement(&inertial.range, ItemKind::Body(body));
     }
 
     /// Writes the parameters of a body.
     pub(super) fn parameters_of(&mut self, link: usize) {
         let robot = self.robot;
-        let frame = self.names.links[link].clone();
+        let frame = &self.names.links[link];
         let Some(inertial) = &robot.links[link].inertial else {
             return;
         };
-        let [xx, xy, xz, yy, yz, zz] = inertial.inertia.each_ref().map(|entry| &entry.text);
-        let Origin { position, .. } = &inertial.origin;
-        let (mass, com) = (&inertial.mass.text, vector(position));
-        let text = format!(
-            "param {frame}_mass = {mass}, {frame}_com: vec3 = {com}, {frame}_inertia: sym3 = [[{xx}, {xy}, {xz}], [{xy}, {yy}, {yz}], [{xz}, {yz}, {zz}]];"
-        );
-        self.page.line(Some(&inertial.range), &text);
+        let [xx, xy, xz, yy, yz, zz] = inertial.inertia.each_ref().map(Expr::from);
+        let inertia = [
+            [xx, xy.clone(), xz.clone()],
+            [xy, yy, yz.clone()],
+            [xz, yz, zz],
+        ];
+        let parameter =
+            |name: &str, shape, value| declared(&format!("{frame}_{name}"), shape, Some(value));
+        let com = vector(&inertial.origin.position);
+        let parameters = vec![
+            parameter("mass", ShapeKind::Scalar, (&inertial.mass).into()),
+            parameter("com", ShapeKind::Vector(3), com),
+            parameter("inertia", ShapeKind::Symmetric(3), inertia.into()),
+        ];
+        self.draft
+            .statement(&inertial.range, ItemKind::Param(parameters));
     }
 }
 
-/// Writes the inertia in link axes: R I Rᵀ, multiplied out if R only permutes and flips axes.
-fn inertia(inertial: &Inertial) -> String {
+/// Returns the inertia in link axes: R I Rᵀ, multiplied out if R only permutes and flips axes.
+fn inertia(inertial: &Inertial) -> Expr {
     let [xx, xy, xz, yy, yz, zz] = &inertial.inertia;
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     match inertial.origin.rotation.exact() {
@@ -98,30 +92,25 @@ fn inertia(inertial: &Inertial) -> String {
             };
             let rows: [[Decimal; 3]; 3] =
                 std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
-            written(&rows.each_ref().map(|row| row.each_ref()))
+            matrix(&rows.each_ref().map(|row| row.each_ref()))
         }
-        None => turned(written(&rows), &inertial.origin.rotation),
+        None => turned(matrix(&rows), &inertial.origin.rotation),
     }
 }
 
-/// Writes `R * I * transpose(R)`.
-fn turned(inertia: String, rotation: &Rotation) -> String {
-    match rotation.text() {
-        Some(turn) => format!("{turn} * {inertia} * transpose({turn})"),
+/// Returns `R * I * transpose(R)`.
+fn turned(inertia: Expr, rotation: &Rotation) -> Expr {
+    match rotation.expr() {
+        Some(turn) => &turn * inertia * call("transpose", [turn]),
         None => inertia,
     }
 }
 
-/// Writes `diag(a, b, c)`, or the rows of the matrix.
-fn written(rows: &[[&Decimal; 3]; 3]) -> String {
-    let diagonal = (0..3).all(|i| (0..3).all(|j| i == j || rows[i][j].is_zero()));
-    if diagonal {
-        let entries: Vec<&str> = (0..3).map(|i| rows[i][i].text.as_str()).collect();
-        return format!("diag({})", entries.join(", "));
+/// Returns `diag(a, b, c)`, or the rows of the matrix.
+fn matrix(rows: &[[&Decimal; 3]; 3]) -> Expr {
+    let is_diagonal = (0..3).all(|i| (0..3).all(|j| i == j || rows[i][j].is_zero()));
+    if is_diagonal {
+        return diagonal([rows[0][0], rows[1][1], rows[2][2]]);
     }
-    let rows: Vec<String> = rows
-        .iter()
-        .map(|row| vector(&row.map(Decimal::clone)))
-        .collect();
-    format!("[{}]", rows.join(", "))
+    rows.map(|row| Expr::from(row)).into()
 }

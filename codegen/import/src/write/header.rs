@@ -1,7 +1,7 @@
-//! Writes the header of a description: where it comes from and which numbers were changed.
+//! Writes the header of a description: its source, and the numbers that were changed.
 
 use super::Writer;
-use super::page::plain;
+use super::draft::plain;
 use crate::options::Mimic;
 use crate::plan::Mobility;
 use crate::problem::{Problem, place};
@@ -33,7 +33,8 @@ pub(super) fn cleaned(xml: &str, list: &[Cleaned]) -> Vec<String> {
 }
 
 impl Writer<'_> {
-    pub(super) fn header(&mut self, cleaned: &[String], warnings: &[Problem]) {
+    /// Returns the documentation of the system.
+    pub(super) fn docs(&self) -> Vec<String> {
         let options = self.options;
         let robot = plain(&self.robot.name);
         let base = if options.floating {
@@ -43,10 +44,6 @@ impl Writer<'_> {
         };
         let count = self.free().count();
         let plural = if count == 1 { "" } else { "s" };
-        self.page.top(&format!(
-            "/// The robot `{robot}`, {base} base, {count} moving joint{plural}."
-        ));
-        self.page.top("///");
         let mut command = format!("hamel import {}", plain(&options.file));
         if options.floating {
             command.push_str(" --floating");
@@ -70,47 +67,43 @@ impl Writer<'_> {
         if options.tolerance != crate::TOLERANCE {
             command.push_str(&format!(" --rounding {:e}", options.tolerance));
         }
-        self.page.top(&format!("/// Written by `{command}`."));
+        vec![
+            format!("The robot `{robot}`, {base} base, {count} moving joint{plural}."),
+            String::new(),
+            format!("Written by `{command}`."),
+        ]
+    }
+
+    /// Returns the comments above the system: changed numbers, warnings, and names that differ from those in the URDF.
+    pub(super) fn notes(&self, cleaned: &[String], warnings: &[Problem]) -> Vec<String> {
+        let mut notes = Vec::new();
         if !cleaned.is_empty() {
-            self.page.top("//");
-            let tolerance = options.tolerance;
-            self.page
-                .top(&format!("// Taken for roundings, within {tolerance:e}:"));
-            for change in cleaned {
-                self.page.top(&format!("// - {change}"));
-            }
+            let tolerance = self.options.tolerance;
+            notes.push(String::new());
+            notes.push(format!("Taken for roundings, within {tolerance:e}:"));
+            notes.extend(cleaned.iter().map(|change| format!("- {change}")));
         }
         if !warnings.is_empty() {
-            self.page.top("//");
-            self.page
-                .top("// Warnings, each with its line in the URDF:");
-            for warning in warnings {
-                let (line, message) = (warning.line, plain(&warning.message));
-                self.page.top(&format!("// - {line}: {message}"));
-            }
+            notes.push(String::new());
+            notes.push("Warnings, each with its line in the URDF:".into());
+            let line = |warning: &Problem| format!("- {}: {}", warning.line, warning.message);
+            notes.extend(warnings.iter().map(line));
         }
-        let pairs: Vec<(String, String)> = {
-            let robot = self.robot;
-            let links = robot.links.iter().zip(&self.names.links);
-            let links = links.map(|(link, name)| (link.name.name.clone(), name.clone()));
-            let joints = robot.joints.iter().zip(&self.names.joints);
-            let joints = joints.map(|(joint, name)| (joint.name.name.clone(), name.clone()));
-            let loops = robot.loops.iter().zip(&self.names.loops);
-            let loops = loops.map(|(closing, name)| (closing.name.name.clone(), name.clone()));
-            let all = joints.chain(links).chain(loops);
-            all.filter(|(a, b)| a != b).collect()
-        };
-        if !pairs.is_empty() {
-            self.page.top("//");
-            self.page.top("// Names that are none here, or are taken:");
-            for (written, name) in pairs {
-                self.page
-                    .top(&format!("// - `{}` is `{name}`", plain(&written)));
-            }
+        let robot = self.robot;
+        let joints = robot.joints.iter().map(|joint| &joint.name.name);
+        let joints = joints.zip(&self.names.joints);
+        let links = robot.links.iter().map(|link| &link.name.name);
+        let links = links.zip(&self.names.links);
+        let loops = robot.loops.iter().map(|closing| &closing.name.name);
+        let loops = loops.zip(&self.names.loops);
+        let pairs = joints.chain(links).chain(loops);
+        let mut pairs = pairs.filter(|(written, name)| written != name).peekable();
+        if pairs.peek().is_some() {
+            notes.push(String::new());
+            notes.push("Names that are none here, or are taken:".into());
+            notes.extend(pairs.map(|(written, name)| format!("- `{written}` is `{name}`")));
         }
-        let system = self.names.system.clone();
-        let range = &self.robot.range;
-        self.page.begin(range, &format!("pub system {system} {{"));
+        notes
     }
 
     /// Writes masses, centres of mass and inertias as parameters, which a program may change.
@@ -121,7 +114,7 @@ impl Writer<'_> {
         for link in self.bodies() {
             self.parameters_of(link);
         }
-        self.page.blank();
+        self.draft.blank();
     }
 
     /// Returns the moving links with mass, in the order of the tree.

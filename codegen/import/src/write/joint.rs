@@ -6,122 +6,133 @@ use crate::decimal::{Decimal, vector};
 use crate::plan::{Linear, Mobility};
 use crate::robot::{Joint, Kind};
 use crate::tree::Edge;
+use hamel_language::expression::{call, ident, named};
+use hamel_language::syntax::ast::{
+    self, Acting, BinaryOp, Components, Expr, ExprKind, ItemKind, JointField, JointKind, Load,
+    Span, Target,
+};
 
 impl Writer<'_> {
     pub(super) fn joint(&mut self, edge: &Edge) {
         let robot = self.robot;
         let joint = &robot.joints[edge.joint];
-        let motion = self.plan.motions[edge.joint].clone();
-        let name = self.names.joints[edge.joint].clone();
-        let frame = self.names.links[edge.child].clone();
-        let range = Some(&joint.name.range);
-        for comment in self.comments(joint, &motion) {
-            self.page.comment(&joint.name.range, &comment);
+        let motion = &self.plan.motions[edge.joint];
+        let name = &self.names.joints[edge.joint];
+        let range = &joint.name.range;
+        for comment in self.comments(joint, motion) {
+            self.draft.comment(comment);
         }
         let rooted = edge.parent == self.tree.root && !self.options.floating;
-        let on = match rooted {
-            true => String::new(),
-            false => format!(" on {}", self.names.links[edge.parent]),
+        let on = (!rooted).then(|| self.names.links[edge.parent].as_str());
+        let (kind, axes) = self.kind(edge.joint);
+        let at = match motion {
+            Mobility::Locked(value) => locked(joint, value),
+            _ => pose(joint.origin.rotation.expr(), &joint.origin.position, None),
         };
-        let (kind, pose) = match &motion {
-            Mobility::Locked(value) => ("fixed".to_string(), locked(joint, value)),
-            _ => {
-                let kind = self.kind(edge.joint);
-                let rotation = joint.origin.rotation.text();
-                (kind, pose(rotation, &joint.origin.position, None))
-            }
-        };
-        let at = pose.map_or_else(String::new, |pose| format!(" at {pose}"));
-        let follows = match &motion {
+        let follows = match motion {
             Mobility::Follows(source, steps) => {
-                let source = self.names.joints[*source].clone();
-                format!(" follows {}", linear(source, steps))
+                Some(linear(Expr::name(&self.names.joints[*source]), steps))
             }
-            _ => String::new(),
+            _ => None,
         };
-        let mut head = format!("joint {name}: {kind}{on}{at} moves {frame}{follows}");
-        let fields = fields(joint, &motion, &name);
-        if fields.is_empty() {
-            head.push(';');
-            self.page.line(range, &head);
-        } else {
-            head.push_str(" {");
-            self.page.line(range, &head);
-            for field in fields {
-                self.page.line(range, &format!("    {field}"));
-            }
-            self.page.line(range, "};");
-        }
-        if let Mobility::Follows(source, steps) = &motion {
-            let rate = format!("{}_dot", self.names.joints[*source]);
-            let factors: Vec<_> = steps
-                .iter()
-                .map(|(factor, _)| (factor.clone(), Decimal::zero()))
-                .collect();
-            let rate = linear(rate, &factors);
-            if let Some(damping) = &joint.damping {
-                let damper = format!("damper coefficient {} on {rate};", damping.text);
-                self.page.line(range, &damper);
-            }
-            if let Some(armature) = armature(joint) {
-                let inerter = format!("inerter inertance {armature} on {rate};");
-                self.page.line(range, &inerter);
-            }
-        }
-        if motion == Mobility::Free {
-            match joint.kind {
-                Kind::Floating => {
-                    let from = if rooted {
-                        "world"
-                    } else {
-                        &self.names.links[edge.parent]
-                    };
-                    let load = format!(
-                        "wrench ({name}_force, {name}_torque) on {frame} from {from} in body;"
-                    );
-                    self.page.line(range, &load);
-                }
-                Kind::Universal => {
-                    for axis in [1, 2] {
-                        let force =
-                            format!("generalized force {name}_{axis}_dot = {name}_tau[{axis}];");
-                        self.page.line(range, &force);
-                    }
-                }
-                Kind::Planar => {
-                    self.page.line(
-                        range,
-                        &format!("generalized force {name}_r_dot = {name}_force;"),
-                    );
-                    self.page.line(
-                        range,
-                        &format!("generalized force {name}_dot = {name}_tau;"),
-                    );
-                }
-                _ => {}
-            }
+        let statement = ast::Joint {
+            name: ident(name),
+            kind: (kind, Span::NOWHERE),
+            axes,
+            on: on.map(ident),
+            at,
+            moves: ident(&self.names.links[edge.child]),
+            follows,
+            fields: fields(joint, motion, name),
+        };
+        self.draft
+            .statement(range, ItemKind::Joint(Box::new(statement)));
+        for statement in self.loads(edge) {
+            self.draft.statement(range, statement);
         }
     }
 
-    /// Returns the joint's kind with its axis.
-    fn kind(&self, index: usize) -> String {
+    /// Returns the loads of a joint that its braces cannot hold: those of several freedoms, and those of a joint that
+    /// follows another, which act on the leader's rate.
+    fn loads(&self, edge: &Edge) -> Vec<ItemKind> {
+        let joint = &self.robot.joints[edge.joint];
+        let name = &self.names.joints[edge.joint];
+        let symbol = |suffix: &str| Expr::name(&format!("{name}_{suffix}"));
+        let force = |velocity: String, value: Expr| ItemKind::Generalized {
+            target: Target {
+                name: ident(&velocity),
+                field: None,
+                entry: Vec::new(),
+            },
+            value,
+        };
+        match (&self.plan.motions[edge.joint], joint.kind) {
+            (Mobility::Follows(source, steps), _) => {
+                let rate = Expr::name(&format!("{}_dot", self.names.joints[*source]));
+                let factors = steps
+                    .iter()
+                    .map(|(factor, _)| (factor.clone(), Decimal::zero()));
+                let rate = linear(rate, &factors.collect::<Vec<_>>());
+                let damper = joint.damping.as_ref().map(|damping| ItemKind::Damper {
+                    coefficient: damping.into(),
+                    acting: Acting::On(rate.clone()),
+                });
+                let inerter = armature(joint).map(|inertance| ItemKind::Inerter {
+                    inertance,
+                    acting: Acting::On(rate.clone()),
+                });
+                damper.into_iter().chain(inerter).collect()
+            }
+            (Mobility::Free, Kind::Floating) => {
+                let rooted = edge.parent == self.tree.root && !self.options.floating;
+                let from = match rooted {
+                    true => "world",
+                    false => &self.names.links[edge.parent],
+                };
+                vec![ItemKind::Load {
+                    load: Load::Wrench {
+                        force: symbol("force"),
+                        torque: symbol("torque"),
+                        at: None,
+                    },
+                    frame: ident(&self.names.links[edge.child]),
+                    from: Some(ident(from)),
+                    axes: Components::Body,
+                }]
+            }
+            (Mobility::Free, Kind::Universal) => [1, 2]
+                .map(|axis| force(format!("{name}_{axis}_dot"), symbol("tau").entry(axis)))
+                .into(),
+            (Mobility::Free, Kind::Planar) => vec![
+                force(format!("{name}_r_dot"), symbol("force")),
+                force(format!("{name}_dot"), symbol("tau")),
+            ],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Returns the joint's kind in the description, and its axes.
+    fn kind(&self, index: usize) -> (JointKind, Vec<Expr>) {
         let joint = &self.robot.joints[index];
-        let axis = || vector(&axis(joint));
+        let motion = &self.plan.motions[index];
+        let along = |kind| (kind, vec![vector(&axis(joint))]);
         match joint.kind {
-            Kind::Fixed => "fixed".into(),
-            Kind::Floating => "free".into(),
-            Kind::Spherical => "spherical".into(),
-            Kind::Universal => "universal [1, 0, 0], [0, 1, 0]".into(),
-            Kind::Planar => format!("planar {}", axis()),
-            Kind::Prismatic => format!("prismatic {}", axis()),
+            _ if matches!(motion, Mobility::Locked(_)) => (JointKind::Fixed, Vec::new()),
+            Kind::Fixed => (JointKind::Fixed, Vec::new()),
+            Kind::Floating => (JointKind::Free, Vec::new()),
+            Kind::Spherical => (JointKind::Spherical, Vec::new()),
+            Kind::Universal => (
+                JointKind::Universal,
+                vec![[1, 0, 0].into(), [0, 1, 0].into()],
+            ),
+            Kind::Planar => along(JointKind::Planar),
+            Kind::Prismatic => along(JointKind::Prismatic),
             // Joints that follow this one need its angle as a coordinate, which `revolute` has and `continuous` has
             // not.
-            Kind::Continuous
-                if self.plan.motions[index] == Mobility::Free && !self.is_followed(index) =>
-            {
-                format!("continuous {}", axis())
+            Kind::Continuous if *motion == Mobility::Free && !self.is_followed(index) => {
+                along(JointKind::Continuous)
             }
-            Kind::Revolute | Kind::Continuous => format!("revolute {}", axis()),
+            Kind::Revolute | Kind::Continuous => along(JointKind::Revolute),
         }
     }
 
@@ -151,7 +162,8 @@ impl Writer<'_> {
         }
         if let (Some(mimic), Mobility::Free) = (&joint.mimic, motion) {
             let steps = [(mimic.multiplier.clone(), mimic.offset.clone())];
-            let expression = linear(mimic.source.name.clone(), &steps);
+            // The name in the file need not be one of the language.
+            let expression = linear(named(&mimic.source.name), &steps);
             comments.push(format!("In the URDF it follows {expression}."));
         }
         comments
@@ -164,169 +176,158 @@ fn axis(joint: &Joint) -> [Decimal; 3] {
     joint.axis.clone().unwrap_or_else(default)
 }
 
-/// Writes `pose(R, p)`; `None` for the identity.
+/// Returns `pose(R, p + shift)`; `None` for the identity.
 pub(super) fn pose(
-    rotation: Option<String>,
+    rotation: Option<Expr>,
     position: &[Decimal; 3],
-    shift: Option<String>,
-) -> Option<String> {
-    let still = position.iter().all(Decimal::is_zero);
-    let place = match (still, shift) {
+    shift: Option<Expr>,
+) -> Option<Expr> {
+    let is_zero = position.iter().all(Decimal::is_zero);
+    let place = match (is_zero, shift) {
         (true, None) if rotation.is_none() => return None,
         (_, None) => vector(position),
         (true, Some(shift)) => shift,
-        (false, Some(shift)) => format!("{} + {shift}", vector(position)),
+        (false, Some(shift)) => vector(position) + shift,
     };
-    let rotation = rotation.unwrap_or_else(|| "identity(3)".into());
-    Some(format!("pose({rotation}, {place})"))
+    let rotation = rotation.unwrap_or_else(|| call("identity", [3.into()]));
+    Some(hamel_language::expression::pose(rotation, place))
 }
 
-/// Writes the pose of a joint that is locked at an angle or a length.
-fn locked(joint: &Joint, value: &Linear) -> Option<String> {
+/// Returns the pose of a joint that is locked at an angle or a length.
+fn locked(joint: &Joint, value: &Linear) -> Option<Expr> {
     let axis = axis(joint);
-    let own = joint.origin.rotation.text();
+    let own = joint.origin.rotation.expr();
     let position = &joint.origin.position;
     let plain = value.steps.is_empty();
     if plain && value.value.is_zero() {
         return pose(own, position, None);
     }
-    let number = linear(value.value.text.clone(), &value.steps);
+    let number = linear((&value.value).into(), &value.steps);
     let nonzero: Vec<usize> = (0..3).filter(|&i| !axis[i].is_zero()).collect();
-    let product = |left: Option<String>, right: String| match left {
-        Some(left) => format!("{left} * {right}"),
-        None => right,
+    let after = |own: Option<Expr>, factor: Expr| match own {
+        Some(own) => own * factor,
+        None => factor,
     };
-    let norm = format!("{} / norm({})", vector(&axis), vector(&axis));
+    let norm = || call("norm", [vector(&axis)]);
     if joint.kind == Kind::Prismatic {
-        let direction = match nonzero.as_slice() {
+        let shift = match nonzero.as_slice() {
             [only] => {
-                let mut unit: [Decimal; 3] = std::array::from_fn(|_| Decimal::zero());
-                let one = Decimal::one();
-                unit[*only] = if axis[*only].value < 0.0 {
-                    one.negated()
-                } else {
-                    one
-                };
-                vector(&unit)
+                let sign = if axis[*only].value < 0.0 { -1 } else { 1 };
+                let direction = [0, 1, 2].map(|i| if i == *only { sign } else { 0 });
+                after(own.clone(), direction.into())
             }
-            _ => norm,
+            _ => after(own.clone(), vector(&axis)) / norm(),
         };
-        let number = if plain { number } else { format!("({number})") };
-        let shift = product(own.clone(), format!("{direction} * {number}"));
-        return pose(own, position, Some(shift));
+        return pose(own, position, Some(shift * number));
     }
     let turn = match nonzero.as_slice() {
         [only] => {
-            let sign = axis[*only].value < 0.0;
-            let angle = match (plain, sign) {
-                (true, false) => Angle::read(&value.value, 0.0).text(),
-                (true, true) => Angle::read(&value.value.negated(), 0.0).text(),
+            let is_negative = axis[*only].value < 0.0;
+            let angle = match (plain, is_negative) {
+                (true, false) => Angle::read(&value.value, 0.0).expr(),
+                (true, true) => Angle::read(&value.value.negated(), 0.0).expr(),
                 (false, false) => number,
-                (false, true) => format!("-({number})"),
+                (false, true) => -number,
             };
-            format!("rot{}({angle})", ["x", "y", "z"][*only])
+            call(["rotx", "roty", "rotz"][*only], [angle])
         }
-        _ => format!("axis_angle({norm}, {number})"),
+        _ => call("axis_angle", [vector(&axis) / norm(), number]),
     };
-    pose(Some(product(own, turn)), position, None)
+    pose(Some(after(own, turn)), position, None)
 }
 
-/// Writes `a * q + b` for each step in turn.
-fn linear(start: String, steps: &[(Decimal, Decimal)]) -> String {
-    let mut text = start;
-    let mut sum = false;
+/// Returns `a * q + b` for each step in turn.
+fn linear(start: Expr, steps: &[(Decimal, Decimal)]) -> Expr {
+    let mut value = start;
     for (factor, offset) in steps {
-        let inner = if sum { format!("({text})") } else { text };
-        text = match factor.text.as_str() {
-            "1" | "1.0" => inner,
-            "-1" | "-1.0" => format!("-{inner}"),
-            other => format!("{other} * {inner}"),
+        value = match factor.text.as_str() {
+            "1" | "1.0" => value,
+            "-1" | "-1.0" => first_factor(value, &|first| -first),
+            _ => first_factor(value, &|first| Expr::from(factor) * first),
         };
-        sum = false;
         if !offset.is_zero() {
-            sum = true;
-            text = match offset.text.strip_prefix('-') {
-                Some(positive) => format!("{text} - {positive}"),
-                None => format!("{text} + {}", offset.text),
+            value = match offset.value < 0.0 {
+                true => value - &offset.negated(),
+                false => value + offset,
             };
         }
     }
-    text
+    value
+}
+
+/// Applies a function to the first factor of a product, so that `a * (b * c)` becomes `a * b * c`.
+fn first_factor(product: Expr, apply: &dyn Fn(Expr) -> Expr) -> Expr {
+    match product.kind {
+        ExprKind::Binary(BinaryOp::Mul, left, right) => first_factor(*left, apply) * *right,
+        _ => apply(product),
+    }
 }
 
 /// Returns the fields in the braces of the statement.
-fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
+fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<(JointField, Span, Vec<Expr>)> {
     let one = joint.kind.is_single();
     let damped = one || matches!(joint.kind, Kind::Spherical | Kind::Universal);
     if !damped || matches!(motion, Mobility::Fixed | Mobility::Locked(_)) {
         return Vec::new();
     }
-    let free = *motion == Mobility::Free;
+    let is_free = *motion == Mobility::Free;
     let mut fields = Vec::new();
-    if free && joint.kind != Kind::Universal {
-        fields.push(format!("force {name}_tau;"));
+    let mut add = |field, values: Vec<Expr>| fields.push((field, Span::NOWHERE, values));
+    if is_free && joint.kind != Kind::Universal {
+        let force = Expr::name(&format!("{name}_tau"));
+        add(JointField::Force, vec![force]);
     }
-    // Damping of a joint that follows another acts on the leader's rate, see `Writer::joint`.
-    if let (Some(damping), true) = (&joint.damping, free) {
-        fields.push(format!("damping {};", damping.text));
+    // Damping and armature of a joint that follows another act on the leader's rate, see `Writer::loads`.
+    if let (Some(damping), true) = (&joint.damping, is_free) {
+        add(JointField::Damping, vec![damping.into()]);
     }
     if !one {
         return fields;
     }
-    if let (Some(armature), true) = (armature(joint), free) {
-        fields.push(format!("armature {armature};"));
+    if let (Some(armature), true) = (armature(joint), is_free) {
+        add(JointField::Armature, vec![armature]);
     }
     if let Some((stiffness, rest)) = &joint.spring {
-        fields.push(match rest.is_zero() {
-            true => format!("stiffness {};", stiffness.text),
-            false => format!("stiffness {}; rest {};", stiffness.text, rest.text),
-        });
+        add(JointField::Stiffness, vec![stiffness.into()]);
+        if !rest.is_zero() {
+            add(JointField::Rest, vec![rest.into()]);
+        }
     }
-    let mut bounds = Vec::new();
-    if joint.kind != Kind::Continuous
-        && let (Some(lower), Some(upper)) = limits(joint)
-    {
-        bounds.push(format!("limit {} to {};", lower.text, upper.text));
+    if let (true, Some(limits)) = (joint.kind != Kind::Continuous, limits(joint)) {
+        add(JointField::Limit, limits.each_ref().map(Expr::from).into());
     }
     // A bound of 0 means that it is unknown.
-    let positive = |bound: &Option<Decimal>| bound.clone().filter(|bound| bound.value > 0.0);
-    if let Some(velocity) = positive(&joint.velocity) {
-        bounds.push(format!("max_speed {};", velocity.text));
+    let is_bound = |bound: &&Decimal| bound.value > 0.0;
+    if let Some(velocity) = joint.velocity.as_ref().filter(is_bound) {
+        add(JointField::MaxSpeed, vec![velocity.into()]);
     }
-    if let Some(effort) = positive(&joint.effort) {
-        bounds.push(format!("max_force {};", effort.text));
-    }
-    if !bounds.is_empty() {
-        fields.push(bounds.join(" "));
+    if let Some(effort) = joint.effort.as_ref().filter(is_bound) {
+        add(JointField::MaxForce, vec![effort.into()]);
     }
     fields
 }
 
-/// Writes the armature, Σ inertia · ratio² of the rotors.
-fn armature(joint: &Joint) -> Option<String> {
+/// Returns the armature, Σ inertia · ratio² of the rotors; `None` without rotors.
+fn armature(joint: &Joint) -> Option<Expr> {
     let terms = joint.rotors.iter().map(|(inertia, ratio)| {
-        let size = ratio.text.trim_start_matches('-');
-        match size {
-            "1" | "1.0" => inertia.text.clone(),
-            size => format!("{} * {size}^2", inertia.text),
+        let size = match ratio.value < 0.0 {
+            true => ratio.negated(),
+            false => ratio.clone(),
+        };
+        match size.text.as_str() {
+            "1" | "1.0" => Expr::from(inertia),
+            _ => Expr::from(inertia) * Expr::from(&size).pow(2),
         }
     });
-    let terms: Vec<String> = terms.collect();
-    (!terms.is_empty()).then(|| terms.join(" + "))
+    terms.reduce(|sum, term| sum + term)
 }
 
-/// Returns both limits; a missing one is 0. Returns none if the interval would be empty.
-fn limits(joint: &Joint) -> (Option<Decimal>, Option<Decimal>) {
-    let (lower, upper) = match (&joint.lower, &joint.upper) {
-        (None, None) => return (None, None),
-        (lower, upper) => (
-            lower.clone().unwrap_or_else(Decimal::zero),
-            upper.clone().unwrap_or_else(Decimal::zero),
-        ),
-    };
-    if lower.value < upper.value {
-        (Some(lower), Some(upper))
-    } else {
-        (None, None)
+/// Returns both limits, where a missing one is 0; `None` if there are none or the interval is empty.
+fn limits(joint: &Joint) -> Option<[Decimal; 2]> {
+    if joint.lower.is_none() && joint.upper.is_none() {
+        return None;
     }
+    let or_zero = |bound: &Option<Decimal>| bound.clone().unwrap_or_else(Decimal::zero);
+    let (lower, upper) = (or_zero(&joint.lower), or_zero(&joint.upper));
+    (lower.value < upper.value).then_some([lower, upper])
 }

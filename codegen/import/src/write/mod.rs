@@ -1,9 +1,9 @@
 //! Writes the description: joints and bodies in the order of the tree.
 
 mod body;
+mod draft;
 mod header;
 mod joint;
-mod page;
 mod ties;
 
 use crate::names::Names;
@@ -12,7 +12,12 @@ use crate::plan::{Mobility, Plan};
 use crate::problem::Problem;
 use crate::robot::{Kind, Read, Robot};
 use crate::tree::{Edge, Tree};
-use page::Page;
+use draft::Draft;
+use hamel_language::expression::ident;
+use hamel_language::syntax::ast::{
+    Components, Declaration, Expr, Ident, ItemKind, Joint, JointKind, Load, Shape, ShapeKind, Span,
+    System,
+};
 use std::collections::BTreeMap;
 
 /// Writer of the statements.
@@ -22,9 +27,9 @@ struct Writer<'a> {
     plan: &'a Plan,
     options: &'a Options,
     names: Names,
-    /// Line numbers of the equations of loop-closing joints.
+    /// Indices of the statements that are equations of loop-closing joints.
     equations: Vec<usize>,
-    page: Page,
+    draft: Draft,
 }
 
 /// Writes the description of a robot that was read and checked, without the redundant equations `idle` of
@@ -45,16 +50,19 @@ pub(crate) fn write(
         options,
         names,
         equations: Vec::new(),
-        page: Page::default(),
+        draft: Draft::of(xml),
     };
-    writer.header(&cleaned, &warnings);
+    writer.draft.remarks.head = writer.notes(&cleaned, &warnings);
     writer.parameters();
-    writer.page.line(None, "gravity [0, 0, -9.81];");
+    let gravity = [0.0, 0.0, -9.81].into();
+    writer
+        .draft
+        .statement(&read.robot.range, ItemKind::Gravity(gravity));
     writer.inputs();
     writer.base();
     let moving = writer.moving();
     for edge in &tree.joints {
-        writer.page.blank();
+        writer.draft.blank();
         writer.joint(edge);
         if moving[edge.child] {
             writer.body(edge.child);
@@ -62,7 +70,6 @@ pub(crate) fn write(
     }
     writer.springs();
     writer.loops(idle);
-    writer.page.close();
     let joints = writer.own_joints();
     let link = |link: usize| {
         let written = writer.robot.links[link].name.name.clone();
@@ -74,17 +81,17 @@ pub(crate) fn write(
         true => (Some(link(root)), None),
         false => (None, Some(link(root))),
     };
+    let links = base.into_iter().chain(moved).collect();
     let has_masses = !writer.bodies().is_empty();
+    let system = writer.system();
     Imported {
-        links: base.into_iter().chain(moved).collect(),
+        links,
         ground,
-        name: writer.names.system,
         joints,
         has_masses,
         cleaned,
         warnings,
-        text: writer.page.text,
-        origins: writer.page.origins,
+        system,
         equations: writer.equations,
     }
 }
@@ -129,48 +136,101 @@ impl Writer<'_> {
         root.into_iter().chain(joints).collect()
     }
 
+    /// Returns the description of what was written.
+    fn system(&mut self) -> System {
+        let docs = self.docs();
+        let mut origins = std::mem::take(&mut self.draft.origins);
+        let name = self.names.system.clone();
+        let span = origins.import(self.robot.range.clone(), format!("pub system {name} {{"));
+        System {
+            docs,
+            public: true,
+            name: Ident { name, span },
+            items: std::mem::take(&mut self.draft.items),
+            origins,
+            remarks: std::mem::take(&mut self.draft.remarks),
+            shows_frames: false,
+            // A robot's coordinates start at 0, whatever that is.
+            starts_anywhere: true,
+        }
+    }
+
     /// Declares inputs for the forces and torques of all free joints.
     fn inputs(&mut self) {
+        use ShapeKind::{Scalar, Vector};
         let mut inputs = Vec::new();
+        let mut add = |joint: &str, suffix: &str, shape| {
+            inputs.push(declared(&format!("{joint}_{suffix}"), shape, None));
+        };
         if self.options.floating {
-            let root = &self.names.root;
-            inputs.push(format!("{root}_force: vec3"));
-            inputs.push(format!("{root}_torque: vec3"));
+            add(&self.names.root, "force", Vector(3));
+            add(&self.names.root, "torque", Vector(3));
         }
         for edge in self.free() {
             let name = &self.names.joints[edge.joint];
             match self.robot.joints[edge.joint].kind {
                 Kind::Floating => {
-                    inputs.push(format!("{name}_force: vec3"));
-                    inputs.push(format!("{name}_torque: vec3"));
+                    add(name, "force", Vector(3));
+                    add(name, "torque", Vector(3));
                 }
-                Kind::Spherical => inputs.push(format!("{name}_tau: vec3")),
-                Kind::Universal => inputs.push(format!("{name}_tau: vec2")),
+                Kind::Spherical => add(name, "tau", Vector(3)),
+                Kind::Universal => add(name, "tau", Vector(2)),
                 Kind::Planar => {
-                    inputs.push(format!("{name}_force: vec2"));
-                    inputs.push(format!("{name}_tau"));
+                    add(name, "force", Vector(2));
+                    add(name, "tau", Scalar);
                 }
-                _ => inputs.push(format!("{name}_tau")),
+                _ => add(name, "tau", Scalar),
             }
         }
-        self.page.list("input", &inputs);
+        if !inputs.is_empty() {
+            self.draft
+                .statement(&self.robot.range, ItemKind::Input(inputs));
+        }
     }
 
     /// Writes the root link: a free body, or part of the world.
     fn base(&mut self) {
-        let link = &self.robot.links[self.tree.root];
-        let (name, range) = (link.name.name.clone(), link.name.range.clone());
-        self.page.blank();
+        let link = &self.robot.links[self.tree.root].name;
+        self.draft.blank();
         if !self.options.floating {
-            self.page
-                .comment(&range, &format!("`{name}` stands in the world."));
+            self.draft
+                .comment(format!("`{}` stands in the world.", link.name));
             return;
         }
         let (root, frame) = (&self.names.root, &self.names.links[self.tree.root]);
-        let joint = format!("joint {root}: free moves {frame};");
-        let wrench = format!("wrench ({root}_force, {root}_torque) on {frame} in body;");
-        self.page.line(Some(&range), &joint);
-        self.page.line(Some(&range), &wrench);
+        let joint = Joint {
+            name: ident(root),
+            kind: (JointKind::Free, Span::NOWHERE),
+            axes: Vec::new(),
+            on: None,
+            at: None,
+            moves: ident(frame),
+            follows: None,
+            fields: Vec::new(),
+        };
+        let wrench = ItemKind::Load {
+            load: Load::Wrench {
+                force: Expr::name(&format!("{root}_force")),
+                torque: Expr::name(&format!("{root}_torque")),
+                at: None,
+            },
+            frame: ident(frame),
+            from: None,
+            axes: Components::Body,
+        };
+        self.draft
+            .statement(&link.range, ItemKind::Joint(Box::new(joint)));
+        self.draft.statement(&link.range, wrench);
         self.body(self.tree.root);
+    }
+}
+
+/// Returns the declaration of a symbol.
+fn declared(name: &str, kind: ShapeKind, value: Option<Expr>) -> Declaration {
+    let span = Span::NOWHERE;
+    Declaration {
+        name: ident(name),
+        shape: Shape { kind, span },
+        value,
     }
 }

@@ -94,7 +94,7 @@ impl<'a> Evaluator<'a> {
     fn evaluated(&mut self, expr: &Expr) -> Option<Value> {
         match &expr.kind {
             ExprKind::Number(number) => {
-                let edge = self.graph.rational(number);
+                let edge = self.graph.rational(&number.value);
                 self.bounded(Value::Scalar(edge), expr.span)
             }
             ExprKind::Name(name) => self.name(name),

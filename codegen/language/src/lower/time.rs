@@ -88,7 +88,9 @@ fn written(time: &Ident) -> [ItemKind; 4] {
         },
         ItemKind::Start {
             target: target(&velocity),
-            value: expr(ExprKind::Number(BigRational::from_integer(BigInt::from(1)))),
+            value: expr(ExprKind::Number(
+                BigRational::from_integer(BigInt::from(1)).into(),
+            )),
         },
     ]
 }

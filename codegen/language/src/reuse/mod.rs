@@ -17,7 +17,7 @@ mod parts;
 mod replace;
 
 use crate::diagnostics::Diagnostic;
-use crate::syntax::ast::{Item, ItemKind, System};
+use crate::syntax::ast::{Item, ItemKind, Remarks, System};
 use names::{Context, World};
 use std::collections::BTreeSet;
 
@@ -60,6 +60,7 @@ pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
         system: System {
             items,
             origins: origins.0,
+            remarks: Remarks::default(),
             docs: system.docs.clone(),
             public: system.public,
             name: system.name.clone(),

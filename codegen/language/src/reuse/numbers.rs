@@ -58,7 +58,7 @@ impl World<'_> {
             return Err(error.help("constants may not be made of themselves"));
         }
         let value = match &expr.kind {
-            ExprKind::Number(number) => number.clone(),
+            ExprKind::Number(number) => number.value.clone(),
             ExprKind::Neg(inner) => -self.number(inner, context, by, level)?,
             ExprKind::Binary(op, left, right) => {
                 let left = self.number(left, context, by, level)?;

@@ -351,7 +351,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
             }
             Ok(Found::Unknown) => (None, base),
             Ok(Found::Number(value)) => {
-                let number = ExprKind::Number(BigRational::from_integer(value.into()));
+                let number = ExprKind::Number(BigRational::from_integer(value.into()).into());
                 (Some(number), 1)
             }
             Ok(Found::Parameter(scope, name, binding)) => {
@@ -433,8 +433,8 @@ impl<'w, 'a> Replacing<'w, 'a> {
 /// Writes a negative number as the negation of a positive one, as the parser does.
 fn signed(value: ExprKind, span: Span) -> ExprKind {
     match value {
-        ExprKind::Number(number) if number < BigRational::from_integer(0.into()) => {
-            let kind = ExprKind::Number(-number);
+        ExprKind::Number(number) if number.value < BigRational::from_integer(0.into()) => {
+            let kind = ExprKind::Number((-number.value).into());
             ExprKind::Neg(Box::new(Expr { kind, span }))
         }
         other => other,

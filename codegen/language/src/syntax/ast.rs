@@ -3,6 +3,7 @@
 mod expression;
 mod joint;
 mod origins;
+mod remarks;
 mod reuse;
 mod span;
 mod table;
@@ -10,9 +11,10 @@ mod target;
 pub mod visit;
 mod wanted;
 
-pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind};
+pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind, Literal};
 pub use joint::{Joint, JointField, JointKind};
 pub use origins::{Included, Origins, Texts};
+pub use remarks::{Remark, Remarks};
 pub use reuse::{Argument, Component, Counter, Parameter, Part, Repeat};
 pub use span::Span;
 pub use table::{Between, Beyond, Source, Table};
@@ -41,6 +43,8 @@ pub struct System {
     pub items: Vec<Item>,
     /// Origins of statements that do not stand in the text itself.
     pub origins: Origins,
+    /// Comments for a reader of the printed text.
+    pub remarks: Remarks,
     /// Whether all frames are results, for example because they are drawn. If so, no frame is reported as unused.
     pub shows_frames: bool,
     /// Whether the start was not chosen by anyone, as for a robot in URDF, whose coordinates start at 0. If so, M may

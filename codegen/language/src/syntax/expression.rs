@@ -214,7 +214,7 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             let number = number::value(&token.text, &shown(&token.text))
                 .map_err(|refusal| Diagnostic::new(span, refusal.message).help(refusal.help))?;
             cursor.bump();
-            node(ExprKind::Number(number), span, 0)
+            node(ExprKind::Number(number.into()), span, 0)
         }
         Kind::Word if token.text == "if" => choice::choice(cursor),
         Kind::Word if cursor.is_call() && !cursor.is_connective() => {

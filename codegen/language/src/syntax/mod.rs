@@ -17,6 +17,7 @@
 //! | `reuse`, `path` | components, parts and loops, and names with indices and parts |
 //! | `files` | included texts, and tables in files |
 //! | `expression`, `number` | values |
+//! | `written`, `print` | the text of expressions and of descriptions |
 //! | `words` | the words of the language |
 //! | `suggest` | "did you mean" suggestions |
 
@@ -38,6 +39,7 @@ mod load;
 mod number;
 mod parse;
 pub mod path;
+pub mod print;
 mod reuse;
 mod scan;
 mod statement;
@@ -93,6 +95,11 @@ pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
     }
     errors.truncate(cursor::MAX_ERRORS);
     Err(errors)
+}
+
+/// Returns the exact value of a decimal literal, or `None` if the text is none.
+pub(crate) fn number_value(text: &str) -> Option<num_rational::BigRational> {
+    number::value(text, text).ok()
 }
 
 /// Returns one spelling for all sources with the same tokens, for hashing: the tokens joined by single spaces.

@@ -1,6 +1,6 @@
 //! Parsing of a system, statement after statement.
 
-use super::ast::{Item, Origins, System};
+use super::ast::{Item, Origins, Remarks, System};
 use super::blocks::docs;
 use super::cursor::{Cursor, MAX_ERRORS, Parsed, quoted};
 use super::reuse::items;
@@ -53,6 +53,7 @@ fn header(cursor: &mut Cursor<'_>) -> Parsed<System> {
         name,
         items: Vec::new(),
         origins: Origins::default(),
+        remarks: Remarks::default(),
         shows_frames: false,
         starts_anywhere: false,
     })

@@ -132,7 +132,7 @@ fn signed(text: &str, span: Span) -> Option<Expr> {
         None => (false, text.strip_prefix('+').unwrap_or(text)),
     };
     let number = super::number::value(digits, digits).ok()?;
-    let kind = ExprKind::Number(number);
+    let kind = ExprKind::Number(number.into());
     let number = Expr { kind, span };
     Some(match negative {
         false => number,

@@ -13,7 +13,10 @@ const LEADING_ZEROS: usize = 4;
 /// Prints an expression in the syntax of the language, with no more parentheses than necessary.
 pub fn written(expr: &Expr) -> String {
     match &expr.kind {
-        ExprKind::Number(number) => decimal(number),
+        ExprKind::Number(number) => match &number.spelling {
+            Some(spelling) => spelling.to_string(),
+            None => decimal(&number.value),
+        },
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(base, field) => format!("{}.{}", tight(base, 5), field.name),
         ExprKind::Index(base, indices) => format!("{}[{}]", tight(base, 5), list(indices)),

@@ -115,7 +115,7 @@ impl Writer<'_> {
 
     fn number(&self, number: i64) -> Expr {
         Expr {
-            kind: ExprKind::Number(BigRational::from_integer(BigInt::from(number))),
+            kind: ExprKind::Number(BigRational::from_integer(BigInt::from(number)).into()),
             span: self.joint.kind.1,
         }
     }

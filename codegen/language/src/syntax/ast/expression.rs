@@ -12,11 +12,35 @@ pub struct Expr {
     pub span: Span,
 }
 
+/// A number of a description.
+///
+/// Literals are equal if their values are.
+#[derive(Clone, Debug)]
+pub struct Literal {
+    /// The exact value.
+    pub value: BigRational,
+    /// Digits to print, where those of another file are to be kept: `1.50` and not `1.5`.
+    pub spelling: Option<Box<str>>,
+}
+
+impl From<BigRational> for Literal {
+    fn from(value: BigRational) -> Literal {
+        let spelling = None;
+        Literal { value, spelling }
+    }
+}
+
+impl PartialEq for Literal {
+    fn eq(&self, other: &Literal) -> bool {
+        self.value == other.value
+    }
+}
+
 /// The forms of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
     /// A decimal literal, exact.
-    Number(BigRational),
+    Number(Literal),
     /// A name.
     Name(String),
     /// `q.c`, `X.R`, `M.T`.

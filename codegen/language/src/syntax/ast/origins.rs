@@ -1,4 +1,5 @@
-//! Origins of statements that do not stand in the description itself: included texts, and copies of statements.
+//! Origins of statements that do not stand in the description itself: included texts, copies of statements, and
+//! statements made from a file in another language.
 //!
 //! Places are numbers. Those of the description come first. Each included text, and each copy of statements made by a
 //! part or by one round of a `for`, has a region of its own after them. A place alone is therefore enough to locate an
@@ -13,7 +14,7 @@ use std::sync::Arc;
 /// Largest number of notes per error that name a statement which made a copy.
 const MOST_NOTES: usize = 4;
 
-/// Regions of places after those of a description. They are ignored in comparisons for equality.
+/// Regions of places after those of a description, or of the file that it was made from. They are ignored in comparisons for equality.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     /// First free place.
@@ -43,6 +44,8 @@ enum Origin {
     Text(Arc<Included>),
     /// A copy, made by the statement `by`, of the text that starts at place `of`.
     Copy { of: usize, by: Span, label: String },
+    /// A statement made from the part of another file that starts at place `of`.
+    Import { of: usize, statement: String },
 }
 
 /// A text that a description includes.
@@ -126,6 +129,21 @@ impl Origins {
         room.map_or(0, |start| start - of)
     }
 
+    /// Reserves a region for a statement that was made from a part of another file, and returns its places. Each such
+    /// statement has places of its own, also where several are made from one part. If no places are left, returns those
+    /// of the part.
+    pub fn import(&mut self, of: Range<usize>, statement: String) -> Span {
+        let (start, len) = (of.start, of.len());
+        let origin = Origin::Import {
+            of: start,
+            statement,
+        };
+        match self.room(len, origin) {
+            Some(start) => Span::new(start..start + len),
+            None => Span::new(of),
+        }
+    }
+
     /// Sets the map from internal names to the names as written.
     pub fn name(&mut self, written: BTreeMap<String, String>) {
         self.written = Arc::new(written);
@@ -156,13 +174,25 @@ impl Origins {
         self.unwound(span, &mut Vec::new())
     }
 
+    /// Returns the statement that a place is in, if it was made from a part of another file.
+    fn imported(&self, span: Span) -> Option<&str> {
+        match &self.region(span)?.origin {
+            Origin::Import { statement, .. } => Some(statement),
+            Origin::Text(_) | Origin::Copy { .. } => None,
+        }
+    }
+
     /// Returns the place where a region was written, and collects the copies on the way there.
     fn unwound<'a>(&'a self, mut span: Span, copies: &mut Vec<(Span, &'a str)>) -> Span {
         while let (Some(range), Some(region)) = (span.range(), self.region(span)) {
-            let Origin::Copy { of, by, label } = &region.origin else {
-                break;
+            let of = match &region.origin {
+                Origin::Text(_) => break,
+                Origin::Copy { of, by, label } => {
+                    copies.push((*by, label));
+                    of
+                }
+                Origin::Import { of, .. } => of,
             };
-            copies.push((*by, label));
             let back = region.range.start - of;
             span = Span::new(range.start - back..range.end - back);
         }
@@ -179,6 +209,7 @@ impl Origins {
             *span = self.source(*span);
             *label = self.in_words(label);
         }
+        error.statement = self.imported(error.span).map(str::to_owned);
         error.span = self.unwound(error.span, &mut copies);
         let mut noted = 0;
         let mut seen = BTreeSet::new();
@@ -205,7 +236,7 @@ impl Origins {
     fn attach(&self, error: &mut Diagnostic) {
         let text = |span: Span| match &self.region(span)?.origin {
             Origin::Text(text) => Some(text.clone()),
-            Origin::Copy { .. } => None,
+            Origin::Copy { .. } | Origin::Import { .. } => None,
         };
         let mut next = text(error.span);
         while let Some(found) = next {
@@ -222,7 +253,8 @@ impl Origins {
         let mut seen = BTreeSet::new();
         let mut all = Vec::new();
         for error in errors {
-            let copied = self.source(error.span).range() != error.span.range();
+            let region = self.region(error.span);
+            let copied = region.is_some_and(|region| matches!(region.origin, Origin::Copy { .. }));
             // Quoted names, and numbers, may differ between copies.
             let said: String = error.message.split('`').step_by(2).collect();
             let shape = said.replace(|c: char| c.is_ascii_digit(), "");

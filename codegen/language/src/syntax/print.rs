@@ -1,15 +1,17 @@
-//! Prints a scene as text: one statement per line, in the order of the description, with exact numbers.
+//! Prints a description as text: one statement per line, in the order of the description, with exact numbers.
 //!
-//! Comments and layout of the text from which a scene was read are not part of it. The printed text reads back as
-//! an equal scene.
+//! The printed text reads back as an equal system. Of comments, it has those that a program added as [`Remarks`].
 
-use crate::syntax::ast::{
+use super::ast::{
     About, Acting, Body, Component, Components, Conserved, CoordKind, Counter, Declaration, End,
-    Expr, Ident, Item, ItemKind, Joint, JointKind, Load, Part, Repeat, Source, System, Table,
-    Target, Wanted,
+    Expr, Ident, Item, ItemKind, Joint, JointField, JointKind, Load, Part, Remark, Remarks, Repeat,
+    Source, System, Table, Target, Wanted,
 };
-use crate::syntax::written::{conditions, equation, list, written};
-use crate::syntax::{joint_field, joint_kind};
+use super::written::{conditions, equation, list, written};
+use super::{joint_field, joint_kind};
+
+/// Largest width of a line, without its indentation, where a list or the fields of a body can be broken.
+const MAX_WIDTH: usize = 110;
 
 /// Returns the text of a description.
 pub fn text(system: &System) -> String {
@@ -24,23 +26,79 @@ pub fn text(system: &System) -> String {
         text.push_str(&line);
         text.push('\n');
     }
-    let public = if system.public { "pub " } else { "" };
-    text.push_str(&format!("{public}system {} {{\n", system.name.name));
-    for item in &system.items {
-        for line in statement(item).lines() {
-            text.push_str(&format!("    {line}\n"));
-        }
+    for line in &system.remarks.head {
+        text.push_str(&comment(line));
+        text.push('\n');
     }
-    text.push_str("}\n");
+    let public = if system.public { "pub " } else { "" };
+    text.push_str(&format!("{public}system {} ", system.name.name));
+    text.push_str(&block(&system.items, &system.remarks));
+    text.push('\n');
     text
+}
+
+/// Returns a comment, which cannot contain a line break.
+fn comment(text: &str) -> String {
+    match text.replace(char::is_control, " ") {
+        text if text.is_empty() => "//".into(),
+        text => format!("// {text}"),
+    }
+}
+
+/// Returns statements in braces, indented, with the remarks between them.
+fn block(items: &[Item], remarks: &Remarks) -> String {
+    let mut lines = Vec::new();
+    let remark = |remark: &Remark| match remark {
+        Remark::Blank => String::new(),
+        Remark::Comment(text) => comment(text),
+    };
+    let mut index = 0;
+    while index < items.len() {
+        lines.extend(remarks.above(index).iter().map(remark));
+        let end = end_of_loop(items, remarks, index);
+        let printed = match &items[index..end] {
+            [item] => statement(item),
+            equations => equations_of_loop(equations),
+        };
+        lines.extend(printed.lines().map(str::to_string));
+        index = end;
+    }
+    lines.extend(remarks.above(items.len()).iter().map(remark));
+    let lines = lines.iter().map(|line| match line.is_empty() {
+        true => "\n".into(),
+        false => format!("    {line}\n"),
+    });
+    format!("{{\n{}}}", lines.collect::<String>())
+}
+
+/// Returns the end of the `loop` equations that begin at an index and have nothing between them; for any other
+/// statement, the index after it.
+fn end_of_loop(items: &[Item], remarks: &Remarks, index: usize) -> usize {
+    let is_loop = |index: &usize| matches!(items[*index].kind, ItemKind::Loop { .. });
+    let mut end = index + 1;
+    while end < items.len() && is_loop(&index) && is_loop(&end) && remarks.above(end).is_empty() {
+        end += 1;
+    }
+    end
+}
+
+/// Prints several equations as one `loop` statement.
+fn equations_of_loop(equations: &[Item]) -> String {
+    let one = |item: &Item| {
+        let text = statement(item);
+        let text = text.strip_prefix("loop ").unwrap_or(&text);
+        format!("\n    {}", text.trim_end_matches(';'))
+    };
+    let equations: Vec<String> = equations.iter().map(one).collect();
+    format!("loop{};", equations.join(","))
 }
 
 /// Returns a statement with its final `;` or `}`.
 pub fn statement(item: &Item) -> String {
     let line = match &item.kind {
-        ItemKind::Param(list) => format!("param {}", declarations(list)),
-        ItemKind::Const(list) => format!("const {}", declarations(list)),
-        ItemKind::Let(list) => format!("let {}", declarations(list)),
+        ItemKind::Param(list) => return declarations("param", list),
+        ItemKind::Const(list) => return declarations("const", list),
+        ItemKind::Let(list) => return declarations("let", list),
         ItemKind::Function(function) => {
             let parameters = each(&function.parameters, |(name, of)| {
                 format!("{}{}", name.name, of.kind.annotation())
@@ -60,7 +118,7 @@ pub fn statement(item: &Item) -> String {
         }
         ItemKind::Table(values) => table(values),
         ItemKind::Coord(list) => format!("coord {}", each(list, coordinate)),
-        ItemKind::Velocity(list) => format!("velocity {}", declarations(list)),
+        ItemKind::Velocity(list) => return declarations("velocity", list),
         ItemKind::Constraint { left, right } => format!("constraint {}", equation(left, right)),
         ItemKind::Rate { target, value } => {
             format!("rate {} = {}", part(target), written(value))
@@ -96,8 +154,11 @@ pub fn statement(item: &Item) -> String {
             format!("loop {}{rate}", equation(left, right))
         }
         ItemKind::Frame { name, on, pose } => {
-            let on = after("on", on.as_ref().map(word));
-            format!("frame {}{on} = {}", name.name, written(pose))
+            let (name, pose) = (&name.name, written(pose));
+            match on {
+                Some(on) => format!("frame {name} on {} at {pose}", on.name),
+                None => format!("frame {name} = {pose}"),
+            }
         }
         ItemKind::Joint(description) => return joint(description),
         ItemKind::Body(description) => return body(description),
@@ -108,8 +169,8 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Kinetic(energy) => format!("kinetic {}", written(energy)),
         ItemKind::Potential(energy) => format!("potential {}", written(energy)),
         ItemKind::Gravity(acceleration) => format!("gravity {}", written(acceleration)),
-        ItemKind::Input(list) => format!("input {}", declarations(list)),
-        ItemKind::State(list) => format!("state {}", declarations(list)),
+        ItemKind::Input(list) => return declarations("input", list),
+        ItemKind::State(list) => return declarations("state", list),
         ItemKind::Load {
             load,
             frame,
@@ -187,18 +248,10 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Part(description) => part_of(description),
         ItemKind::Component(description) => return component(description),
         ItemKind::Repeat(Repeat { counter: i, items }) => {
-            return format!("for {} {}", counter(i), block(items));
+            return format!("for {} {}", counter(i), block(items, &Remarks::default()));
         }
     };
     line + ";"
-}
-
-/// Returns statements in braces, indented.
-fn block(items: &[Item]) -> String {
-    let lines: Vec<String> = items.iter().map(statement).collect();
-    let lines = lines.iter().flat_map(|statement| statement.lines());
-    let lines: String = lines.map(|line| format!("    {line}\n")).collect();
-    format!("{{\n{lines}}}")
 }
 
 /// Returns a counter with its range, such as `i in 1..n`.
@@ -218,7 +271,10 @@ fn component(component: &Component) -> String {
         let default = default.map(|value| format!(" = {}", written(value)));
         format!("{}{of}{}", parameter.name.name, default.unwrap_or_default())
     });
-    let (name, items) = (&component.name.name, block(&component.items));
+    let (name, items) = (
+        &component.name.name,
+        block(&component.items, &Remarks::default()),
+    );
     format!("component {name}({parameters}) {items}")
 }
 
@@ -264,15 +320,24 @@ fn each<T>(list: &[T], one: impl Fn(&T) -> String) -> String {
     list.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-fn declarations(list: &[Declaration]) -> String {
-    each(list, |one| {
-        let value = one
-            .value
-            .as_ref()
-            .map(|value| format!(" = {}", written(value)));
+/// Prints `word a, b, c;`, over several lines if it is too long for one.
+fn declarations(word: &str, list: &[Declaration]) -> String {
+    let mut text = String::new();
+    let mut line = word.to_string();
+    for (index, one) in list.iter().enumerate() {
+        let value = one.value.as_ref();
+        let value = value.map(|value| format!(" = {}", written(value)));
         let value = value.unwrap_or_default();
-        format!("{}{}{value}", one.name.name, one.shape.kind.annotation())
-    })
+        let end = if index + 1 < list.len() { "," } else { ";" };
+        let (name, shape) = (&one.name.name, one.shape.kind.annotation());
+        let piece = format!(" {name}{shape}{value}{end}");
+        if index > 0 && line.len() + piece.len() > MAX_WIDTH {
+            text += &(line + "\n");
+            line = "   ".into();
+        }
+        line += &piece;
+    }
+    text + &line
 }
 
 fn coordinate((name, of): &(Ident, CoordKind)) -> String {
@@ -280,7 +345,7 @@ fn coordinate((name, of): &(Ident, CoordKind)) -> String {
 }
 
 fn part(target: &Target) -> String {
-    crate::syntax::written::target(target)
+    super::written::target(target)
 }
 
 fn word(name: &Ident) -> String {
@@ -309,11 +374,27 @@ fn joint(joint: &Joint) -> String {
     if joint.fields.is_empty() {
         return head + ";";
     }
-    let fields = joint.fields.iter().map(|(field, _, values)| {
+    let mut text = head + " {";
+    let mut last = None;
+    for (field, _, values) in &joint.fields {
+        text.push_str(match last.is_some_and(|last| share_a_line(last, *field)) {
+            true => " ",
+            false => "\n    ",
+        });
         let values: Vec<String> = values.iter().map(written).collect();
-        format!("{} {};", joint_field(*field), values.join(" to "))
-    });
-    format!("{head} {{ {} }}", fields.collect::<Vec<_>>().join(" "))
+        text += &format!("{} {};", joint_field(*field), values.join(" to "));
+        last = Some(*field);
+    }
+    text + "\n};"
+}
+
+/// Whether two fields of a joint that follow each other are printed on one line: a spring, or bounds.
+fn share_a_line(first: JointField, second: JointField) -> bool {
+    use JointField::{Limit, MaxForce, MaxSpeed, Rest, Stiffness};
+    matches!(
+        (first, second),
+        (Stiffness, Rest) | (Limit | MaxSpeed | MaxForce, Limit | MaxSpeed | MaxForce)
+    )
 }
 
 fn body(body: &Body) -> String {
@@ -332,12 +413,14 @@ fn body(body: &Body) -> String {
         };
         format!("inertia {}{about};", written(inertia))
     }));
-    let fields = fields.iter().map(|field| format!("{field} "));
-    format!(
-        "body on {} {{ {}}}",
-        body.frame.name,
-        fields.collect::<String>()
-    )
+    let head = format!("body on {} {{", body.frame.name);
+    let short: String = fields.iter().map(|field| format!("{field} ")).collect();
+    let short = format!("{head} {short}}}");
+    if short.len() <= MAX_WIDTH {
+        return short;
+    }
+    let fields = fields.iter().map(|field| format!("    {field}\n"));
+    format!("{head}\n{}}}", fields.collect::<String>())
 }
 
 fn applied(load: &Load) -> String {
