@@ -138,7 +138,9 @@ fn carry(
             Node::Symbol(index) => symbol(into, index),
             node => {
                 into.follow(from, id);
-                make(into, node.over(|child| read(&image, child)))
+                let made = make(into, node.over(|child| read(&image, child)));
+                into.keep_label(from, id, made);
+                made
             }
         };
         image[id as usize] = made;
