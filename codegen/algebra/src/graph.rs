@@ -7,11 +7,13 @@
 //! are one node. Children precede their parents.
 
 mod calls;
+mod labels;
 mod leaves;
 mod merge;
 mod order;
 mod powers;
 mod side;
+pub use labels::Label;
 pub(crate) use merge::canonical;
 pub(crate) use powers::Power;
 
@@ -50,6 +52,8 @@ pub struct Graph {
     bad_prime: bool,
     /// External functions, which are defined elsewhere.
     externals: Arc<Vec<External>>,
+    /// Labels of nodes.
+    labels: FxHashMap<NodeId, Label>,
     /// Class of the symbols that are constant at run time. Products and sums of these are kept together so
     /// that they can be computed once.
     free_class: u8,
@@ -71,6 +75,7 @@ impl Graph {
             copied: Fp::ZERO,
             bad_prime: false,
             externals: Arc::default(),
+            labels: FxHashMap::default(),
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.

@@ -138,7 +138,9 @@ fn carry(
             Node::Symbol(index) => symbol(into, index),
             node => {
                 into.announce_copy(from, id);
-                make(into, node.map_children(|child| read(&image, child)))
+                let made = make(into, node.map_children(|child| read(&image, child)));
+                into.keep_label(from, id, made);
+                made
             }
         };
         image[id as usize] = made;

@@ -17,6 +17,7 @@ use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
 use hamel_algebra::transplant::{copy, rebuild};
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::functions::Needs;
+use hamel_language::model::provenance::Provenance;
 use hamel_language::model::{Model, class};
 use hamel_program::structure::Structure;
 use hamel_program::{Argument, Cause, Function, FunctionId, Program};
@@ -393,6 +394,7 @@ impl Builder<'_> {
             causes,
             functions: self.functions,
             structure,
+            provenance: Provenance::of(model),
         }
     }
 }

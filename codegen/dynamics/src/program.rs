@@ -7,6 +7,7 @@ use super::care::Care;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
+use hamel_language::model::provenance::Quantity;
 use hamel_language::model::value::Value;
 use hamel_program::{Cause, Function, FunctionId, Shape};
 
@@ -75,7 +76,34 @@ impl<'a> Builder<'a> {
         let causes = builder.causes_of(&builder.chosen);
         let pivots = builder.chosen.pivots.iter().copied();
         builder.causes.extend(pivots.zip(causes));
+        builder.label_parts();
         builder
+    }
+
+    /// Labels the rows of the equations of motion.
+    fn label_parts(&mut self) {
+        let (graph, parts) = (&mut self.graph, &self.parts);
+        for (i, row) in parts.mass.iter().enumerate() {
+            graph.label(row, Quantity::MassMatrix.of(i));
+        }
+        let rows = [
+            (&parts.inertia, Quantity::BiasForce),
+            (&parts.conservative, Quantity::PotentialSlope),
+            (&parts.applied, Quantity::AppliedForce),
+            (&self.chosen.xi_dot, Quantity::Acceleration),
+        ];
+        for (entries, quantity) in rows {
+            for (i, &entry) in entries.iter().enumerate() {
+                graph.label(&[entry], quantity.of(i));
+            }
+        }
+        if !self.chosen.twist {
+            let pivots = self.chosen.pivots.iter().take(self.model.n());
+            for (i, &pivot) in pivots.enumerate() {
+                graph.label(&[pivot], Quantity::Pivot.of(i));
+            }
+        }
+        graph.label(&self.chosen.multipliers, Quantity::Multiplier.of(0));
     }
 
     /// Returns the meaning of the pivots of a computation of ξ̇.

@@ -4,13 +4,16 @@ use super::chunk::{Part, Plan, plan};
 use super::docs;
 use super::language::{Array, Language, Rust};
 use super::locals::Locals;
-use super::print::{Printer, Used, Written};
-use super::{Emitter, names};
+use super::print::{Headings, Printer, Used, Written};
+use super::{Emitter, constants, names};
 use hamel_algebra::graph::{Edge, NodeId};
+use hamel_language::model::provenance::Origin;
+use hamel_program::origins::origins;
 use hamel_program::places::Time;
 use hamel_program::statements::{Body, Operation};
-use hamel_program::{Argument, Cause, Program, Shape, tape};
+use hamel_program::{Argument, Cause, Function, Program, Shape, tape};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
 
 /// Argument to which slopes are written in addition to the result.
 pub const SLOPES: &str = Array::Slopes.name();
@@ -29,6 +32,8 @@ pub struct Spec<'a> {
     pub shape: Shape,
     /// Shape of the output argument `slopes`, if it has one.
     pub beside: Option<Shape>,
+    /// Functions of the program to which the entries of the result belong, one after another; none for constants.
+    pub functions: Vec<&'a Function>,
     /// Entries of the result, followed by those written to `slopes`.
     pub outputs: Vec<Edge>,
     /// Pivots that must be positive.
@@ -117,9 +122,28 @@ pub fn draw(
         locals: &locals,
         body: &body,
         plan: &plan,
+        headings: &headings(emitter, spec, &body),
         written: &written.collect(),
         parameters,
     })
+}
+
+/// Returns the headings of the statements of a function: the quantity that each serves, and its equation.
+fn headings(emitter: &Emitter, spec: &Spec, body: &Body) -> Headings {
+    if !emitter.headings {
+        return Headings::default();
+    }
+    if spec.functions.is_empty() {
+        return constants::headings(emitter, body);
+    }
+    let mut texts: FxHashMap<*const Origin, Rc<str>> = FxHashMap::default();
+    let origins = origins(emitter.program, &spec.functions, body);
+    let heading = |(node, origin): (NodeId, Rc<Origin>)| {
+        let text = || format!("{} ({})", origin.quantity, origin.equation).into();
+        let text = texts.entry(Rc::as_ptr(&origin)).or_insert_with(text);
+        (node, text.clone())
+    };
+    origins.into_iter().map(heading).collect()
 }
 
 /// Returns the Rust type of a result or an argument.
@@ -145,6 +169,8 @@ pub struct Drawing<'a> {
     pub body: &'a Body,
     /// Its division into parts.
     pub plan: &'a Plan,
+    /// Headings of its statements.
+    pub headings: &'a Headings,
     /// Results that are read from the array to which they were written.
     pub written: &'a FxHashMap<NodeId, Written>,
     /// The parameters as expressions.
@@ -165,6 +191,8 @@ impl Drawing<'_> {
             externals: &self.emitter.names.externals,
             slots: &self.plan.slots,
             written: self.written,
+            headings: self.headings,
+            heading: "",
             here: FxHashSet::default(),
             used: Used::default(),
         }
@@ -283,11 +311,11 @@ pub fn statements(
     part: &Part,
     mut after: impl FnMut(&mut Printer, NodeId) -> String,
 ) -> String {
-    let mut text: String = part
-        .numbers
-        .iter()
-        .map(|&node| printer.number(node))
-        .collect();
+    let numbers = part.numbers.iter().map(|&node| printer.number(node));
+    let mut text: String = numbers.collect();
+    if !text.is_empty() && !printer.headings.is_empty() {
+        text.insert_str(0, &printer.language.heading("numbers"));
+    }
     for statement in &body.statements[part.statements.clone()] {
         text.push_str(&printer.statement(statement));
         if !matches!(statement.operation, Operation::Check(..)) {

@@ -1,7 +1,7 @@
 //! The syntax of statements: everything that Rust and C spell differently.
 
 use super::chunk::When;
-use super::number;
+use super::{layout, number};
 use hamel_algebra::graph::{Function, Graph, NodeId};
 use hamel_program::{Cause, Program, Shape};
 
@@ -63,6 +63,8 @@ pub trait Language {
     fn number(&self, graph: &Graph, node: NodeId, name: &str) -> String;
     /// The statement that binds a number to its name; empty in languages that write literals in place.
     fn number_binding(&self, graph: &Graph, node: NodeId, name: &str) -> String;
+    /// The comment above statements that serve one quantity.
+    fn heading(&self, text: &str) -> String;
     /// The number 0.
     fn zero(&self) -> String;
     /// The statement that binds a value to a name.
@@ -112,6 +114,10 @@ impl Language for Rust {
 
     fn number_binding(&self, graph: &Graph, node: NodeId, name: &str) -> String {
         self.binding(name, &self.literal(graph, node))
+    }
+
+    fn heading(&self, text: &str) -> String {
+        layout::heading(text)
     }
 
     fn zero(&self) -> String {

@@ -1,5 +1,6 @@
 //! Parsing of generated text, which finds defects of the generator, and formatting for files.
 
+use super::docs::spelled;
 use std::fmt;
 
 /// The generated text is not valid Rust: a defect of the generator, whatever the description is.
@@ -34,13 +35,30 @@ pub fn parsed(text: &str) -> Result<syn::File, NotRust> {
     })
 }
 
+/// Start of a doc comment that stands for a plain comment, which parsing would drop. Doc comments of generated items
+/// have a space there.
+const HEADING: &str = "///~";
+
+/// Returns a line that [`formatted`] turns into a comment above the next statement.
+pub fn heading(text: &str) -> String {
+    format!("{HEADING} {}\n", spelled(text))
+}
+
 /// Formats a text for a file.
 ///
 /// # Errors
 /// If the text is not valid Rust.
 #[cfg(feature = "files")]
 pub fn formatted(text: &str) -> Result<String, NotRust> {
-    Ok(prettyplease::unparse(&parsed(text)?))
+    let text = prettyplease::unparse(&parsed(text)?);
+    let lines = text.split_inclusive('\n').map(|line| {
+        let indent = line.len() - line.trim_start().len();
+        match line[indent..].strip_prefix(HEADING) {
+            Some(rest) => [&line[..indent], "//", rest],
+            None => [line, "", ""],
+        }
+    });
+    Ok(lines.flatten().collect())
 }
 
 /// Line of an error, if its position is known.

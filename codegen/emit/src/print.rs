@@ -9,6 +9,7 @@ use hamel_program::statements::{Call, Operation, Statement};
 use hamel_program::{Argument, Program, Shape};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 /// The arguments, constants and arrays that a text uses, in addition to its own values.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -59,6 +60,9 @@ pub struct Written {
     pub negative: bool,
 }
 
+/// Headings of statements, by the nodes that they define.
+pub type Headings = FxHashMap<NodeId, Rc<str>>;
+
 /// Prints the statements of one function or part.
 pub struct Printer<'a> {
     /// Target language.
@@ -81,6 +85,10 @@ pub struct Printer<'a> {
     pub slots: &'a FxHashMap<NodeId, usize>,
     /// Results that are read from the output array.
     pub written: &'a FxHashMap<NodeId, Written>,
+    /// Headings of statements, by the nodes that they define; empty if there are to be none.
+    pub headings: &'a Headings,
+    /// The heading printed last.
+    pub heading: &'a str,
     /// Values computed by statements printed so far.
     pub here: FxHashSet<NodeId>,
     /// What was used so far.
@@ -180,6 +188,7 @@ impl Printer<'_> {
             return self.language.check(&operand, cause, self.program);
         }
         let name = |node: NodeId| self.locals.name(node);
+        let heading = self.heading_of(statement);
         let mut text = match &statement.operation {
             Operation::SinCos(angle) => {
                 let names = statement.results.map(|node| node.map(name));
@@ -196,6 +205,7 @@ impl Printer<'_> {
                 self.language.binding(name, &expression)
             }
         };
+        text.insert_str(0, &heading);
         for node in statement.defined() {
             self.here.insert(node);
             if let Some(&slot) = self.slots.get(&node) {
@@ -204,6 +214,20 @@ impl Printer<'_> {
             }
         }
         text
+    }
+
+    /// Returns the heading of a statement, if it differs from that of the statement before.
+    fn heading_of(&mut self, statement: &Statement) -> String {
+        let mut headings = statement
+            .defined()
+            .filter_map(|node| self.headings.get(&node));
+        match headings.next() {
+            Some(heading) if **heading != *self.heading => {
+                self.heading = heading;
+                self.language.heading(heading)
+            }
+            _ => String::new(),
+        }
     }
 
     /// Returns the pattern that binds the result of an external function; a matrix of slopes by rows.

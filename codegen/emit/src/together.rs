@@ -49,6 +49,7 @@ pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
             arguments: &slopes.arguments,
             shape: rates.shape,
             beside: Some(slopes.shape),
+            functions: vec![rates, slopes],
             outputs,
             guards,
             fallible: slopes.fallible,

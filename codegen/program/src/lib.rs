@@ -4,6 +4,7 @@
 
 pub mod count;
 pub mod interpret;
+pub mod origins;
 pub mod places;
 pub mod rounding;
 pub mod schedule;
@@ -18,6 +19,7 @@ pub mod together;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_language::model::joints::Joint;
 use hamel_language::model::layout::Block;
+use hamel_language::model::provenance::Provenance;
 use hamel_language::model::{Coordinate, Group, behind, entry};
 use structure::Structure;
 
@@ -186,6 +188,8 @@ pub struct Program {
     pub functions: Vec<Function>,
     /// Properties of the equations that decide which integration methods apply.
     pub structure: Structure,
+    /// Names and places of all that the labels of the graph refer to.
+    pub provenance: Provenance,
 }
 
 impl Program {

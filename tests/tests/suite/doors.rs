@@ -25,9 +25,11 @@ fn models() -> Vec<(String, String)> {
     all
 }
 
-/// Returns the items of a file without its header comment.
-fn items(code: &str) -> &str {
-    code.split_once("\n\n").map_or(code, |(_, items)| items)
+/// The items of a file without its header, and without comments, which tokens do not have.
+fn items(code: &str) -> String {
+    let lines = code.lines();
+    let items = lines.filter(|line| !matches!(line.trim_start().split_once(' '), Some(("//", _))));
+    items.collect::<Vec<_>>().join("\n")
 }
 
 #[test]

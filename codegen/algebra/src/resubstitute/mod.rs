@@ -44,6 +44,7 @@ pub fn resubstitute(graph: &Graph, roots: &[Edge], base: &Graph) -> Option<(Grap
     }
     let mut result = base.clone();
     let edges = network.rebuild(&mut result);
+    result.keep_labels(&graph);
     Some((result, edges))
 }
 

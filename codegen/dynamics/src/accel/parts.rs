@@ -12,6 +12,7 @@ use crate::{energy, kinematics, loads};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
 use hamel_algebra::transplant::{graft, rebuild};
+use hamel_language::model::provenance::Quantity;
 use hamel_language::model::{Body, Model};
 use hamel_language::syntax::ast::Axes;
 
@@ -264,6 +265,7 @@ impl Traced {
                 }
                 let lever = cross(graph, omega, arm);
                 velocity = add3(graph, velocity, lever);
+                graph.label(&velocity, Quantity::LinearVelocity.of(body.frame));
                 let change = calculus.rate3(graph, velocity);
                 let turn = cross(graph, omega, velocity);
                 (linear, add3(graph, change, turn), None)
@@ -273,6 +275,7 @@ impl Traced {
                 let point = add3(graph, frame.position, turned);
                 let linear = calculus.point_jacobian(graph, point);
                 let velocity = calculus.rate3(graph, point);
+                graph.label(&velocity, Quantity::LinearVelocity.of(body.frame));
                 (
                     linear,
                     calculus.rate3(graph, velocity),
@@ -299,6 +302,14 @@ impl Traced {
         torque = add3(graph, torque, lever);
         // Weight.
         let mut weight = scale3(graph, body.mass, model.gravity);
+        let of = |quantity: Quantity| quantity.of(body.frame);
+        graph.label(&omega, of(Quantity::AngularVelocity));
+        graph.label(&alpha, of(Quantity::BiasAngularAcceleration));
+        graph.label(&acceleration, of(Quantity::BiasAcceleration));
+        graph.label(&force, of(Quantity::InertialForce));
+        graph.label(&torque, of(Quantity::InertialTorque));
+        graph.label(&angular.concat(), of(Quantity::AngularJacobian));
+        graph.label(&linear.concat(), of(Quantity::LinearJacobian));
         let weight_torque = if at_com {
             zero
         } else {
@@ -309,6 +320,8 @@ impl Traced {
         if variant.axes == Axes::Body {
             weight = into_frame(graph, &frame.rotation, weight);
         }
+        graph.label(&weight, of(Quantity::Weight));
+        graph.label(&weight_torque, of(Quantity::Weight));
         Traced {
             linear,
             angular,

@@ -9,8 +9,9 @@ use super::inverse::{Wrench, to_parent};
 use super::mass::Mass;
 use super::{Freedom, Link, Tree};
 use crate::accel::solve::Solution;
-use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, identity3, scale3, zero3};
+use hamel_language::model::provenance::Quantity;
 use hamel_language::model::rotations::hat;
 
 /// Articulated inertia: torque = J α + H a, force = Hᵀ α + M a.
@@ -54,6 +55,7 @@ pub fn forward(
     let mut pivots: Vec<Vec<Pivot>> = tree.links.iter().map(|_| Vec::new()).collect();
     let mut guards = vec![graph.one(); load.len()];
     for (index, link) in tree.links.iter().enumerate().rev() {
+        inertia[index].label(graph, Quantity::ArticulatedInertia.of(link.frame));
         for freedom in link.freedoms.iter().filter(|f| !f.is_given(given)) {
             let response = inertia[index].wrench(graph, freedom.angular, freedom.linear);
             let &[(i, _)] = freedom.rate.as_slice() else {
@@ -66,9 +68,12 @@ pub fn forward(
             let bias_force = freedom.force_of(graph, &bias[index]);
             let residual = graph.sub(load[i], bias_force);
             let share = response.scaled(graph, inverse);
+            graph.label(&[residual], Quantity::JointResidual.of(link.frame));
+            share.label(graph, Quantity::JointShare.of(link.frame));
             inertia[index].reduce(graph, &response, &share);
             let yielded = share.scaled(graph, residual);
             bias[index] = bias[index].plus(graph, &yielded);
+            bias[index].label(graph, Quantity::ArticulatedWrench.of(link.frame));
             pivots[index].push(Pivot {
                 share,
                 inverse,
@@ -112,6 +117,8 @@ pub fn forward(
                 xi_dot[i] = rate;
             }
         }
+        let acceleration = [motion.0, motion.1].concat();
+        graph.label(&acceleration, Quantity::JointAcceleration.of(link.frame));
         motions.push(motion);
     }
     Some(Solution {
@@ -128,6 +135,12 @@ impl Inertia {
             j,
             h: hat(graph, mass.first),
             m: identity.map(|row| row.map(|entry| graph.mul(entry, mass.mass))),
+        }
+    }
+
+    fn label(&self, graph: &mut Graph, label: Label) {
+        for block in [&self.j, &self.h, &self.m] {
+            graph.label(&block.concat(), label);
         }
     }
 

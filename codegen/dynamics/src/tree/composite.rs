@@ -8,6 +8,7 @@ use super::inverse::{Wrench, to_parent};
 use super::mass::Mass;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::resubstitute::resubstitute;
+use hamel_language::model::provenance::Quantity;
 use hamel_program::count::count;
 
 /// How inertias about hinges are computed.
@@ -88,6 +89,7 @@ fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
     }
     let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
+        composite[index].label(graph, Quantity::CompositeInertia.of(link.frame));
         if let Some(parent) = link.parent {
             let mut turned = composite[index];
             for turn in link.turns.iter().rev() {
@@ -121,6 +123,7 @@ fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: Polar) -> Vec<Ve
         for (place, freedom) in link.freedoms.iter().enumerate() {
             let (force, torque) = composite[index].wrench(graph, freedom.angular, freedom.linear);
             let mut wrench = Wrench { force, torque };
+            wrench.label(graph, Quantity::UnitWrench.of(link.frame));
             let mut at = Some(index);
             while let Some(here) = at {
                 let link = &tree.links[here];

@@ -11,10 +11,13 @@ use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, identity3, multiply3, zero3,
 };
 use hamel_language::model::Model;
+use hamel_language::model::provenance::Quantity;
 
 /// A link whose frame can still be moved.
 #[derive(Clone, Debug)]
 pub struct Draft {
+    /// Index of the frame that the joint carries.
+    pub frame: usize,
     /// Index of the parent link.
     pub parent: Option<usize>,
     /// Constant axes of the joint in those of the parent link.
@@ -88,7 +91,11 @@ impl Draft {
                 (turns, freedoms, velocity_product)
             }
         };
+        for turn in &turns {
+            turn.label(graph, Quantity::LinkRotation.of(self.frame));
+        }
         Link {
+            frame: self.frame,
             parent: self.parent,
             turns,
             position: self.position,
@@ -172,6 +179,7 @@ pub fn draft_with_carriers(
         let (motion, base, rotation) = joint(model, calculus, &on.rotation, &turn, shift)?;
         let graph = &model.graph;
         links.push(Draft {
+            frame: index,
             parent: on.link,
             base,
             position,

@@ -9,10 +9,11 @@
 
 use super::mass::Mass;
 use super::{Link, Tree};
-use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply3, cross, identity3, multiply3, scale3, transpose3, zero3,
 };
+use hamel_language::model::provenance::Quantity;
 use hamel_program::count::count;
 
 /// Wrench: force and torque about the origin of a link, in its axes.
@@ -31,6 +32,12 @@ impl Wrench {
             force: add3(graph, self.force, other.force),
             torque: add3(graph, self.torque, other.torque),
         }
+    }
+
+    /// Labels force and torque.
+    pub fn label(&self, graph: &mut Graph, label: Label) {
+        graph.label(&self.torque, label);
+        graph.label(&self.force, label);
     }
 
     /// Returns k times the wrench.
@@ -86,9 +93,46 @@ pub fn wrenches(
 ) -> Vec<Wrench> {
     let motions = motions(graph, tree, xi, xi_dot, gravity);
     let links = tree.links.iter().zip(&motions);
-    links
+    let wrenches: Vec<Wrench> = links
         .map(|(link, motion)| wrench(graph, &link.mass, motion))
-        .collect()
+        .collect();
+    if let Some(made) = Made::of(graph, xi, xi_dot) {
+        for (link, wrench) in tree.links.iter().zip(&wrenches) {
+            wrench.label(graph, made.wrench.of(link.frame));
+        }
+    }
+    wrenches
+}
+
+/// Quantities that the recursion makes for each link.
+struct Made {
+    alpha: Quantity,
+    acceleration: Quantity,
+    wrench: Quantity,
+}
+
+impl Made {
+    /// Returns the quantities of a motion with these velocities and accelerations. `None` if velocities stand in the
+    /// place of accelerations, for a momentum.
+    fn of(graph: &Graph, xi: &[Edge], xi_dot: &[Edge]) -> Option<Self> {
+        let is_zero = |&rate: &Edge| rate == graph.zero();
+        let rests = xi.iter().all(is_zero);
+        // Accelerations that are still unknown are set to zero, those of drives are not.
+        match xi_dot.iter().any(is_zero) {
+            true if rests && !xi_dot.iter().all(is_zero) => None,
+            true => Some(Made {
+                alpha: Quantity::LinkBiasAngularAcceleration,
+                acceleration: Quantity::LinkBiasAcceleration,
+                wrench: Quantity::LinkBiasWrench,
+            }),
+            false if rests => None,
+            false => Some(Made {
+                alpha: Quantity::LinkAngularAcceleration,
+                acceleration: Quantity::LinkAcceleration,
+                wrench: Quantity::LinkWrench,
+            }),
+        }
+    }
 }
 
 /// How U = α̂ + ω̂ ω̂ of the links is computed.
@@ -165,7 +209,16 @@ pub(crate) fn motions(
     for (link, passes) in tree.links.iter().zip(passing) {
         let before = link.parent.map_or(ground, |parent| motions[parent]);
         let way = (tensors, passes);
-        motions.push(outward(graph, link, &before, (xi, xi_dot), way));
+        let motion = outward(graph, link, &before, (xi, xi_dot), way);
+        if let Some(made) = Made::of(graph, xi, xi_dot) {
+            let of = |quantity: Quantity| quantity.of(link.frame);
+            graph.label(&motion.omega, of(Quantity::LinkAngularVelocity));
+            graph.label(&motion.alpha, of(made.alpha));
+            graph.label(&motion.u.concat(), of(Quantity::LinkTensor));
+            graph.label(&motion.differences, of(Quantity::LinkTensor));
+            graph.label(&motion.a, of(made.acceleration));
+        }
+        motions.push(motion);
     }
     motions
 }
@@ -487,7 +540,14 @@ pub fn inverse(
     gravity: Vec3,
 ) -> Vec<Edge> {
     let wrenches = wrenches(graph, tree, xi, xi_dot, gravity);
-    let forces = collect(graph, tree, &wrenches, xi.len());
+    let forces = match Made::of(graph, xi, xi_dot) {
+        None => collect(graph, tree, &wrenches, xi.len()),
+        Some(_) => collect_with(graph, tree, &wrenches, xi.len(), |graph, index, total| {
+            let frame = tree.links[index].frame;
+            total.label(graph, Quantity::JointWrench.of(frame));
+            *total
+        }),
+    };
     let rotors = tree.armature.iter().zip(xi_dot);
     forces
         .iter()

@@ -4,7 +4,7 @@
 
 use super::Link;
 use super::turn::Turn;
-use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, scale3, zero3};
 use hamel_language::model::Body;
 
@@ -27,6 +27,13 @@ impl Mass {
             first: zero3(graph),
             second: [zero3(graph); 3],
         }
+    }
+
+    /// Labels mass and moments.
+    pub fn label(&self, graph: &mut Graph, label: Label) {
+        graph.label(&[self.mass], label);
+        graph.label(&self.first, label);
+        graph.label(&self.second.concat(), label);
     }
 
     /// Returns the inertia of a particle at the origin.

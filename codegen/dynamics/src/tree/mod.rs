@@ -79,6 +79,8 @@ impl Freedom {
 /// A link, which moves relative to its parent by a joint.
 #[derive(Clone, Debug)]
 pub struct Link {
+    /// Index of the frame of the description that its joint carries.
+    pub frame: usize,
     /// Index of the parent link, which is smaller than that of the link; `None` for the world.
     pub parent: Option<usize>,
     /// Factors of the rotation matrix whose columns are the axes of this link in those of its

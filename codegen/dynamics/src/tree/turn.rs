@@ -1,6 +1,6 @@
 //! Rotations as products of plane rotations, in which entries that are zero or one cost nothing.
 
-use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, apply_transposed, apply3, multiply3, transpose3};
 
 /// One factor of a rotation.
@@ -20,6 +20,14 @@ pub enum Turn {
 }
 
 impl Turn {
+    /// Labels the entries of the rotation.
+    pub fn label(&self, graph: &mut Graph, label: Label) {
+        match self {
+            Turn::By(matrix) => graph.label(&matrix.concat(), label),
+            Turn::About { cos, sin, .. } => graph.label(&[*cos, *sin], label),
+        }
+    }
+
     /// Returns R v.
     pub fn rotate(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {

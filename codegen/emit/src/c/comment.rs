@@ -17,6 +17,11 @@ pub fn line(text: &str, indent: usize) -> String {
     format!("{:indent$}/** {} */\n", "", tame(text))
 }
 
+/// Prints one line as a plain comment.
+pub fn remark(text: &str) -> String {
+    format!("/* {} */\n", tame(text))
+}
+
 fn block(start: &str, lines: &[String], indent: usize) -> String {
     let lines: Vec<String> = lines
         .iter()

@@ -1,7 +1,7 @@
 //! The C syntax of statements and numbers.
 
 use super::names::Identifiers;
-use super::returns_number;
+use super::{comment, returns_number};
 use crate::chunk::When;
 use crate::language::{Array, Language, Operand};
 use hamel_algebra::graph::{Function, Graph, Node, NodeId};
@@ -142,6 +142,10 @@ impl Language for C<'_> {
 
     fn number_binding(&self, _: &Graph, _: NodeId, _: &str) -> String {
         String::new()
+    }
+
+    fn heading(&self, text: &str) -> String {
+        comment::remark(text)
     }
 
     fn zero(&self) -> String {

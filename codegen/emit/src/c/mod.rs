@@ -70,7 +70,10 @@ impl<'a> Texts<'a> {
         let (identifiers, names) = Identifiers::of(program);
         let words = identifiers.words();
         // C compilers take functions of any length, so that only functions that run faster that way are split.
-        let emitter = Emitter::with(program, usize::MAX, names, words, documentation);
+        let emitter = Emitter {
+            headings: true,
+            ..Emitter::with(program, usize::MAX, names, words, documentation)
+        };
         Texts {
             emitter,
             names: identifiers,

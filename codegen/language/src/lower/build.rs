@@ -14,6 +14,7 @@ use crate::inertia;
 use crate::model::Model;
 use crate::model::closure::Closure;
 use crate::model::opening::Opening;
+use crate::model::provenance::Statements;
 use crate::model::samples;
 use crate::reuse;
 use crate::syntax::ast::{ItemKind, Origins, System};
@@ -285,7 +286,7 @@ fn read_at(
     } = ground;
     let (motion, called) = (scope.motion, scope.called.into_inner());
     let zero = graph.zero();
-    let model = Model {
+    let mut model = Model {
         name: system.name.name.clone(),
         public: system.public,
         docs: system.docs.clone(),
@@ -349,9 +350,11 @@ fn read_at(
         },
         asked: dynamics.asked,
         span: system.name.span,
+        statements: Statements::of(system),
         origins: Origins::default(),
         warnings: idle,
     };
+    model.label_quantities();
     match externals::misplaced(&model, &called) {
         Some(error) => Err((vec![error], None)),
         None => Ok(model),

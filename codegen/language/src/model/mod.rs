@@ -17,6 +17,7 @@ pub mod nearest;
 pub mod opening;
 pub mod pfaffian;
 pub mod points;
+pub mod provenance;
 pub mod rotations;
 pub mod samples;
 pub mod states;
@@ -36,6 +37,7 @@ use motion::Observed;
 use opening::Opening;
 use pfaffian::Pfaffian;
 use points::Points;
+use provenance::Statements;
 use std::sync::Arc;
 use value::Value;
 
@@ -308,6 +310,8 @@ pub struct Model {
     pub asked: Asked,
     /// Span for errors about the start that are found later.
     pub span: Span,
+    /// Places of the statements that define frames, bodies, loads and named expressions.
+    pub statements: Statements,
     /// Origin of statements that do not come from the description itself.
     pub origins: Origins,
     /// Warnings about legal statements that look like mistakes.

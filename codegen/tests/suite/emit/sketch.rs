@@ -3,6 +3,7 @@
 use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::algebra::graph::{Edge, Graph};
 use hamel_codegen::model::layout::{blocks, entry_names};
+use hamel_codegen::model::provenance::Provenance;
 use hamel_codegen::model::value::Value;
 use hamel_codegen::model::{Coordinate, Group, class};
 use hamel_codegen::program::structure::Structure;
@@ -123,6 +124,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
             conservative: false,
             multipliers: false,
         },
+        provenance: Provenance::default(),
         graph,
     };
     (program, [p, x, xi, u, xi_dot])
