@@ -256,7 +256,7 @@ fn functions_in_rust_have_values_by_their_stand_ins_alone() {
         let output = hamel(command, &alone);
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{said}");
-        let wanted = "`pull` is a function in Rust, which has no values here";
+        let wanted = "`pull` is a function in Rust, which cannot be called here";
         assert!(
             said.contains(wanted) && said.contains("2:15") && said.contains("-> 1 = 0;"),
             "{said}"

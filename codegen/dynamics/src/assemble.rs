@@ -251,7 +251,7 @@ impl Builder<'_> {
         let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
         let correction = correction::correction(model, &mut free).ok_or_else(|| {
             Diagnostic::new(model.span, "no Ψ was found: [Y; Φ] has no inverse on X")
-                .help("write the constraints such that their derivatives are independent")
+                .help("write the constraints so that their derivatives are independent")
         })?;
         let mut phi = copy(&free, &mut self.graph, &rows);
         phi.extend(self.loops());

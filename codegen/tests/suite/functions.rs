@@ -203,7 +203,10 @@ fn chains_and_doubling_end() {
     assert!(from_text(&system(&doubling(10), "f0")).is_ok());
     for (functions, message) in [
         (chain(1000), "functions call one another too deeply here"),
-        (doubling(40), "functions call one another too often here"),
+        (
+            doubling(40),
+            "function calls expand to too many expressions here",
+        ),
     ] {
         let errors = from_text(&system(&functions, "f0")).expect_err("too much");
         assert_eq!(errors.len(), 1, "{errors:#?}");

@@ -53,20 +53,20 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/applied.rs",
-        "\"functions call one another too often here\"",
-        "functions call one another too often here",
+        "\"function calls expand to too many expressions here\"",
+        "function calls expand to too many expressions here",
         "calls of `fn` within calls amount to more expressions than are reasonable: name common parts with `let`",
     ),
     (
         "lower/build.rs",
-        "\"a number is a multiple of a prime that proofs count with\"",
-        "a number is a multiple of a prime that proofs count with",
+        "\"a number is a multiple of a prime that proofs compute with\"",
+        "a number is a multiple of a prime that proofs compute with",
         "a number has a factor of some nineteen digits that happens to be one of two primes: write it with fewer digits",
     ),
     (
         "lower/build.rs",
         "\"the constraints have several branches",
-        "the constraints have several branches, and that of the start was not found apart",
+        "the constraints have several branches, and that of the start could not be isolated",
         "a constraint is a product: write the factor that is meant",
     ),
     (
@@ -83,8 +83,8 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/curves.rs",
-        "nothing says in which folder `{name}` is",
-        "nothing says in which folder `…` is",
+        "the folder of `{name}` is not known",
+        "the folder of `…` is not known",
         "a table is in a file, and the description was given as a text: read it from a file",
     ),
     (
@@ -107,14 +107,14 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/externals.rs",
-        "which has no values here",
-        "`…` is a function in Rust, which has no values here",
+        "which cannot be called here",
+        "`…` is a function in Rust, which cannot be called here",
         "a command computes with numbers: give the function a stand-in behind `=`",
     ),
     (
         "lower/externals.rs",
-        "takes part in what is no load",
-        "`…` takes part in what is no load, and it is a function in Rust",
+        "something other than a load depends on it",
+        "`…` is a function in Rust, and something other than a load depends on it",
         "an energy, frame or constraint depends on it through other names",
     ),
     (
@@ -143,8 +143,8 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "reuse/mod.rs",
-        "nothing says in which folder `{name}` is",
-        "nothing says in which folder `…` is",
+        "the folder of `{name}` is not known",
+        "the folder of `…` is not known",
         "a file is included, and the description was given as a text: read it from a file",
     ),
     (

@@ -144,7 +144,10 @@ fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
         if let Some(of) = name.name.strip_suffix(SLOPES)
             && described.iter().any(|name| name == of)
         {
-            let message = format!("`{}` are the slopes of the output `{of}`", name.name);
+            let message = format!(
+                "`{}` is the name of the slopes of the output `{of}`",
+                name.name
+            );
             report.push(
                 Diagnostic::new(name.span, message).help("choose another name for this output"),
             );
@@ -210,7 +213,10 @@ fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
     for output in outputs {
         let mut frames = asked.jacobians.iter().flat_map(Jacobian::names);
         if frames.any(|name| name == output.name) || asked.wants_slopes(&output.name) {
-            let message = format!("`generate` asks for another function `{}`", output.name);
+            let message = format!(
+                "`generate` already lists another function `{}`",
+                output.name
+            );
             report.push(
                 Diagnostic::new(output.span, message).help("choose another name for this output"),
             );

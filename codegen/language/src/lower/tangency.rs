@@ -244,12 +244,12 @@ impl Checker<'_> {
         let (few, help) = if n < dimension {
             (
                 "too few",
-                "add velocities until they are as many as the degrees of freedom",
+                "add velocities until there are as many as degrees of freedom",
             )
         } else {
             (
                 "too many",
-                "remove velocities, or a constraint that is not meant",
+                "remove velocities, or a constraint that is not intended",
             )
         };
         let plural = if rank_phi == 1 { "" } else { "s" };

@@ -66,7 +66,7 @@ impl<'a> Inference<'a> {
                 acting,
             } => {
                 self.scalars([stiffness], "a stiffness");
-                self.scalars(length, "the length of a spring without force");
+                self.scalars(length, "the free length of a spring");
                 match acting {
                     // A spring on an S1 coordinate acts on its angle.
                     Acting::On(expr) if self.is_circle(expr) => {}
@@ -168,7 +168,7 @@ impl<'a> Inference<'a> {
         };
         self.vectors(forces, "a force");
         self.vectors(torques, "a torque");
-        self.vectors(at, "a point of attack");
+        self.vectors(at, "a point of application");
     }
 
     fn ends(&mut self, ends: [&'a End; 2]) {
