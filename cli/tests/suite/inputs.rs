@@ -180,7 +180,7 @@ fn what_cannot_be_used_is_said() {
         ),
         (
             &["--input", "side = 1"],
-            "`side` was declared as a vector of 2, its value is a scalar",
+            "`side` was declared as a vector of 2, but its value is a scalar",
         ),
         (&["--input", "F"], "an input is written `NAME = EXPRESSION`"),
         (&["--input", "F = 1; q"], "one expression is needed"),

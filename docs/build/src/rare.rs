@@ -149,8 +149,8 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "reuse/parts.rs",
-        "\"this is no name of a part\"",
-        "this is no name of a part",
+        "\"this is not the name of a part\"",
+        "this is not the name of a part",
         "a description that was built in Rust has a part with a name such as `a[1][2]`",
     ),
     (
@@ -181,7 +181,7 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "syntax/files.rs",
         "files include one another more than {MOST_NESTED} deep",
         "files include one another more than … deep",
-        "include the files that are needed side by side",
+        "include the files side by side instead",
     ),
     (
         "syntax/files.rs",

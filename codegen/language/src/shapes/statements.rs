@@ -112,7 +112,7 @@ impl<'a> Inference<'a> {
         };
         if a.shape != b.shape {
             let (a, b) = (a.shape.describe(), b.shape.describe());
-            let message = format!("one side of the constraint is {a}, the other {b}");
+            let message = format!("one side of the constraint is {a}, but the other is {b}");
             let error = Diagnostic::new(left.span.to(right.span), message);
             self.error::<()>(error.help("both sides need the same shape"));
         }
@@ -124,7 +124,7 @@ impl<'a> Inference<'a> {
         let (Some(a), Some(b)) = (a, b) else { return };
         if a.shape != b.shape && !is_zero(&b) {
             let (a, b) = (a.shape.describe(), b.shape.describe());
-            let message = format!("one side is {a}, the other {b}");
+            let message = format!("one side is {a}, but the other is {b}");
             let error = Diagnostic::new(left.span.to(right.span), message);
             self.error::<()>(error.help("both sides need the same shape, or 0 on the right"));
         }
@@ -152,7 +152,7 @@ impl<'a> Inference<'a> {
             && found.shape != Shape::Matrix(3, 3)
         {
             let found = found.shape.describe();
-            let message = format!("an inertia has to be a 3×3 matrix, this is {found}");
+            let message = format!("an inertia has to be a 3×3 matrix, but this is {found}");
             self.error::<()>(
                 Diagnostic::new(expr.span, message)
                     .help("write `diag(Ix, Iy, Iz)`, or name a parameter of shape sym3"),
