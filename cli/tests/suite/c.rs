@@ -150,7 +150,7 @@ fn functions_in_rust_are_refused() {
     let (status, said) = said(&["emit", "--language", "c", &glider, "-o", &out]);
     assert_eq!(status, Some(1));
     assert!(
-        said.contains("C has no function that is given in Rust"),
+        said.contains("C cannot call a function that is given in Rust"),
         "{said}"
     );
     assert!(

@@ -96,7 +96,7 @@ fn put_together(
             model.span,
             "the mass matrix is singular for every configuration",
         )
-        .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it")
+        .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and similar selections do not need its inverse")
         .lacking(Needs::Inverse));
     };
     if model.n() > MOST_LITERAL && inverts {

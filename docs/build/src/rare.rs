@@ -4,14 +4,14 @@
 pub const RARE: &[(&str, &str, &str, &str)] = &[
     (
         "builder.rs",
-        "\"C has no function that is given in Rust\"",
-        "C has no function that is given in Rust",
+        "\"C cannot call a function that is given in Rust\"",
+        "C cannot call a function that is given in Rust",
         "C is asked for, and the description has an `extern fn`: write what it gives as an expression or a table",
     ),
     (
         "builder.rs",
-        "in C would be a function of {other}",
-        "`…` in C would be a function of …, too",
+        "in C would also be a function of {other}",
+        "`…` in C would also be a function of …",
         "a build script asks for the C of two systems whose functions would be called the same, and a linker could take one \
          for the other: give one of the systems another name",
     ),
@@ -133,7 +133,7 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "verify/src/verdict.rs",
         "could not be proved: {unproved}",
         "`…` could not be proved: … was not confirmed",
-        "roots stand within roots: let a parameter or a coordinate stand for the inner one",
+        "roots stand within roots: replace the inner one by a parameter or a coordinate",
     ),
     (
         "verify/src/verdict.rs",
@@ -167,8 +167,8 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "scene/check.rs",
-        "\"this statement has a name that is more than one word\"",
-        "this statement has a name that is more than one word",
+        "\"this statement has a name of more than one word\"",
+        "this statement has a name of more than one word",
         "a description that was built in Rust has a name with a space in it",
     ),
     (
