@@ -51,7 +51,7 @@ fn shown(
 }
 
 /// Help for a robot without masses.
-const BARE: &str = "no link of the robot that moves has mass: give the links their `<inertial>`";
+const BARE: &str = "no moving link of the robot has mass: give the links an `<inertial>`";
 
 /// Shows errors about the description at their places in the URDF; those without a place there are shown
 /// in the text of the description.
@@ -73,7 +73,7 @@ pub fn refused(
             Some(Needs::Inertia) => vec![BARE.to_string()],
             _ => {
                 let help = error.help.iter().cloned();
-                let line = format!("the description made from it has `{line}`");
+                let line = format!("the description made from it contains `{line}`");
                 help.chain([line]).collect()
             }
         };

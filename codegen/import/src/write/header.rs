@@ -102,7 +102,8 @@ impl Writer<'_> {
         };
         if !pairs.is_empty() {
             self.page.top("//");
-            self.page.top("// Names that are none here, or are taken:");
+            self.page
+                .top("// Names that are not valid here, or are taken:");
             for (written, name) in pairs {
                 self.page
                     .top(&format!("// - `{}` is `{name}`", plain(&written)));

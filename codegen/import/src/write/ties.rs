@@ -73,8 +73,9 @@ impl Writer<'_> {
         let range = &name.range;
         if !rows.is_empty() {
             let name = &name.name;
-            let text =
-                format!("Left out of `{name}`, since it says nothing new wherever the tree is:");
+            let text = format!(
+                "Left out of `{name}`, since it adds nothing for any position of the tree:"
+            );
             self.page.comment(range, &text);
         }
         for (row, reason) in rows {
