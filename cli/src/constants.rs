@@ -14,7 +14,7 @@ pub fn given(text: &str, name: &str, value: &str) -> Result<String, String> {
     // The value must be a single expression: one statement with one constant, and nothing after it.
     let alone = |system: System| system.items.len() == 1 && constants(&system).count() == 1;
     if !number.is_ok_and(alone) {
-        return Err("the value is no expression".into());
+        return Err("the value is not an expression".into());
     }
     let found = constants(&system).find(|constant| constant.name.name == name);
     let place = found.and_then(|constant| constant.value.as_ref().and_then(place));
@@ -70,9 +70,9 @@ mod tests {
             refused("k", "1"),
             "no such constant; the constants are n, l"
         );
-        assert_eq!(refused("n", "1; coord p"), "the value is no expression");
-        assert_eq!(refused("n", "1, m = 2"), "the value is no expression");
-        assert_eq!(refused("n", ""), "the value is no expression");
+        assert_eq!(refused("n", "1; coord p"), "the value is not an expression");
+        assert_eq!(refused("n", "1, m = 2"), "the value is not an expression");
+        assert_eq!(refused("n", ""), "the value is not an expression");
         let none = given("system S { coord q; }", "n", "1").expect_err("refused");
         assert_eq!(none, "the description has no constants");
     }

@@ -79,7 +79,7 @@ impl Source {
     pub fn beside(&self, path: &Path, what: &str) -> Result<Source, Failure> {
         if path.as_os_str() == "-" && self.is_stdin() {
             return Err(Failure::usage(format!(
-                "description and {what} cannot both be read from standard input"
+                "the the description and {what} cannot both be read from standard input"
             )));
         }
         Source::read(path)

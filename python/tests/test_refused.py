@@ -85,7 +85,7 @@ def test_what_a_run_cannot_be(top, cart):
         ({"at": 3}, "a dictionary of what `System.state` takes"),
         ({"every": 2, "times": [0.05]}, "`every` and `times` were given"),
         ({"hold": True}, "goes with a file of inputs"),
-        ({"rate": 3.0}, "`rate` goes with the method rk4 alone"),
+        ({"rate": 3.0}, "`rate` works only with the method rk4"),
         ({"tol": 1e-6, "method": "rkmk4"}, "rkmk54 and rkmk8, which choose their steps"),
         ({"inputs": {"F": 1.0}}, "it has no inputs"),
         ({"inputs": 3}, "a dictionary, a function"),

@@ -65,8 +65,8 @@ pub fn verdict(report: &Report) -> Option<String> {
         .collect();
     let mut text = match judged.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
         Some((worst, most)) => format!(
-            "To an error of {TARGET:.0e} the method that `auto` takes needs at most {most:.1} times the time of the \
-             fastest method measured, over {} of {} cases; the most is that of {}.",
+            "To reach an error of {TARGET:.0e}, the method that `auto` takes needs at most {most:.1} times the time \
+             of the fastest method measured, over {} of {} cases; the maximum is that of {}.",
             judged.len(),
             chosen.len(),
             worst.name
@@ -160,7 +160,7 @@ mod tests {
         let good = of(vec![case("a", 1.5e-6), case("b", 1e-6)]).expect("a verdict");
         assert!(good.contains("at most 1.5 times"), "{good}");
         assert!(
-            good.contains("2 of 2 cases; the most is that of a."),
+            good.contains("2 of 2 cases; the maximum is that of a."),
             "{good}"
         );
         assert!(good.contains("never more than 2 times"), "{good}");

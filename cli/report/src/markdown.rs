@@ -57,8 +57,8 @@ pub fn how(report: &Report) -> String {
     let _ = write!(
         text,
         "Work to reach an error is interpolated between runs with doubled numbers of steps; `≤` marks a first run that \
-         is already better than asked, `-` an error that no run reached. Drifts are the largest of a run, relative; the \
-         defect is max |φ(x)|.\n\nTo make this again: `{}`",
+         is already better than required, `-` an error that no run reached. Drifts are the largest of a run, relative; the \
+         defect is max |φ(x)|.\n\nTo reproduce this: `{}`",
         report.command
     );
     text

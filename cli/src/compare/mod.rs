@@ -108,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         machine: Machine {
             processor: "the machine of the command".into(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
-            code: "made into machine code at once".into(),
+            code: "compiled to machine code at once".into(),
             repeats: REPEATS,
         },
         ..Report::default()
@@ -121,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .map(|missing| format!("\n  {}: {}", missing.method, missing.why))
                 .collect();
             return Err(Failure::failed(format!(
-                "{}: none of the methods that are asked for fits, so that there is nothing to compare{why}",
+                "{}: none of the requested methods fits, so there is nothing to compare{why}",
                 file.display()
             )));
         }
@@ -336,7 +336,7 @@ fn title(name: &str, docs: &[String]) -> String {
 fn number_of_steps(text: &str) -> Result<u64, String> {
     let number = text.trim().parse::<u64>().ok();
     let number = number.filter(|number| (1..=MOST).contains(number));
-    number.ok_or_else(|| format!("a whole number from 1 to {MOST} is needed"))
+    number.ok_or_else(|| format!("expected a whole number from 1 to {MOST}"))
 }
 
 /// The end time, which a reference has to list.

@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     if last.is_empty() {
         return Err(Failure::failed(format!(
-            "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. A statement such as `frame f = pose(R, r);` says where a part of it is{}",
+            "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. Place a part of it by a statement such as `frame f = pose(R, r);`{}",
             generated.model.name,
             drawing
                 .missing()
@@ -263,5 +263,5 @@ fn view(text: &str) -> Result<(f64, f64), String> {
     let angles = text
         .split_once(',')
         .and_then(|(azimuth, elevation)| Some((number(azimuth)?, number(elevation)?)));
-    angles.ok_or_else(|| format!("`{NAMED}`, or two angles in degrees as in -60,20, are needed"))
+    angles.ok_or_else(|| format!("expected `{NAMED}`, or two angles in degrees as in -60,20"))
 }

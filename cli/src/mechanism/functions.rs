@@ -18,7 +18,7 @@ pub fn compiled(program: &Program, names: &[&str]) -> Result<Compiled, Failure> 
     let all: Vec<&Function> = all.collect();
     Compiled::new(program, &all).map_err(|foreign| {
         Failure::failed(format!(
-            "`{}` is a function in Rust, of which there are no numbers here",
+            "`{}` is a function in Rust, which cannot be evaluated here",
             foreign.name
         ))
     })

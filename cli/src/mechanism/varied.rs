@@ -54,7 +54,7 @@ impl Varied {
         let known: Vec<String> = known.collect();
         let tapes = hamel_native::Tapes::new(program, &all).map_err(|foreign| {
             Failure::failed(format!(
-                "`{}` is a function in Rust, of which there are no slopes here",
+                "`{}` is a function in Rust, which has no slopes here",
                 foreign.name
             ))
         })?;

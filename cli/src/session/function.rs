@@ -99,7 +99,7 @@ pub(super) fn compiled(generated: &Generated, name: &str) -> Result<Function, Fa
     let program = &generated.program;
     let Some(function) = program.function(name) else {
         return Err(Failure::failed(format!(
-            "{} has no function `{name}`: the mass matrix has no inverse, or there is nothing that it could give",
+            "{} has no function `{name}`: the mass matrix has no inverse, or the function would return nothing",
             program.name
         )));
     };

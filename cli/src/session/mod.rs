@@ -430,7 +430,7 @@ impl Session {
         let Some(found) = found else {
             let names = General::ALL.iter().filter(in_chart).map(|one| one.name());
             return Err(Failure::usage(format!(
-                "steps by `{method}` have no slopes here; those by {} have",
+                "steps of `{method}` have no slopes here; use {}",
                 names.collect::<Vec<_>>().join(", ")
             )));
         };

@@ -89,7 +89,7 @@ impl Inputs {
             if let Some(place) = both {
                 let name = &entries[place];
                 return Err(Failure::usage(format!(
-                    "`{name}` has a column of --inputs and an --input: one of the two is needed"
+                    "`{name}` is given by a column of --inputs and by --input: remove one of the two"
                 )));
             }
         }

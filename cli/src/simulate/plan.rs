@@ -65,10 +65,10 @@ impl Spacing {
         let falling = times.windows(2).find(|pair| pair[0] >= pair[1]);
         match (outside, falling) {
             (Some(time), _) => Err(Failure::usage(format!(
-                "t = {time} is outside of the run, which is from 0 to {until}"
+                "t = {time} is outside the run, which is from 0 to {until}"
             ))),
             (None, Some(pair)) => Err(Failure::usage(format!(
-                "times have to increase: {} is not behind {}",
+                "times have to increase: {} is not after {}",
                 pair[1], pair[0]
             ))),
             (None, None) if times.is_empty() => {

@@ -137,12 +137,12 @@ pub fn ended(
             let advice = match plan.tolerance {
                 Some(tolerance) => format!("try a smaller --tol than {}", short(tolerance)),
                 None => format!(
-                    "try a smaller --step than {}, or steps that are chosen by their error, `--method rkmk8 --tol 1e-9`",
+                    "try a smaller --step than {}, or steps chosen by their error, `--method rkmk8 --tol 1e-9`",
                     short(plan.step)
                 ),
             };
             let why = format!(
-                "the run has lost the motion {} t = {}: its energy has changed by {}, for which no load accounts; there may be a singularity on the way: {advice}",
+                "the run has lost the motion {} t = {}: its energy has changed by {}, which no load accounts for; there may be a singularity on the way: {advice}",
                 if plan.tolerance.is_some() { "at" } else { "by" },
                 short(state.t),
                 short(change),
@@ -158,7 +158,7 @@ pub fn ended(
         }
         Err(StepError::Stiff { time, step, rate }) => {
             let why = format!(
-                "the run ends at t = {}: the motion is stiff, a rate of {} per unit of time keeps explicit steps at {}, {} of them ahead; try `--method backward-euler` with a --step of your choice, or a stiff solver through `hamel::adapter`",
+                "the run ends at t = {}: the motion is stiff, a rate of {} per unit of time limits explicit steps to {}, with {} of them remaining; try `--method backward-euler` with a --step of your choice, or a stiff solver through `hamel::adapter`",
                 short(time),
                 short(rate),
                 short(step),

@@ -69,17 +69,17 @@ impl Stepping {
         }
         if self.step.is_some() && self.tol.is_some() {
             return Err(Failure::usage(
-                "a step or a tolerance is needed, not both: by a tolerance steps are chosen",
+                "give a step or a tolerance, not both: a tolerance chooses the steps",
             ));
         }
         if !self.lambda.is_none_or(is_rate) {
             return Err(Failure::usage(
-                "the rate at which rk4 leads back to the constraint has to be a number, zero or greater",
+                "the rate at which rk4 stabilizes the constraint has to be a number, zero or greater",
             ));
         }
         match self.lambda.is_some() && self.method != "rk4" {
             true => Err(Failure::usage(
-                "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
+                "--lambda works only with --method rk4: the other methods keep the constraint without it",
             )),
             false => Ok(()),
         }
@@ -102,7 +102,7 @@ impl Stepping {
         };
         if samples > SAMPLES {
             return Err(Failure::usage(format!(
-                "there would be {} samples, and no more than {} are kept: take them less often",
+                "there would be {} samples, but at most {} are kept: take them less often",
                 short(samples),
                 short(SAMPLES)
             )));
@@ -139,7 +139,7 @@ impl Stepping {
     fn tolerance(&self, chosen: &Chosen) -> Result<Option<f64>, Failure> {
         match self.tol {
             Some(_) if !adapts(chosen) => Err(Failure::usage(format!(
-                "--tol goes with --method rkmk54 and rkmk8, which choose their steps; {} takes --step",
+                "--tol works only with --method rkmk54 and rkmk8, which choose their steps; {} takes --step",
                 chosen.name
             ))),
             None if adapts(chosen) && chosen.reason.is_some() && self.step.is_none() => {
@@ -170,13 +170,13 @@ fn is_rate(value: f64) -> bool {
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if is_positive(value) => Ok(value),
-        _ => Err("a number greater than zero is needed".into()),
+        _ => Err("expected a number greater than zero".into()),
     }
 }
 
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if is_rate(value) => Ok(value),
-        _ => Err("a number, zero or greater, is needed".into()),
+        _ => Err("expected a number, zero or greater".into()),
     }
 }

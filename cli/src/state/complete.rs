@@ -198,7 +198,7 @@ impl Completion<'_> {
                 false => open.residual,
             };
             vec![format!(
-                "velocity: violates {} by {residual:.2e}, and no change of velocities that are not given keeps it",
+                "velocity: violates {} by {residual:.2e}, and no choice of the velocities that are not given satisfies it",
                 self.text(open)
             )]
         })?;
@@ -331,7 +331,7 @@ impl Completion<'_> {
 
     fn open(&self, open: Open) -> String {
         format!(
-            "coord: this configuration leaves {} open by {:.2e}, and no change of coordinates that are not given closes it",
+            "coord: this configuration leaves {} open by {:.2e}, and no choice of the coordinates that are not given closes it",
             self.text(open),
             open.residual
         )

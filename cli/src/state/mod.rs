@@ -104,7 +104,7 @@ impl State {
                     .iter()
                     .rfind(|c| c.offset <= offset)
                     .map_or("", |c| c.name.as_str());
-                errors.push(format!("coord.{name}: a reflection, its determinant is -1"));
+                errors.push(format!("coord.{name}: a reflection: its determinant is -1"));
             }
             offset += block.len();
         }

@@ -23,7 +23,7 @@ pub fn last(
         Some(Value::Object(sample)) => sample,
         Some(other) => {
             return Err(vec![format!(
-                "{place}: a sample expected, {} found",
+                "{place}: expected a sample, found {}",
                 kind(other)
             )]);
         }
@@ -36,7 +36,7 @@ pub fn last(
             None => {
                 reader.error(
                     &place,
-                    format!("`{name}` is missing: a list is read as `hamel simulate --out` writes it, its last sample with all coordinates and velocities"),
+                    format!("`{name}` is missing: the last sample of a list, as `hamel simulate --out` writes it, has to give all coordinates and velocities"),
                 );
                 None
             }

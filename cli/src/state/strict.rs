@@ -68,7 +68,7 @@ impl<'de> Visitor<'de> for Reader {
         while let Some(name) = object.next_key::<String>()? {
             if members.contains_key(&name) {
                 return Err(A::Error::custom(format_args!(
-                    "`{name}` stands twice in one object"
+                    "`{name}` occurs twice in one object"
                 )));
             }
             let Strict(value) = object.next_value()?;
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn a_name_that_stands_twice_is_refused_with_its_place() {
         let error = parse("{\"coord\": {\"q\": 1,\n \"q\": 2}}").expect_err("twice");
-        assert_eq!(error, "`q` stands twice in one object at line 2 column 4");
+        assert_eq!(error, "`q` occurs twice in one object at line 2 column 4");
         // The same name in two objects is not repeated.
         assert!(parse("{\"a\": {\"q\": 1}, \"b\": {\"q\": 1}}").is_ok());
         assert!(parse("\u{feff}{\"q\": 1}").is_ok());

@@ -11,7 +11,7 @@ pub fn plainly(value: Value) -> Result<Value, String> {
             for (name, value) in members {
                 let known = plain(&name);
                 if all.insert(known.clone(), plainly(value)?).is_some() {
-                    return Err(format!("{name}: given twice, as `{known}`, too"));
+                    return Err(format!("{name}: given twice, also as `{known}`"));
                 }
             }
             Value::Object(all)

@@ -154,8 +154,8 @@ const LONG: &str = "\
                                                  body (rad); of a pose X so X.R, and its position as X.p
 A single number stands for all entries. Arguments may be expressions of parameters that other items do not vary:
 `m = normal(m, m / 10)` is about the value that m has. A member begins at the start that the description would have
-if it contained its numbers: what is not varied follows where prescribed motion, loops and other constraints ask for
-it, and else stays.
+if it contained its numbers: what is not varied is unchanged, unless prescribed motion, loops or other constraints
+determine it.
 
 --keep takes items, `;` between them:
   end                      the time at which the run ended, coordinates and velocities; where the description declares
@@ -184,7 +184,9 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
         &arguments.out,
         &arguments.stepping,
     ) else {
-        return Err(Failure::usage("FILE, --vary, --until and --out are needed"));
+        return Err(Failure::usage(
+            "FILE, --vary, --until and --out are required",
+        ));
     };
     stepping.check()?;
     let plot = arguments.plot.as_deref();
@@ -200,7 +202,7 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     let source = Source::open(file, &arguments.robot)?.in_numbers();
     if arguments.submit.is_some() && source.is_stdin() {
         return Err(Failure::usage(
-            "--submit takes a description in a file: tasks read it, too",
+            "--submit takes a description in a file: the tasks also read it",
         ));
     }
     let (mut sweep, columns) = prepared(arguments, &source, vary, stepping)?;
@@ -254,13 +256,13 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
 fn members(text: &str) -> Result<u64, String> {
     let number = text.parse::<u64>().ok();
     let number = number.filter(|number| (1..=i64::MAX as u64).contains(number));
-    number.ok_or_else(|| "a whole number from 1 to 2^63 - 1 is needed".into())
+    number.ok_or_else(|| "expected a whole number from 1 to 2^63 - 1".into())
 }
 
 /// Parses a seed.
 fn seed(text: &str) -> Result<u64, String> {
     text.parse()
-        .map_err(|_| "a whole number from 0 to 2^64 - 1 is needed".into())
+        .map_err(|_| "expected a whole number from 0 to 2^64 - 1".into())
 }
 
 /// Prepares the data that members share, and the columns of their rows.
@@ -300,7 +302,7 @@ fn prepared(
         .find(|(place, _)| given.as_ref().is_some_and(|given| given.has(*place)))
     {
         return Err(Failure::usage(format!(
-            "`{name}` is varied, and given by --input or --inputs: one of the two is needed"
+            "`{name}` is varied and also given by --input or --inputs: remove one of the two"
         )));
     }
     let columns = Columns {
@@ -320,7 +322,7 @@ fn prepared(
         generated,
     };
     let system = family.member(&unvaried).map_err(|early| {
-        let message = "where nothing is varied, no member can start";
+        let message = "no member can start, even if nothing is varied";
         Failure::failed(format!("{message}: {}", early.why))
     })?;
     let mut plan = stepping.plan(&family.generated, &system, None)?;
@@ -382,7 +384,7 @@ fn fixed(
         .unwrap_or_else(|| members.div_ceil(SHARDS).clamp(FEWEST, MOST));
     if members.div_ceil(size) > MOST_SHARDS {
         return Err(Failure::usage(format!(
-            "{} members make more than {} files: a larger --shard-size is needed",
+            "{} members make more than {} files: use a larger --shard-size",
             grouped(members),
             grouped(MOST_SHARDS)
         )));
@@ -450,7 +452,7 @@ fn summary(out: &Path, done: Done, before: u64) -> String {
         grouped(done.failed)
     );
     if before > 0 {
-        text.push_str(&format!("; {} were there before", grouped(before)));
+        text.push_str(&format!("; {} existed before", grouped(before)));
     }
     text.push('\n');
     text

@@ -555,7 +555,7 @@ class System:
         if len(given) > 1:
             raise HamelError(f"samples are taken in one way, {' and '.join(given)} were given")
         if rate is not None and method != "rk4":
-            raise HamelError("`rate` goes with the method rk4 alone: the other methods keep the constraint by themselves")
+            raise HamelError("`rate` works only with the method rk4: the other methods keep the constraint without it")
         if hold and not isinstance(inputs, str | os.PathLike):
             raise HamelError("`hold` goes with a file of inputs, whose values it holds until the next row")
         numbers = {"step": step, "tol": tol, "rate": rate, "spacing": spacing}

@@ -364,7 +364,7 @@ fn a_table_in_a_file_is_the_same_through_every_front_end() {
     assert_ne!(other.hash, generated.hash);
     // Without a folder there are no files.
     let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
-    assert!(errors[0].message.contains("in which folder"));
+    assert!(errors[0].message.contains("is not known"));
 }
 
 /// An included file is the same through every front end: its path is relative to the description, or to the package for
@@ -397,5 +397,5 @@ fn an_included_file_is_the_same_through_every_front_end() {
     assert_eq!(prettyplease::unparse(&file).trim(), items(&built).trim());
     // Without a folder there are no files.
     let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
-    assert!(errors[0].message.contains("in which folder"));
+    assert!(errors[0].message.contains("is not known"));
 }

@@ -75,7 +75,7 @@ impl Expressions {
                     _ => format!("{count} numbers"),
                 };
                 let (needed, found) = (numbers(places.len()), numbers(count));
-                return Err(wrong(format!("`{name}` is {needed}, this is {found}")));
+                return Err(wrong(format!("`{name}` is {needed}, but this is {found}")));
             }
             all.push((places, interpreter));
         }
@@ -211,7 +211,7 @@ struct Compiled {
 /// Compiles an expression as the output of a description.
 fn compiled(known: &[String], shape: &str, expression: &str) -> Result<Compiled, String> {
     if expression.contains(';') {
-        return Err("one expression is needed".into());
+        return Err("expected one expression".into());
     }
     let text = format!(
         "system Input {{
@@ -248,7 +248,7 @@ fn compiled(known: &[String], shape: &str, expression: &str) -> Result<Compiled,
                 mentions: mentions.map(String::from).collect(),
             })
         }
-        None => Err("one expression is needed".into()),
+        None => Err("expected one expression".into()),
     }
 }
 

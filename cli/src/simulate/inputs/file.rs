@@ -40,7 +40,7 @@ impl Table {
                 all => format!("the inputs are {}", all.join(", ")),
             };
             return Err(wrong(format!(
-                "no column of an input beside `{TIME}`: {all}"
+                "no column besides `{TIME}` is an input: {all}"
             )));
         }
         Ok(Table {
@@ -113,7 +113,7 @@ pub fn times(path: &Path, begin: f64, until: f64) -> Result<Vec<f64>, Failure> {
         .find(|(time, _)| !(0.0..=until).contains(*time));
     match outside {
         Some((time, (line, _))) => Err(wrong(format!(
-            "line {line}: t = {} is outside of the run, which is from {} to {}",
+            "line {line}: t = {} is outside the run, which is from {} to {}",
             short(*time + begin),
             short(begin),
             short(begin + until)
@@ -152,7 +152,7 @@ fn rows(path: &Path) -> Result<(Vec<String>, Vec<Row>), String> {
         let number = |(entry, name): (&str, &String)| match entry.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(format!(
-                "line {line}: `{entry}` in the column `{name}` is no number"
+                "line {line}: `{entry}` in the column `{name}` is not a number"
             )),
         };
         let row: Result<Vec<f64>, String> = record.iter().zip(&names).map(number).collect();
@@ -165,17 +165,17 @@ fn rows(path: &Path) -> Result<(Vec<String>, Vec<Row>), String> {
 fn increasing(names: &[String], rows: &[Row]) -> Result<Vec<f64>, String> {
     let Some(column) = names.iter().position(|name| name == TIME) else {
         return Err(format!(
-            "no column `{TIME}`: the first line has the names of the columns, as in `t,F`"
+            "no column `{TIME}`: the first line has to name the columns, as in `t,F`"
         ));
     };
     let times: Vec<f64> = rows.iter().map(|(_, row)| row[column]).collect();
     if times.is_empty() {
-        return Err("there are no rows behind the header".into());
+        return Err("there are no rows after the header".into());
     }
     let falling = times.windows(2).position(|pair| pair[0] >= pair[1]);
     match falling {
         Some(place) => Err(format!(
-            "line {}: t = {} is not behind t = {} of the row before",
+            "line {}: t = {} is not after t = {} of the previous row",
             rows[place + 1].0,
             short(times[place + 1]),
             short(times[place])
