@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// joints on one link in the order of their names. Inertias are exact constants unless --params is given. Every joint
 /// gets an input, its motor's torque or force. Limits become documented constants. Numbers corrected as rounding errors
 /// are listed on standard error; anything that changes the motion and is not understood or not modelled, such as
-/// Coulomb friction, is a warning; both also stand in the description.
+/// Coulomb friction, is a warning; both are also comments of the description.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel import arm.urdf -o arm.eom

@@ -19,7 +19,7 @@ pub fn write(report: &Report, picture: impl Fn(&Case) -> Option<String>) -> Stri
             };
             line(&mut text, &[&peer.name, measured, &peer.note]);
         }
-        text.push_str("\nTo have all of them in the report:\n\n```sh\n");
+        text.push_str("\nTo include all of them in the report:\n\n```sh\n");
         for peer in &report.peers {
             let _ = writeln!(text, "# {}\n{}", peer.name, peer.start);
         }

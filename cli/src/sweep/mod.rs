@@ -152,7 +152,7 @@ const LONG: &str = "\
   input F = grid(0, 10, 11)                      11 numbers from 0 to 10; several grids make all combinations
   start R = normal(0, 0.1)                       a rotation, by the vector of a turn from its start, about axes of the
                                                  body (rad); of a pose X so X.R, and its position as X.p
-A single number stands for all entries. Arguments may be expressions of parameters that other items do not vary:
+A single number applies to all entries. Arguments may be expressions of parameters that other items do not vary:
 `m = normal(m, m / 10)` is about the value that m has. A member begins at the start that the description would have
 if it contained its numbers: what is not varied is unchanged, unless prescribed motion, loops or other constraints
 determine it.
@@ -424,7 +424,7 @@ fn fixed(
         ("files of the description", Json::texts(&source.texts()?)),
     ];
     let manifest = Manifest::new(members, size, fixed);
-    manifest.map_err(|why| Failure::usage(format!("this sweep cannot be written down: {why}")))
+    manifest.map_err(|why| Failure::usage(format!("this sweep cannot be recorded: {why}")))
 }
 
 /// Operations of each function that members evaluate.

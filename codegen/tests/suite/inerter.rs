@@ -138,7 +138,7 @@ fn wrong_ones_are_refused() {
     for (statement, message) in [
         (
             "inerter inertance 1 on x;",
-            "what an inerter acts on has to be a rate, linear in the velocities",
+            "what an inerter acts on has to be a rate that is linear in the velocities",
         ),
         (
             "inerter inertance 1 on 0 * v;",

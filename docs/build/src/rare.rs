@@ -101,9 +101,9 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/externals.rs",
-        "\"one function with several components may do",
+        "\"combine some of them into one function",
         "more than … functions in Rust",
-        "there are too many `extern fn`: one function with several components may do for some of them",
+        "there are too many `extern fn`: combine some of them into one function with several components",
     ),
     (
         "lower/externals.rs",

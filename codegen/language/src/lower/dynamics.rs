@@ -269,7 +269,7 @@ fn function(
     report.push(match closest(text, known) {
         Some(near) => error.help(format!("did you mean `{near}`?")),
         None => error.help(format!(
-            "the functions are {}, and the outputs and invariants by their names; `y_slopes` are the slopes of an output y, `jacobian f` is the kinematics of a frame f; `all` stands for what a description without `generate` gets",
+            "the functions are {}, and the outputs and invariants by their names; `y_slopes` are the slopes of an output y, `jacobian f` is the kinematics of a frame f; `all` stands for the functions of a description without `generate`",
             functions.join(", ")
         )),
     });

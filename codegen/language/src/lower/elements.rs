@@ -283,7 +283,7 @@ impl Reader<'_, '_> {
         } else if linear {
             return Some(rate);
         } else {
-            format!("{on} has to be a rate, linear in the velocities")
+            format!("{on} has to be a rate that is linear in the velocities")
         };
         self.evaluator.error(
             Diagnostic::new(expr.span, message)

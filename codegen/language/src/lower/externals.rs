@@ -34,7 +34,7 @@ pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &m
             let message = format!("more than {} functions in Rust", Component::MOST);
             report.push(
                 Diagnostic::new(name.span, message)
-                    .help("one function with several components may do for some of them"),
+                    .help("combine some of them into one function with several components"),
             );
             break;
         }

@@ -181,7 +181,7 @@ impl Reader<'_, '_> {
     /// Reads a vector in world axes that depends at most on the configuration.
     fn place(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
         let value = self.evaluator.vec3(expr)?;
-        let help = "it is given in world axes; an axis fixed in a body is `R * [0, 0, 1]`";
+        let help = "give it in world axes; an axis fixed in a body is `R * [0, 0, 1]`";
         self.configuration(&Value::Vector(value.to_vec()), expr.span, what, help)?;
         Some(value)
     }

@@ -266,7 +266,7 @@ fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Dia
         if class & !(class::PARAM | class::CONFIGURATION) != 0 {
             return error(
                 "a constraint may depend only on coordinates, not on velocities, inputs or states",
-                "velocities are constrained by the choice of `velocity` and `rate`",
+                "constrain velocities by the choice of `velocity` and `rate`",
             );
         }
         if class & class::COORD == 0 {

@@ -410,7 +410,7 @@ impl<'a> World<'a> {
                 let (first, last) = (array.keys().next(), array.keys().next_back());
                 let range = first.zip(last).map(|(first, last)| {
                     let of = |indices: &[i64]| shown(name, Some(indices), ending);
-                    format!("they run from `{}` to `{}`", of(first), of(last))
+                    format!("the names run from `{}` to `{}`", of(first), of(last))
                 });
                 let error = Diagnostic::new(span, format!("there is no `{missing}`"));
                 Err(error.help(range.unwrap_or_default()))

@@ -88,7 +88,7 @@ impl<'a> Inference<'a> {
                     (Pose, _) | (_, Pose) => {
                         "a pose is multiplied by a pose or, on its right, by a vector of 3"
                     }
-                    _ => "the left needs as many columns as the right has rows",
+                    _ => "the left factor needs as many columns as the right factor has rows",
                 };
                 let (first, second) = (first.describe(), second.describe());
                 let message = format!("cannot multiply {first} by {second}");

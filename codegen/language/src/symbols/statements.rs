@@ -221,8 +221,9 @@ fn prescribed(target: &Target, of_velocity: bool, checker: &mut Checker) {
         _ if of_velocity => {
             let message = format!("`{}` is not a velocity", written::target(target));
             checker.error(
-                Diagnostic::new(target.span(), message)
-                    .help("the rate of a velocity is given: `prescribe rate(v) = a;`"),
+                Diagnostic::new(target.span(), message).help(
+                    "only the rate of a velocity can be prescribed: `prescribe rate(v) = a;`",
+                ),
             );
         }
         Some((Kind::State, declared)) => {
@@ -277,13 +278,13 @@ fn jacobian(frame: &Ident, axes: Option<&Ident>, checker: &mut Checker) {
         checker.error(match near {
             Some(near) => error.help(format!("did you mean `{near}`?")),
             None => error.help(
-                "`jacobian f` is the kinematics of a frame f that the description has by `frame` or by a joint's `moves`",
+                "`jacobian f` is the kinematics of a frame f that is declared by `frame` or by `moves` of a joint",
             ),
         });
     }
     let known = |axes: &Ident| axes.name == *name || matches!(axes.name.as_str(), "body" | "world");
     if let Some(axes) = axes.filter(|axes| !known(axes)) {
-        let message = format!("components are in axes of `world` or of `{name}`");
+        let message = format!("components can be only in axes of `world` or of `{name}`");
         let help = format!("write `jacobian {name} in world` or `jacobian {name} in {name}`");
         checker.error(Diagnostic::new(axes.span, message).help(help));
     }

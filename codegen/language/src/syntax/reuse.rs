@@ -136,7 +136,7 @@ pub(super) fn component(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 }
 
 /// Kinds of parameters, for messages.
-const PARAMETERS: &str = "a parameter of a component is a frame, `mount: frame`, of a shape, `hip: vec3`, or any expression, `side` or `side = 1`";
+const PARAMETERS: &str = "a parameter of a component is a frame, `mount: frame`, a value of a shape, `hip: vec3`, or any expression, `side` or `side = 1`";
 
 /// `mount: frame`, `hip: vec3`, `side = 1`
 fn parameter(cursor: &mut Cursor<'_>) -> Parsed<Parameter> {
