@@ -11,14 +11,14 @@ use std::ffi::OsString;
 const EXAMPLES: &str = "\
 Examples:
   hamel check heavy_top.eom                     prove the identities behind the equations
-  hamel tables heavy_top.eom --of gamma,M       what stands in the paper
-  hamel regressor arm.urdf                      which inertias forces depend on
+  hamel tables heavy_top.eom --of gamma,M       the symbols of the equations
+  hamel regressor arm.urdf                      the inertial parameters that matter
   hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
   hamel draw heavy_top.eom --out top.svg        a picture of the mechanism
-  hamel sweep heavy_top.eom --vary … --out runs  many runs, with parameters and starts that differ
-  hamel compare heavy_top.eom --until 10        error of methods against what they cost
-  hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
+  hamel sweep heavy_top.eom --vary … --out runs  many runs with varied parameters and starts
+  hamel compare heavy_top.eom --until 10        error of methods against their cost
+  hamel emit heavy_top.eom -o heavy_top.rs      Rust source code
   hamel import arm.urdf -o arm.eom              a robot in URDF as a description
 
 FILE is a description (.eom) or a robot (.urdf); `-` reads standard input.

@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
   hamel emit heavy_top.eom -o src/heavy_top.rs      to a file
   hamel emit heavy_top.eom -o src/heavy_top.rs --check    in CI: is the file up to date?
   hamel emit --language c heavy_top.eom -o src/heavy_top  C99: src/heavy_top.h and src/heavy_top.c
-  hamel emit --language c --precision float drone.eom -o drone    the same of `float`
-C to the terminal is the header and what belongs to it in one: a source that compiles alone.")]
+  hamel emit --language c --precision float drone.eom -o drone    the same with `float`
+C on the terminal is the header and the source in one, which compiles alone.")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
@@ -136,7 +136,7 @@ fn stem(out: &Path) -> Result<String, Failure> {
     match stem {
         Some(stem) if includable(stem) => Ok(stem.into()),
         _ => Err(Failure::usage(format!(
-            "{}: no name that C can include, or that of a header of C; name the files without their ending, as in `-o src/arm`",
+            "{}: not a name that C can include, or the name of a C header; give it without the extension, as in `-o src/arm`",
             out.display()
         ))),
     }
@@ -159,7 +159,7 @@ fn write(arguments: &Arguments, out: &Path, code: &str) -> Result<(), Failure> {
                 None => String::new(),
             };
             Err(Failure::failed(format!(
-                "{} is stale; write it again with `hamel emit {language}{precision}{} -o {}`",
+                "{} is out of date; regenerate it with `hamel emit {language}{precision}{} -o {}`",
                 out.display(),
                 arguments.file.display(),
                 arguments.out.as_deref().unwrap_or(out).display()

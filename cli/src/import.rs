@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// joints on one link in the order of their names. Inertias are exact constants unless --params is given. Every joint
 /// gets an input, its motor's torque or force. Limits become documented constants. Numbers corrected as rounding errors
 /// are listed on standard error; anything that changes the motion and is not understood or not modelled, such as
-/// Coulomb friction, is a warning; both also stand in the description.
+/// Coulomb friction, is a warning; both are also comments of the description.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel import arm.urdf -o arm.eom
@@ -21,7 +21,7 @@ use std::path::PathBuf;
   hamel import arm.urdf --lock finger_joint1=0.04 --lock finger_joint2=0.04
   hamel import arm.urdf --params -o arm.eom
 
-The other commands take the file, too:
+The other commands also take the file:
   hamel ops quadruped.urdf --floating")]
 pub struct Arguments {
     /// Robot; `-` for standard input.
@@ -43,7 +43,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = source::read(&arguments.file)?;
     if !source.is_urdf() {
         return Err(Failure::usage(format!(
-            "{}: this is no URDF, which is XML and begins with `<`; a description needs no import",
+            "{}: this is not URDF, which is XML and begins with `<`; a description needs no import",
             source.path
         )));
     }

@@ -17,12 +17,12 @@ pub fn apart<'a>(
         let shown = path.display();
         if read.contains(&place) {
             return Err(Failure::usage(format!(
-                "{option} {shown}: this file is read, and would be overwritten; give the result another name"
+                "{option} {shown}: this file is an input and would be overwritten; give the result another name"
             )));
         }
         if let Some((other, _)) = written.iter().find(|(_, other)| *other == place) {
             return Err(Failure::usage(format!(
-                "{option} {shown}: {other} writes this file already; give each its own name"
+                "{option} {shown}: {other} already writes this file; use different names"
             )));
         }
         written.push((option, place));
@@ -38,7 +38,7 @@ pub fn svg(option: &str, path: Option<&Path>) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::usage(format!(
-        "{option} {}: a picture is written as SVG, to a name that ends in .svg",
+        "{option} {}: a picture is written as SVG, so its name has to end in .svg",
         path.display()
     )))
 }

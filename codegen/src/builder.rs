@@ -141,7 +141,7 @@ impl Builder {
             match folder.filter(|folder| !folder.is_dir()) {
                 None => errors.extend(made.write(&file, text).err()),
                 Some(folder) if missing.insert(folder.to_owned()) => errors.push(format!(
-                    "there is no folder {} to write to; make it first",
+                    "the folder {} does not exist; create it first",
                     folder.display()
                 )),
                 Some(_) => {}
@@ -159,20 +159,20 @@ impl Builder {
         let shown = path.display();
         let Some(stem) = path.file_stem() else {
             return Err(format!(
-                "`{shown}` names no file: give the path of a description, such as `models/arm.eom`"
+                "`{shown}` is not the path of a file: give the path of a description, such as `models/arm.eom`"
             ));
         };
         let stem = stem.to_string_lossy().into_owned();
         if self.c.is_some() && !emit::c::includable(&stem) {
             return Err(format!(
-                "{shown}: C cannot include `{stem}.h`, or has such a header; rename it, without quotes, `?`, `\\` and line breaks"
+                "{shown}: C cannot include `{stem}.h`, or has a header of this name; rename it, without quotes, `?`, `\\` and line breaks"
             ));
         }
         if let Some(other) = stems.get(&stem) {
             return Err(
                 match place(path).is_some_and(|file| place(other) == Some(file)) {
                     true => format!(
-                        "{shown} is given twice, and has one {stem}.rs; leave it out, or write it to another folder by a `Builder` of its own"
+                        "{shown} is given twice, but has only one {stem}.rs; remove it, or write it to another folder with another `Builder`"
                     ),
                     false => format!(
                         "{} and {shown} would both be written to {stem}.rs; rename one of them",
@@ -223,7 +223,7 @@ impl Made {
     fn write(&self, file: &Path, text: &str) -> Result<(), String> {
         if place(file).is_some_and(|file| self.read.contains(&file)) {
             return Err(format!(
-                "cannot write {}: this file is read; write to another folder, or rename it",
+                "cannot write {}: this file is an input; write to another folder, or rename it",
                 file.display()
             ));
         }
@@ -257,11 +257,11 @@ fn watch(path: &Path) -> io::Result<()> {
     let said = |path: &&str| !path.contains(['\n', '\r']) && path.trim_end() == *path;
     let Some(path) = path.to_str().filter(said) else {
         return Err(io::Error::other(
-            "Cargo cannot be told of a path that has a line break, ends in a blank or is not UTF-8; rename it",
+            "Cargo cannot watch a path that has a line break, ends in a blank or is not UTF-8; rename it",
         ));
     };
     writeln!(io::stdout(), "cargo:rerun-if-changed={path}")
-        .map_err(|error| io::Error::other(format!("Cargo cannot be told to watch it: {error}")))
+        .map_err(|error| io::Error::other(format!("Cargo cannot watch it: {error}")))
 }
 
 impl Builder {
@@ -283,7 +283,7 @@ impl Builder {
                     .trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n'])
                     .starts_with('<')
                 {
-                    return Err(format!("{shown} is no description: {ROBOTS}"));
+                    return Err(format!("{shown} is not a description: {ROBOTS}"));
                 }
                 let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
                 let folder = path.parent().unwrap_or(Path::new(""));
@@ -343,7 +343,7 @@ fn apart(
 ) -> Result<(), Diagnostic> {
     let names = emit::c::functions(&generated.program);
     if let Some((name, other)) = names.iter().find_map(|name| named.get_key_value(name)) {
-        let message = format!("`{name}` in C would be a function of {other}, too");
+        let message = format!("`{name}` in C would also be a function of {other}");
         return Err(Diagnostic::new(generated.model.span, message)
             .help("give one of the two systems another name"));
     }
@@ -389,8 +389,8 @@ pub fn written_in_c(
     precision: Precision,
 ) -> Result<emit::c::Files, Vec<Diagnostic>> {
     let refused = generated.model.externals.iter().map(|&place| {
-        Diagnostic::new(place, "C has no function that is given in Rust")
-            .help("write what it gives as an expression, `fn`, or as a table")
+        Diagnostic::new(place, "C cannot call a function that is given in Rust")
+            .help("write it as an expression, a `fn` or a table")
     });
     let refused: Vec<Diagnostic> = refused.collect();
     if !refused.is_empty() {

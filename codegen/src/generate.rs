@@ -102,11 +102,11 @@ impl LeftOut {
     pub fn said(&self) -> String {
         let mut said = match self.error.lacking {
             Some(Needs::Inertia) => {
-                "the system has no inertia; functions that need it, such as `accel`, are not there"
+                "the system has no inertia; functions that need it, such as `accel`, are not generated"
                     .into()
             }
             _ => format!(
-                "{}; functions that need its inverse, such as `accel`, are not there",
+                "{}; functions that need its inverse, such as `accel`, are not generated",
                 self.error.message
             ),
         };
@@ -330,12 +330,12 @@ fn curved(model: &Model, program: &Program) -> Option<Diagnostic> {
         let place = usize::from(component.function);
         let name = &graph.externals().get(place)?.name;
         let message = format!(
-            "`{}` needs second derivatives of `{name}`, a function in Rust that has the first ones",
+            "`{}` needs second derivatives of `{name}`, a function in Rust that has only first derivatives",
             function.name
         );
         let span = model.externals.get(place).copied().unwrap_or(model.span);
         return Some(Diagnostic::new(span, message).help(
-            "leave out what is a rate of the function, or write it as an expression or a `table`",
+            "remove the rate of the function, or write the function as an expression or a `table`",
         ));
     }
     None

@@ -56,7 +56,7 @@ fn shown(problems: &[Problem], level: Level, path: &str, text: &str, color: bool
 }
 
 /// Help for a robot without masses.
-const BARE: &str = "no link of the robot that moves has mass: give the links their `<inertial>`";
+const BARE: &str = "no moving link of the robot has mass: give the links an `<inertial>`";
 
 /// Shows errors about the description of a robot, each at the part of the URDF from which the statement was made, under
 /// the name `path`.

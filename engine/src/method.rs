@@ -72,7 +72,7 @@ const METHODS: &[Entry] = entries! {
     "euler" Baseline Any |_| Stepper::Baseline(Baseline::ForwardEuler), "baseline; order 1";
     "backward-euler" Baseline Any |_| Stepper::General(General::BackwardEuler), "stiff systems; implicit, order 1";
     "semi-implicit-euler" Baseline Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as in game engines";
-    "rk4" Baseline Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, led back at the rate --lambda";
+    "rk4" Baseline Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, stabilized at the rate --lambda";
     "rk4-projected" Baseline Any |_| Stepper::Baseline(Baseline::Rk4Projected), "baseline; the same, projected after each step";
     "slide" Baseline Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";
     "buss1" Baseline Split |_| Stepper::Buss(Buss::First), "baseline; order 1, keeps angular momentum";

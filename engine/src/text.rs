@@ -27,7 +27,7 @@ impl<'a> Piece<'a> {
                 ')' | ']' | '}' => match open.pop() {
                     Some((wanted, _)) if wanted == letter => {}
                     Some((wanted, _)) => {
-                        return Err(wrong(format!("`{wanted}` is expected before `{letter}`")));
+                        return Err(wrong(format!("expected `{wanted}` before `{letter}`")));
                     }
                     None => return Err(wrong(format!("`{letter}` closes nothing"))),
                 },

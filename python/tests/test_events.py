@@ -161,7 +161,7 @@ def test_wrong_events_are_told(pendulum):
         ({"a": "q", "b": "speed"}, "speed"),
         ({"a": "[q, w]"}, "one number"),
         ({"a": "q; w"}, "one expression"),
-        ({"a": ""}, "an expression is needed"),
+        ({"a": ""}, "expected an expression"),
         ({"a": "(q"}, "missing"),
         ({"a": 3.0}, "an expression or a function"),
         ({"a": hamel.Event("q", terminal=2)}, "True or False"),

@@ -121,7 +121,7 @@ def test_words_of_robots_that_are_not_understood_are_warned_of(robots, tmp_path)
     text = (robots / "double_pendulum_description" / "urdf" / "double_pendulum.urdf").read_text()
     file = tmp_path / "robot.urdf"
     file.write_text(text.replace("</robot>", "<tendon name='t'/></robot>"))
-    with pytest.warns(UserWarning, match="`<tendon>` is nothing that `<robot>` has in URDF, and is left out"):
+    with pytest.warns(UserWarning, match="`<tendon>` is not an element of `<robot>` in URDF and is left out"):
         hamel.System.from_urdf(file)
 
 

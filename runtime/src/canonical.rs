@@ -35,7 +35,7 @@ use crate::system::System;
 #[diagnostic::on_unimplemented(
     message = "the momenta of `{Self}` are not generated",
     label = "this method steps generalised momenta",
-    note = "systems with constraints on velocities have none; a `generate` list has to name momentum_rate and velocity_from_momentum"
+    note = "systems with constraints on velocities have none; for others add momentum_rate and velocity_from_momentum to `generate`"
 )]
 pub trait Canonical: System {
     /// Returns p = M(x) ξ.

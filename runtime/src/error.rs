@@ -76,7 +76,7 @@ impl fmt::Display for Singular {
             Self::Mass => f.write_str("the mass matrix is not positive definite"),
             Self::Constraints { row } => write!(
                 f,
-                "the constraints depend on one another: row {row} (from 0) adds nothing to the others"
+                "the constraints depend on one another: row {row} (from 0) follows from the others"
             ),
             Self::Kinematics { pivot } => write!(
                 f,
@@ -189,19 +189,19 @@ impl fmt::Display for StepError {
             Self::NonFinite { time } => {
                 write!(
                     f,
-                    "state not finite, in the step from t = {time}: shorten the step, or check inputs and parameters"
+                    "the state is not finite, in the step from t = {time}: shorten the step, or check inputs and parameters"
                 )
             }
             Self::Shape {
                 part,
                 expected,
                 found,
-            } => write!(f, "{part}: {expected} entries expected, {found} found"),
+            } => write!(f, "{part}: expected {expected} entries, found {found}"),
             Self::InvalidStep { step, span } => {
                 // Numbers are formatted with `Debug`, which never writes long rows of zeros.
                 write!(
                     f,
-                    "a time of {span:?} cannot be covered by steps of {step:?}: a step is a finite number with the sign of the time, and not so short that adding it changes nothing"
+                    "a time of {span:?} cannot be covered by steps of {step:?}: a step has to be finite, have the sign of the time and be long enough to change it"
                 )
             }
             Self::NotConverged { time, iterations } => write!(
@@ -211,8 +211,8 @@ impl fmt::Display for StepError {
             ),
             Self::StepTooSmall { time, step } => write!(
                 f,
-                "the tolerance asks for a step of {step:e} at t = {time}, which time does not resolve: \
-                 relax it; the motion may be singular here"
+                "the tolerance requires a step of {step:e} at t = {time}, which is too short to change \
+                 the time: relax it; the motion may be singular here"
             ),
             Self::InvalidTolerance { least } => write!(
                 f,
@@ -220,12 +220,12 @@ impl fmt::Display for StepError {
             ),
             Self::Stiff { time, step, rate } => write!(
                 f,
-                "the motion is stiff at t = {time}: a rate of {rate:.1e} per unit of time keeps explicit \
-                 steps at {step:.1e}; take an implicit method, or a stiff solver through `hamel::adapter`"
+                "the motion is stiff at t = {time}: a rate of {rate:.1e} per unit of time limits explicit \
+                 steps to {step:.1e}; use an implicit method, or a stiff solver through `hamel::adapter`"
             ),
             Self::Forces { time } => write!(
                 f,
-                "forces may act, in the step from t = {time}: the closed form is for free motion"
+                "forces may act, in the step from t = {time}: the closed form holds only for free motion"
             ),
         }
     }

@@ -44,7 +44,7 @@ use crate::system::System;
 #[diagnostic::on_unimplemented(
     message = "the equations of `{Self}` do not split into free motion and kicks",
     label = "this method needs a torque-free flow in closed form",
-    note = "`hamel check` on the description says what stands in the way; `Rkmk4` and `Rkmk8` run any system"
+    note = "run `hamel check` on the description for the reason; `Rkmk4` and `Rkmk8` work for any system"
 )]
 pub trait Split: System {
     /// Storage of the rotors.

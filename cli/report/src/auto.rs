@@ -165,7 +165,7 @@ mod tests {
         let good = of(vec![case("a", 1.5e-6), case("b", 1e-6)]).expect("a verdict");
         assert!(good.contains("at most 1.5 times"), "{good}");
         assert!(
-            good.contains("2 of 2 cases; the most is that of a."),
+            good.contains("2 of 2 cases; the maximum is that of a."),
             "{good}"
         );
         assert!(good.contains("never more than 2 times"), "{good}");

@@ -19,7 +19,7 @@ pub fn write(report: &Report, picture: impl Fn(&Case) -> Option<String>) -> Stri
             };
             line(&mut text, &[&peer.name, measured, &peer.note]);
         }
-        text.push_str("\nTo have all of them in the report:\n\n```sh\n");
+        text.push_str("\nTo include all of them in the report:\n\n```sh\n");
         for peer in &report.peers {
             let _ = writeln!(text, "# {}\n{}", peer.name, peer.start);
         }
@@ -57,8 +57,8 @@ pub fn how(report: &Report) -> String {
     let _ = write!(
         text,
         "Work to reach an error is interpolated between runs with doubled numbers of steps; `≤` marks a first run that \
-         is already better than asked, `-` an error that no run reached. Drifts are the largest of a run, relative; the \
-         defect is max |φ(x)|.\n\nTo make this again: `{}`",
+         is already better than required, `-` an error that no run reached. Drifts are the largest of a run, relative; the \
+         defect is max |φ(x)|.\n\nTo reproduce this: `{}`",
         report.command
     );
     text

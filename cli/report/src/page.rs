@@ -79,7 +79,7 @@ fn peers(report: &Report) -> Markup {
         @if !report.peers.is_empty() {
             h2 { "Other programs" }
             table.words {
-                thead { tr { th scope="col" { "program" } th scope="col" { "measured" } th scope="col" { "what" } th scope="col" { "to have it here" } } }
+                thead { tr { th scope="col" { "program" } th scope="col" { "measured" } th scope="col" { "what" } th scope="col" { "to include it here" } } }
                 tbody {
                     @for peer in &report.peers {
                         tr {

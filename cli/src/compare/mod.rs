@@ -122,7 +122,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .map(|missing| format!("\n  {}: {}", missing.method, missing.why))
                 .collect();
             return Err(Failure::failed(format!(
-                "{}: none of the methods that are asked for fits, so that there is nothing to compare{why}",
+                "{}: none of the requested methods fits, so there is nothing to compare{why}",
                 file.display()
             )));
         }

@@ -27,11 +27,11 @@ pub fn print_bodies(
     let found = found.map_err(|why| {
         Failure::failed(match why {
             NoBodies::Nominal(link) => format!(
-                "`{}` is no body in the description: its pseudo-inertia is not positive definite; give it a mass, a centre of mass and an inertia near the real ones",
+                "`{}` is not a physical body in the description: its pseudo-inertia is not positive definite; give it a mass, a centre of mass and an inertia near the real ones",
                 all.links().get(link).map_or("a link", String::as_str)
             ),
             NoBodies::NotConverged => format!(
-                "{path}: no bodies were found near these base parameters: compare them with those that `hamel regressor` prints for the description"
+                "{path}: no bodies were found near these base parameters; compare them with those that `hamel regressor` prints for the description"
             ),
         })
     })?;
@@ -108,7 +108,7 @@ fn read(all: &BaseParameters, path: &str, text: &str) -> Result<Vec<f64>, Failur
             }
         }
         Value::Array(list) => errors.push(format!(
-            "expected {} base parameters, found {}; `hamel regressor` prints which",
+            "expected {} base parameters, found {}; `hamel regressor` lists them",
             beta.len(),
             list.len()
         )),
@@ -123,7 +123,7 @@ fn read(all: &BaseParameters, path: &str, text: &str) -> Result<Vec<f64>, Failur
                         let near = closest(name, kept.iter().copied());
                         let near = near.map(|near| format!("; did you mean `{near}`?"));
                         errors.push(format!(
-                            "{name}: no base parameter is kept by this name{}",
+                            "{name}: no base parameter has this name{}",
                             near.unwrap_or_default()
                         ));
                     }

@@ -28,7 +28,7 @@ use std::path::PathBuf;
   hamel regressor robot.urdf --floating
   hamel regressor arm.eom --format json | jq '.base[].kept'
   hamel regressor arm.eom --format latex > base.tex
-  hamel regressor arm.eom --identified beta.json          masses and inertias that have them")]
+  hamel regressor arm.eom --identified beta.json          masses and inertias from measured ones")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]

@@ -28,7 +28,7 @@ impl Format {
             Some("json") => Ok(Format::Json),
             Some("svg") => Ok(Format::Svg),
             _ => Err(Failure::usage(format!(
-                "{}: a name that ends in .csv, .json or .svg is needed",
+                "{}: the name has to end in .csv, .json or .svg",
                 path.display()
             ))),
         }

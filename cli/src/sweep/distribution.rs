@@ -80,11 +80,11 @@ impl Distribution {
             let (a, b) = (arguments[0][entry], arguments[1][entry]);
             all.push(match name.text {
                 "normal" if b < 0.0 => {
-                    return Err(vec![last.wrong("a standard deviation is not negative")]);
+                    return Err(vec![last.wrong("a standard deviation cannot be negative")]);
                 }
                 "normal" => Distribution::Normal(a, b),
                 _ if a > b => {
-                    let message = format!("the lower end comes first, and {a} is above {b}");
+                    let message = format!("write the lower end first: {a} is above {b}");
                     return Err(vec![given[1].wrong(message)]);
                 }
                 "uniform" => Distribution::Uniform(a, b),
@@ -144,16 +144,16 @@ fn argument(
         Err(_) => numbers(piece.text).map_err(|why| piece.wrong(why))?,
     };
     if !values.iter().all(|value| value.is_finite()) {
-        return Err(piece.wrong("this is no finite number"));
+        return Err(piece.wrong("this is not a finite number"));
     }
     match values.len() {
         1 => Ok(vec![values[0]; entries]),
         found if found == entries => Ok(values),
         found => Err(piece.wrong(format!(
-            "{} needed here, or a single number for all; this is {}",
+            "expected {}, or a single number for all; this is {}",
             match entries {
-                1 => "one number is".into(),
-                _ => format!("{entries} numbers are"),
+                1 => "one number".into(),
+                _ => format!("{entries} numbers"),
             },
             count(found, "number")
         ))),
@@ -192,16 +192,16 @@ mod tests {
     #[test]
     fn wrong_ones_are_refused() {
         for (text, said) in [
-            ("normal(1, -1)", "not negative"),
-            ("uniform(2, 1)", "the lower end comes first"),
+            ("normal(1, -1)", "cannot be negative"),
+            ("uniform(2, 1)", "write the lower end first"),
             ("grid(0, 1, 2.5)", "a whole number"),
             ("grid(0, 1, 0)", "a whole number"),
             ("grid(0, 1)", "takes 3 arguments"),
             ("uniform(p, q)", "p is unknown; q is unknown"),
-            ("uniform(1e999, 2)", "no finite number"),
+            ("uniform(1e999, 2)", "not a finite number"),
             ("uniform(, 2)", "missing"),
             ("uniforn(1, 2)", "no distribution"),
-            ("3", "a distribution is expected"),
+            ("3", "expected a distribution"),
         ] {
             let error = read(text, 1).expect_err(text);
             assert!(error.contains(said), "{text}: {error}");

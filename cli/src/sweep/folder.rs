@@ -47,7 +47,7 @@ impl Part {
         let numbers = numbers.and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
         match numbers {
             Some((number, of)) if (1..=of).contains(&number) => Ok(Part { number, of }),
-            _ => Err("i/N is needed with 1 ≤ i ≤ N, as in 3/16".into()),
+            _ => Err("expected i/N with 1 ≤ i ≤ N, as in 3/16".into()),
         }
     }
 }
@@ -85,7 +85,7 @@ impl Folder {
             }
             None if !shards(path)?.is_empty() => {
                 return Err(Failure::usage(format!(
-                    "{} has shards, and no {MANIFEST} that says what they are of: take another folder",
+                    "{} has shards but no {MANIFEST} that describes them: choose another folder",
                     path.display()
                 )));
             }
@@ -140,7 +140,7 @@ pub fn find_finished(path: &Path, manifest: &Manifest) -> Result<Finished, Failu
     for shard in shards(path)? {
         let name = shard_name(shard);
         let mut refuse = |why: String| {
-            wrong.push(format!("{name}: {why}; without it, it is computed again"));
+            wrong.push(format!("{name}: {why}; remove it to compute it again"));
         };
         let range = match shard < manifest.shards() {
             true => manifest.range(shard),
@@ -152,7 +152,7 @@ pub fn find_finished(path: &Path, manifest: &Manifest) -> Result<Finished, Failu
         match Footer::read(&path.join(&name)) {
             Err(why) => refuse(format!("it cannot be read: {why}")),
             Ok(footer) if footer.sweep.as_deref() != Some(manifest.text.as_str()) => {
-                refuse("it is of another sweep".into());
+                refuse("it belongs to another sweep".into());
             }
             Ok(footer) if footer.members != range.end - range.start => {
                 refuse(format!("it has {} members", footer.members));
@@ -199,7 +199,7 @@ fn shards(path: &Path) -> Result<Vec<u64>, Failure> {
 fn lock(path: &Path, part: Part) -> Result<Vec<File>, Failure> {
     let busy = || {
         Failure::usage(format!(
-            "{}: another process computes {}",
+            "{}: another process is computing {}",
             path.display(),
             match part {
                 Part::ALL_SHARDS => "this sweep, or a part of it".into(),

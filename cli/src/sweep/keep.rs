@@ -92,7 +92,7 @@ fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
     };
     let alone = |piece: Piece<'_>| match piece.split(',').as_slice() {
         [one] if !one.text.is_empty() => Ok(()),
-        _ => Err(piece.wrong("one expression is needed")),
+        _ => Err(piece.wrong("expected one expression")),
     };
     let of = match name.text {
         "max" => Quantity::Max,
@@ -101,12 +101,12 @@ fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
         "event" => return event(inner),
         "at" => {
             let [time, expression] = inner.split(',')[..] else {
-                return Err(inner.wrong("a time and an expression are needed: at(TIME, EXPR)"));
+                return Err(inner.wrong("expected a time and an expression: at(TIME, EXPR)"));
             };
             alone(expression)?;
             let at = time.text.parse::<f64>().ok();
             let Some(at) = at.filter(|at| (0.0..=until).contains(at)) else {
-                return Err(time.wrong(format!("a time from 0 to {until} is needed")));
+                return Err(time.wrong(format!("expected a time from 0 to {until}")));
             };
             return Ok(Item::Quantity(Quantity::At(at), vec![expression]));
         }
@@ -137,7 +137,7 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
             (*one, true)
         }
         _ => {
-            let message = "one comparison is needed, as in event(r[3] < 0)";
+            let message = "expected one comparison, as in event(r[3] < 0)";
             return Err(inner.wrong(message));
         }
     };
@@ -145,7 +145,7 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
     let (left, right) = (inner.part(0..place), inner.part(behind..inner.text.len()));
     for side in [left, right] {
         if side.text.is_empty() || side.split(',').len() > 1 {
-            return Err(inner.wrong("an expression is needed on each side of the comparison"));
+            return Err(inner.wrong("expected an expression on each side of the comparison"));
         }
     }
     let sides = match bytes[place] {
@@ -237,9 +237,9 @@ mod tests {
             refused("ends; max(a, b); event(a); event(a < b < c); at(11, a); mix(a); end; end");
         for message in [
             "`ends` cannot be kept",
-            "one expression is needed",
-            "one comparison is needed",
-            "a time from 0 to 10 is needed",
+            "expected one expression",
+            "expected one comparison",
+            "expected a time from 0 to 10",
             "did you mean `max`",
             "`end` is kept twice",
             "7 errors",

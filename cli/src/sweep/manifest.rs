@@ -51,7 +51,7 @@ impl Manifest {
         let number = |name: &str| {
             let number = members.get(name).and_then(Value::as_u64);
             let number = number.filter(|number| *number > 0);
-            number.ok_or_else(|| format!("`{name}` is no whole number above 0"))
+            number.ok_or_else(|| format!("`{name}` is not a whole number above 0"))
         };
         Ok(Manifest {
             count: number("members")?,
@@ -166,7 +166,7 @@ mod tests {
             ("{\"format\": 2}", "another version"),
             (
                 "{\"format\": 1, \"members\": 0, \"members of a shard\": 1}",
-                "no whole number",
+                "not a whole number",
             ),
             ("{\"format\": 1, \"format\": 1}", "twice"),
         ] {

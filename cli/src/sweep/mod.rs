@@ -152,10 +152,10 @@ const LONG_HELP: &str = "\
   input F = grid(0, 10, 11)                      11 numbers from 0 to 10; several grids make all combinations
   start R = normal(0, 0.1)                       a rotation, by the vector of a turn from its start, about axes of the
                                                  body (rad); of a pose X so X.R, and its position as X.p
-A single number stands for all entries. Arguments may be expressions of parameters that other items do not vary:
+A single number applies to all entries. Arguments may be expressions of parameters that other items do not vary:
 `m = normal(m, m / 10)` is about the value that m has. A member begins at the start that the description would have
-if it contained its numbers: what is not varied follows where prescribed motion, loops and other constraints ask for
-it, and else stays.
+if it contained its numbers: what is not varied is unchanged, unless prescribed motion, loops or other constraints
+determine it.
 
 --keep takes items, `;` between them:
   end                      the time at which the run ended, coordinates and velocities; where the description declares
@@ -184,7 +184,9 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
         &arguments.out,
         &arguments.stepping,
     ) else {
-        return Err(Failure::usage("FILE, --vary, --until and --out are needed"));
+        return Err(Failure::usage(
+            "FILE, --vary, --until and --out are required",
+        ));
     };
     let stepping = &Stepping::from(stepping);
     stepping.check().map_err(Error::from)?;
@@ -201,7 +203,7 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     let source = source::open(file, &arguments.robot)?.in_numbers();
     if arguments.submit.is_some() && source.is_stdin() {
         return Err(Failure::usage(
-            "--submit takes a description in a file: tasks read it, too",
+            "--submit takes a description in a file: the tasks also read it",
         ));
     }
     let (mut sweep, columns) = prepare(arguments, &source, vary, stepping)?;
@@ -258,13 +260,13 @@ pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
 fn members(text: &str) -> Result<u64, String> {
     let number = text.parse::<u64>().ok();
     let number = number.filter(|number| (1..=i64::MAX as u64).contains(number));
-    number.ok_or_else(|| "a whole number from 1 to 2^63 - 1 is needed".into())
+    number.ok_or_else(|| "expected a whole number from 1 to 2^63 - 1".into())
 }
 
 /// Parses a seed.
 fn seed(text: &str) -> Result<u64, String> {
     text.parse()
-        .map_err(|_| "a whole number from 0 to 2^64 - 1 is needed".into())
+        .map_err(|_| "expected a whole number from 0 to 2^64 - 1".into())
 }
 
 /// Prepares the data that members share, and the columns of their rows.
@@ -313,7 +315,7 @@ fn prepare(
         .find(|(place, _)| given.as_ref().is_some_and(|given| given.has(*place)))
     {
         return Err(Failure::usage(format!(
-            "`{name}` is varied, and given by --input or --inputs: one of the two is needed"
+            "`{name}` is varied and also given by --input or --inputs: remove one of the two"
         )));
     }
     let columns = Columns {
@@ -437,7 +439,7 @@ fn fix_manifest(
         ("files of the description", Json::texts(&source.texts()?)),
     ];
     let manifest = Manifest::new(members, size, fixed);
-    manifest.map_err(|why| Failure::usage(format!("this sweep cannot be written down: {why}")))
+    manifest.map_err(|why| Failure::usage(format!("this sweep cannot be recorded: {why}")))
 }
 
 /// Operations of each function that members evaluate.

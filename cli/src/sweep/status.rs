@@ -13,7 +13,7 @@ const MAX_LISTED_RANGES: usize = 8;
 pub fn run(path: &Path) -> Result<(), Failure> {
     let Some(manifest) = read_manifest(path)? else {
         return Err(Failure::usage(format!(
-            "{} is no folder of a sweep: it has no _sweep.json",
+            "{} is not a sweep folder: `_sweep.json` is missing",
             path.display()
         )));
     };

@@ -45,8 +45,9 @@ impl Job<'_> {
     pub fn submit(&self) -> Result<(), Failure> {
         let script = self.folder.join(TASK_SCRIPT);
         let own: Vec<OsString> = std::env::args_os().skip(1).collect();
-        let program = std::env::current_exe()
-            .map_err(|error| Failure::usage(format!("cannot find this program: {error}")))?;
+        let program = std::env::current_exe().map_err(|error| {
+            Failure::usage(format!("cannot find the path of this program: {error}"))
+        })?;
         let mut words = vec![program.into_os_string()];
         words.extend(of_task(&own));
         let text = self.script(&words)?;
@@ -62,12 +63,12 @@ impl Job<'_> {
         match (status.success(), self.wait) {
             (true, true) => Ok(()),
             (true, false) => print(&format!(
-                "submitted {} tasks; `hamel sweep --status {}` tells how far they are\n",
+                "submitted {} tasks; `hamel sweep --status {}` shows their progress\n",
                 self.tasks,
                 self.folder.display()
             )),
             (false, _) => Err(Failure::failed(format!(
-                "`{name}` has failed: {status}; a submission again computes what is missing"
+                "`{name}` has failed: {status}; submit again to compute what is missing"
             ))),
         }
     }

@@ -120,7 +120,7 @@ impl Variations {
             .split(|c: char| !c.is_alphanumeric() && !matches!(c, '_' | '.'));
         let own = parameter(item);
         if let Some(word) = words.find(|word| varied.contains(word) && own != Some(*word)) {
-            let message = format!("`{word}` is varied itself, and has no value here");
+            let message = format!("`{word}` is itself varied and has no value here");
             let help =
                 "arguments are numbers, and expressions of parameters that other items do not vary";
             return Err(vec![right.wrong(message).help(help)]);
@@ -164,13 +164,13 @@ impl Variations {
         self.members = match (asked, grids) {
             (Some(asked), true) if asked % points != 0 => {
                 return Err(format!(
-                    "the grids have {}: --members has to be a multiple of that, or be left out",
+                    "the grids have {}: --members has to be a multiple of that or omitted",
                     count(points as usize, "point")
                 ));
             }
             (Some(asked), _) => asked,
             (None, true) => points,
-            (None, false) => return Err("without a grid, --members says how many there are".into()),
+            (None, false) => return Err("without a grid, --members is required".into()),
         };
         Ok(())
     }

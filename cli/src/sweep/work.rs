@@ -80,7 +80,7 @@ impl<'a> Cancellation<'a> {
                 self.cancelled.store(true, Ordering::Relaxed);
                 lock(queue).failure.get_or_insert_with(|| {
                     Failure::failed(
-                        "the sweep was given up; the same sweep computes what is missing",
+                        "the sweep was interrupted; run it again to compute what is missing",
                     )
                 });
                 return;

@@ -82,7 +82,7 @@ fn the_files_are_called_what_was_asked_for() {
         let (status, message) = said(&checked);
         assert_eq!(status, Some(1));
         assert!(
-            message.contains("is stale; write it again with `hamel emit --language c"),
+            message.contains("is out of date; regenerate it with `hamel emit --language c"),
             "{message}"
         );
     }
@@ -122,15 +122,15 @@ fn what_makes_no_sense_is_refused_with_the_way_out() {
         ),
         (
             &["--language", "c", "-o", "a\"b"],
-            "no name that C can include",
+            "not a name that C can include",
         ),
         (
             &["--language", "c", "-o", ".c"],
-            "no name that C can include",
+            "not a name that C can include",
         ),
         (
             &["--language", "c", "-o", "src/math"],
-            "or that of a header of C; name the files",
+            "or the name of a C header; give it without",
         ),
         (&["--language", "fortran"], "possible values: rust, c"),
     ];
@@ -150,7 +150,7 @@ fn functions_in_rust_are_refused() {
     let (status, said) = said(&["emit", "--language", "c", &glider, "-o", &out]);
     assert_eq!(status, Some(1));
     assert!(
-        said.contains("C has no function that is given in Rust"),
+        said.contains("C cannot call a function that is given in Rust"),
         "{said}"
     );
     assert!(

@@ -472,7 +472,7 @@ fn emitted_code_is_checked_against_a_file() {
     stdout(&["emit", &file, "-o", &out, "--check"]);
     std::fs::write(&path, "fn other() {}").expect("scratch");
     let errors = stderr(&["emit", &file, "-o", &out, "--check"], "", 1);
-    assert!(errors.contains("is stale"), "{errors}");
+    assert!(errors.contains("is out of date"), "{errors}");
     assert_eq!(
         std::fs::read_to_string(&path).expect("untouched"),
         "fn other() {}"

@@ -72,7 +72,10 @@ fn errors_against_a_reference_have_the_order_of_the_method() {
         // x lies on its manifold after every step, to rounding.
         assert!(number(&fine["defect"]) < 1e-14, "{method}");
     }
-    assert_eq!(report["machine"]["code"], "made into machine code at once");
+    assert_eq!(
+        report["machine"]["code"],
+        "compiled to machine code at once"
+    );
 }
 
 #[test]
@@ -95,7 +98,7 @@ fn without_a_reference_a_finer_run_serves_and_says_its_error() {
         "{text}"
     );
     assert!(
-        text.contains("| rkmk4 | 4 |") && text.contains("made into machine code at once"),
+        text.contains("| rkmk4 | 4 |") && text.contains("compiled to machine code at once"),
         "{text}"
     );
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect(name);

@@ -292,10 +292,10 @@ fn warnings_are_everywhere() {
     );
     let file = scratch("warned.urdf", inside);
     let messages = [
-        "`damping` of `<joint_properties>` is no part of URDF; it is read as that of `<dynamics>`",
-        "`<flexibility>` is nothing that `<joint>` has in URDF, and is left out",
-        "`<tendon>` is nothing that `<robot>` has in URDF, and is left out",
-        "`<turnGravityOff>` changes the motion, and is left out",
+        "`damping` of `<joint_properties>` is not part of URDF; it is read as that of `<dynamics>`",
+        "`<flexibility>` is not an element of `<joint>` in URDF and is left out",
+        "`<tendon>` is not an element of `<robot>` in URDF and is left out",
+        "`<turnGravityOff>` changes the motion but is left out",
     ];
     let (out, picture) = (scratch("warned.rs", ""), scratch("warned.svg", ""));
     for arguments in [

@@ -180,17 +180,17 @@ fn what_cannot_be_used_is_said() {
         ),
         (
             &["--input", "side = 1"],
-            "`side` was declared as a vector of 2, its value is a scalar",
+            "`side` was declared as a vector of 2, but its value is a scalar",
         ),
         (&["--input", "F"], "an input is written `NAME = EXPRESSION`"),
-        (&["--input", "F = 1; q"], "one expression is needed"),
+        (&["--input", "F = 1; q"], "expected one expression"),
         (
             &["--input", "F = 1", "--input", "F = 2"],
             "`F` is given twice",
         ),
         (
             &["--inputs", &path("falling.csv", "t,F\n0,1\n2,1\n1,1\n")],
-            "line 4: t = 1 is not behind t = 2",
+            "line 4: t = 1 is not after t = 2",
         ),
         (
             &["--inputs", &path("unknown.csv", "t,G\n0,1\n4,1\n")],
@@ -210,7 +210,7 @@ fn what_cannot_be_used_is_said() {
         ),
         (
             &["--times", &path("late.csv", "t\n1\n5\n")],
-            "line 3: t = 5 is outside of the run",
+            "line 3: t = 5 is outside the run",
         ),
     ];
     for (arguments, wanted) in cases {
@@ -229,7 +229,7 @@ fn what_cannot_be_used_is_said() {
         ],
         RAIL,
     );
-    assert!(text(&output.stderr).contains("`F` has a column of --inputs and an --input"));
+    assert!(text(&output.stderr).contains("`F` is given by a column of --inputs and by --input"));
 }
 
 /// A pull of −3 x on a mass of 2, a function in Rust; `stand_in` follows its declaration.
@@ -256,7 +256,7 @@ fn functions_in_rust_have_values_by_their_stand_ins_alone() {
         let output = hamel(command, &alone);
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{said}");
-        let wanted = "`pull` is a function in Rust, which has no values here";
+        let wanted = "`pull` is a function in Rust, which cannot be called here";
         assert!(
             said.contains(wanted) && said.contains("2:15") && said.contains("-> 1 = 0;"),
             "{said}"

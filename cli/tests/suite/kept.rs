@@ -62,7 +62,7 @@ fn nothing_is_written_over_what_is_read() {
     let before: Vec<String> = [&cart, &svg, &header, &robot, &forces, &state]
         .map(|path| fs::read_to_string(path).expect("a file"))
         .into();
-    let read = "this file is read, and would be overwritten";
+    let read = "this file is an input and would be overwritten";
     refused(&["emit", &cart, "-o", &cart], read);
     refused(&["emit", &cart, "-o", &other], read);
     let stem = folder.join("c").display().to_string();
@@ -99,7 +99,7 @@ fn nothing_is_written_over_what_is_read() {
         "--out",
         &runs,
     ];
-    let picture = "to a name that ends in .svg";
+    let picture = "so its name has to end in .svg";
     refused(&[&sweep[..], &["--plot", &cart]].concat(), picture);
     refused(&[&simulate[..], &["--plot", &cart]].concat(), picture);
     refused(&["draw", &cart, "--out", &cart], picture);
@@ -124,7 +124,7 @@ fn included_files_are_read() {
     let (main, table) = (main.display().to_string(), table.display().to_string());
     let output = hamel(&["emit", &main], "");
     if output.status.success() {
-        refused(&["emit", &main, "-o", &table], "this file is read");
+        refused(&["emit", &main, "-o", &table], "this file is an input");
     }
 }
 
@@ -192,7 +192,7 @@ fn pictures_without_a_motion_take_no_inputs() {
             "--time or --motion",
         );
     }
-    refused(&["import", &cart], "this is no URDF");
+    refused(&["import", &cart], "this is not URDF");
 }
 
 /// A run can start from the file of another run, and files by joints may contain parameters.

@@ -88,7 +88,7 @@ fn what_is_said_of_robots() {
             // Places and names depend on the robot.
             let words = warning.message.split(", here and at").next();
             let message = words.unwrap_or("").to_string();
-            let general = message.contains("no part of URDF")
+            let general = message.contains("not part of URDF")
                 || message.contains("left out")
                 || message.contains("no name");
             if general {

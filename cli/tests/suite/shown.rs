@@ -109,7 +109,7 @@ fn constraints_that_are_divided_by_0_are_named() {
     let scratch = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
     let file = scratch.join("rolling.eom").display().to_string();
     std::fs::write(&file, ROLLING).expect("scratch");
-    let named = "the constraint on line 5, `L2 * w = u * sin(x)`, gives `w` by others, and its factor `L2` is 0";
+    let named = "the constraint on line 5, `L2 * w = u * sin(x)`, gives `w` by others, but its factor `L2` is 0";
     for arguments in [
         &["eval", &file, "--at", "-"][..],
         &["linearize", &file, "--at", "-"],

@@ -103,11 +103,11 @@ fn what_is_no_state_is_refused() {
     for (state, message) in [
         (
             r#"{"coord": {"q1": 1, "q1": 2}}"#,
-            "`q1` stands twice in one object at line 1 column 24",
+            "`q1` occurs twice in one object at line 1 column 24",
         ),
         (
             r#"{"coord": {"q1": 1}, "coord": {}}"#,
-            "`coord` stands twice",
+            "`coord` occurs twice",
         ),
         (r#"{"coord": {"q1": NaN}}"#, "not valid JSON"),
         (
@@ -117,7 +117,7 @@ fn what_is_no_state_is_refused() {
         (r#"{"coord": {"q4": 1}}"#, "coord.q4: unknown name"),
         (
             r#"{"coord": {"q1": [1, 2]}}"#,
-            "coord.q1: a number expected, a list found",
+            "coord.q1: expected a number, found a list",
         ),
         (r#"{"positions": {}}"#, "positions: unknown name"),
     ] {

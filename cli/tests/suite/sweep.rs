@@ -197,7 +197,7 @@ fn arguments_are_not_varied_by_others() {
         "1",
     ]);
     assert!(
-        said.contains("`m` is varied itself, and has no value here"),
+        said.contains("`m` is itself varied and has no value here"),
         "{said}"
     );
     assert!(said.contains(":1:34") && said.contains("1 error"), "{said}");
@@ -282,10 +282,10 @@ fn all_that_is_wrong_is_said_at_once() {
     for (message, place) in [
         ("`ends` cannot be kept", "--keep:1:1"),
         ("nothing is called `k`", "--keep:1:11"),
-        ("a time from 0 to 1 is needed", "--keep:1:18"),
+        ("expected a time from 0 to 1", "--keep:1:18"),
         ("3 errors", ""),
         ("no parameter is called `n`", "--vary:1:1"),
-        ("a standard deviation is not negative", "--vary:1:33"),
+        ("a standard deviation cannot be negative", "--vary:1:33"),
         ("2 errors", ""),
     ] {
         assert!(
@@ -307,7 +307,7 @@ fn all_that_is_wrong_is_said_at_once() {
     for (options, message) in [
         (
             &["--vary", "m = normal(1, 1)", "--until", "1"][..],
-            "--members says how many there are",
+            "--members is required",
         ),
         (&["--vary", "", "--until", "1"], "nothing is varied"),
         (
@@ -319,7 +319,7 @@ fn all_that_is_wrong_is_said_at_once() {
                 "--until",
                 "1",
             ],
-            "`input F` is varied, and given",
+            "`input F` is varied and also given",
         ),
         (
             &[
@@ -330,7 +330,7 @@ fn all_that_is_wrong_is_said_at_once() {
                 "--shard",
                 "3/2",
             ],
-            "i/N is needed",
+            "expected i/N",
         ),
         (
             &[

@@ -135,7 +135,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
     let said = done(&folder, &options);
     let before = 4 * known.len();
     let wanted = format!(
-        "{} members computed, 0 of them failed; {before} were there before",
+        "{} members computed, 0 of them failed; {before} existed before",
         60 - before
     );
     assert!(said.contains(&wanted), "{said}");
@@ -163,7 +163,7 @@ fn a_folder_has_one_process_at_a_time() {
     until("a shard", || !shards(&folder).is_empty());
     for more in [&[][..], &["--shard", "2/3"]] {
         let said = refused(&folder, &[&long[..], more].concat());
-        assert!(said.contains("another process computes"), "{said}");
+        assert!(said.contains("another process is computing"), "{said}");
     }
     child.kill();
 
@@ -175,7 +175,7 @@ fn a_folder_has_one_process_at_a_time() {
     for other in [long.clone(), part("2/4"), part("1/3"), part("2/2")] {
         let said = refused(&folder, &other);
         assert!(
-            said.contains("another process computes"),
+            said.contains("another process is computing"),
             "{other:?}: {said}"
         );
     }
@@ -271,7 +271,7 @@ fn what_is_no_shard_of_the_sweep_is_refused() {
         (
             "shard-000000.parquet",
             &of_other[..],
-            "it is of another sweep",
+            "it belongs to another sweep",
         ),
         (
             "shard-000001.parquet",
@@ -308,9 +308,9 @@ fn what_is_no_shard_of_the_sweep_is_refused() {
     );
     fs::remove_file(folder.join("_sweep.json")).expect("removed");
     let said = refused(&folder, &FAST);
-    assert!(said.contains("has shards, and no _sweep.json"), "{said}");
+    assert!(said.contains("has shards but no _sweep.json"), "{said}");
     let output = hamel(&["sweep", "--status", &folder.display().to_string()], "");
-    assert!(text(&output.stderr).contains("no folder of a sweep"));
+    assert!(text(&output.stderr).contains("is not a sweep folder"));
 }
 
 /// Runs the command after shell commands that set a limit.

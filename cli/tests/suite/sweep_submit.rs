@@ -118,7 +118,7 @@ fn engines_compute_all_parts() {
         assert_eq!(output.status.code(), Some(1), "{}", text(&output.stdout));
         let said = text(&output.stderr);
         assert!(
-            said.contains("has failed") && said.contains("computes what is missing"),
+            said.contains("has failed") && said.contains("to compute what is missing"),
             "{said}"
         );
         // Parts 3 and 7 of 16 have shards 2 and 18, and 6.

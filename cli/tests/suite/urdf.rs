@@ -130,9 +130,9 @@ fn wrong_states_by_joint() {
     for line in [
         "speed: unknown name",
         "configuration.slider-x: unknown name; did you mean `slide-x`?",
-        "configuration.hinge: a number expected, a list found",
-        "velocity.hinge: a number expected, a text found",
-        "force: a list of 2 numbers expected, a list of 1 found",
+        "configuration.hinge: expected a number, found a list",
+        "velocity.hinge: expected a number, found a text",
+        "force: expected a list of 2 numbers, found a list of 1",
         "5 errors",
     ] {
         assert!(errors.contains(line), "{line} is not in {errors}");
@@ -367,8 +367,8 @@ fn velocities_alone_are_known_by_joints() {
     let output = hamel(&["eval", &robot, "--floating", "--at", "-"], twice);
     let said = text(&output.stderr);
     for part in [
-        "velocity.hip_1: given twice, by another of its names, too",
-        "velocity.root_joint.linear: a list of 3 numbers expected, a list of 1 found",
+        "velocity.hip_1: given twice, also by another of its names",
+        "velocity.root_joint.linear: expected a list of 3 numbers, found a list of 1",
         "velocity.root_joint.angle: unknown name",
     ] {
         assert!(said.contains(part), "{part} is not in {said}");

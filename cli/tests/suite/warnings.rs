@@ -35,7 +35,7 @@ fn negative_masses_and_damping_are_warned_of() {
     assert!(output.status.success(), "{said}");
     for part in [
         "the mass of this particle is negative: -0.1",
-        "this coefficient of damping is negative: -0.1",
+        "this damping coefficient is negative: -0.1",
     ] {
         assert_eq!(said.matches(part).count(), 1, "{said}");
     }

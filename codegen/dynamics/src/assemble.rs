@@ -97,7 +97,7 @@ fn put_together(
             model.span,
             "the mass matrix is singular for every configuration",
         )
-        .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it")
+        .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and similar selections do not need its inverse")
         .lacking(Needs::Inverse));
     };
     if model.n() > MOST_LITERAL && inverts {
@@ -252,7 +252,7 @@ impl Builder<'_> {
         let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
         let correction = correction::correction(model, &mut free).ok_or_else(|| {
             Diagnostic::new(model.span, "no Ψ was found: [Y; Φ] has no inverse on X")
-                .help("write the constraints such that their derivatives are independent")
+                .help("write the constraints so that their derivatives are independent")
         })?;
         let mut phi = copy(&free, &mut self.graph, &rows);
         phi.extend(self.loops());

@@ -55,7 +55,7 @@ impl Builder<'_> {
         }
         if has_more_inertia(&mut full.clone()) {
             return refused(
-                "`kinetic` gives an energy, and no momentum in space",
+                "`kinetic` gives an energy but no momentum in space",
                 "describe all masses by `body` or `particle`",
             );
         }

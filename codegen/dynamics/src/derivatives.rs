@@ -88,15 +88,15 @@ impl Builder<'_> {
         let kept = |edge: Edge| model.graph.class(edge.node()) & class::PARAM != 0;
         if full.phi.iter().any(|(edge, _)| moves(*edge)) || loops.into_iter().any(kept) {
             return refused(
-                "the constraints on the coordinates depend on parameters, so that a state that keeps them does not when a parameter changes",
-                "write the lengths in the constraints as numbers, or describe the system in coordinates without constraints",
+                "the constraints on the coordinates depend on parameters, so a state that satisfies them no longer does when a parameter changes",
+                "use numbers for the lengths in the constraints, or describe the system in coordinates without constraints",
             );
         }
         let mut given = full.prescribed.iter();
         if given.any(|(_, edge)| full.graph.class(edge.node()) & class::PARAM != 0) {
             return refused(
                 "a prescribed coordinate depends on parameters, and is part of the state",
-                "write the numbers of its `prescribe` as numbers, or prescribe its velocity",
+                "use only numbers in its `prescribe`, or prescribe its velocity",
             );
         }
         // The symbol π precedes them.
@@ -106,7 +106,7 @@ impl Builder<'_> {
         if symbols.is_empty() {
             return refused(
                 "no parameter can change at run time",
-                "declare those of interest by `param`",
+                "declare the values of interest with `param`",
             );
         }
         let mut candidates = Candidates::with(&self.care);

@@ -27,14 +27,14 @@ pub fn advice(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
         (JointKind::Spherical | JointKind::SphericalS3, &[x, y, z]) => {
             let (spin, across) = axes([x, y, z]);
             format!(
-                "nothing resists the spin of `{frame}` about its axis {}, along which `{name}` lets it turn: write `joint {name}: universal {}, {}` in place of `spherical`, which leaves this spin out, or give `{frame}` inertia about that axis",
+                "nothing resists the spin of `{frame}` about its axis {}, which `{name}` allows: write `joint {name}: universal {}, {}` in place of `spherical`, to leave this spin out, or give `{frame}` inertia about that axis",
                 shown(spin),
                 shown(across[0]),
                 shown(across[1])
             )
         }
         _ => format!(
-            "nothing resists the motion of the joint `{name}`: what it moves needs mass, inertia about its axis or an armature; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it"
+            "nothing resists the motion of the joint `{name}`: what it moves needs mass, inertia about its axis or an armature; `generate inverse_dynamics, mass_matrix;` and similar selections do not need the inverse"
         ),
     })
 }

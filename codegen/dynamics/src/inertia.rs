@@ -292,7 +292,7 @@ pub fn positive_definite(
         .map_or("", |s| s.name.as_str());
     let help = idle::advice(model, &mass_at(&model.start_x), pivot);
     let help = help.unwrap_or_else(|| {
-        "every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it".into()
+        "every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and similar selections do not need its inverse".into()
     });
     Err(Diagnostic::new(
         model.velocity_spans.get(pivot).copied().unwrap_or(model.span),

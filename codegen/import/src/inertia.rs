@@ -44,8 +44,8 @@ pub(crate) fn check(
     if moves.contains(&true) && !masses.any(|(&moves, &has_mass)| moves && has_mass) {
         warnings.push(
             &robot.links[tree.root].name.range,
-            "no link of the robot that moves has mass: there are poses, Jacobians and rates, and no mass matrix and no accelerations",
-            "give the links their `<inertial>`, unless kinematics is all that is wanted",
+            "no moving link of the robot has mass: there are poses, Jacobians and rates, but no mass matrix and no accelerations",
+            "give the links an `<inertial>`, unless only kinematics is needed",
         );
         return;
     }
@@ -62,7 +62,7 @@ pub(crate) fn check(
             warnings.push(
                 &link.range,
                 format!(
-                    "`{name}` moves `{}`, and neither it nor what it carries has mass: the mass matrix is singular, and there are no accelerations",
+                    "`{name}` moves `{}`, but neither it nor what it carries has mass: the mass matrix is singular, and there are no accelerations",
                     link.name
                 ),
                 format!("give it an `<inertial>`{lock}, or make the joint fixed"),
@@ -112,8 +112,8 @@ fn bare(
             let name = &link.name.name;
             warnings.push(
                 &link.name.range,
-                format!("`{name}` moves and has no `<inertial>`: it is taken to have no mass"),
-                "that is right for a frame between two joints; else give it one",
+                format!("`{name}` moves but has no `<inertial>`: it is treated as massless"),
+                "this is right for a frame between two joints; otherwise give it an `<inertial>`",
             );
         }
     }
@@ -123,14 +123,14 @@ fn bare(
 /// others.
 fn physical(name: &str, inertial: &Inertial, warnings: &mut Problems<'_>) {
     if inertial.mass.is_zero() {
-        let help = "a body with inertia has mass; check the units";
-        let message = format!("`{name}` has inertia and no mass");
+        let help = "a body with inertia needs mass: check the units";
+        let message = format!("`{name}` has inertia but no mass");
         warnings.push(&inertial.range, message, help);
     }
     let entries = inertial.inertia.each_ref().map(|entry| entry.value);
     if entries.iter().all(|&entry| entry == 0.0) {
-        let help = "it is taken for a particle at its centre of mass";
-        let message = format!("`{name}` has mass and no inertia");
+        let help = "it is treated as a particle at its centre of mass";
+        let message = format!("`{name}` has mass but no inertia");
         warnings.push(&inertial.inertia_range, message, help);
         return;
     }
@@ -154,7 +154,7 @@ fn physical(name: &str, inertial: &Inertial, warnings: &mut Problems<'_>) {
         warnings.push(
             &inertial.inertia_range,
             format!(
-                "the inertia of `{name}` is that of no body: its principal moments are {least:.3e}, {middle:.3e}, {most:.3e}, and no moment is larger than the sum of the two others"
+                "the inertia of `{name}` is not that of a body: its principal moments are {least:.3e}, {middle:.3e}, {most:.3e}, but no moment may be larger than the sum of the two others"
             ),
             "check its entries; the axes may be exchanged",
         );

@@ -70,8 +70,8 @@ pub fn import_without(
     if !options.floating && !plan.motions.iter().any(moving) {
         errors.push(
             &read.robot.range,
-            "nothing of this robot moves",
-            "`--floating` lets its base move; joints move that are not fixed and not locked",
+            "no part of this robot moves",
+            "`--floating` makes its base move; joints move unless they are fixed or locked",
         );
     }
     if !errors.is_empty() {

@@ -100,8 +100,8 @@ fn locks(
             let names: Vec<&str> = movable.map(|joint| joint.name.name.as_str()).collect();
             let help = match near(name, names.iter().copied()) {
                 Some(near) => format!("did you mean `{near}`?"),
-                None if names.is_empty() => "this robot has no joint that moves".into(),
-                None => format!("joints that move are {}", names.join(", ")),
+                None if names.is_empty() => "this robot has no moving joint".into(),
+                None => format!("the moving joints are {}", names.join(", ")),
             };
             errors.push(
                 &robot.range,
@@ -115,8 +115,8 @@ fn locks(
         match Decimal::parse(value.trim()) {
             _ if !one => errors.push(
                 &joint.name.range,
-                format!("`{name}` is locked, and has no single angle or length"),
-                "lock revolute, continuous and prismatic joints",
+                format!("`{name}` cannot be locked: it has no single angle or length"),
+                "lock only revolute, continuous and prismatic joints",
             ),
             None => errors.push(
                 &joint.name.range,
@@ -182,7 +182,7 @@ fn follow(
                 errors.push(
                     &mimic.source.range,
                     format!("`{}` mimics itself", robot.joints[number].name.name),
-                    "one joint of the circle has to move by itself",
+                    "one joint of the cycle has to move independently",
                 );
             }
             return Mobility::Free;

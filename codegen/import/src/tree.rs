@@ -60,10 +60,10 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
             errors.push(
                 &joint.child.range,
                 format!(
-                    "`{}` moves already with `{}`",
+                    "`{}` already moves with `{}`",
                     joint.child.name, other.name.name
                 ),
-                "URDF has trees alone; a closed loop is a `loop` statement in the description",
+                "URDF has only trees; write a closed loop as a `loop` statement in the description",
             );
             continue;
         }
@@ -94,7 +94,7 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
         errors.push(
             &joint.name.range,
             format!("`{}` is part of a cycle of joints", joint.name.name),
-            "URDF has trees alone; remove one joint of the cycle",
+            "URDF has only trees; remove one joint of the cycle",
         );
     }
     let (&root, others) = roots.split_first()?;
@@ -103,7 +103,7 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
         errors.push(
             &names.0.range,
             format!(
-                "no joint moves `{}`, and `{}` is the base",
+                "no joint moves `{}`, but `{}` is the base",
                 names.0.name, names.1
             ),
             "join it to the rest, or remove it",
@@ -162,8 +162,8 @@ fn by_name<'a>(
         if known.contains_key(name.name.as_str()) {
             errors.push(
                 &name.range,
-                format!("a second {what} of the name `{}`", name.name),
-                "names of links, and those of joints, have to differ",
+                format!("more than one {what} is called `{}`", name.name),
+                "the names of links have to differ, and so do those of joints",
             );
         } else {
             known.insert(name.name.as_str(), index);

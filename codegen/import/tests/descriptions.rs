@@ -237,7 +237,7 @@ fn idle_equations_are_comments() {
     let lines: Vec<&str> = text.lines().collect();
     assert!(lines.contains(&"    // - along [0, 1, 0] of the world: `position(pin_1)[2] = position(pin_2)[2]` follows from the others"));
     assert!(lines.contains(
-        &"    // Left out of `ball_constraint`, since it says nothing new wherever the tree is:"
+        &"    // Left out of `ball_constraint`, since it adds nothing for any position of the tree:"
     ));
     assert!(!text.contains("frame ball_constraint"));
 }

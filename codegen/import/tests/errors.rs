@@ -223,7 +223,7 @@ fn limits_of_joints_that_have_none() {
             import(&text, &Options::default()).expect("limits do not enter the equations");
         let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
         assert!(
-            warnings.iter().any(|w| w.contains("exchange them")),
+            warnings.iter().any(|w| w.contains("swap them")),
             "{warnings:?}"
         );
         assert!(

@@ -48,11 +48,8 @@ pub(super) fn checked(system: &System) -> Result<Scene, SceneError> {
                 places.push(read.name.span);
             }
             errors.extend(places.into_iter().map(|place| {
-                Diagnostic::new(
-                    place,
-                    "this statement has a name that is more than one word",
-                )
-                .help("names are made of letters, digits and `_`")
+                Diagnostic::new(place, "this statement has a name of more than one word")
+                    .help("names are made of letters, digits and `_`")
             }));
         }
         Err(more) => errors.extend(more),
@@ -76,13 +73,13 @@ fn strange(text: &str, docs: usize) -> Vec<Diagnostic> {
             Span::new(range),
             "a number that is not finite was given here",
         )
-        .help("numbers of a description are finite: see where the program computes this one")
+        .help("numbers of a description are finite: check where the program computes this one")
     };
     let deep = |range| {
         let message =
             format!("an expression that is more than {MAX_DEPTH} operations deep was given here");
         Diagnostic::new(Span::new(range), message)
-            .help("name parts of it with `define`, and go on with their names")
+            .help("name parts of it with `define`, and use their names")
     };
     let numbers = all(NO_NUMBER).chain(all(INFINITE)).map(number);
     numbers.chain(all(TOO_DEEP).map(deep)).collect()

@@ -124,7 +124,7 @@ impl<'a> Collector<'a> {
             let model = self.derivation.model;
             let geometry = Geometry::new(model);
             let geometry = geometry.ok_or_else(|| {
-                format!("there is no table `{}`: the columns of A are dependent, so that no Y has Y A = I", table.name())
+                format!("there is no table `{}`: the columns of A are dependent, so no Y satisfies Y A = I", table.name())
             })?;
             self.geometry = Some((geometry, Simplifier::modulo(&model.points)));
         }

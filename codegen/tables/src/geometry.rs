@@ -68,7 +68,7 @@ fn algebra(inspection: &Inspection) -> Vec<Row> {
     let mut rows = Vec::new();
     let whole = match inspection.algebra() {
         Some(name) => format!("{name}: γ is constant"),
-        None => "none that has a name: see the blocks of γ".into(),
+        None => "none with a name: see the blocks of γ".into(),
     };
     rows.push(row("Lie algebra of the ∂ᵢ", whole));
     for block in &inspection.blocks {

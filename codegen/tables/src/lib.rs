@@ -105,7 +105,7 @@ pub fn tables(derivation: Derivation, asked: &[Table]) -> Result<Tables, String>
     for table in of {
         if table == Table::Geometry {
             geometry = Some(Inspection::new(model).ok_or(
-                "there is no table `geometry`: the columns of A are dependent, so that no Y has Y A = I",
+                "there is no table `geometry`: the columns of A are dependent, so no Y satisfies Y A = I",
             )?);
         } else if listings.iter().all(|known| known.table != table) {
             listings.push(collector.listing(table)?);

@@ -336,7 +336,7 @@ fn rest(all: &BaseParameters, between: &str) -> String {
     }
     if !all.besides.is_empty() {
         text.push_str(&format!(
-            "{between}Acts besides, and is no part of F: {}\n",
+            "{between}Acts in addition, and is not part of F: {}\n",
             all.besides.join(", ")
         ));
     }

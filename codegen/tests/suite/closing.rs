@@ -178,7 +178,7 @@ fn in_space_all_equations_are_written() {
 #[test]
 fn what_cannot_be_closed_is_refused_as_before() {
     for (tilt, reason) in [
-        ("0 0 0", "nothing that moves takes part in this loop"),
+        ("0 0 0", "this loop contains nothing that moves"),
         ("0.3 -0.4 0.2", "closes this loop"),
     ] {
         let pin = closing(

@@ -100,13 +100,13 @@ fn entries_that_cannot_be_meant_are_refused() {
     for (said, message) in [
         (
             "start r[4] = 1;",
-            "index 4 is out of range, a vector of 3 has 3 entries",
+            "index 4 is out of range: a vector of 3 has 3 entries",
         ),
         ("start v[0] = 1;", "index 0 is out of range"),
-        ("start u[1] = 1;", "`u` is a scalar, it has no such entry"),
+        ("start u[1] = 1;", "`u` is a scalar and has no such entry"),
         (
             "generalized force w[1, 2] = 1;",
-            "`w` is a vector of 3, it has no such entry",
+            "`w` is a vector of 3 and has no such entry",
         ),
         (
             "start R[1, 1] = 1;",
@@ -138,7 +138,7 @@ fn entries_that_cannot_be_meant_are_refused() {
             "prescribe r[1] = t; prescribe r = [t, t, t];",
             "the motion of `r` is prescribed twice",
         ),
-        ("prescribe rate(r[1]) = t;", "`r[1]` is no velocity"),
+        ("prescribe rate(r[1]) = t;", "`r[1]` is not a velocity"),
     ] {
         let errors = from_text(&text(said)).expect_err(said);
         let messages: Vec<&str> = errors.iter().map(|error| error.message.as_str()).collect();

@@ -239,7 +239,7 @@ fn faults(seed: u64) -> Vec<String> {
             let said = render(&errors, "test", &text, false);
             // Correct if an output is undefined everywhere.
             let reasons = [
-                "something that is identically zero",
+                "an expression that is identically zero",
                 "root of a negative number",
             ];
             let points =

@@ -138,7 +138,7 @@ fn wrong_ones_are_refused() {
     for (statement, message) in [
         (
             "inerter inertance 1 on x;",
-            "what an inerter acts on has to be a rate, linear in the velocities",
+            "what an inerter acts on has to be a rate that is linear in the velocities",
         ),
         (
             "inerter inertance 1 on 0 * v;",
@@ -150,7 +150,7 @@ fn wrong_ones_are_refused() {
         ),
         (
             "inerter inertance 1 from [0, 0, 0] on world to [1, 0, 0] on world;",
-            "this inerter does nothing: both its points are fixed to `world`",
+            "this inerter does nothing: both its endpoints are fixed to `world`",
         ),
         (
             "inerter inertance 1 on if x < 0 { v } else { 2 * v };",

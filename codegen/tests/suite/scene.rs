@@ -315,10 +315,7 @@ fn components_are_built() {
         .expect("a scene")
         .generate()
         .expect_err("no folder");
-    assert_eq!(
-        messages(&error),
-        ["nothing says in which folder `legs.eom` is"]
-    );
+    assert_eq!(messages(&error), ["the folder of `legs.eom` is not known"]);
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn every_name_that_is_no_word_is_shown() {
     scene.param("good", 2);
     scene.param("c: vec3", [1, 2, 3]);
     let said = messages(&scene);
-    let word = "this statement has a name that is more than one word";
+    let word = "this statement has a name of more than one word";
     assert_eq!(said[..2], [word, word]);
     assert_eq!(said.len(), 3);
     assert!(said[2].contains("param a = 1, b = 1;"), "{}", said[2]);

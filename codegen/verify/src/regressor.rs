@@ -174,7 +174,7 @@ fn at(
     let random = &mut Random::new(seed ^ 0x5bd1);
     let anything: Vec<Fp> = given.iter().map(|_| random.element()).collect();
     if whole(&anything) != based(&anything) {
-        return Some(Err("base parameters do not stand for all parameters".into()));
+        return Some(Err("base parameters do not determine all parameters".into()));
     }
     // (30b) contains no dampers, and the regressor contains no other potentials.
     let all: Vec<Fp> = given

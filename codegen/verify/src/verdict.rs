@@ -55,7 +55,7 @@ pub(super) fn nowhere(model: &Model) -> Diagnostic {
 fn fault(model: &Model, unproved: &str, wrong: &str) -> Diagnostic {
     if model.points.roots == Roots::Arbitrary {
         let message = format!("`{}` could not be proved: {unproved}", model.name);
-        let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
+        let help = "roots within roots have no values in the fields of the proof: replace the inner one by a parameter or a coordinate";
         return Diagnostic::new(model.span, message).help(help);
     }
     Diagnostic::new(

@@ -4,14 +4,14 @@
 pub const RARE: &[(&str, &str, &str, &str)] = &[
     (
         "builder.rs",
-        "\"C has no function that is given in Rust\"",
-        "C has no function that is given in Rust",
+        "\"C cannot call a function that is given in Rust\"",
+        "C cannot call a function that is given in Rust",
         "C is asked for, and the description has an `extern fn`: write what it gives as an expression or a table",
     ),
     (
         "builder.rs",
-        "in C would be a function of {other}",
-        "`…` in C would be a function of …, too",
+        "in C would also be a function of {other}",
+        "`…` in C would also be a function of …",
         "a build script asks for the C of two systems whose functions would be called the same, and a linker could take one \
          for the other: give one of the systems another name",
     ),
@@ -53,20 +53,20 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/applied.rs",
-        "\"functions call one another too often here\"",
-        "functions call one another too often here",
+        "\"function calls expand to too many expressions here\"",
+        "function calls expand to too many expressions here",
         "calls of `fn` within calls amount to more expressions than are reasonable: name common parts with `let`",
     ),
     (
         "lower/build.rs",
-        "\"a number is a multiple of a prime that proofs count with\"",
-        "a number is a multiple of a prime that proofs count with",
+        "\"a number is a multiple of a prime that proofs compute with\"",
+        "a number is a multiple of a prime that proofs compute with",
         "a number has a factor of some nineteen digits that happens to be one of two primes: write it with fewer digits",
     ),
     (
         "lower/build.rs",
         "\"the constraints have several branches",
-        "the constraints have several branches, and that of the start was not found apart",
+        "the constraints have several branches, and that of the start could not be isolated",
         "a constraint is a product: write the factor that is meant",
     ),
     (
@@ -83,8 +83,8 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/curves.rs",
-        "nothing says in which folder `{name}` is",
-        "nothing says in which folder `…` is",
+        "the folder of `{name}` is not known",
+        "the folder of `…` is not known",
         "a table is in a file, and the description was given as a text: read it from a file",
     ),
     (
@@ -101,20 +101,20 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/externals.rs",
-        "\"one function with several components may do",
+        "\"combine some of them into one function",
         "more than … functions in Rust",
-        "there are too many `extern fn`: one function with several components may do for some of them",
+        "there are too many `extern fn`: combine some of them into one function with several components",
     ),
     (
         "lower/externals.rs",
-        "which has no values here",
-        "`…` is a function in Rust, which has no values here",
+        "which cannot be called here",
+        "`…` is a function in Rust, which cannot be called here",
         "a command computes with numbers: give the function a stand-in behind `=`",
     ),
     (
         "lower/externals.rs",
-        "takes part in what is no load",
-        "`…` takes part in what is no load, and it is a function in Rust",
+        "something other than a load depends on it",
+        "`…` is a function in Rust, and something other than a load depends on it",
         "an energy, frame or constraint depends on it through other names",
     ),
     (
@@ -133,7 +133,7 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "verify/src/verdict.rs",
         "could not be proved: {unproved}",
         "`…` could not be proved: … was not confirmed",
-        "roots stand within roots: let a parameter or a coordinate stand for the inner one",
+        "roots stand within roots: replace the inner one by a parameter or a coordinate",
     ),
     (
         "verify/src/verdict.rs",
@@ -143,14 +143,14 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "reuse/mod.rs",
-        "nothing says in which folder `{name}` is",
-        "nothing says in which folder `…` is",
+        "the folder of `{name}` is not known",
+        "the folder of `…` is not known",
         "a file is included, and the description was given as a text: read it from a file",
     ),
     (
         "reuse/parts.rs",
-        "\"this is no name of a part\"",
-        "this is no name of a part",
+        "\"this is not the name of a part\"",
+        "this is not the name of a part",
         "a description that was built in Rust has a part with a name such as `a[1][2]`",
     ),
     (
@@ -167,8 +167,8 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "scene/check.rs",
-        "\"this statement has a name that is more than one word\"",
-        "this statement has a name that is more than one word",
+        "\"this statement has a name of more than one word\"",
+        "this statement has a name of more than one word",
         "a description that was built in Rust has a name with a space in it",
     ),
     (
@@ -181,7 +181,7 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "syntax/files.rs",
         "files include one another more than {MOST_NESTED} deep",
         "files include one another more than … deep",
-        "include the files that are needed side by side",
+        "include the files side by side instead",
     ),
     (
         "syntax/files.rs",

@@ -9,7 +9,7 @@ pub(super) fn missing(model: &Model) -> Vec<String> {
     let mut all = Vec::new();
     if has_energy(model) {
         all.push(
-            "the inertia in `kinetic` has no place; with `body on f { mass m; … }` or `particle mass m at p;` it would have one"
+            "the inertia in `kinetic` has no place: write `body on f { mass m; … }` or `particle mass m at p;` instead"
                 .into(),
         );
     }
@@ -25,7 +25,7 @@ pub(super) fn missing(model: &Model) -> Vec<String> {
     written.dedup();
     let about = |equation: &&str| {
         format!(
-            "the loop {equation} is an equation of numbers; one between two points of space, as in `loop f.p = g.p;`, is drawn where they meet"
+            "the loop {equation} is an equation of numbers: only a loop between two points, as in `loop f.p = g.p;`, is drawn"
         )
     };
     all.extend(written.iter().map(about));

@@ -31,7 +31,7 @@ impl Divisors {
             let (row, name) = (shown(constraint, text), names.get(velocity)?);
             let factor = short(&model.graph, edge, LONGEST);
             let factor = factor.map_or(String::new(), |factor| format!(" `{factor}`"));
-            let said = format!("{row}, gives `{name}` by others, and its factor{factor} is 0");
+            let said = format!("{row}, gives `{name}` by others, but its factor{factor} is 0");
             Some((edge, said))
         };
         let factors: Vec<(Edge, String)> = generated.solved.iter().filter_map(factor).collect();

@@ -60,10 +60,10 @@ impl Observed {
             match Piece::of(text) {
                 Err(error) => errors.push(whole.moved(error)),
                 Ok(_) if text.trim().is_empty() => {
-                    errors.push(whole.wrong("an expression is needed"))
+                    errors.push(whole.wrong("expected an expression"))
                 }
                 Ok(_) if whole.split(';').len() > 1 => {
-                    errors.push(whole.wrong("one expression is needed"));
+                    errors.push(whole.wrong("expected one expression"));
                 }
                 Ok(_) => outputs.push(Added {
                     name: added::name(index),
@@ -77,7 +77,7 @@ impl Observed {
         for Added { name, whole, .. } in &outputs {
             let function = generated.program.function(name);
             if function.is_none_or(|function| function.shape != Shape::Scalar) {
-                errors.push(whole.wrong("an event is where one number is zero"));
+                errors.push(whole.wrong("an event is a zero of one number"));
             }
         }
         if !errors.is_empty() {

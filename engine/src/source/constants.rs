@@ -102,9 +102,9 @@ mod tests {
             refused("k", "1"),
             "no such constant; the constants are n, l"
         );
-        assert_eq!(refused("n", "1; coord p"), "the value is no expression");
-        assert_eq!(refused("n", "1, m = 2"), "the value is no expression");
-        assert_eq!(refused("n", ""), "the value is no expression");
+        assert_eq!(refused("n", "1; coord p"), "the value is not an expression");
+        assert_eq!(refused("n", "1, m = 2"), "the value is not an expression");
+        assert_eq!(refused("n", ""), "the value is not an expression");
         let none = given("system S { coord q; }", "n", "1").expect_err("refused");
         assert_eq!(none.to_string(), "the description has no constants");
     }

@@ -16,11 +16,11 @@ use std::path::Path;
 const OF_EVAL: [(&str, &str); 2] = [
     (
         "force",
-        "only `hamel eval` takes a force: here the loads of the description act, with zero inputs",
+        "only `hamel eval` takes a force; here the loads of the description act, with zero inputs",
     ),
     (
         "samples",
-        "only `hamel eval` takes several states: here one is expected",
+        "only `hamel eval` takes several states; expected one",
     ),
 ];
 

@@ -80,7 +80,7 @@ impl Reader {
         let Value::Object(parts) = json else {
             let expected =
                 "{\"param\": …, \"coord\": …, \"velocity\": …, \"state\": …, \"input\": …}";
-            return self.error("", format!("{expected} expected, {} found", kind(json)));
+            return self.error("", format!("expected {expected}, found {}", kind(json)));
         };
         self.known("", parts, &["param", "coord", "velocity", "state", "input"]);
         let (states, velocities) = (model.states_behind(), velocities(generated));
@@ -183,7 +183,7 @@ impl Reader {
                 Some(given)
             }
             other => {
-                self.error(part, format!("an object expected, {} found", kind(other)));
+                self.error(part, format!("expected an object, found {}", kind(other)));
                 None
             }
         }
@@ -223,7 +223,7 @@ impl Reader {
                     self.error(
                         at,
                         format!(
-                            "an angle or [cos, sin] expected, {} found",
+                            "expected an angle or [cos, sin], found {}",
                             self::kind(other)
                         ),
                     );
@@ -242,7 +242,7 @@ impl Reader {
         let Value::Object(parts) = value else {
             self.error(
                 at,
-                format!("{{\"p\": …, \"R\": …}} expected, {} found", kind(value)),
+                format!("expected {{\"p\": …, \"R\": …}}, found {}", kind(value)),
             );
             return Vec::new();
         };
@@ -292,7 +292,7 @@ impl Reader {
             at,
             value,
             n,
-            &format!("a {n}×{n} matrix, a list of its rows,"),
+            &format!("a {n}×{n} matrix as a list of its rows"),
         )?;
         let rows: Vec<_> = rows
             .iter()
@@ -323,9 +323,9 @@ impl Reader {
             Value::Array(list) if list.len() == n => return Some(list),
             Value::Array(list) => self.error(
                 at,
-                format!("{expected} expected, a list of {} found", list.len()),
+                format!("expected {expected}, found a list of {}", list.len()),
             ),
-            other => self.error(at, format!("{expected} expected, {} found", kind(other))),
+            other => self.error(at, format!("expected {expected}, found {}", kind(other))),
         }
         None
     }
@@ -334,13 +334,13 @@ impl Reader {
         match value.as_f64() {
             Some(number) if number.is_finite() => return Some(number),
             Some(_) => self.error(at, "the number is not finite".into()),
-            None => self.error(at, format!("a number expected, {} found", kind(value))),
+            None => self.error(at, format!("expected a number, found {}", kind(value))),
         }
         None
     }
 
     fn twice(&mut self, at: &str) {
-        self.error(at, "given twice, by another of its names, too".into());
+        self.error(at, "given twice, also by another of its names".into());
     }
 
     pub(super) fn error(&mut self, at: &str, message: String) {
@@ -359,7 +359,7 @@ pub(super) fn put(target: &mut [f64], offset: usize, values: &[f64]) {
 pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
-        Value::Bool(_) => "a truth value",
+        Value::Bool(_) => "a Boolean value",
         Value::Number(_) => "a number",
         Value::String(_) => "a text",
         Value::Array(_) => "a list",

@@ -72,7 +72,7 @@ impl Sample {
                     &mut sample,
                 );
             }
-            other => reader.error("", format!("an object expected, {} found", kind(other))),
+            other => reader.error("", format!("expected an object, found {}", kind(other))),
         }
         reader.finish(generated, &mut sample.state, &start)?;
         Ok(sample)
@@ -189,7 +189,7 @@ impl Reader {
         }
         if placed != force.len() || order.len() != force.len() {
             let message =
-                "each row by the name of its joint expected, as in `velocities` of the output";
+                "expected each row by the name of its joint, as in `velocities` of the output";
             self.error(ORDER, message.into());
         }
     }
@@ -308,7 +308,7 @@ impl Reader {
             let expected = names.join(", ");
             self.error(
                 at,
-                format!("{{{expected}}} expected, {} found", kind(value)),
+                format!("expected {{{expected}}}, found {}", kind(value)),
             );
             return None;
         };

@@ -35,7 +35,7 @@ pub fn last(
             None => {
                 reader.error(
                     &place,
-                    format!("`{name}` is missing: a list is read as `hamel simulate --out` writes it, its last sample with all coordinates and velocities"),
+                    format!("`{name}` is missing: the last sample of a list, as `hamel simulate --out` writes it, has to give all coordinates and velocities"),
                 );
                 None
             }

@@ -104,7 +104,7 @@ pub fn solved(generated: &Generated, text: &str) -> Vec<(String, String)> {
         let rows = listed(&rows, " and ");
         let why = match entries[..] {
             [] if rows.is_empty() => format!(
-                "no velocity of the state, which are {}; leave it out",
+                "not a velocity of the state, which has {}; leave it out",
                 listed(&stay, ", ")
             ),
             [] => format!("follows from {rows}; leave it out"),

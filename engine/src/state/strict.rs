@@ -102,7 +102,7 @@ impl<'de> Visitor<'de> for Reader {
         while let Some(name) = object.next_key::<String>()? {
             if members.contains_key(&name) {
                 return Err(A::Error::custom(format_args!(
-                    "`{name}` stands twice in one object"
+                    "`{name}` occurs twice in one object"
                 )));
             }
             let Strict(value) = object.next_value()?;

@@ -54,11 +54,11 @@ fn every_mistake_is_named_at_once() {
         "inputs: unknown name; did you mean `input`?",
         "param.mm: unknown name; known are m, J",
         "param.J[1][0]: has to be symmetric: 3 here, 2 at [0][1]",
-        "velocity.w: a list of 3 numbers expected, a number found",
-        "input: an object expected, a list found",
-        "coord.q: a list of 2 numbers expected, a list of 3 found",
+        "velocity.w: expected a list of 3 numbers, found a number",
+        "input: expected an object, found a list",
+        "coord.q: expected a list of 2 numbers, found a list of 3",
         "coord.X.r: unknown name; known are p, R",
-        "coord.X.p[1]: a number expected, a text found",
+        "coord.X.p[1]: expected a number, found a text",
     ];
     assert_eq!(errors, expected);
 }
@@ -79,7 +79,7 @@ fn states_off_the_manifold_are_refused() {
     );
     let reflected = r#"{"coord": {"X": {"R": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}}}"#;
     let errors = read(reflected).expect_err("reflected");
-    assert_eq!(errors, ["coord.X: a reflection, its determinant is -1"]);
+    assert_eq!(errors, ["coord.X: a reflection: its determinant is -1"]);
 }
 
 /// A blade that cannot slip sideways; its angular velocity has one nonzero component.
@@ -110,15 +110,15 @@ fn velocities_that_follow_are_read_and_judged() {
     for (text, expected) in [
         (
             r#"{"velocity": {"v": 1}}"#,
-            "velocity: violates `inactive v` by 1.00e0, and no change of velocities that are not given keeps it",
+            "velocity: violates `inactive v` by 1.00e0, and no choice of the velocities that are not given satisfies it",
         ),
         (
             r#"{"velocity": {"w": [0, 3, 2]}}"#,
-            "velocity: violates `inactive w[2]` by 3.00e0, and no change of velocities that are not given keeps it",
+            "velocity: violates `inactive w[2]` by 3.00e0, and no choice of the velocities that are not given satisfies it",
         ),
         (
             r#"{"velocity": {"w": [0, 0, 2], "w_3": 2}}"#,
-            "velocity.w_3: given twice, by another of its names, too",
+            "velocity.w_3: given twice, also by another of its names",
         ),
         (
             r#"{"velocity": {"z": 1}}"#,

@@ -32,7 +32,7 @@ LEFT_OUT = {
     "`parameter_slopes` is not known: the constraints": ", parameter_slopes",
 }
 # Messages for random mechanisms that are degenerate.
-MEANINGLESS = ["can coincide", "its points keep their distance", "the velocity by others", "leave it none of its own"]
+MEANINGLESS = ["can coincide", "the distance between its endpoints never changes", "the velocity by others", "already determine it"]
 
 
 def settled(doors, text, language="c"):

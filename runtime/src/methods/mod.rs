@@ -158,7 +158,7 @@ pub trait Method<Sys: System + ?Sized> {
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no slopes",
     label = "it evaluates points off the manifold",
-    note = "take `Rkmk4`, or another method that implements `InChart`"
+    note = "use `Rkmk4`, or another method that implements `InChart`"
 )]
 pub trait InChart {
     /// Makes a step and writes its slopes: by matrix products if the method and the system allow it, otherwise in dual

@@ -160,7 +160,7 @@ pub struct Sparsity {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no linearisation",
     label = "slopes and `StiffEuler` need it",
-    note = "ask for it in the description: `generate all, linearize;`"
+    note = "add it to the description: `generate all, linearize;`"
 )]
 pub trait Tangent: Energies + Clone {
     /// Whether the kinds of coordinates alone keep φ(x) = 0: then all points that a method reaches in the chart lie on

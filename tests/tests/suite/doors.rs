@@ -243,15 +243,15 @@ fn wrong_files_are_told_at_once() {
         return;
     };
     for told in [
-        "b/../a.eom is given twice, and has one a.rs; leave it out, or ",
+        "b/../a.eom is given twice, but has only one a.rs; remove it, or ",
         "b/a.eom would both be written to a.rs; rename one of them",
-        "robot.xml is no description: ",
+        "robot.xml is not a description: ",
         "folder.eom: Is a directory",
-        "break.eom: Cargo cannot be told of a path that has a line break, ",
+        "break.eom: Cargo cannot watch a path that has a line break, ",
         "latin.eom: byte 7 is not UTF-8; save it as UTF-8",
-        "`..` names no file: give the path of a description",
+        "`..` is not the path of a file: give the path of a description",
         "; its path starts at ",
-        "/none to write to; make it first",
+        "/none does not exist; create it first",
     ] {
         assert_eq!(wrong.matches(told).count(), 1, "{told}: {wrong}");
     }
@@ -283,7 +283,7 @@ fn nothing_that_is_read_is_written_over() {
         let now = std::fs::read_to_string(folder.join(file)).expect("readable");
         assert_eq!(now, text, "{file}");
     }
-    let told = wrong.matches("this file is read; write to another folder, or rename it");
+    let told = wrong.matches("this file is an input; write to another folder, or rename it");
     assert_eq!(told.count(), 2, "{wrong}");
 }
 
@@ -313,12 +313,12 @@ fn names_in_c_are_of_one_file() {
         return;
     };
     for told in [
-        "error: `block_default_parameters` in C would be a function of ",
+        "error: `block_default_parameters` in C would also be a function of ",
         "b.eom:1:12",
-        "error: `long_name_accel` in C would be a function of ",
+        "error: `long_name_accel` in C would also be a function of ",
         "c.eom:1:12",
-        "d\".eom: C cannot include `d\".h`, or has such a header; rename it",
-        "Math.eom: C cannot include `Math.h`, or has such a header; rename it",
+        "d\".eom: C cannot include `d\".h`, or has a header of this name; rename it",
+        "Math.eom: C cannot include `Math.h`, or has a header of this name; rename it",
     ] {
         assert_eq!(wrong.matches(told).count(), 1, "{told}: {wrong}");
     }
@@ -366,7 +366,7 @@ fn a_table_in_a_file_is_the_same_through_every_front_end() {
     assert_ne!(other.hash, generated.hash);
     // Without a folder there are no files.
     let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
-    assert!(errors[0].message.contains("in which folder"));
+    assert!(errors[0].message.contains("is not known"));
 }
 
 /// An included file is the same through every front end: its path is relative to the description, or to the package for
@@ -399,5 +399,5 @@ fn an_included_file_is_the_same_through_every_front_end() {
     assert_eq!(prettyplease::unparse(&file).trim(), items(&built).trim());
     // Without a folder there are no files.
     let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
-    assert!(errors[0].message.contains("in which folder"));
+    assert!(errors[0].message.contains("is not known"));
 }

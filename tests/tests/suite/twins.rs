@@ -162,7 +162,7 @@ const TWINS: &[Twin] = &[
         "polar_particle",
         "potential",
         "potential u * 2; potential",
-        "may depend on coordinates and parameters alone",
+        "may depend only on coordinates and parameters",
     ),
     // n = dim X, rank A = n.
     (

@@ -141,12 +141,12 @@ fn what_cannot_be_meant_is_said() {
         ),
         (
             "force [0, 0, 1] on cart in world;".into(),
-            "this load can never do work: nothing that moves `cart` yields to it [force [0, 0, 1] on cart in world;]",
+            "this load can never do work: no motion of `cart` has a component along it [force [0, 0, 1] on cart in world;]",
             "force [0, 0, 1] at [0, 0, 1] on hand in world; force [1, 0, 0] on cart in world;".into(),
         ),
         (
             "input t; torque [t, 0, 0] on cart in body;".into(),
-            "this load can never do work: nothing that moves `cart` yields to it [torque [t, 0, 0] on cart in body;]",
+            "this load can never do work: no motion of `cart` has a component along it [torque [t, 0, 0] on cart in body;]",
             "input t; torque [t, 0, 0] on hand in body;".into(),
         ),
         (

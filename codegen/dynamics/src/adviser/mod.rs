@@ -47,7 +47,7 @@ pub struct Choice {
 pub fn advise(model: &Model) -> Result<Vec<Choice>, String> {
     if !model.points.constraints.is_empty() {
         return Err(
-            "the coordinates obey constraints of the description: their rates have no other closed form"
+            "the coordinates satisfy constraints of the description: their rates have no other closed form"
                 .into(),
         );
     }
@@ -56,7 +56,7 @@ pub fn advise(model: &Model) -> Result<Vec<Choice>, String> {
     }
     if model.is_constrained() {
         return Err(
-            "its velocities are constrained, by a loop, `nonholonomic`, `inactive` or `prescribe`: what is counted is ξ̇ before that"
+            "its velocities are constrained, by a loop, `nonholonomic`, `inactive` or `prescribe`: ξ̇ is counted before the constraints act"
                 .into(),
         );
     }

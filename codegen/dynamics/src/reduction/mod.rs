@@ -315,11 +315,10 @@ fn impossible(
     let name = entry_name(model, place);
     let message = match others.count() {
         0 => format!("`{name}` cannot be independent: a constraint gives it"),
-        _ => format!("`{name}` cannot be independent: a constraint can be solved for nothing else"),
+        _ => format!("`{name}` cannot be independent: a constraint can be solved only for it"),
     };
-    let error = Diagnostic::new(span, message).help(
-        "leave one velocity of this constraint out of `independent` whose factor in it is constant",
-    );
+    let error = Diagnostic::new(span, message)
+        .help("remove from `independent` a velocity whose factor in this constraint is constant");
     Err(error.note(constraint.span, "this constraint"))
 }
 
@@ -358,14 +357,16 @@ fn accelerated(
         let name = entry_name(full, velocity);
         let message = match place {
             Some(_) => format!(
-                "the rate of `{name}` is prescribed, and the constraints leave it none of its own at the start"
+                "the rate of `{name}` is prescribed, but the constraints already determine it at the start"
             ),
             None => {
-                format!("the rate of `{name}` is prescribed, and a constraint gives this velocity")
+                format!(
+                    "the rate of `{name}` is prescribed, but a constraint determines this velocity"
+                )
             }
         };
         let error = Diagnostic::new(full.velocity_spans[velocity], message);
-        return Err(error.help("prescribe the rate of a velocity that the constraints, and the rates that are prescribed before it, leave free"));
+        return Err(error.help("prescribe the rate of a velocity that the constraints and the rates prescribed before it leave free"));
     }
     Ok(())
 }

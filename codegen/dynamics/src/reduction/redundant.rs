@@ -9,7 +9,7 @@ pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic
         constraints[row].span,
         format!("this constraint is redundant{when}: it follows from the others"),
     )
-    .help("remove it; its multiplier would have no value");
+    .help("remove it: its multiplier would be undetermined");
     match constraints.iter().enumerate().find(|(i, _)| *i != row) {
         Some((_, other)) => error.note(other.span, "one of the others"),
         None => error,
@@ -18,7 +18,7 @@ pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic
 
 /// Returns the error for a row that demands a different velocity from the one that the others leave.
 pub fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
-    let message = "this row contradicts the others: it asks for another velocity than they leave";
+    let message = "this row contradicts the others: it requires a velocity that they do not allow";
     let error = Diagnostic::new(constraints[row].span, message).help("remove one of them");
     match constraints.iter().enumerate().find(|(i, _)| *i != row) {
         Some((_, other)) => error.note(other.span, "one of the others"),
@@ -67,7 +67,7 @@ fn following(first: &Pfaffian, rows: &[&Pfaffian]) -> Diagnostic {
         ),
     };
     let help = match entries[..] {
-        [""] => "remove it: it says nothing that the others do not say",
+        [""] => "remove it: it adds nothing to the others",
         _ => "write the other entries one by one, as in `a[1] = b[1], a[2] = b[2]`",
     };
     Diagnostic::new(first.span, message).help(help)

@@ -100,7 +100,7 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
     let (tree, carriers) = Tree::with_frames(&mut model, &mut calculus, moved).ok_or(
-        "its inertia is not that of bodies on frames and of armatures alone: describe it by `body` statements, without `kinetic` and `particle`",
+        "its inertia is not only that of bodies on frames and of armatures: describe it by `body` statements, without `kinetic` and `particle`",
     )?;
     let links = parameters::links(&mut model, &tree, &carriers);
     let mut standard: Vec<Standard> = links
@@ -118,7 +118,7 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
         columns.push(column.clone());
     }
     let samples = Samples::new(&model, &columns)
-        .ok_or("at random states its expressions have no values modulo p")?;
+        .ok_or("its expressions have no values modulo p at random states")?;
     let found = relations::find(&mut model, &samples, &tree, &links, standard.len())?;
     let kept: Vec<usize> = found.iter().map(|(kept, _)| *kept).collect();
     let mut moments = columns::cheapest(&mut derived, &tree, &links, &kept);
@@ -174,19 +174,19 @@ fn refused(model: &Model) -> Result<(), String> {
     let no = |why: &str| Err(why.to_string());
     if model.clock.is_some() || !model.prescribed.is_empty() || !model.accelerated.is_empty() {
         return no(
-            "its motion is prescribed or depends on the time; base parameters are those of a system that moves freely",
+            "its motion is prescribed or depends on the time, but base parameters are those of a system that moves freely",
         );
     }
     if !model.constraints.is_empty() {
         return no(
-            "constraints act on its velocities, so that inverse dynamics leaves their forces open; take the tree without loops and constraints",
+            "constraints act on its velocities, so inverse dynamics does not determine their forces: use the tree without loops and constraints",
         );
     }
     if !model.points.constraints.is_empty() || !model.spans {
-        return no("its coordinates are tied by constraints; describe it by joints");
+        return no("its coordinates are tied by constraints: describe it by joints");
     }
     if model.bodies.is_empty() && model.particles.is_empty() {
-        return no("it has no bodies, so that there are no inertial parameters");
+        return no("it has no bodies, so it has no inertial parameters");
     }
     Ok(())
 }

@@ -52,7 +52,7 @@ pub fn find(
             .collect();
         for values in samples.relations(&left) {
             let exact = known.all(&mut model.graph, &values).ok_or(
-                "it has relations between parameters whose coefficients are neither plain fractions nor built of one or two entries of its poses: write lengths as numbers with few digits, or place frames one on the other by joints",
+                "it has relations between parameters whose coefficients are neither simple fractions nor built from one or two entries of its poses: write lengths as numbers with few digits, or place frames on one another by joints",
             )?;
             relations.push(joined(&model.graph, &left, &exact));
         }

@@ -30,10 +30,9 @@ impl fmt::Display for Choice {
 pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
     let long = steps.is_some_and(|steps| steps > LONG);
     let (method, reason) = match &structure.split {
-        Ok(splitting) if splitting.free => (
-            "free",
-            "no force acts, so that the motion has a closed form",
-        ),
+        Ok(splitting) if splitting.free => {
+            ("free", "no force acts, so the motion has a closed form")
+        }
         Ok(splitting) => {
             let symmetric = |rotor: &RotorForm| {
                 matches!(
@@ -70,23 +69,23 @@ pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
         }
         Err(_) if !structure.damped.is_empty() => (
             "rkmk54",
-            "forces depend on velocities, so that the step should follow the motion as it dies out",
+            "forces depend on velocities, so the step should adapt as the motion dies out",
         ),
         Err(_) if structure.multipliers => (
             "rkmk8",
-            "multipliers keep constraints, from which a method of high order strays least between projections",
+            "multipliers enforce constraints, from which a method of high order drifts least between projections",
         ),
         Err(_) if structure.canonical == Err(Reason::States) => (
             "rkmk54",
-            "states of first order have time scales of their own, which the step should follow",
+            "states of first order add time scales, to which the step should adapt",
         ),
         Err(_) if structure.canonical == Err(Reason::Time) => (
             "rkmk8",
-            "the equations depend on the time, so that no momenta or energy are conserved",
+            "the equations depend on the time, so momenta and energy are not conserved",
         ),
         Err(_) if structure.canonical.is_err() => (
             "rkmk8",
-            "velocities are constrained, so that there are no momenta to kick or to conserve",
+            "velocities are constrained, so there are no momenta to kick or to conserve",
         ),
         Err(_) if structure.conservative && long => (
             "gauss6",
@@ -96,12 +95,12 @@ pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
             "rkmk8",
             match reasons.first() {
                 Some(Reason::Coupled { .. }) => {
-                    "rotors exchange momentum with other coordinates without any force, so that free motion has no closed form"
+                    "rotors exchange momentum with other coordinates without any force, so free motion has no closed form"
                 }
                 Some(Reason::Tied { .. }) => {
-                    "coordinates are tied to one another, so that free motion has no closed form"
+                    "coordinates are tied to one another, so free motion has no closed form"
                 }
-                _ => "inertia depends on the configuration, so that free motion has no closed form",
+                _ => "inertia depends on the configuration, so free motion has no closed form",
             },
         ),
     };

@@ -84,8 +84,8 @@ impl<'a> Reader<'a, '_, '_> {
             None => {
                 self.note(
                     tag(text, rotor),
-                    format!("`<{name}>` without the ratio of its gear is left out"),
-                    "write the ratio beside it, as in `<gear_ratio>100</gear_ratio>`".to_string(),
+                    format!("`<{name}>` without a gear ratio is left out"),
+                    "add the ratio, as in `<gear_ratio>100</gear_ratio>`".to_string(),
                 );
                 None
             }
@@ -104,7 +104,7 @@ impl<'a> Reader<'a, '_, '_> {
         let range = tag(self.text, element);
         if inertia.value < 0.0 {
             let message = format!("the inertia {} is negative", inertia.text);
-            let help = "a rotor has a positive one";
+            let help = "a rotor has a positive inertia";
             return self.errors.push(&range, message, help);
         }
         let Some(found) = self.driven(name, &range, joint, joints) else {
@@ -113,12 +113,12 @@ impl<'a> Reader<'a, '_, '_> {
         self.note(
             range,
             format!(
-                "`<{name}>` is no part of URDF; it gives `{}` the armature {} · {}²",
+                "`<{name}>` is not part of URDF; it gives `{}` the armature {} · {}²",
                 joint.name,
                 inertia.text,
                 ratio.text.trim_start_matches('-')
             ),
-            "other programs may leave it out".to_string(),
+            "other programs may ignore it".to_string(),
         );
         found.rotors.push((inertia, ratio));
     }
@@ -174,10 +174,10 @@ impl<'a> Reader<'a, '_, '_> {
         self.note(
             range,
             format!(
-                "`<{SPRING}>` is no part of URDF; it gives `{}` a spring",
+                "`<{SPRING}>` is not part of URDF; it gives `{}` a spring",
                 joint.name
             ),
-            "other programs may leave it out".to_string(),
+            "other programs may ignore it".to_string(),
         );
         found.spring = Some((stiffness, rest));
     }

@@ -63,7 +63,7 @@ impl<'a> Reader<'a, '_, '_> {
                     "the lower limit {} is above the upper one {}: both are left out",
                     lower.text, upper.text
                 ),
-                "exchange them; they do not enter the equations",
+                "swap them; they do not enter the equations",
             );
         }
         let mimic = self
@@ -103,7 +103,7 @@ impl<'a> Reader<'a, '_, '_> {
             self.errors.push(
                 &attribute.range_value(),
                 format!("`{written}` is not a type of joint"),
-                format!("URDF has {names}; `spherical` and `ball` are read, too"),
+                format!("URDF has {names}; `spherical` and `ball` are also read"),
             );
         } else if known.is_none() || drake {
             let read = match (known, other) {
@@ -117,7 +117,7 @@ impl<'a> Reader<'a, '_, '_> {
             };
             self.note(
                 attribute.range_value(),
-                format!("{named} is no part of URDF; it is read {read}"),
+                format!("{named} is not part of URDF; it is read {read}"),
                 "other programs may read the file differently".to_string(),
             );
         }
@@ -155,7 +155,7 @@ impl<'a> Reader<'a, '_, '_> {
         {
             self.note(
                 tag(self.text, &element),
-                format!("the axis of a planar `<{DRAKE}>` is that of z, and this one is left out"),
+                format!("the axis of a planar `<{DRAKE}>` is the z axis; this one is left out"),
                 "turn the joint by its `<origin>`".to_string(),
             );
         }
@@ -187,7 +187,7 @@ impl<'a> Reader<'a, '_, '_> {
                     self.note(
                         range(properties),
                         format!(
-                            "`{name}` of `<joint_properties>` is left out: `<dynamics>` has it, too"
+                            "`{name}` of `<joint_properties>` is left out: `<dynamics>` also has it"
                         ),
                         "remove one of them".to_string(),
                     );
@@ -200,13 +200,13 @@ impl<'a> Reader<'a, '_, '_> {
         if name == "friction" && kind != Kind::Fixed {
             self.note(
                 range,
-                "Coulomb friction is not modelled, and is left out".to_string(),
+                "Coulomb friction is not modelled and is left out".to_string(),
                 "add it to the description as a `generalized force`".to_string(),
             );
         } else if from_old && kind != Kind::Fixed {
             self.note(
                 range,
-                format!("`{name}` of `<joint_properties>` is no part of URDF; it is read as that of `<dynamics>`"),
+                format!("`{name}` of `<joint_properties>` is not part of URDF; it is read as that of `<dynamics>`"),
                 format!("write `<dynamics {name}=\"…\"/>`"),
             );
         }
@@ -226,7 +226,7 @@ impl<'a> Reader<'a, '_, '_> {
         }
         self.note(
             attribute.range(),
-            "damping of several freedoms is not modelled, and is left out".to_string(),
+            "damping of several degrees of freedom is not modelled and is left out".to_string(),
             "add it to the description as a `dissipation`".to_string(),
         );
         Decimal::parse(written)
@@ -238,9 +238,9 @@ impl<'a> Reader<'a, '_, '_> {
         let attribute = element.attribute_node("armature")?;
         self.note(
             attribute.range(),
-            "`armature` is no part of URDF; it is read as the inertia of the drive, added to that of the joint"
+            "`armature` is not part of URDF; it is read as the inertia of the drive, added to that of the joint"
                 .to_string(),
-            "other programs may leave it out".to_string(),
+            "other programs may ignore it".to_string(),
         );
         Some((armature, Decimal::one()))
     }
@@ -253,8 +253,8 @@ impl<'a> Reader<'a, '_, '_> {
         if number.is_none() {
             self.note(
                 attribute.range_value(),
-                format!("the bound `{name}` is `{written}`, no finite number, and is left out"),
-                "limits do not enter the equations; leave it out of the file, too".to_string(),
+                format!("the bound `{name}` is `{written}`, which is not finite, and is left out"),
+                "limits do not enter the equations; remove it from the file".to_string(),
             );
         }
         number

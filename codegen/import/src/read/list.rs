@@ -107,10 +107,7 @@ const LINKS: Level = Level {
         // Some exporters write a pose of the link in its own frame, the identity.
         (
             &["origin"],
-            Unless(
-                &["0 0 0"],
-                "links have no pose of their own: write it to the joint",
-            ),
+            Unless(&["0 0 0"], "links have no pose: write it to the joint"),
         ),
     ],
     help: ADD,

@@ -53,13 +53,13 @@ impl<'a> Reader<'a, '_, '_> {
             let pushes = FORCES.iter().any(|part| small.contains(part));
             let does = match (pushes, ties) {
                 (true, _) => "acts with forces",
-                (false, true) => "ties joints that do not mimic another one",
+                (false, true) => "ties joints that do not mimic another joint",
                 (false, false) => continue,
             };
             self.note(
                 tag(text, &plugin),
-                format!("the plugin `{file}` {does}, and is left out"),
-                "add to the description what it does".to_string(),
+                format!("the plugin `{file}` {does} and is left out"),
+                "add its effect to the description".to_string(),
             );
         }
     }

@@ -36,7 +36,7 @@ impl<'a> Reader<'a, '_, '_> {
             let near = near(name, level.attributes.iter().copied());
             self.note(
                 attribute.range(),
-                format!("`{name}` is no property of `<{element}>` in URDF, and is left out"),
+                format!("`{name}` is not a property of `<{element}>` in URDF and is left out"),
                 near.map_or_else(
                     || level.help.to_string(),
                     |near| format!("did you mean `{near}`?"),
@@ -51,7 +51,7 @@ impl<'a> Reader<'a, '_, '_> {
                 Some(Element::Unless(words, _)) if is_idle(&child, words) => {}
                 Some(Element::Unless(_, help)) => self.note(
                     tag(self.text, &child),
-                    format!("`<{name}>` changes the motion, and is left out"),
+                    format!("`<{name}>` changes the motion but is left out"),
                     (*help).to_string(),
                 ),
                 None => {
@@ -59,7 +59,7 @@ impl<'a> Reader<'a, '_, '_> {
                     self.note(
                         tag(self.text, &child),
                         format!(
-                            "`<{name}>` is nothing that `<{element}>` has in URDF, and is left out"
+                            "`<{name}>` is not an element of `<{element}>` in URDF and is left out"
                         ),
                         near.map_or_else(
                             || level.help.to_string(),

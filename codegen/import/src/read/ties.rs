@@ -30,7 +30,7 @@ impl<'a> Reader<'a, '_, '_> {
                 self.note(
                     range,
                     format!("a `<loop_joint>` of the type `{written}` is left out"),
-                    "types that are read are revolute, prismatic, spherical and fixed; else add a `loop` to the description".to_string(),
+                    "the types that are read are revolute, prismatic, spherical and fixed; for others add a `loop` to the description".to_string(),
                 );
                 return None;
             }
@@ -54,9 +54,9 @@ impl<'a> Reader<'a, '_, '_> {
         });
         self.note(
             range,
-            "`<loop_joint>` is no part of URDF; it is read as a joint that closes a loop"
+            "`<loop_joint>` is not part of URDF; it is read as a joint that closes a loop"
                 .to_string(),
-            "other programs may leave it out".to_string(),
+            "other programs may ignore it".to_string(),
         );
         Some(Loop {
             name,
@@ -71,8 +71,8 @@ impl<'a> Reader<'a, '_, '_> {
         let range = tag(self.text, node);
         self.note(
             range.clone(),
-            format!("`<{BALL}>` is no part of URDF; it is read as a joint that closes a loop"),
-            "other programs may leave it out".to_string(),
+            format!("`<{BALL}>` is not part of URDF; it is read as a joint that closes a loop"),
+            "other programs may ignore it".to_string(),
         );
         let name = "ball_constraint".to_string();
         Some(Loop {
@@ -94,8 +94,8 @@ impl<'a> Reader<'a, '_, '_> {
         let range = tag(self.text, node);
         self.note(
             range.clone(),
-            format!("`<{SPRING}>` is no part of URDF; it is read as a spring and a damper"),
-            "other programs may leave it out".to_string(),
+            format!("`<{SPRING}>` is not part of URDF; it is read as a spring and a damper"),
+            "other programs may ignore it".to_string(),
         );
         Some(Spring {
             range,

@@ -42,7 +42,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Malformed> {
         match &error {
             Error::UnknownNamespace(prefix, _) => (
                 begin..begin + prefix.len().min(rest.len()),
-                format!("the prefix `{prefix}` is declared nowhere"),
+                format!("the prefix `{prefix}` is not declared"),
                 format!(
                     "declare it in the outermost element: `<robot name=\"…\" xmlns:{prefix}=\"{}\">`",
                     space(prefix)
@@ -50,8 +50,8 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Malformed> {
             ),
             Error::UnknownEntityReference(..) | Error::MalformedEntityReference(_) => (
                 range,
-                "`&` begins the name of a sign here, and no sign has this name".into(),
-                "write `&amp;` for the sign `&` itself".into(),
+                "`&` begins an entity here, but no entity has this name".into(),
+                "write `&amp;` for the character `&` itself".into(),
             ),
             _ => {
                 // The place is reported separately.
@@ -63,7 +63,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Malformed> {
                 (
                     range,
                     format!("this is not well-formed XML: {message}"),
-                    "mend it here, or a little before".into(),
+                    "fix it here, or a little before".into(),
                 )
             }
         }
@@ -133,7 +133,10 @@ impl<'a> Reader<'a, '_, '_> {
         for second in found {
             self.errors.push(
                 &tag(self.text, &second),
-                format!("a second `<{name}>` in one `<{}>`", node.tag_name().name()),
+                format!(
+                    "more than one `<{name}>` in one `<{}>`",
+                    node.tag_name().name()
+                ),
                 "remove one of them",
             );
         }
@@ -232,15 +235,15 @@ impl<'a> Reader<'a, '_, '_> {
                 ),
                 // Parsed by Rust but not by `Decimal`, whose exponents are bounded.
                 Ok(value) if value.abs() < 1.0 && !written.contains("inf") => (
-                    format!("`{written}` is nearer to 0 than any quantity of a robot"),
-                    "write 0 where nothing is meant; numbers that are not 0 have a size above 1e-300",
+                    format!("`{written}` is closer to 0 than any quantity of a robot"),
+                    "write 0 for zero; other numbers have an absolute value above 1e-300",
                 ),
                 Ok(value)
                     if value.abs() > 1.0 && written.starts_with(|c: char| !c.is_alphabetic()) =>
                 {
                     (
                         format!("`{written}` is larger than any quantity of a robot"),
-                        "numbers have a size below 1e300, and at most 200 digits",
+                        "numbers have an absolute value below 1e300 and at most 200 digits",
                     )
                 }
                 _ => (
@@ -260,8 +263,8 @@ impl<'a> Reader<'a, '_, '_> {
         let [a, b, c] = words.as_slice() else {
             self.errors.push(
                 &range,
-                format!("three numbers expected, {} found", words.len()),
-                format!("write `{}=\"0 0 0\"`, with blanks between", found.name()),
+                format!("expected three numbers, found {}", words.len()),
+                format!("write `{}=\"0 0 0\"`, separated by blanks", found.name()),
             );
             return None;
         };
@@ -324,7 +327,7 @@ impl<'a> Reader<'a, '_, '_> {
         let (&[x, y, z, w], 4) = (values.as_slice(), count) else {
             self.errors.push(
                 &range,
-                format!("four numbers expected, {} found", entries.len()),
+                format!("expected four numbers, found {}", entries.len()),
                 "write `quat_xyzw=\"0 0 0 1\"`, the scalar last",
             );
             return None;
@@ -332,14 +335,14 @@ impl<'a> Reader<'a, '_, '_> {
         if second {
             self.errors.push(
                 &range,
-                "a pose has `rpy` and `quat_xyzw`",
+                "a pose has both `rpy` and `quat_xyzw`",
                 "remove one of them",
             );
             return None;
         }
         let Some(angles) = angles([x, y, z, w]) else {
             let message = "the quaternion is zero";
-            let help = "write `quat_xyzw=\"0 0 0 1\"` where nothing is turned";
+            let help = "write `quat_xyzw=\"0 0 0 1\"` for no rotation";
             self.errors.push(&range, message, help);
             return None;
         };

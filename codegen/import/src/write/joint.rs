@@ -157,7 +157,7 @@ impl Writer<'_> {
         if let (Some(damping), Kind::Planar | Kind::Floating) = (&joint.damping, joint.kind) {
             let text = &damping.text;
             comments.push(format!(
-                "Damping {text} of several freedoms is not modelled."
+                "Damping {text} of several degrees of freedom is not modelled."
             ));
         }
         if let (Some(mimic), Mobility::Free) = (&joint.mimic, motion) {

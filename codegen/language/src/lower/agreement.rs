@@ -43,7 +43,7 @@ pub fn check(
             let message = format!("Y A differs from I: entry ({}, {}) {shown}", i + 1, j + 1);
             let help = match i == j {
                 true => format!(
-                    "the rates move the coordinates such that `{defined}`, as it is defined here, is not `{along}`: make the rates or the definition agree"
+                    "the rates give `{defined}`, as defined here, a value other than `{along}`: make the rates or the definition agree"
                 ),
                 false => format!(
                     "the rates let `{along}` change what defines `{defined}`: make the rates or the definition agree"

@@ -41,8 +41,8 @@ impl Evaluator<'_> {
             // Reported only once, when the limit is crossed.
             return match calls == MOST_CALLS + 1 {
                 true => self.error(
-                    Diagnostic::new(span, "functions call one another too often here")
-                        .help("give what they have in common a name with `let`"),
+                    Diagnostic::new(span, "function calls expand to too many expressions here")
+                        .help("name common parts with `let`"),
                 ),
                 false => None,
             };

@@ -56,7 +56,7 @@ impl Evaluator<'_> {
 
     fn zero_divisor<T>(&mut self, span: Span) -> Option<T> {
         self.error(
-            Diagnostic::new(span, "division by something that is identically zero")
+            Diagnostic::new(span, "division by an expression that is identically zero")
                 .help("this is 0 for every configuration that satisfies the constraints"),
         )
     }
@@ -191,14 +191,17 @@ impl Evaluator<'_> {
         if exponent.abs() > limit {
             return self.error(
                 Diagnostic::new(right.span, "this exponent is too large")
-                    .help(format!("exponents reach to {LARGEST_EXPONENT}")),
+                    .help(format!("the largest exponent is {LARGEST_EXPONENT}")),
             );
         }
         if base == self.graph.zero() {
             if exponent.is_negative() {
                 return self.error(
-                    Diagnostic::new(left.span, "division by something that is identically zero")
-                        .help("a negative power of 0 has no value"),
+                    Diagnostic::new(
+                        left.span,
+                        "division by an expression that is identically zero",
+                    )
+                    .help("a negative power of 0 has no value"),
                 );
             }
             let zero = !exponent.is_zero();

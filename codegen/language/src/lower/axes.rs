@@ -45,7 +45,7 @@ fn place(graph: &Graph, value: &Value) -> Option<Result<Value, Refused>> {
     if class_of(graph, value) & !class::PARAM != 0 {
         return Some(Err(Refused(
             "the place of a joint has to be constant",
-            "it may depend on parameters and constants alone; what moves is a joint or a `frame`",
+            "it may depend only on parameters and constants; write what moves as a joint or a `frame`",
         )));
     }
     Some(Ok(place))
@@ -61,7 +61,7 @@ pub fn unit(graph: &mut Graph, axis: Vec3) -> Result<Vec3, Refused> {
     if class_of(graph, &Value::Vector(axis.to_vec())) != 0 {
         return Err(Refused(
             "the axis of a joint has to be made of numbers and constants",
-            "turn the joint by its place, `at pose(R, p)`, where its direction is a parameter",
+            "to make the direction a parameter, turn the joint by its place, `at pose(R, p)`",
         ));
     }
     if axis.iter().all(|&entry| entry == graph.zero()) {

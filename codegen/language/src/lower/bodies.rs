@@ -37,7 +37,7 @@ impl Reader<'_, '_> {
                 return self.evaluator.error(
                     Diagnostic::new(
                         place,
-                        "about which point is this inertia? the centre of mass is not the frame's origin",
+                        "the reference point of this inertia is ambiguous: the centre of mass is not the frame's origin",
                     )
                     .help("write `about com` or `about origin` after it"),
                 );
@@ -81,7 +81,7 @@ impl Reader<'_, '_> {
         const WHAT: &str = "the position of a particle";
         let mass = self.constant_scalar(mass, "a mass");
         let position = self.evaluator.vec3(at).and_then(|position| {
-            let help = "a particle moves by the coordinates in its position";
+            let help = "write its position as a function of coordinates and parameters";
             let value = Value::Vector(position.to_vec());
             self.configuration(&value, at.span, WHAT, help)?;
             self.evaluator.continuous(&value, at.span, WHAT)?;
@@ -134,7 +134,7 @@ impl Reader<'_, '_> {
 
     pub fn potential(&mut self, expr: &Expr) -> Option<Edge> {
         let edge = self.evaluator.scalar(expr)?;
-        let help = "what depends on velocities, inputs or states is a load: `generalized force`, `force`, `torque` or `wrench`";
+        let help = "write what depends on velocities, inputs or states as a load: `generalized force`, `force`, `torque` or `wrench`";
         let value = Value::Scalar(edge);
         self.configuration(&value, expr.span, "a potential", help)?;
         self.evaluator

@@ -85,9 +85,9 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
                 errors.push(
                     Diagnostic::new(
                         system.name.span,
-                        "a number is a multiple of a prime that proofs count with",
+                        "a number is a multiple of a prime that proofs compute with",
                     )
-                    .help("change the last digit of the longest number, or let it be a parameter"),
+                    .help("change the last digit of the longest number, or make it a parameter"),
                 );
                 return Err(errors);
             }
@@ -125,9 +125,9 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
         errors.push(
             Diagnostic::new(
                 span,
-                "the constraints have several branches, and that of the start was not found apart",
+                "the constraints have several branches, and that of the start could not be isolated",
             )
-            .help("write the branch that is meant: one factor of a product, not the product"),
+            .help("write only the branch that is meant: one factor of a product, not the product"),
         );
         return Err(errors);
     }
@@ -136,7 +136,7 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
             system.name.span,
             "no point was found at which all square roots have values",
         )
-        .help("let a parameter stand for the root of a product, such as 3 * a^2"),
+        .help("replace the root of a product, such as 3 * a^2, by a parameter"),
     );
     Err(errors)
 }

@@ -45,10 +45,10 @@ impl Evaluator<'_> {
         };
         let place =
             short(graph, by, LONGEST).map_or("a branch ends".into(), |by| format!("{by} = 0"));
-        let message = format!("{what} has to be continuous, and this may jump where {place}");
+        let message = format!("{what} has to be continuous, but this may jump where {place}");
         self.error(Diagnostic::new(span, message).help(
-            "let the branches of an `if` be equal there, and extend tables by `hold` or `linear`; \
-             what jumps is a load, such as a `generalized force`",
+            "make the branches of an `if` equal there, and extend tables by `hold` or `linear`; \
+             write what jumps as a load, such as a `generalized force`",
         ))
     }
 }

@@ -211,7 +211,7 @@ fn undetermined(
         }
         let name = &coordinate.name;
         let message = format!(
-            "coordinate `{name}` has no rate, and the definitions of velocities and the constraints do not give one"
+            "coordinate `{name}` has no rate, and neither the definitions of velocities nor the constraints give one"
         );
         let help = advised(coordinate, None, declared);
         let help = format!("{help}, or define a velocity by `rate({name})`");
@@ -224,7 +224,7 @@ fn singular_start(system: &System, given: &Given) -> Diagnostic {
     let span = spans.first().copied().unwrap_or(system.name.span);
     Diagnostic::new(
         span,
-        "the start is a singular configuration: there [Y; Φ] has no inverse, so that the velocities do not determine the motion",
+        "the start is a singular configuration: [Y; Φ] has no inverse there, so the velocities do not determine the motion",
     )
-    .help("start elsewhere, or choose velocities that stay independent there")
+    .help("start elsewhere, or choose velocities that are independent there")
 }

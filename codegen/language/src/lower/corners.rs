@@ -27,7 +27,7 @@ pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
         let message =
             format!("the speed of {what} jumps{place}, and the impulse there is not modelled");
         Some(Diagnostic::new(span, message).help(
-            "let the slopes be equal on both sides: a table without corners is `pchip`, not `linear`",
+            "make the slopes equal on both sides: a `pchip` table has no corners, a `linear` one has",
         ))
     };
     let moved = system.items.iter().filter_map(|item| match &item.kind {

@@ -33,7 +33,7 @@ struct Piece {
 }
 
 impl Curve {
-    /// Makes a table of at least two points with increasing arguments.
+    /// Makes this table has at least two points with increasing arguments.
     pub(super) fn new(
         knots: Vec<BigRational>,
         values: Vec<BigRational>,

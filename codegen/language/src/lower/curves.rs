@@ -30,7 +30,7 @@ impl Evaluator<'_> {
             match &table.source {
                 Source::Points(points, span) => (points, *span),
                 Source::File(name, span) => {
-                    let message = format!("nothing says in which folder `{name}` is");
+                    let message = format!("the folder of `{name}` is not known");
                     return self.error(Diagnostic::new(*span, message).help(
                         "generate from a file, or write the points here: `= [(0, 0), (1, 2)]`",
                     ));
@@ -46,7 +46,7 @@ impl Evaluator<'_> {
             let count = all.len();
             let plural = if count == 1 { "" } else { "s" };
             return self.error(
-                Diagnostic::new(span, format!("a table of {count} point{plural}"))
+                Diagnostic::new(span, format!("this table has {count} point{plural}"))
                     .help(format!("a table has from 2 to {MOST_POINTS} points")),
             );
         }
@@ -62,7 +62,7 @@ impl Evaluator<'_> {
                     k + 1
                 );
                 let error = Diagnostic::new(here.span, message)
-                    .help("sort the points by their first numbers, each of them once");
+                    .help("sort the points by their first numbers, and remove duplicates");
                 let error = match table.source {
                     Source::Points(..) if here.span.range() != before.span.range() => {
                         error.note(before.span, "the point before")

@@ -43,8 +43,11 @@ fn default_of(
     let name = &declaration.name.name;
     let Some(expr) = &declaration.value else {
         report.push(
-            Diagnostic::new(declaration.name.span, format!("parameter `{name}` has no default"))
-                .help("every parameter has a default, with which the description is checked: `param m = 1.3;`"),
+            Diagnostic::new(
+                declaration.name.span,
+                format!("parameter `{name}` has no default"),
+            )
+            .help("give it a default, with which the description is checked: `param m = 1.3;`"),
         );
         return None;
     };
@@ -55,7 +58,7 @@ fn default_of(
         .any(|edge| graph.class(edge.node()) != 0)
     {
         report.push(
-            Diagnostic::new(expr.span, format!("the default of `{name}` is no number")).help(
+            Diagnostic::new(expr.span, format!("the default of `{name}` is not a number")).help(
                 "defaults are made of numbers and constants; name an expression of parameters with `let`",
             ),
         );

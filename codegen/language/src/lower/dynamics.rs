@@ -144,7 +144,10 @@ fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
         if let Some(of) = name.name.strip_suffix(SLOPES)
             && described.iter().any(|name| name == of)
         {
-            let message = format!("`{}` are the slopes of the output `{of}`", name.name);
+            let message = format!(
+                "`{}` is the name of the slopes of the output `{of}`",
+                name.name
+            );
             report.push(
                 Diagnostic::new(name.span, message).help("choose another name for this output"),
             );
@@ -210,7 +213,10 @@ fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
     for output in outputs {
         let mut frames = asked.jacobians.iter().flat_map(Jacobian::names);
         if frames.any(|name| name == output.name) || asked.wants_slopes(&output.name) {
-            let message = format!("`generate` asks for another function `{}`", output.name);
+            let message = format!(
+                "`generate` already lists another function `{}`",
+                output.name
+            );
             report.push(
                 Diagnostic::new(output.span, message).help("choose another name for this output"),
             );
@@ -263,7 +269,7 @@ fn function(
     report.push(match closest(text, known) {
         Some(near) => error.help(format!("did you mean `{near}`?")),
         None => error.help(format!(
-            "the functions are {}, and the outputs and invariants by their names; `y_slopes` are the slopes of an output y, `jacobian f` is the kinematics of a frame f; `all` stands for what a description without `generate` gets",
+            "the functions are {}, and the outputs and invariants by their names; `y_slopes` are the slopes of an output y, `jacobian f` is the kinematics of a frame f; `all` stands for the functions of a description without `generate`",
             functions.join(", ")
         )),
     });

@@ -120,7 +120,7 @@ impl Reader<'_, '_> {
     ) -> Option<Spring> {
         let stiffness = self.constant_scalar(stiffness, "a stiffness");
         let rest = match length {
-            Some(expr) => self.constant_scalar(expr, "the length of a spring without force"),
+            Some(expr) => self.constant_scalar(expr, "the free length of a spring"),
             None => Some(self.evaluator.graph.zero()),
         };
         let (from, to) = match acting {
@@ -193,7 +193,7 @@ impl Reader<'_, '_> {
     fn spring_scalar(&mut self, expr: &Expr) -> Option<Edge> {
         const WHAT: &str = "what a spring acts on";
         let scalar = self.evaluator.scalar(expr)?;
-        let help = "it is a length or an angle; on a rate acts a `damper`";
+        let help = "a spring acts on a length or an angle; use a `damper` on a rate";
         self.configuration(&Value::Scalar(scalar), expr.span, WHAT, help)?;
         self.evaluator
             .continuous(&Value::Scalar(scalar), expr.span, WHAT)?;
@@ -201,7 +201,7 @@ impl Reader<'_, '_> {
             let message = "this spring does nothing: what it acts on never changes";
             return self.evaluator.error(
                 Diagnostic::new(expr.span, message)
-                    .help("let it act on coordinates, as in `spring stiffness k on q2 - q1;`"),
+                    .help("make it act on coordinates, as in `spring stiffness k on q2 - q1;`"),
             );
         }
         Some(scalar)
@@ -283,7 +283,7 @@ impl Reader<'_, '_> {
         } else if linear {
             return Some(rate);
         } else {
-            format!("{on} has to be a rate, linear in the velocities")
+            format!("{on} has to be a rate that is linear in the velocities")
         };
         self.evaluator.error(
             Diagnostic::new(expr.span, message)
@@ -315,10 +315,10 @@ impl Reader<'_, '_> {
             return self.evaluator.error(
                 Diagnostic::new(
                     expr.span,
-                    "a dissipation may depend on coordinates, velocities and parameters alone",
+                    "a dissipation may depend only on coordinates, velocities and parameters",
                 )
                 .help(
-                    "what depends on inputs or states is a load: `generalized force w = -u * w;`",
+                    "write what depends on inputs or states as a load: `generalized force w = -u * w;`",
                 ),
             );
         }

@@ -34,7 +34,7 @@ pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &m
             let message = format!("more than {} functions in Rust", Component::MAX_COUNT);
             report.push(
                 Diagnostic::new(name.span, message)
-                    .help("one function with several components may do for some of them"),
+                    .help("combine some of them into one function with several components"),
             );
             break;
         }
@@ -82,8 +82,8 @@ fn check(function: &External, report: &mut Report) {
     }
     let (count, span) = function.components;
     if !(1..=most).contains(&count) {
-        let message = format!("a function that gives {count} numbers");
-        let help = format!("functions in Rust give from 1 to {most} numbers");
+        let message = format!("this function returns {count} numbers");
+        let help = format!("functions in Rust return from 1 to {most} numbers");
         report.push(Diagnostic::new(span, message).help(help));
     }
     if function.evaluated && function.stand_in.is_none() {
@@ -94,11 +94,11 @@ fn check(function: &External, report: &mut Report) {
             _ => format!("[{}]", vec!["0"; count.min(most)].join(", ")),
         };
         let message = format!(
-            "`{}` is a function in Rust, which has no values here",
+            "`{}` is a function in Rust, which cannot be called here",
             name.name
         );
         let help = format!(
-            "give it a stand-in for where it is not there: `extern fn {}({parameters}) -> {count} = {value};`",
+            "give it a stand-in for where it cannot be called: `extern fn {}({parameters}) -> {count} = {value};`",
             name.name
         );
         report.push(Diagnostic::new(name.span, message).help(help));
@@ -131,9 +131,9 @@ impl Evaluator<'_> {
         }
         let constant = |edge: &Edge| self.graph.class(edge.node()) & !class::PARAM == 0;
         if edges.iter().all(constant) {
-            let message = format!("`{}` of what never changes", name.name);
+            let message = format!("the arguments of `{}` never change", name.name);
             return self.error(Diagnostic::new(span, message).help(
-                "a function in Rust is called while the system moves: let a parameter stand for this value",
+                "a function in Rust is called while the system moves: replace this value by a parameter",
             ));
         }
         let count = function.components.0.clamp(1, Component::MAX_COUNT);
@@ -187,7 +187,7 @@ pub fn misplaced(model: &Model, called: &[(Edge, Span)]) -> Option<Diagnostic> {
         .get(usize::from(component.function))?;
     let span = call.map_or(model.span, |(_, span)| *span);
     let message = format!(
-        "`{}` takes part in what is no load, and it is a function in Rust",
+        "`{}` is a function in Rust, and something other than a load depends on it",
         function.name
     );
     Some(Diagnostic::new(span, message).help(PLACES))

@@ -87,7 +87,7 @@ pub fn relative_pose(
     let mut places = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
     if let Some((i, j)) = places.find(|&(i, j)| !scope.free && gram[i][j] != identity[i][j]) {
         let message = format!(
-            "the matrix of frame `{}` is no rotation: entry [{},{}] of R.T * R is not {}",
+            "the matrix of frame `{}` is not a rotation: entry [{},{}] of R.T * R is not {}",
             name.name,
             i + 1,
             j + 1,
@@ -104,7 +104,7 @@ pub fn relative_pose(
     let determinant = x[0] * minor(1, 2) - x[1] * minor(0, 2) + x[2] * minor(0, 1);
     if !scope.free && determinant != graph.value(graph.one()) {
         let message = format!(
-            "the matrix of frame `{}` is a reflection, its determinant is -1",
+            "the matrix of frame `{}` is a reflection: its determinant is -1",
             name.name
         );
         return evaluator.error(

@@ -57,7 +57,7 @@ impl Evaluator<'_> {
 type Fault = Option<(&'static str, &'static str)>;
 
 const ZERO_DIVISOR: Fault = Some((
-    "division by something that is identically zero",
+    "division by an expression that is identically zero",
     "this is 0 for every configuration that satisfies the constraints",
 ));
 
@@ -79,7 +79,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             let square = graph.mul(less, more);
             if graph.as_rational(square).is_some_and(|n| n.is_negative()) {
                 return Err(Some((
-                    "`asin` and `acos` are of numbers from -1 to 1",
+                    "`asin` and `acos` take numbers from -1 to 1",
                     "check the argument: it is this number for every configuration",
                 )));
             }
@@ -184,7 +184,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             let axis = axes::unit(graph, given).unwrap_or(given);
             if !free && graph.dot(&axis, &axis) != graph.one() {
                 return Err(Some((
-                    "the axis of `axis_angle` is no unit vector",
+                    "the axis of `axis_angle` is not a unit vector",
                     "divide it by its length: `axis_angle(a / norm(a), angle)`",
                 )));
             }

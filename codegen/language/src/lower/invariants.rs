@@ -90,7 +90,7 @@ fn check_names(system: &System, report: &mut Report) {
         if first.is_some() || is_taken(&name.name) {
             let message = format!("there is already a function `{}`", name.name);
             let error = Diagnostic::new(name.span, message).help(format!(
-                "give this invariant a name of its own: `invariant {}_1 = …;`",
+                "give this invariant another name: `invariant {}_1 = …;`",
                 name.name
             ));
             report.push(match first {
@@ -130,20 +130,17 @@ impl Reader<'_, '_> {
                 let class = self.class_of(&value);
                 if class & (class::INPUT | class::ACCEL) != 0 {
                     let message =
-                        "an invariant may depend on coordinates, velocities and parameters alone";
+                        "an invariant may depend only on coordinates, velocities and parameters";
                     return self
                         .evaluator
                         .error(Diagnostic::new(expr.span, message).help(
                         "inputs are free functions of time; set them after `when`: `when F = 0`; states move by their own rates",
                     ));
                 }
-                self.evaluator.continuous(
-                    &value,
-                    expr.span,
-                    "what is constant along the motion",
-                )?;
+                self.evaluator
+                    .continuous(&value, expr.span, "an invariant")?;
                 if class & (class::CONFIGURATION | class::VELOCITY) == 0 {
-                    let message = "this is constant whatever moves: there is nothing to prove";
+                    let message = "this is constant for every motion, so there is nothing to prove";
                     return self.evaluator.error(
                         Diagnostic::new(expr.span, message)
                             .help("an invariant depends on coordinates or velocities"),
@@ -167,9 +164,9 @@ impl Reader<'_, '_> {
         match kinetic {
             None => Some(None),
             Some(kinetic) => self.evaluator.error(
-                Diagnostic::new(span, "the momentum of a `kinetic` statement is not known: it does not say where its masses are")
+                Diagnostic::new(span, "the momentum of a `kinetic` statement is not known: it does not give the positions of its masses")
                     .help("write the momentum as an expression: `invariant p = m * v;`, or describe the masses by `particle` and `body`")
-                    .note(kinetic, "this energy has masses without places"),
+                    .note(kinetic, "this energy has masses without positions"),
             ),
         }
     }
@@ -184,7 +181,7 @@ impl Reader<'_, '_> {
     /// Reads a vector in world axes that depends at most on the configuration.
     fn place(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
         let value = self.evaluator.vec3(expr)?;
-        let help = "it is given in world axes; an axis fixed in a body is `R * [0, 0, 1]`";
+        let help = "give it in world axes; an axis fixed in a body is `R * [0, 0, 1]`";
         self.configuration(&Value::Vector(value.to_vec()), expr.span, what, help)?;
         Some(value)
     }
@@ -217,7 +214,7 @@ impl Reader<'_, '_> {
             let used = graph.reachable(&value.entries());
             let of_set = |id: &u32| matches!(graph.node(*id), Node::Symbol(s) if set.iter().any(|(t, _)| *t == s as usize));
             if used.iter().any(of_set) {
-                let message = "the value of a condition depends on what the claim sets itself";
+                let message = "the value of a condition depends on something that the claim sets";
                 return self.evaluator.error(
                     Diagnostic::new(condition.value.span, message)
                         .help("give values in terms of the parameters that are not set"),

@@ -69,15 +69,17 @@ impl Reader<'_, '_> {
         let (first, second) = (&ends.0.frame, &ends.1.frame);
         let message = if first.name == second.name {
             let frame = &first.name;
-            format!("this {what} does nothing: both its points are fixed to `{frame}`")
+            format!("this {what} does nothing: both its endpoints are fixed to `{frame}`")
         } else if square == self.evaluator.graph.zero() {
-            format!("this {what} does nothing: its points coincide always, it has no direction")
+            format!(
+                "this {what} does nothing: its endpoints always coincide, so it has no direction"
+            )
         } else {
-            format!("this {what} does nothing: its points keep their distance")
+            format!("this {what} does nothing: the distance between its endpoints never changes")
         };
         self.evaluator.error(
             Diagnostic::new(first.span, message)
-                .help("let it act between points of frames that move against one another")
+                .help("make it act between points of frames that move relative to one another")
                 .note(second.span, "the other point"),
         )
     }
@@ -155,8 +157,9 @@ impl Reader<'_, '_> {
             return Some(now);
         }
         let what = line.what;
-        let message =
-            format!("the points of this {what} coincide at the start: it has no direction there");
+        let message = format!(
+            "the endpoints of this {what} coincide at the start, so it has no direction there"
+        );
         let help = match what {
             "spring" => "start elsewhere, or leave out its `length`",
             _ => "start elsewhere, or choose other points",

@@ -116,7 +116,7 @@ impl Reader<'_, '_> {
     }
 
     fn point(&mut self, expr: &Expr) -> Option<Vec3> {
-        const WHAT: &str = "a point of attack";
+        const WHAT: &str = "a point of application";
         let point = self.evaluator.vec3(expr)?;
         let help = "it is given in the axes of the frame that the load acts on";
         self.configuration(&Value::Vector(point.to_vec()), expr.span, WHAT, help)?;

@@ -29,7 +29,7 @@ pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
             ItemKind::Damper { coefficient, .. } => (
                 coefficient,
                 dampers.next(),
-                "this coefficient of damping",
+                "this damping coefficient",
                 "a positive one takes energy out of the system, a negative one puts energy in",
             ),
             _ => continue,

@@ -84,7 +84,7 @@ impl Evaluator<'_> {
             (None, _) => {
                 let message = format!("`{name}` is not known here: it follows from the rates");
                 return self.error(Diagnostic::new(span, message).help(
-                    "use it in outputs, loads, energies and named expressions, not in what defines the coordinates and their rates",
+                    "use it in outputs, loads, energies and named expressions, not in the definitions of coordinates and their rates",
                 ));
             }
             (Some(motion), Quantity::Velocity) => {

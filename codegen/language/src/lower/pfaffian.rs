@@ -114,7 +114,7 @@ impl Reader<'_> {
             let Some(which) = self.declared.xi.iter().position(|&xi| xi == entry) else {
                 return self.evaluator.error(
                     Diagnostic::new(expr.span, "only a velocity can be inactive").help(
-                        "write `inactive v;`, or `inactive v[2];` for an entry; what is no velocity by itself is written `nonholonomic … = 0;`",
+                        "write `inactive v;`, or `inactive v[2];` for an entry; write a combination of velocities as `nonholonomic … = 0;`",
                     ),
                 );
             };
@@ -123,7 +123,7 @@ impl Reader<'_> {
             row[which] = graph.one();
             let first = before.iter().chain(&rows).find(|other| other.row == row);
             if let Some(first) = first.map(|first: &Pfaffian| first.span) {
-                let error = Diagnostic::new(expr.span, "this velocity is inactive already");
+                let error = Diagnostic::new(expr.span, "this velocity is already inactive");
                 return self.evaluator.error(
                     error
                         .help("remove one of the two")
@@ -220,7 +220,7 @@ impl Reader<'_> {
             return self.evaluator.error(
                 Diagnostic::new(
                     span,
-                    "a loop is about coordinates, not velocities, inputs or states",
+                    "a loop may depend only on coordinates, not on velocities, inputs or states",
                 )
                 .help("a constraint on velocities is written `nonholonomic … = …;`"),
             );
@@ -243,8 +243,9 @@ impl Reader<'_> {
                 .collect();
             if row.iter().all(|&entry| entry == graph.zero()) {
                 return self.evaluator.error(
-                    Diagnostic::new(span, "nothing that moves takes part in this loop")
-                        .help("a loop is an equation of coordinates that tree velocities change"),
+                    Diagnostic::new(span, "this loop contains nothing that moves").help(
+                        "a loop is an equation of coordinates that velocities of the tree change",
+                    ),
                 );
             }
             rows.push(Pfaffian {

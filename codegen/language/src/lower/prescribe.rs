@@ -132,7 +132,7 @@ impl Reader<'_> {
         if time::name(self.system).is_none() {
             let error = Diagnostic::new(target.span(), "a prescribed motion is a function of time");
             return self.evaluator.error(error.help(
-                "declare the time, `time t;`: the motion may depend on it and on parameters",
+                "declare the time, `time t;`; the motion may depend on it and on parameters",
             ));
         }
         let clock = self.declared.clock?;
@@ -178,7 +178,7 @@ impl Reader<'_> {
         let of_angle = coordinate.kind == CoordKind::S1 && !target.entry.is_empty();
         if !plain || of_angle || target.field.is_some() {
             return self.evaluator.error(
-                error.help("prescribe its velocity, or let the pose of a frame depend on time"),
+                error.help("prescribe its velocity, or make the pose of a frame depend on time"),
             );
         }
         let mut statements = (self.variety.origins.iter().zip(&self.variety.phi)).filter_map(
@@ -221,13 +221,13 @@ impl Reader<'_> {
         let help = match found {
             0 => return Some(()),
             class::INPUT => {
-                "an input or a state can give the rate of a velocity: `prescribe rate(v) = a;`, with the velocity's own start"
+                "an input or a state can give the rate of a velocity: `prescribe rate(v) = a;`, and the velocity has a `start`"
             }
             _ => {
-                "it is a function of time and parameters; what depends on the motion is a force or a constraint"
+                "make it a function of time and parameters; write what depends on the motion as a force or a constraint"
             }
         };
-        let message = format!("the motion of `{name}` has to be known ahead");
+        let message = format!("the motion of `{name}` has to be known in advance");
         self.evaluator
             .error(Diagnostic::new(span, message).help(help))
     }

@@ -31,7 +31,7 @@ impl Evaluator<'_> {
             (None, None) => {
                 return self.error(
                     Diagnostic::new(span, "`rate` is not known here: it follows from the rates").help(
-                        "use it in definitions of velocities, outputs, loads and named expressions, not in what defines the coordinates and their rates",
+                        "use it in definitions of velocities, outputs, loads and named expressions, not in the definitions of coordinates and their rates",
                     ),
                 );
             }
@@ -47,7 +47,7 @@ impl Evaluator<'_> {
             0 => ("", ""),
             unknown if unknown & class::INPUT != 0 => (
                 "an input",
-                "inputs are given at run time, without their rates; let the rate itself be an input",
+                "inputs are given at run time, without their rates; make the rate itself an input",
             ),
             _ if scope.rates.is_some() => (
                 "a velocity or a rate",
@@ -55,11 +55,11 @@ impl Evaluator<'_> {
             ),
             _ => (
                 "a rate of a velocity",
-                "second derivatives of coordinates are known, third ones are not",
+                "second derivatives of coordinates are known, but not third derivatives",
             ),
         };
         if !help.is_empty() {
-            let message = format!("`rate` of what depends on {what} has no value");
+            let message = format!("an expression that depends on {what} has no `rate`");
             return self.error(Diagnostic::new(argument.span, message).help(help));
         }
         let rates = motion.along(self.graph, &entries);

@@ -58,7 +58,7 @@ impl Reader<'_, '_> {
         }
         self.evaluator.error(
             Diagnostic::new(span, format!("{what} has to be constant"))
-                .help("it may depend on parameters and constants alone"),
+                .help("it may depend only on parameters and constants"),
         )
     }
 
@@ -96,7 +96,7 @@ impl Reader<'_, '_> {
         if self.class_of(value) & !(class::PARAM | class::CONFIGURATION) == 0 {
             return Some(());
         }
-        let message = format!("{what} may depend on coordinates and parameters alone");
+        let message = format!("{what} may depend only on coordinates and parameters");
         self.evaluator
             .error(Diagnostic::new(span, message).help(help))
     }

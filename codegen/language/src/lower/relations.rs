@@ -73,9 +73,9 @@ pub fn relate(
             report.push(
                 Diagnostic::new(
                     span,
-                    "the start is a singular configuration: there ∂φ/∂x has a smaller rank than elsewhere",
+                    "the start is a singular configuration: ∂φ/∂x has a smaller rank there than elsewhere",
                 )
-                .help("start elsewhere, or write the constraints such that their derivatives are independent there"),
+                .help("start elsewhere, or write the constraints so that their derivatives are independent there"),
             );
             return None;
         }

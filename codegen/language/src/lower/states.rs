@@ -66,7 +66,10 @@ pub fn read(
         };
         if !tried.contains(&name.name.as_str()) {
             let message = format!("the state `{}` has no rate", name.name);
-            let help = format!("write `rate {} = …;` with anything on the right", name.name);
+            let help = format!(
+                "write `rate {} = …;` with any expression on the right",
+                name.name
+            );
             report.push(Diagnostic::new(name.span, message).help(help));
         }
         let mut evaluator = Evaluator::new(graph, scope, report);

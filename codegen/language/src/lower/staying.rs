@@ -57,7 +57,7 @@ fn refused(
     constraints: &[Pfaffian],
 ) -> Option<Diagnostic> {
     if let Some((_, first)) = before.iter().find(|(other, _)| *other == place) {
-        let error = Diagnostic::new(expr.span, "this velocity is independent already");
+        let error = Diagnostic::new(expr.span, "this velocity is already independent");
         return Some(
             error
                 .help("remove one of the two")
@@ -65,7 +65,7 @@ fn refused(
         );
     }
     if declared.clock.is_some_and(|clock| clock.xi == place) {
-        let error = Diagnostic::new(expr.span, "the rate of time is 1, and not independent");
+        let error = Diagnostic::new(expr.span, "the rate of time is 1, so it is not independent");
         return Some(error.help("remove it"));
     }
     let xi = declared.xi[place];
@@ -80,8 +80,8 @@ fn refused(
     };
     let row = constraints.iter().find(alone)?;
     let what = match row.kind {
-        Kind::Inactive => "an inactive velocity is 0, and not independent",
-        _ => "a prescribed velocity is given, and not independent",
+        Kind::Inactive => "an inactive velocity is 0, so it is not independent",
+        _ => "a prescribed velocity is given, so it is not independent",
     };
     let error = Diagnostic::new(expr.span, what).help("remove it from one of the two statements");
     Some(error.note(row.span, "given here"))

@@ -167,7 +167,7 @@ impl<'a> Seen<'a> {
                 } else if !not_negative(&second) && !is_rotor(&inertia) {
                     (
                         "the inertia of this body violates the triangle inequality",
-                        "of the three principal moments about the centre of mass none is larger than the sum of the other two: check the numbers, and `about`",
+                        "no principal moment about the centre of mass may be larger than the sum of the other two: check the numbers, and `about`",
                     )
                 } else {
                     return None;
@@ -212,7 +212,7 @@ impl<'a> Seen<'a> {
             return None;
         }
         let message = format!(
-            "this load can never do work: nothing that moves `{}` yields to it",
+            "this load can never do work: no motion of `{}` has a component along it",
             frame.name
         );
         Some(Diagnostic::new(span, message).help("check its frame, its axes and its direction"))

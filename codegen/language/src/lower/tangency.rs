@@ -51,7 +51,7 @@ pub fn linear_part(
         };
         let error = if (class | rest) & class::INPUT != 0 {
             Diagnostic::new(span, "the rate of a coordinate cannot depend on inputs or states").help(
-                "they act by `force`, `torque`, `wrench` or `generalized force`; one that gives the rate of a velocity is written `prescribe rate(v) = a;`",
+                "make them act by `force`, `torque`, `wrench` or `generalized force`; write one that gives the rate of a velocity as `prescribe rate(v) = a;`",
             )
         } else if class & class::VELOCITY == 0 && rest & class::VELOCITY == 0 {
             Diagnostic::new(span, "this rate has a term without a velocity").help(
@@ -244,12 +244,12 @@ impl Checker<'_> {
         let (few, help) = if n < dimension {
             (
                 "too few",
-                "add velocities until they are as many as the degrees of freedom",
+                "add velocities until there are as many as degrees of freedom",
             )
         } else {
             (
                 "too many",
-                "remove velocities, or a constraint that is not meant",
+                "remove velocities, or a constraint that is not intended",
             )
         };
         let plural = if rank_phi == 1 { "" } else { "s" };

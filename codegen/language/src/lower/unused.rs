@@ -92,7 +92,7 @@ impl Uses<'_> {
         let warning = Diagnostic::new(*span, format!("the {kind} `{name}` is never used"));
         Ok(match written {
             None => warning.help(format!("remove it, or call it `_{name}`")),
-            Some(_) => warning.help("remove it, or let its name begin with `_`"),
+            Some(_) => warning.help("remove it, or begin its name with `_`"),
         })
     }
 }

@@ -226,9 +226,9 @@ impl Variety {
             if let Some(reasons) = self.unread.get(&constraint.item) {
                 let error = Diagnostic::new(
                     constraint.span,
-                    "this constraint has no value away from where it holds",
+                    "this constraint has no value where it does not hold",
                 )
-                .help("write it without what other constraints make zero or unit");
+                .help("write it without terms that other constraints make 0 or 1");
                 let mut reasons = reasons.iter();
                 report.push(match reasons.find(|reason| !report.has(reason)) {
                     Some(reason) => error.note(reason.span, &reason.message),
@@ -265,13 +265,13 @@ fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Dia
         let error = |message: &str, help: &str| Err(Diagnostic::new(span, message).help(help));
         if class & !(class::PARAM | class::CONFIGURATION) != 0 {
             return error(
-                "a constraint is about coordinates, not velocities, inputs or states",
-                "velocities are constrained by the choice of `velocity` and `rate`",
+                "a constraint may depend only on coordinates, not on velocities, inputs or states",
+                "constrain velocities by the choice of `velocity` and `rate`",
             );
         }
         if class & class::COORD == 0 {
             return error(
-                "this constraint has no coordinate in it",
+                "this constraint contains no coordinate",
                 "a constraint is an equation of coordinates, such as `x^2 + y^2 = l^2`",
             );
         }
@@ -282,7 +282,7 @@ fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Dia
             );
         }
         if degree(graph, edge) > HIGHEST_DEGREE {
-            let message = format!("a constraint of a degree beyond {HIGHEST_DEGREE}");
+            let message = format!("the degree of this constraint is above {HIGHEST_DEGREE}");
             return Err(Diagnostic::new(span, message).help("write it with further coordinates"));
         }
     }
@@ -361,8 +361,8 @@ fn contradiction(
         }
     };
     let error = Diagnostic::new(place(item), message).help(match holds_at_start {
-        false => "remove what contradicts, or let a value in it be a coordinate or a parameter",
-        true => "lower its degree: let powers and products be coordinates, or write a `loop`, which multipliers keep",
+        false => "remove the contradiction, or replace a value in it by a coordinate or a parameter",
+        true => "lower its degree with further coordinates for powers and products, or write a `loop`, which multipliers enforce",
     });
     earlier.into_iter().fold(error, |error, other| {
         error.note(place(other), "one of those before")

@@ -53,7 +53,7 @@ impl<'a> World<'a> {
             let message =
                 format!("the description has more than {MOST_STATEMENTS} statements here");
             let error = Diagnostic::new(span, message);
-            self.report.push(error.help("let ranges be shorter"));
+            self.report.push(error.help("shorten the ranges"));
         }
         self.size < MOST_STATEMENTS && self.report.len() < MOST_ERRORS
     }
@@ -62,7 +62,7 @@ impl<'a> World<'a> {
     pub fn range(&mut self, counter: &Counter, context: &Context) -> Option<(i64, i64)> {
         let by = context.by;
         if context.counter(&counter.name.name).is_some() {
-            let message = format!("`{}` counts already", counter.name.name);
+            let message = format!("`{}` is already a counter", counter.name.name);
             self.report.push_once(
                 Diagnostic::new(counter.name.span.later(by), message)
                     .help("give the inner counter another name"),
@@ -80,7 +80,7 @@ impl<'a> World<'a> {
         let error = |message: String, help: String| Diagnostic::new(span, message).help(help);
         if last < first {
             let message = format!("the range from {first} to {last} is empty");
-            let help = "the first value stands before the last: `1..n`".to_owned();
+            let help = "write the smaller value first: `1..n`".to_owned();
             self.report.push_once(error(message, help));
             return None;
         }

@@ -77,6 +77,6 @@ fn unread(item: &Item) -> Option<Diagnostic> {
     let ItemKind::Include(name, span) = &item.kind else {
         return None;
     };
-    let message = format!("nothing says in which folder `{name}` is");
+    let message = format!("the folder of `{name}` is not known");
     Some(Diagnostic::new(*span, message).help("read the description from its file"))
 }

@@ -250,8 +250,8 @@ impl<'a> World<'a> {
             let part = |thing: &Thing| matches!(thing.kind, Kind::Part(_));
             let place = |span: Span| self.origins.source(span).range();
             if place(first.span) == place(thing.span) && place(thing.span).is_some() {
-                let message = format!("every round of this `for` declares `{written}` once more");
-                let index = format!("give it the counter for an index, as in `{base}[i]`");
+                let message = format!("every round of this `for` declares `{written}` again");
+                let index = format!("give it the counter as an index, as in `{base}[i]`");
                 return Some(error(message).help(index));
             }
             if part(first) || part(thing) {
@@ -278,8 +278,9 @@ impl<'a> World<'a> {
             "`{written}` and `{first}` would both be called `{}`",
             thing.name
         );
-        let error = error(message)
-            .help("give one of the two another name: in generated code brackets and dots are `_`");
+        let error = error(message).help(
+            "give one of the two another name: in generated code brackets and dots become `_`",
+        );
         Some(error.note(*span, "the other one"))
     }
 
@@ -321,7 +322,7 @@ impl<'a> World<'a> {
         while let (Kind::Part(scope), Some(step)) = (thing.kind, steps.get(taken)) {
             let part = self.scopes[scope].written.trim_end_matches('.');
             let Step::Name(name) = step else {
-                let message = format!("the part `{part}` is no array");
+                let message = format!("the part `{part}` is not an array");
                 return Err(Diagnostic::new(span, message).help(self.parts_of(scope)));
             };
             let rest = &steps[taken + 1..];
@@ -355,7 +356,7 @@ impl<'a> World<'a> {
             .map(|name| format!("`{name}`"))
             .collect();
         match names.as_slice() {
-            [] => "it declares nothing that has a name".to_owned(),
+            [] => "it declares no names".to_owned(),
             list => format!("it has {}; write `{}NAME`", list.join(", "), scope.written),
         }
     }
@@ -380,7 +381,7 @@ impl<'a> World<'a> {
             if ending.is_empty() {
                 return Ok(Some((thing, 1)));
             }
-            let message = format!("`{name}` is no array");
+            let message = format!("`{name}` is not an array");
             return Err(Diagnostic::new(span, message).help(format!("write `{name}{ending}`")));
         }
         let (array, list) = match (array(ending), list) {
@@ -396,7 +397,7 @@ impl<'a> World<'a> {
             }
             (None, Some(_)) if !ending.is_empty() && array("").is_some() => {
                 let message = format!("no `{name}[…]{ending}` is declared");
-                let help = "behind the index stands what a joint's coordinates and velocities end in, as in `j[2]_dot`";
+                let help = "the ending of a joint's coordinates and velocities follows the index, as in `j[2]_dot`";
                 return Err(Diagnostic::new(span, message).help(help));
             }
             _ => return Ok(None),
@@ -409,7 +410,7 @@ impl<'a> World<'a> {
                 let (first, last) = (array.keys().next(), array.keys().next_back());
                 let range = first.zip(last).map(|(first, last)| {
                     let of = |indices: &[i64]| shown(name, Some(indices), ending);
-                    format!("they run from `{}` to `{}`", of(first), of(last))
+                    format!("the names run from `{}` to `{}`", of(first), of(last))
                 });
                 let error = Diagnostic::new(span, format!("there is no `{missing}`"));
                 Err(error.help(range.unwrap_or_default()))

@@ -25,7 +25,7 @@ impl World<'_> {
                 true => Ok(value),
                 false => Err(
                     Diagnostic::new(index.span, format!("the index {value} is negative"))
-                        .help("indices start at 0 or 1: let the range of the counter begin later"),
+                        .help("indices start at 0 or 1: begin the range of the counter later"),
                 ),
             }
         };
@@ -39,7 +39,7 @@ impl World<'_> {
         whole.flatten().ok_or_else(|| {
             let error = Diagnostic::new(
                 expr.span.later(by),
-                format!("{value} is no whole number that can count"),
+                format!("{value} is not a 64-bit whole number"),
             );
             error.help("ranges and indices are whole numbers")
         })
@@ -54,8 +54,8 @@ impl World<'_> {
     ) -> Result<BigRational, Diagnostic> {
         let span = expr.span.later(by);
         if level > MOST_LEVELS {
-            let error = Diagnostic::new(span, "this number is made of too many others");
-            return Err(error.help("constants may not be made of themselves"));
+            let error = Diagnostic::new(span, "this number depends on too many others");
+            return Err(error.help("a constant must not depend on itself"));
         }
         let value = match &expr.kind {
             ExprKind::Number(number) => number.value.clone(),
@@ -64,7 +64,7 @@ impl World<'_> {
                 let left = self.number(left, context, by, level)?;
                 let right = self.number(right, context, by, level)?;
                 computed(*op, left, right).ok_or_else(|| {
-                    let error = Diagnostic::new(span, "this has no value that can count");
+                    let error = Diagnostic::new(span, "this has no value");
                     error.help("ranges and indices are whole numbers")
                 })?
             }
@@ -74,7 +74,8 @@ impl World<'_> {
         match value.numer().bits().max(value.denom().bits()) <= MOST_BITS {
             true => Ok(value),
             false => {
-                let error = Diagnostic::new(span, "this number is too large to count with");
+                let error =
+                    Diagnostic::new(span, "this number is too large for a range or an index");
                 Err(error.help("ranges and indices are small whole numbers"))
             }
         }
@@ -120,7 +121,7 @@ impl World<'_> {
 }
 
 fn not_known(span: Span, what: &str) -> Diagnostic {
-    let message = format!("{what} is no number that is known when the description is read");
+    let message = format!("{what} is not a number that is known when the description is read");
     Diagnostic::new(span, message).help(
         "ranges and indices are made of numbers, counters and constants: write `const n = 8;`",
     )

@@ -19,7 +19,7 @@ impl<'a> World<'a> {
     pub fn component(&mut self, component: &'a Component, span: Span) {
         let Ident { name, span: place } = &component.name;
         if let Some((first, ..)) = self.components.get(name.as_str()) {
-            let error = Diagnostic::new(*place, format!("a second component `{name}`"));
+            let error = Diagnostic::new(*place, format!("component `{name}` is defined twice"));
             self.report.push(
                 error
                     .help("give one of the two another name")
@@ -78,7 +78,7 @@ impl<'a> World<'a> {
                 let message = format!("the component `{}` contains itself", component.name.name);
                 self.report.push_once(
                     Diagnostic::new(place, message)
-                        .help("a chain of equal parts is written with `for`, outside of the component")
+                        .help("write a chain of equal parts with `for`, outside the component")
                         .note(component.name.span, "it is defined here"),
                 );
                 return false;
@@ -88,8 +88,7 @@ impl<'a> World<'a> {
         if depth >= MOST_NESTED {
             let message = format!("parts are nested more than {MOST_NESTED} deep");
             let error = Diagnostic::new(place, message);
-            self.report
-                .push_once(error.help("let parts stand side by side"));
+            self.report.push_once(error.help("put parts side by side"));
         }
         depth < MOST_NESTED
     }
@@ -120,10 +119,10 @@ impl<'a> World<'a> {
                 Err(error) => return self.report.push_once(error),
             },
             _ => {
-                let error = Diagnostic::new(name.span, "this is no name of a part");
-                return self
-                    .report
-                    .push_once(error.help("a part is called `left`, one of an array `leg[2]`"));
+                let error = Diagnostic::new(name.span, "this is not the name of a part");
+                return self.report.push_once(
+                    error.help("a name is a word such as `left`, or `leg[2]` in an array"),
+                );
             }
         };
         let outer = &self.scopes[context.scope];
@@ -261,7 +260,7 @@ impl<'a> World<'a> {
                 None if named => {
                     let error = Diagnostic::new(
                         at(argument.value.span),
-                        "an argument without a name stands behind one with a name",
+                        "an argument without a name follows one with a name",
                     );
                     self.report
                         .push_once(error.help("write its name before it: `side = -1`"));

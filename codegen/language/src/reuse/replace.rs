@@ -194,11 +194,11 @@ fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
     match path.get(taken) {
         Some(Step::Name(part)) => Diagnostic::new(
             span,
-            format!("this name goes no further than before `.{part}`"),
+            format!("this name cannot be continued by `.{part}`"),
         )
-        .help("parts that components make have names of their own: `left.knee`"),
-        _ => Diagnostic::new(span, format!("`{name}` is no array"))
-            .help("an array is declared with its index, as in `frame link[0] = world;`; an entry of a call in other axes is written `(velocity(f) in g)[1]`"),
+        .help("only parts of components contain names: `left.knee`"),
+        _ => Diagnostic::new(span, format!("`{name}` is not an array"))
+            .help("declare an array with its index, as in `frame link[0] = world;`; write an entry of a call in other axes as `(velocity(f) in g)[1]`"),
     }
 }
 
@@ -221,16 +221,16 @@ impl<'w, 'a> Replacing<'w, 'a> {
                 }
             },
             Found::Number(value) => {
-                let message = format!("`{}` is the number {value} here, no name", shown());
+                let message = format!("`{}` is the number {value} here, not a name", shown());
                 Err(Diagnostic::new(span, message)
-                    .help("a name is wanted: with the counter as its index, `link[i]`"))
+                    .help("write a name with the counter as its index: `link[i]`"))
             }
             Found::Parameter(scope, name, binding) => {
                 self.world.mention(scope, name);
                 if !binding.frame {
-                    let message = format!("`{name}` is an expression here, no name");
+                    let message = format!("`{name}` is an expression here, not a name");
                     return Err(Diagnostic::new(span, message)
-                        .help(format!("a frame is declared as one: `{name}: frame`")));
+                        .help(format!("declare it as a frame: `{name}: frame`")));
                 }
                 let argument = self.argument(scope, name, binding);
                 Ok(argument.and_then(|(expr, ..)| match expr.kind {
@@ -290,8 +290,8 @@ impl<'w, 'a> Replacing<'w, 'a> {
     /// Replaces an expression that has to name a frame. Returns whether it does.
     fn frame(&mut self, expr: &mut Expr, parameter: &str) -> bool {
         let wrong = |span: Span, what: String| {
-            Diagnostic::new(span, format!("`{parameter}` has to be a frame, {what}"))
-                .help("give the name of a frame, as in `mount[2]` or `left.foot`; a place on one is a `frame` of its own")
+            Diagnostic::new(span, format!("`{parameter}` has to be a frame, but but {what}"))
+                .help("give the name of a frame, as in `mount[2]` or `left.foot`; declare a place on a frame as another `frame`")
         };
         let Some(mut name) = of_expression(expr) else {
             let error = wrong(expr.span, "this is an expression".into());
@@ -303,7 +303,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
         if let Ok(Found::Thing(thing, taken)) = &found {
             let frame = thing.kind == Kind::Frame && *taken == path.len();
             if !frame && !matches!(thing.kind, Kind::Part(_)) {
-                let error = wrong(name.span, format!("`{}` is none", name.name));
+                let error = wrong(name.span, format!("`{}` is not one", name.name));
                 self.report
                     .push_once(error.note(thing.span, "declared here"));
                 return false;
@@ -346,7 +346,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
                     _ => "",
                 };
                 let error = Diagnostic::new(expr.span, format!("unknown name `{name}`"));
-                let help = "declare it, or check its spelling; of a joint, what its coordinates and velocities end in stands behind the index, as in `j[2]_dot`";
+                let help = "declare it, or check its spelling; the ending of a joint's coordinates and velocities follows the index, as in `j[2]_dot`";
                 return self.report.push_once(error.help(help));
             }
             Ok(Found::Unknown) => (None, base),
@@ -424,7 +424,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
         if large {
             let error = Diagnostic::new(span, "arguments make this expression too large");
             self.report
-                .push_once(error.help("name what they have in common with `let`"));
+                .push_once(error.help("name common parts with `let`"));
         }
         large
     }

@@ -38,7 +38,7 @@ impl<'a> Inference<'a> {
         if (a.shape, b.shape) == (Shape::Pose, Shape::Pose) {
             return self.error(
                 Diagnostic::new(span, "poses cannot be added or subtracted")
-                    .help("poses are composed by `P * Q`; positions are `.p`"),
+                    .help("write `P * Q` to compose poses; positions are `.p`"),
             );
         }
         if a.shape != b.shape {
@@ -88,7 +88,7 @@ impl<'a> Inference<'a> {
                     (Pose, _) | (_, Pose) => {
                         "a pose is multiplied by a pose or, on its right, by a vector of 3"
                     }
-                    _ => "the left needs as many columns as the right has rows",
+                    _ => "the left factor needs as many columns as the right factor has rows",
                 };
                 let (first, second) = (first.describe(), second.describe());
                 let message = format!("cannot multiply {first} by {second}");
@@ -120,7 +120,8 @@ impl<'a> Inference<'a> {
         if a.shape != Shape::Scalar {
             let message = format!("cannot raise {} to a power", a.shape.describe());
             let error = Diagnostic::new(left.span, message);
-            return self.error(error.help("powers are of scalars; write `dot(v, v)` or `M * M`"));
+            return self
+                .error(error.help("only scalars have powers; write `dot(v, v)` or `M * M`"));
         }
         if b.shape != Shape::Scalar {
             return self.wrong(right.span, "an exponent", "a scalar", b.shape);

@@ -82,7 +82,7 @@ impl<'a> Inference<'a> {
         }
         let value = declaration.value.as_ref();
         let message = format!(
-            "`{}` was declared as {}, its value is {}",
+            "`{}` was declared as {}, but its value is {}",
             name.name,
             shape.kind.describe(),
             found.describe()
@@ -103,7 +103,7 @@ impl<'a> Inference<'a> {
         }
         let name = &declaration.name.name;
         let message = format!(
-            "`{name}` was declared as a scalar, its value is {}",
+            "`{name}` was declared as a scalar, but its value is {}",
             found.describe()
         );
         let help = match found {
@@ -136,7 +136,7 @@ impl<'a> Inference<'a> {
             (ShapeKind::Scalar, Shape::Scalar) => return Some(()),
             (ShapeKind::Scalar, _) => (
                 format!(
-                    "velocity `{name}` is a scalar, its definition is {}",
+                    "velocity `{name}` is a scalar, but its definition is {}",
                     found.describe()
                 ),
                 match found {
@@ -164,7 +164,7 @@ impl<'a> Inference<'a> {
         if let Some(found) = found
             && !matches!(found, Shape::Pose | Shape::Vector(3))
         {
-            let message = format!("a frame has to be a pose, this is {}", found.describe());
+            let message = format!("a frame has to be a pose, but this is {}", found.describe());
             let help = match found {
                 Shape::TURN => format!("write `frame {} = pose(R, [0, 0, 0]);`", name.name),
                 _ => format!("write `frame {} = pose(R, p);`", name.name),

@@ -23,7 +23,7 @@ impl<'a> Inference<'a> {
             if !fits(shape, value.shape) {
                 let (what, found) = (shape.kind.describe(), value.shape.describe());
                 let message = format!(
-                    "`{}` of `{}` has to be {what}, this is {found}",
+                    "`{}` of `{}` has to be {what}, but this is {found}",
                     parameter.name, function.name.name
                 );
                 return self.error(
@@ -114,7 +114,7 @@ impl<'a> Inference<'a> {
         let found = self.written_out(&function.name, &names, value, values, span)?;
         if found.shape != wanted {
             let message = format!(
-                "the stand-in of `{}` has to be {}, this is {}",
+                "the stand-in of `{}` has to be {}, but this is {}",
                 function.name.name,
                 wanted.describe(),
                 found.shape.describe()

@@ -148,7 +148,10 @@ impl<'a> Inference<'a> {
             (_, Shape::Pose) => "its parts are `.R` and `.p`",
             _ => "a vector is written `[a, b, c]`, a matrix by rows `[[a, b], [c, d]]`",
         };
-        let message = format!("{what} has to be {wanted}, this is {}", found.describe());
+        let message = format!(
+            "{what} has to be {wanted}, but this is {}",
+            found.describe()
+        );
         self.error(Diagnostic::new(span, message).help(help))
     }
 
@@ -175,15 +178,15 @@ impl<'a> Inference<'a> {
         let count = all.len();
         if count > MOST_ENTRIES {
             return self.error(
-                Diagnostic::new(span, format!("an array of {count} entries")).help(format!(
-                    "vectors and matrices reach to {MOST_ENTRIES} rows and columns"
+                Diagnostic::new(span, format!("this array has {count} entries")).help(format!(
+                    "vectors and matrices have at most {MOST_ENTRIES} rows and columns"
                 )),
             );
         }
         let mut pairs = items.iter().zip(&all);
         if let Some((item, other)) = pairs.find(|(_, one)| one.shape != first) {
             let (other, first) = (other.shape.describe(), first.describe());
-            let message = format!("this entry is {other}, the first is {first}");
+            let message = format!("this entry is {other}, but the first is {first}");
             return self.error(Diagnostic::new(item.span, message).help(HELP));
         }
         let shape = match first {
@@ -213,7 +216,7 @@ impl<'a> Inference<'a> {
         let (left, right, then, otherwise) = (left?, right?, then?, otherwise?);
         if then.shape != otherwise.shape {
             let (first, second) = (then.shape.describe(), otherwise.shape.describe());
-            let message = format!("this branch is {second}, the one before is {first}");
+            let message = format!("this branch is {second}, but the one before is {first}");
             return self.error(
                 Diagnostic::new(choice.otherwise.span, message)
                     .help("both branches need the same shape")

@@ -27,7 +27,7 @@ impl<'a> Inference<'a> {
                 "write `{name}(f)` or `{name}(f, p)` of a frame and a point in its axes, or `{name}(f, p, g)` as the frame g sees it"
             ),
         };
-        let message = format!("`{name}` takes a frame, a point of it, and a frame to look from");
+        let message = format!("`{name}` takes a frame, a point of it, and an observing frame");
         self.error(Diagnostic::new(span, message).help(help))
     }
 
@@ -38,7 +38,10 @@ impl<'a> Inference<'a> {
         let moves = matches!(&call.kind, ExprKind::Call(function, _) if FUNCTIONS.contains(&function.name.as_str())
             && !own.contains_key(function.name.as_str()));
         if !moves {
-            let error = Diagnostic::new(call.span, "only the motion of a frame is written in axes");
+            let error = Diagnostic::new(
+                call.span,
+                "only the motion of a frame can be written in axes",
+            );
             return self.error(error.help(
                 "write `velocity(f, p) in g` or the like; a vector v with components in world axes is `g.R.T * v` in those of g",
             ));
@@ -69,7 +72,7 @@ impl<'a> Inference<'a> {
         let shape = self.of(argument)?.shape;
         if shape == Shape::Pose {
             return self.error(
-                Diagnostic::new(argument.span, "the rate of a pose is no pose")
+                Diagnostic::new(argument.span, "the rate of a pose is not a pose")
                     .help("take its parts: `rate(X.p)` and `rate(X.R)`"),
             );
         }

@@ -45,7 +45,7 @@ impl<'a> Inference<'a> {
                 return Some(place - 1);
             }
             let whole = value.shape.describe();
-            let message = format!("index {place} is out of range, {whole} has {length} {what}");
+            let message = format!("index {place} is out of range: {whole} has {length} {what}");
             let error = Diagnostic::new(indices[which].span, message);
             self.error(error.help(format!("indices run from 1 to {length}")))
         };

@@ -66,7 +66,7 @@ impl<'a> Inference<'a> {
                 acting,
             } => {
                 self.scalars([stiffness], "a stiffness");
-                self.scalars(length, "the length of a spring without force");
+                self.scalars(length, "the free length of a spring");
                 match acting {
                     // A spring on an S1 coordinate acts on its angle.
                     Acting::On(expr) if self.is_circle(expr) => {}
@@ -112,7 +112,7 @@ impl<'a> Inference<'a> {
         };
         if a.shape != b.shape {
             let (a, b) = (a.shape.describe(), b.shape.describe());
-            let message = format!("one side of the constraint is {a}, the other {b}");
+            let message = format!("one side of the constraint is {a}, but the other is {b}");
             let error = Diagnostic::new(left.span.to(right.span), message);
             self.error::<()>(error.help("both sides need the same shape"));
         }
@@ -124,7 +124,7 @@ impl<'a> Inference<'a> {
         let (Some(a), Some(b)) = (a, b) else { return };
         if a.shape != b.shape && !is_zero(&b) {
             let (a, b) = (a.shape.describe(), b.shape.describe());
-            let message = format!("one side is {a}, the other {b}");
+            let message = format!("one side is {a}, but the other is {b}");
             let error = Diagnostic::new(left.span.to(right.span), message);
             self.error::<()>(error.help("both sides need the same shape, or 0 on the right"));
         }
@@ -152,7 +152,7 @@ impl<'a> Inference<'a> {
             && found.shape != Shape::Matrix(3, 3)
         {
             let found = found.shape.describe();
-            let message = format!("an inertia has to be a 3×3 matrix, this is {found}");
+            let message = format!("an inertia has to be a 3×3 matrix, but this is {found}");
             self.error::<()>(
                 Diagnostic::new(expr.span, message)
                     .help("write `diag(Ix, Iy, Iz)`, or name a parameter of shape sym3"),
@@ -168,7 +168,7 @@ impl<'a> Inference<'a> {
         };
         self.vectors(forces, "a force");
         self.vectors(torques, "a torque");
-        self.vectors(at, "a point of attack");
+        self.vectors(at, "a point of application");
     }
 
     fn ends(&mut self, ends: [&'a End; 2]) {

@@ -22,7 +22,7 @@ impl<'a> Inference<'a> {
         };
         let message = format!("`{name}` has no part `.{}`", field.name);
         let error = Diagnostic::new(field.span, message);
-        self.error(error.help(format!("give the whole of it: `{begins} {name} = …;`")))
+        self.error(error.help(format!("give all of it: `{begins} {name} = …;`")))
     }
 
     /// Returns the shape of a coordinate, or of a part of it.
@@ -46,7 +46,7 @@ impl<'a> Inference<'a> {
             _ => return self.entry(target, shape),
         };
         let message = format!(
-            "`{}` is tied to the other entries, it is not given alone",
+            "`{}` is tied to the other entries and cannot be given alone",
             written::target(target)
         );
         self.error(Diagnostic::new(target.span(), message).help(help))
@@ -62,7 +62,7 @@ impl<'a> Inference<'a> {
                     entry: Vec::new(),
                     ..target.clone()
                 });
-                let message = format!("`{name}` is {}, it has no such entry", whole.describe());
+                let message = format!("`{name}` is {} and has no such entry", whole.describe());
                 let help = match whole {
                     Shape::Vector(_) => format!("an entry is written `{name}[1]`"),
                     _ => format!("write `{name}` alone"),
@@ -74,7 +74,7 @@ impl<'a> Inference<'a> {
             return Some(Shape::Scalar);
         }
         let message = format!(
-            "index {} is out of range, {} has {length} entries",
+            "index {} is out of range: {} has {length} entries",
             target.entry[0],
             whole.describe()
         );
@@ -120,7 +120,7 @@ impl<'a> Inference<'a> {
             return Some(());
         }
         let message = format!(
-            "the rate of `{}` has to be {}, this is {}",
+            "the rate of `{}` has to be {}, but this is {}",
             written::target(target),
             wanted.describe(),
             found.describe()
@@ -158,7 +158,7 @@ impl<'a> Inference<'a> {
             _ => return self.wrong(value.span, &what, &wanted.describe(), found),
         };
         let (wanted, found) = (wanted.describe(), found.describe());
-        let message = format!("{what} has to be {wanted}, this is {found}");
+        let message = format!("{what} has to be {wanted}, but this is {found}");
         self.error(Diagnostic::new(value.span, message).help(help))
     }
 

@@ -122,8 +122,8 @@ fn can_be_called(
         known.push(parameter);
     }
     if reaches(all, function, name) {
-        let message = format!("the value of `{name}` needs `{name}` itself");
-        let help = "a function may call others, but there is no recursion: write its value out";
+        let message = format!("the value of `{name}` depends on `{name}` itself");
+        let help = "a function may call others but not itself: write its value out";
         report.push(Diagnostic::new(function.value.span, message).help(help));
         return false;
     }

@@ -296,8 +296,8 @@ impl<'a> Planner<'a> {
         );
         checker.error(
             Diagnostic::new(relation.span, message)
-                .help("remove one of these statements; what closes a mechanism is a `loop` between coordinates")
-                .note(first.span, "it follows from here already"),
+                .help("remove one of these statements; close a mechanism by a `loop` between coordinates")
+                .note(first.span, "it already follows from this"),
         );
         true
     }

@@ -187,9 +187,9 @@ fn rate(target: &Target, checker: &mut Checker) {
         Some(symbol) if is_coordinate(symbol.kind) || symbol.kind == Kind::State => return,
         Some(symbol) => {
             let kind = symbol.kind.describe();
-            let message = format!("`{name}` is {kind}, it has no rate of its own");
+            let message = format!("`{name}` is {kind} and has no rate");
             let error = Diagnostic::new(*span, message).note(symbol.span, "defined here");
-            error.help("rates belong to coordinates")
+            error.help("give the rate of a coordinate")
         }
         None => checker.unknown(*span, name, Some("coordinate"), is_coordinate),
     };
@@ -203,7 +203,7 @@ fn start(target: &Target, checker: &mut Checker) {
     let error = match checker.symbols.get(name) {
         Some(symbol) if has_start(symbol.kind) => return,
         Some(symbol) if symbol.kind == Kind::State => {
-            let message = format!("the start of the state `{name}` stands in its declaration");
+            let message = format!("the start of the state `{name}` belongs to its declaration");
             let error = Diagnostic::new(*span, message).note(symbol.span, "declared here");
             error.help(format!("write `state {name} = …;`"))
         }
@@ -219,10 +219,11 @@ fn prescribed(target: &Target, of_velocity: bool, checker: &mut Checker) {
     match symbol.map(|symbol| (symbol.kind, symbol.span)) {
         Some((Kind::Velocity, _)) if target.field.is_none() => {}
         _ if of_velocity => {
-            let message = format!("`{}` is no velocity", written::target(target));
+            let message = format!("`{}` is not a velocity", written::target(target));
             checker.error(
-                Diagnostic::new(target.span(), message)
-                    .help("the rate of a velocity is given: `prescribe rate(v) = a;`"),
+                Diagnostic::new(target.span(), message).help(
+                    "only the rate of a velocity can be prescribed: `prescribe rate(v) = a;`",
+                ),
             );
         }
         Some((Kind::State, declared)) => {
@@ -248,11 +249,11 @@ fn settable(target: &Expr, checker: &mut Checker) -> bool {
         Some(symbol) if symbol.kind.is_settable() => return true,
         Some(symbol) => {
             let message = format!(
-                "`{name}` is {}, a claim can set inputs and parameters alone",
+                "`{name}` is {}, but a claim can set only inputs and parameters",
                 symbol.kind.describe()
             );
             Diagnostic::new(span, message)
-                .help("what holds at some states only is no invariant of the motion")
+                .help("what holds only at some states is not an invariant of the motion")
                 .note(symbol.span, "defined here")
         }
         None => checker.unknown(span, name, Some("input or parameter"), Kind::is_settable),
@@ -277,13 +278,13 @@ fn jacobian(frame: &Ident, axes: Option<&Ident>, checker: &mut Checker) {
         checker.error(match near {
             Some(near) => error.help(format!("did you mean `{near}`?")),
             None => error.help(
-                "`jacobian f` is the kinematics of a frame f that the description has by `frame` or by a joint's `moves`",
+                "`jacobian f` is the kinematics of a frame f that is declared by `frame` or by `moves` of a joint",
             ),
         });
     }
     let known = |axes: &Ident| axes.name == *name || matches!(axes.name.as_str(), "body" | "world");
     if let Some(axes) = axes.filter(|axes| !known(axes)) {
-        let message = format!("components are in axes of `world` or of `{name}`");
+        let message = format!("components can be only in axes of `world` or of `{name}`");
         let help = format!("write `jacobian {name} in world` or `jacobian {name} in {name}`");
         checker.error(Diagnostic::new(axes.span, message).help(help));
     }

@@ -42,7 +42,7 @@ pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
         cursor.bump();
         if cursor.is_punct('!') {
             return Err(
-                Diagnostic::new(start, "a doc comment for what surrounds it")
+                Diagnostic::new(start, "inner doc comments are not part of the language")
                     .help("comments are written `// …`, and docs of what follows `/// …`"),
             );
         }

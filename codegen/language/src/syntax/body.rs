@@ -85,11 +85,12 @@ impl Fields {
                 }
             })?;
         if let Some(first) = self.seen[index].replace(span) {
-            return Err(
-                Diagnostic::new(span, format!("a second `{}` of one body", word.text))
-                    .help("remove one of them; several bodies may stand on one frame")
-                    .note(first, "first given here"),
-            );
+            return Err(Diagnostic::new(
+                span,
+                format!("`{}` is given twice for one body", word.text),
+            )
+            .help("remove one of them; one frame may carry several bodies")
+            .note(first, "first given here"));
         }
         Ok(())
     }

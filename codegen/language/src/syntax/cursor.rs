@@ -306,7 +306,7 @@ impl<'a> Cursor<'a> {
             Kind::Punct('\'') => error.help(TRANSPOSE),
             Kind::Word if is_connective(found) && expected.starts_with("the name") => {
                 error.help(format!(
-                    "`{}` is a word of the language and can name nothing",
+                    "`{}` is a word of the language and cannot be a name",
                     found.text
                 ))
             }

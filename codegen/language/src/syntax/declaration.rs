@@ -106,13 +106,13 @@ pub(super) fn external(cursor: &mut Cursor<'_>) -> Parsed<External> {
         let name = cursor.name("an argument")?;
         match cursor.is_punct(':') {
             true => Err(cursor.unexpected("`,` or `)`").help(
-                "arguments of a function in Rust are numbers: give the entries of a vector one by one",
+                "arguments of a function in Rust are numbers: pass the entries of a vector one by one",
             )),
             false => Ok(name),
         }
     })?;
     cursor.expect_close(Delimiter::Parenthesis, false)?;
-    const HELP: &str = "how many numbers it gives stands behind an arrow: `-> 2`";
+    const HELP: &str = "write how many numbers it returns after an arrow: `-> 2`";
     for part in ['-', '>'] {
         if !cursor.eat_punct(part) {
             return Err(cursor.unexpected("`->`").help(HELP));

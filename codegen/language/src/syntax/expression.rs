@@ -238,7 +238,7 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             let entries = list(cursor, Delimiter::Bracket)?;
             let span = span.to(cursor.before());
             if entries.entries.is_empty() {
-                return Err(Diagnostic::new(span, "an array without entries")
+                return Err(Diagnostic::new(span, "this array has no entries")
                     .help("a vector is written `[a, b, c]`, a matrix by rows `[[a, b], [c, d]]`"));
             }
             node(ExprKind::Array(entries.entries), span, entries.depth)
@@ -258,7 +258,7 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
         _ => {
             let error = cursor.unexpected("an expression");
             Err(match token.kind {
-                Kind::Punct('+') => error.help("a sum has a term on both sides of `+`"),
+                Kind::Punct('+') => error.help("write a term on both sides of `+`"),
                 Kind::Punct('.') => error.help("numbers have a digit before their point: `0.5`"),
                 Kind::Open(Delimiter::Brace, _) => {
                     error.help("parts of an expression are grouped with `(` and `)`")

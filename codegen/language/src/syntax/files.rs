@@ -91,15 +91,14 @@ impl Reader<'_, '_> {
             let error = Diagnostic::new(span, format!("`{name}` includes itself"));
             return Err(vec![
                 error
-                    .help("move what both files need to a third one, and include that in both")
+                    .help("move what both files need to a third file, and include it in both")
                     .note(*first, "it is being read since here"),
             ]);
         }
         if self.within.len() >= MOST_NESTED {
             let message = format!("files include one another more than {MOST_NESTED} deep");
             return Err(vec![
-                Diagnostic::new(span, message)
-                    .help("include the files that are needed side by side"),
+                Diagnostic::new(span, message).help("include the files side by side instead"),
             ]);
         }
         if self.known.iter().any(|known| known == name) {

@@ -83,7 +83,7 @@ fn condition(cursor: &mut Cursor<'_>) -> Parsed<Condition> {
     if !is_name(&target) {
         return Err(Diagnostic::new(
             target.span,
-            "a claim can set inputs and parameters, or entries of them",
+            "a claim can set only inputs and parameters, or entries of them",
         )
         .help("write `when F = 0` or `when s[1] = 0`"));
     }

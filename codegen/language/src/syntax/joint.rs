@@ -248,7 +248,7 @@ fn field(cursor: &mut Cursor<'_>, fields: &mut Vec<(JointField, Span, Vec<Expr>)
     })?;
     if let Some((_, first, _)) = fields.iter().find(|(known, ..)| *known == field) {
         return Err(
-            Diagnostic::new(span, format!("a second `{name}` of one joint"))
+            Diagnostic::new(span, format!("`{name}` is given twice for one joint"))
                 .help("remove one of them, or write their sum")
                 .note(*first, "first given here"),
         );

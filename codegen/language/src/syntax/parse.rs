@@ -66,14 +66,14 @@ fn nothing_else(cursor: &Cursor<'_>) -> Parsed<()> {
     let error = |message: String| Diagnostic::new(cursor.here(), message);
     Err(
         if cursor.is_word("system") || cursor.is_word("pub") || cursor.is_punct('#') {
-            error("a second description".to_owned())
-                .help("write one system a macro, and one a file")
+            error("there is more than one description".to_owned())
+                .help("write one system per macro, and one per file")
         } else {
             error(format!(
                 "expected the end of the input, found {}",
                 quoted(cursor.peek())
             ))
-            .help("statements stand inside of the braces of the system")
+            .help("write statements inside the braces of the system")
         },
     )
 }
@@ -91,9 +91,9 @@ fn with_form(error: Diagnostic, form: &str) -> Diagnostic {
 pub(super) fn statements(tokens: &[Token]) -> Result<Vec<Item>, Vec<Diagnostic>> {
     let mut cursor = Cursor::new(tokens);
     if cursor.is_word("system") || cursor.is_word("pub") {
-        let error = Diagnostic::new(cursor.here(), "a whole description is included");
+        let error = Diagnostic::new(cursor.here(), "an included file is a whole description");
         return Err(vec![error.help(
-            "an included file has statements alone: leave out `system … {` and its `}`",
+            "an included file has only statements: remove `system … {` and its `}`",
         )]);
     }
     let items = items(&mut cursor);

@@ -80,7 +80,7 @@ fn check(index: &Expr) -> Parsed<()> {
         ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Neg(_) | ExprKind::Binary(..) => {
             index.parts().into_iter().try_for_each(check)
         }
-        _ => Err(Diagnostic::new(index.span, "this cannot stand in the index of a name")
+        _ => Err(Diagnostic::new(index.span, "this cannot be part of an index of a name")
             .help("an index is made of counters of `for`, constants and whole numbers, as in `link[i - 1]`")),
     }
 }

@@ -95,7 +95,7 @@ fn block(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Vec<Item>> {
             ItemKind::Gravity(_) => "`gravity`",
             _ => continue,
         };
-        let message = format!("{what} cannot stand inside of {of}");
+        let message = format!("{what} cannot be inside {of}");
         let error = Diagnostic::new(item.span, message);
         cursor
             .errors
@@ -113,7 +113,7 @@ pub(super) fn component(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
             let next = parameter(cursor)?;
             let twice = parameters.iter().find(|p| p.name.name == next.name.name);
             if let Some(first) = twice {
-                let message = format!("a second parameter `{}`", next.name.name);
+                let message = format!("parameter `{}` is declared twice", next.name.name);
                 cursor.errors.push(
                     Diagnostic::new(next.name.span, message)
                         .help("give it another name")
@@ -136,7 +136,7 @@ pub(super) fn component(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 }
 
 /// Kinds of parameters, for messages.
-const PARAMETERS: &str = "a parameter of a component is a frame, `mount: frame`, of a shape, `hip: vec3`, or any expression, `side` or `side = 1`";
+const PARAMETERS: &str = "a parameter of a component is a frame, `mount: frame`, a value of a shape, `hip: vec3`, or any expression, `side` or `side = 1`";
 
 /// `mount: frame`, `hip: vec3`, `side = 1`
 fn parameter(cursor: &mut Cursor<'_>) -> Parsed<Parameter> {

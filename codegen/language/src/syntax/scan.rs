@@ -77,8 +77,7 @@ pub(super) fn unreadable(error: &LexError) -> Diagnostic {
     let place = Span::new(error.span().byte_range());
     #[cfg(not(feature = "files"))]
     let place = (Span::NOWHERE, error).0;
-    Diagnostic::new(place, "the text cannot be read from here")
-        .help("check the spelling of what stands here")
+    Diagnostic::new(place, "the text cannot be read from here on").help("check the spelling here")
 }
 
 /// State of the scan.

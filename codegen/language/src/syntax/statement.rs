@@ -342,19 +342,16 @@ fn no_statement(cursor: &Cursor<'_>) -> Diagnostic {
 fn unknown(cursor: &Cursor<'_>, word: &Ident) -> Diagnostic {
     let name = shown(&word.name);
     if word.name == "system" {
-        return Diagnostic::new(word.span, "a `system` inside of another")
-            .help("what a system has several of is a `component`, with a `part` for each");
+        return Diagnostic::new(word.span, "a `system` inside another")
+            .help("write what a system has several of as a `component`, with a `part` for each");
     }
     if let Some(close) = closest(&word.name, statements()) {
         return Diagnostic::new(word.span, format!("unknown statement `{name}`"))
             .help(format!("did you mean `{close}`?"));
     }
     if cursor.is_punct('=') || cursor.is_punct(':') {
-        return Diagnostic::new(
-            word.span,
-            format!("`{name}` is declared without saying what it is"),
-        )
-        .help("start with `param`, `const` or `let`, or say what moves with `rate`");
+        return Diagnostic::new(word.span, format!("`{name}` is declared without a keyword"))
+            .help("start with `param`, `const` or `let`, or say what moves with `rate`");
     }
     Diagnostic::new(word.span, format!("unknown statement `{name}`")).help(known())
 }

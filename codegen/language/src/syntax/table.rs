@@ -114,7 +114,7 @@ pub(super) fn read(text: &str, name: &str, span: Span) -> Parsed<Vec<(Expr, Expr
             [Some(argument), Some(value)] => points.push((argument.clone(), value.clone())),
             _ if first && entries.iter().all(Option::is_none) => {}
             _ => {
-                let message = format!("line {line} of `{name}` is no pair of numbers");
+                let message = format!("line {line} of `{name}` is not a pair of numbers");
                 return Err(Diagnostic::new(span, message)
                     .help("a line of a table has an argument and a value, as in `0.2, 1.1`"));
             }

@@ -34,7 +34,7 @@ const STATEMENTS: [(&str, &str); 41] = [
     ("time", "the time is written `time t;`"),
     (
         "prescribe",
-        "a given motion is written `prescribe q = 0.3 * sin(t);`, `prescribe v = 2 * t;` or `prescribe rate(v) = a;`",
+        "a prescribed motion is written `prescribe q = 0.3 * sin(t);`, `prescribe v = 2 * t;` or `prescribe rate(v) = a;`",
     ),
     (
         "inactive",
@@ -42,7 +42,7 @@ const STATEMENTS: [(&str, &str); 41] = [
     ),
     (
         "independent",
-        "velocities that constraints are not solved for are written `independent u, w[1];`",
+        "velocities that constraints do not determine are written `independent u, w[1];`",
     ),
     (
         "nonholonomic",
@@ -109,7 +109,7 @@ const STATEMENTS: [(&str, &str); 41] = [
     ),
     (
         "start",
-        "an initial value is written `start w = [0.01, 1, 0];`, one that is only near it `start q ~ 1.2;`",
+        "an initial value is written `start w = [0.01, 1, 0];`, a guess of one `start q ~ 1.2;`",
     ),
     ("output", "an output is written `output speed = norm(v);`"),
     (

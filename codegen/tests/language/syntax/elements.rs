@@ -36,6 +36,6 @@ fn springs_dampers_and_reactions() {
     2:15 expected `to`, found `;` <;>
       a force is written `force F at p on f in body;`, `in world;` or `in g;`, or along a line `force F from p on f to q on g;`
     2:20 expected the name of a frame, found `in` <in>
-      `in` is a word of the language and can name nothing
+      `in` is a word of the language and cannot be a name
     "#);
 }

@@ -73,7 +73,7 @@ fn what_is_missing_is_said() {
       a joint can have `damping`, `armature`, `stiffness`, `rest`, `force`, `limit`, `max_speed`, `max_force`
     2:50 expected `to`, found `;` <;>
       limits are written `limit -pi to pi;`
-    2:63 a second `damping` of one joint <damping>
+    2:63 `damping` is given twice for one joint <damping>
       remove one of them, or write their sum
     2:74 a joint has no `dampin` <dampin>
       did you mean `damping`?

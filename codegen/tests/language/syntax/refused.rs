@@ -69,12 +69,12 @@ system S {}"#,
     1:8 `type` is a word of Rust and cannot be a name <type>
       choose another name, such as `type_`
     1:13 expected the end of the input, found `param` <param>
-      statements stand inside of the braces of the system
-    1:13 a second description <system>
-      write one system a macro, and one a file
+      write statements inside the braces of the system
+    1:13 there is more than one description <system>
+      write one system per macro, and one per file
     1:1 attributes are not part of the language <#[derive>
       remove it; docs are written `/// …`
-    1:1 a doc comment for what surrounds it <//! inner>
+    1:1 inner doc comments are not part of the language <//! inner>
       comments are written `// …`, and docs of what follows `/// …`
     "#);
 }
@@ -160,7 +160,7 @@ fn unknown_statements() {
     insta::assert_snapshot!(cases.map(line).join("\n"), @r#"
     2:1 unknown statement `velocty` <velocty>
       did you mean `velocity`?
-    2:1 `m` is declared without saying what it is <m>
+    2:1 `m` is declared without a keyword <m>
       start with `param`, `const` or `let`, or say what moves with `rate`
     2:1 unknown statement `banana` <banana>
       the statements are 
@@ -245,7 +245,7 @@ fn declarations() {
     2:7 `r#type` is a raw identifier <r#type>
       choose a plain name, such as `type_`
     2:7 expected the name of a parameter, found `at` <at>
-      `at` is a word of the language and can name nothing
+      `at` is a word of the language and cannot be a name
     2:7 `_` is a word of Rust and cannot be a name <_>
       choose a name with letters
     2:19 expected an expression, found `;` <;>
@@ -311,7 +311,7 @@ fn equations() {
     2:13 expected `force`, found `w` <w>
       a generalized force is written `generalized force w = -d * w;`
     2:7 expected the name of a coordinate or velocity, found `=` <=>
-      an initial value is written `start w = [0.01, 1, 0];`, one that is only near it `start q ~ 1.2;`
+      an initial value is written `start w = [0.01, 1, 0];`, a guess of one `start q ~ 1.2;`
     2:13 expected `=`, found `;` <;>
       an output is written `output speed = norm(v);`
     2:9 expected the name of a function, found `;` <;>
@@ -358,8 +358,8 @@ fn bodies_and_loads() {
       a body has `mass`, `com` and `inertia`
     2:18 expected `;` after `m` <m>
       end the statement with `;`
-    2:21 a second `mass` of one body <mass>
-      remove one of them; several bodies may stand on one frame
+    2:21 `mass` is given twice for one body <mass>
+      remove one of them; one frame may carry several bodies
     2:29 expected `com` or `origin`, found `centre` <centre>
       an inertia is written `inertia J about com;` or `about origin;`
     2:13 a `;` without a statement <;>

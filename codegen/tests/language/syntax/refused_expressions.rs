@@ -56,7 +56,7 @@ fn expressions() {
     2:12 expected an expression, found `;` <;>
       a named expression is written `let e = m * s;`
     2:9 expected an expression, found `+` <+>
-      a sum has a term on both sides of `+`
+      write a term on both sides of `+`
     2:11 expected `;` after `a`, found `%` <%>
       the operators are `+`, `-`, `*`, `/` and `^`
     2:11 expected `)`, found `,` <,>
@@ -65,7 +65,7 @@ fn expressions() {
       a named expression is written `let e = m * s;`
     2:9 expected an expression, found `{` <{>
       parts of an expression are grouped with `(` and `)`
-    2:9 an array without entries <[]>
+    2:9 this array has no entries <[]>
       a vector is written `[a, b, c]`, a matrix by rows `[[a, b], [c, d]]`
     2:12 expected `,` or `]`, found `2` <2>
       a product is written with `*`; a statement ends with `;`
@@ -106,11 +106,11 @@ fn expressions() {
     2:9 expected an expression, found `#` <#>
       a named expression is written `let e = m * s;`
     2:9 this `if` has no `else` <if a < b { c }>
-      an expression has a value everywhere: `if a < b { c } else { d }`
+      an expression needs a value everywhere: `if a < b { c } else { d }`
     2:18 more than one comparison <<>
       write one choice within another: `if a < b { if b < c { d } else { e } } else { e }`
-    2:14 numbers are not compared for equality <=>
-      rounding decides that: compare with `<`, `<=`, `>` or `>=`, such as `abs(a - b) < 1e-6`
+    2:14 numbers cannot be compared for equality <=>
+      rounding would decide the result: compare with `<`, `<=`, `>` or `>=`, such as `abs(a - b) < 1e-6`
     2:12 expected an expression, found `{` <{>
       parts of an expression are grouped with `(` and `)`
     2:16 expected an expression, found `{` <{>

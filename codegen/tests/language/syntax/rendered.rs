@@ -27,7 +27,7 @@ fn rendered() {
       |
       = help: a power is written with `^`
 
-    error: a second `mass` of one body
+    error: `mass` is given twice for one body
      --> free.eom:5:25
       |
     5 |     body on f { mass 1; mass 2; }
@@ -35,7 +35,7 @@ fn rendered() {
       |                 |
       |                 first given here
       |
-      = help: remove one of them; several bodies may stand on one frame
+      = help: remove one of them; one frame may carry several bodies
 
     3 errors
     "#);

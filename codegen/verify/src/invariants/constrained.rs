@@ -38,11 +38,11 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
             ),
         };
         errors.push(Diagnostic::new(claim.span, message).help(if model.clock.is_some() || !model.accelerated.is_empty() {
-            "what depends on time, and what drives do work on, is not constant: T + V changes by −∂L/∂t and by their power"
+            "quantities that depend on time, or on which drives do work, are not constant: T + V changes by −∂L/∂t and by their power"
         } else if loops {
-            "claim what is constant for every position of the tree: the loops are not closed where claims are checked"
+            "claim only what is constant for every position of the tree: the loops are not closed where claims are checked"
         } else {
-            "claim what is constant, or say for which inputs and parameters it is: `when F = 0`"
+            "claim only what is constant, or give the inputs and parameters for which it is: `when F = 0`"
         }));
     }
     if errors.is_empty() {

@@ -81,7 +81,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
                 let message =
                     format!("{subject} is not constant along the motion{under}: {leaves}");
                 errors.push(Diagnostic::new(claim.span, message).help(
-                    "claim what is constant, or say for which inputs and parameters it is: `when F = 0`",
+                    "claim only what is constant, or give the inputs and parameters for which it is: `when F = 0`",
                 ));
             }
         }

@@ -15,10 +15,9 @@ use num_traits::Signed;
 
 /// Returns the fields that a joint may have, and why it may have no others.
 fn allowed(joint: &Joint) -> (&'static [JointField], &'static str) {
-    const OWN: &str = "a joint that follows others has no force of its own: damping, armature and force stand on the joint that it follows";
-    const CIRCLE: &str =
-        "a continuous joint turns without end: use `revolute` where there are limits";
-    const FOLLOWING: &str = "a continuous joint that follows others has no angle of its own: let a `revolute` joint follow, or put the spring on what it follows";
+    const OWN: &str = "a joint that follows others takes no force: give damping, armature and force to the joint that it follows";
+    const CIRCLE: &str = "a continuous joint has no limits: use `revolute` for a joint with limits";
+    const FOLLOWING: &str = "a continuous joint that follows others has no angle: use `revolute`, or give the spring to the joint that it follows";
     const SEVERAL: &str = "it has several velocities: write `damper coefficient d on …;`, `spring …` or `generalized force … = …;` with the names of its coordinates and velocities";
     match joint.kind.0 {
         JointKind::Fixed => (&[], "a fixed joint does not move"),
@@ -63,7 +62,7 @@ pub(super) fn check(joint: &Joint, report: &mut Report) {
         let message = format!("a {} joint cannot follow", joint_kind(kind));
         report.push(
             Diagnostic::new(value.span, message)
-                .help("a joint that follows has one freedom: `revolute`, `continuous` or `prismatic`; what moves by a law of its own is a `frame`")
+                .help("a joint that follows has one degree of freedom: `revolute`, `continuous` or `prismatic`; write what moves by another law as a `frame`")
                 .note(place, "its kind"),
         );
     }
@@ -78,8 +77,8 @@ pub(super) fn check(joint: &Joint, report: &mut Report) {
     let given = |wanted| joint.fields.iter().find(|(field, ..)| *field == wanted);
     if let (Some((_, span, _)), None) = (given(Rest), given(Stiffness)) {
         report.push(
-            Diagnostic::new(*span, "this joint has no spring that could be at rest")
-                .help("write `stiffness k;` beside it"),
+            Diagnostic::new(*span, "this joint has `rest` without a spring")
+                .help("add `stiffness k;`"),
         );
     }
 }
@@ -121,10 +120,9 @@ pub(super) fn numbers(
                     Some(_) => format!("{what} cannot be negative"),
                     None => format!("{what} has to be a finite number"),
                 };
-                report.push(
-                    Diagnostic::new(expr.span, message)
-                        .help("it is made of numbers and constants, and stands in the generated code as a constant"),
-                );
+                report.push(Diagnostic::new(expr.span, message).help(
+                    "make it of numbers and constants: it is a constant in the generated code",
+                ));
             }
         }
     }
@@ -186,7 +184,7 @@ pub(crate) fn armature(
         if let Some(message) = error {
             report.push(
                 Diagnostic::new(expr.span, message)
-                    .help("it is the inertia of the drive as the joint feels it: J of ½ J q̇², of parameters and constants"),
+                    .help("it is the inertia of the drive, reflected to the joint: J of ½ J q̇², made of parameters and constants"),
             );
             continue;
         }

@@ -121,8 +121,6 @@ pub fn expand(system: &System, report: &mut Report) -> System {
 fn twice(joint: &ast::Joint, first: &Ident) -> Diagnostic {
     let message = format!("the frame `{}` is placed twice", first.name);
     Diagnostic::new(joint.moves.span, message)
-        .help(
-            "a joint carries a frame of its own; what closes a mechanism is a `loop` between coordinates",
-        )
-        .note(first.span, "placed here already")
+        .help("each joint moves a new frame; close a mechanism by a `loop` between coordinates")
+        .note(first.span, "already placed here")
 }

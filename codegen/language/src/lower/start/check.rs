@@ -74,7 +74,7 @@ fn reflections(system: &System, declared: &Declared, x: &[f64], report: &mut Rep
         }
         let given = given(system, &[&coordinate.name]);
         let message = format!(
-            "the start of `{}` is a reflection, its determinant is -1",
+            "the start of `{}` is a reflection: its determinant is -1",
             coordinate.name
         );
         report.push(
@@ -126,7 +126,7 @@ fn violation(
             let message = format!("the start violates this constraint: {difference}");
             let Some(given) = given else {
                 return Diagnostic::new(place, message).help(format!(
-                    "give a `start` of {}; what has none starts at 0",
+                    "give a `start` of {}; coordinates and velocities without one start at 0",
                     list.join(", ")
                 ));
             };
@@ -156,7 +156,7 @@ fn advise(
                 .message
                 .push_str(", and no real configuration was found near it");
             error.help = Some(format!(
-                "check the lengths: the constraints are violated by {} at least; or start nearer to a configuration",
+                "check the lengths: the constraints are violated by at least {}; or start closer to a configuration that satisfies them",
                 rough(*least)
             ));
             return;

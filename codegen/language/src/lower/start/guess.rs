@@ -33,7 +33,7 @@ pub fn check(system: &System, declared: &Declared, report: &mut Report) {
         }
         if let Some((why, help, place)) = fixed(system, target, velocity) {
             let message = format!(
-                "there is nothing to guess about `{}`: {why}",
+                "the start of `{}` cannot be a guess: {why}",
                 written(target)
             );
             let error = Diagnostic::new(target.span(), message).help(help);
@@ -87,7 +87,7 @@ fn fixed(system: &System, guess: &Target, velocity: bool) -> Option<Fixed> {
     let help = format!("write `start {name} = …;`");
     (!constrained).then(|| {
         (
-            "no constraint acts on it, so that its start is exact".into(),
+            "no constraint acts on it, so its start is exact".into(),
             help,
             None,
         )

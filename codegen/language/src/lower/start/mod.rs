@@ -130,17 +130,19 @@ impl Start {
         let by = rough(open.residual);
         let (message, help) = match row.kind {
             Kind::Drive { .. } => (
-                format!("the start contradicts this motion by {by}"),
-                "leave out the `start` of what is prescribed: it follows",
+                format!("the start differs from this motion by {by}"),
+                "remove the `start` of what is prescribed: it follows from the motion",
             ),
             _ if opening.guesses_coordinates() => (
                 format!(
-                    "no configuration near the guesses closes this loop: at them it is open by {by}"
+                    "no configuration near the guesses closes this loop, which is open by {by} there"
                 ),
-                "check the lengths, and let exact starts be guesses, `start q ~ 1.2;`, where they need not be kept",
+                "check the lengths, and turn exact starts that need not be kept into guesses, `start q ~ 1.2;`",
             ),
             _ => (
-                format!("no configuration near the start closes this loop: it is open by {by}"),
+                format!(
+                    "no configuration near the start closes this loop, which is open by {by} there"
+                ),
                 "give a `start` closer to a closed loop; coordinates without a `start` are solved for, those with one are kept",
             ),
         };
@@ -247,7 +249,7 @@ pub fn numbers(
         .fold(0, |class, e| class | evaluator.graph.class(e.node()));
     if class & !class::PARAM != 0 {
         return evaluator.error(
-            Diagnostic::new(span, format!("the start of `{name}` is no number"))
+            Diagnostic::new(span, format!("the start of `{name}` is not a number"))
                 .help("a start is made of numbers, constants and parameters"),
         );
     }
@@ -280,20 +282,19 @@ pub fn known(graph: &Graph, defaults: &[f64]) -> Vec<f64> {
 fn violated(constraints: &[Pfaffian], open: Open, given: bool) -> Diagnostic {
     if !given {
         let message = format!(
-            "no velocities at the start keep this constraint with the others: it is off by {}",
+            "no velocities at the start satisfy this constraint together with the others: it is violated by {}",
             rough(open.residual)
         );
         return Diagnostic::new(constraints[open.constraint].span, message).help(
-            "remove a constraint, or what is prescribed; where rows depend on one another at the start alone, start elsewhere",
+            "remove a constraint or a prescribed motion; if rows depend on one another only at the start, start elsewhere",
         );
     }
     let message = format!(
         "the start velocities violate this constraint by {}",
         rough(open.residual)
     );
-    Diagnostic::new(constraints[open.constraint].span, message).help(
-        "leave out the `start` of velocities that follow from the others: they are solved for",
-    )
+    Diagnostic::new(constraints[open.constraint].span, message)
+        .help("remove the `start` of velocities that follow from the others: they are solved for")
 }
 
 /// Returns the entries of x or ξ that a start is about, their value, and whether they belong to x.

@@ -44,7 +44,7 @@ fn cases(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             let case = cases.last().map_or(cursor.here(), |case| case.span);
             return Err(
                 Diagnostic::new(case.to(cursor.before()), "this `if` has no `else`")
-                    .help("an expression has a value everywhere: `if a < b { c } else { d }`"),
+                    .help("an expression needs a value everywhere: `if a < b { c } else { d }`"),
             );
         }
         if !cursor.is_word("if") {
@@ -91,8 +91,8 @@ fn comparison(cursor: &mut Cursor<'_>) -> Parsed<Comparison> {
         (Comparison::Greater, Comparison::AtLeast)
     } else if cursor.is_punct('=') || cursor.is_punct('!') {
         return Err(
-            Diagnostic::new(span, "numbers are not compared for equality").help(
-                "rounding decides that: compare with `<`, `<=`, `>` or `>=`, such as `abs(a - b) < 1e-6`",
+            Diagnostic::new(span, "numbers cannot be compared for equality").help(
+                "rounding would decide the result: compare with `<`, `<=`, `>` or `>=`, such as `abs(a - b) < 1e-6`",
             ),
         );
     } else {
