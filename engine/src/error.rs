@@ -373,7 +373,7 @@ impl fmt::Display for Error {
                     .collect();
                 write!(
                     f,
-                    "steps by `{method}` have no slopes here; those by {} have",
+                    "steps of `{method}` have no slopes here; use {}",
                     known.join(", ")
                 )
             }

@@ -109,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         machine: Machine {
             processor: "the machine of the command".into(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
-            code: "made into machine code at once".into(),
+            code: "compiled to machine code at once".into(),
             repeats: TIMING_REPEATS,
         },
         ..Report::default()

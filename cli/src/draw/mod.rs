@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     if last.is_empty() {
         return Err(Failure::failed(format!(
-            "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. A statement such as `frame f = pose(R, r);` says where a part of it is{}",
+            "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. Place a part of it by a statement such as `frame f = pose(R, r);`{}",
             session.name(),
             drawing
                 .missing()

@@ -161,7 +161,7 @@ fn every(text: &str) -> Result<Every, &'static str> {
         Some(time) => positive(time).map(Every::Time),
         None => match text.parse::<u64>() {
             Ok(steps) if steps > 0 => Ok(Every::Steps(steps)),
-            _ => Err("a number of steps, 1 or greater, or a time as in 0.01s is needed"),
+            _ => Err("expected a number of steps, 1 or greater, or a time as in 0.01s"),
         },
     }
 }

@@ -70,11 +70,11 @@ impl From<&InputArguments> for InputOptions {
 pub fn positive(text: &str) -> Result<f64, &'static str> {
     let number = text.parse::<f64>().ok();
     let number = number.filter(|number| number.is_finite() && *number > 0.0);
-    number.ok_or("a number greater than zero is needed")
+    number.ok_or("expected a number greater than zero")
 }
 
 fn rate(text: &str) -> Result<f64, &'static str> {
     let number = text.parse::<f64>().ok();
     let number = number.filter(|number| number.is_finite() && *number >= 0.0);
-    number.ok_or("a number, zero or greater, is needed")
+    number.ok_or("expected a number, zero or greater")
 }

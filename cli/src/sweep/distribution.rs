@@ -40,7 +40,7 @@ impl Distribution {
         let Some((name, inner)) = piece.call() else {
             return Err(vec![
                 piece
-                    .wrong("a distribution is expected")
+                    .wrong("expected a distribution")
                     .help(known_distributions()),
             ]);
         };

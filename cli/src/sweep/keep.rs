@@ -9,7 +9,7 @@ pub const OPTION: &str = "--keep";
 
 /// The possible items, as messages list them.
 const KNOWN_ITEMS: &str =
-    "there are end, max(EXPR), min(EXPR), mean(EXPR), at(TIME, EXPR), event(EXPR < EXPR)";
+    "the choices are end, max(EXPR), min(EXPR), mean(EXPR), at(TIME, EXPR), event(EXPR < EXPR)";
 const NAMES: [&str; 6] = ["end", "max", "min", "mean", "at", "event"];
 
 /// The quantity derived from an expression.

@@ -335,7 +335,7 @@ fn prepare(
         generated,
     };
     let system = family.member(&unvaried).map_err(|failed| {
-        let message = "where nothing is varied, no member can start";
+        let message = "no member can start, even if nothing is varied";
         Failure::failed(format!("{message}: {}", failed.why))
     })?;
     let mut plan = stepping.plan(&family.generated, &system, None)?;
@@ -399,7 +399,7 @@ fn fix_manifest(
     });
     if members.div_ceil(size) > MAX_SHARDS {
         return Err(Failure::usage(format!(
-            "{} members make more than {} files: a larger --shard-size is needed",
+            "{} members make more than {} files: use a larger --shard-size",
             group_thousands(members),
             group_thousands(MAX_SHARDS)
         )));
@@ -467,7 +467,7 @@ fn summary(out: &Path, done: SweepResult, before: u64) -> String {
         group_thousands(done.failed)
     );
     if before > 0 {
-        text.push_str(&format!("; {} were there before", group_thousands(before)));
+        text.push_str(&format!("; {} existed before", group_thousands(before)));
     }
     text.push('\n');
     text

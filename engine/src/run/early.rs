@@ -142,7 +142,7 @@ impl fmt::Display for EarlyEnd {
                     Some(tolerance) => write!(f, "try a smaller --tol than {}", short(*tolerance)),
                     None => write!(
                         f,
-                        "try a smaller --step than {}, or steps that are chosen by their error, `--method rkmk8 --tol 1e-9`",
+                        "try a smaller --step than {}, or steps chosen by their error, `--method rkmk8 --tol 1e-9`",
                         short(*step)
                     ),
                 }
@@ -154,7 +154,7 @@ impl fmt::Display for EarlyEnd {
                 ahead,
             } => write!(
                 f,
-                "the run ends at t = {}: the motion is stiff, a rate of {} per unit of time keeps explicit steps at {}, {} of them ahead; try `--method backward-euler` with a --step of your choice, or a stiff solver through `hamel::adapter`",
+                "the run ends at t = {}: the motion is stiff, a rate of {} per unit of time limits explicit steps to {}, with {} of them remaining; try `--method backward-euler` with a --step of your choice, or a stiff solver through `hamel::adapter`",
                 short(*time),
                 short(*rate),
                 short(*step),

@@ -81,7 +81,7 @@ impl fmt::Display for SamplingProblem {
         match self {
             SamplingProblem::Outside { time, until } => write!(
                 f,
-                "t = {time} is outside of the run, which is from 0 to {until}"
+                "t = {time} is outside the run, which is from 0 to {until}"
             ),
             SamplingProblem::Order { time, before } => {
                 write!(f, "times have to increase: {time} is not behind {before}")
@@ -89,7 +89,7 @@ impl fmt::Display for SamplingProblem {
             SamplingProblem::NoTimes => f.write_str("there are no times for samples"),
             SamplingProblem::TooMany { samples, most } => write!(
                 f,
-                "there would be {} samples, and no more than {} are kept: take them less often",
+                "there would be {} samples, but at most {} are kept: take them less often",
                 short(*samples),
                 short(*most)
             ),

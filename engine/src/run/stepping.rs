@@ -68,13 +68,13 @@ impl fmt::Display for SteppingProblem {
                 f64::MIN_POSITIVE
             ),
             SteppingProblem::StepAndTolerance => f.write_str(
-                "a step or a tolerance is needed, not both: by a tolerance steps are chosen",
+                "give a step or a tolerance, not both: a tolerance chooses the steps",
             ),
             SteppingProblem::Rate => f.write_str(
-                "the rate at which rk4 leads back to the constraint has to be a number, zero or greater",
+                "the rate at which rk4 stabilizes the constraint has to be a number, zero or greater",
             ),
             SteppingProblem::RateWithoutRk4 => f.write_str(
-                "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
+                "--lambda works only with --method rk4: the other methods keep the constraint without it",
             ),
             SteppingProblem::Tolerance { method } => write!(
                 f,

@@ -22,7 +22,7 @@ pub enum ConstantProblem {
 impl fmt::Display for ConstantProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            ConstantProblem::NoExpression => f.write_str("the value is no expression"),
+            ConstantProblem::NoExpression => f.write_str("the value is not an expression"),
             ConstantProblem::Unknown { closest, known } => match (closest, known.as_slice()) {
                 (Some(meant), _) => write!(f, "no such constant; did you mean `{meant}`?"),
                 (None, []) => f.write_str("the description has no constants"),

@@ -23,7 +23,7 @@ pub fn last(
     let sample = match list.last() {
         Some(Value::Object(sample)) => sample,
         Some(other) => {
-            let message = format!("a sample expected, {} found", kind(other));
+            let message = format!("expected a sample, found {}", kind(other));
             return Err(vec![StateProblem::new(place, message)]);
         }
         None => return Err(vec![StateProblem::new("", "a list without a sample")]),

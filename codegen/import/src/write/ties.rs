@@ -75,7 +75,7 @@ impl Writer<'_> {
         let name = &self.robot.loops[index].name.name;
         if !rows.is_empty() {
             self.draft.comment(format!(
-                "Left out of `{name}`, since it says nothing new wherever the tree is:"
+                "Left out of `{name}`, since it adds nothing for any position of the tree:"
             ));
         }
         for (row, reason) in rows {

@@ -52,7 +52,7 @@ impl fmt::Display for ExpressionProblem {
             ExpressionProblem::NoName => f.write_str("an input is written `NAME = EXPRESSION`"),
             ExpressionProblem::Unknown(unknown) => unknown.fmt(f),
             ExpressionProblem::Twice { name } => write!(f, "`{name}` is given twice"),
-            ExpressionProblem::NotOne => f.write_str("one expression is needed"),
+            ExpressionProblem::NotOne => f.write_str("expected one expression"),
             ExpressionProblem::Refused(error) => match &error.help {
                 Some(help) => write!(f, "{}; {help}", error.message),
                 None => f.write_str(&error.message),

@@ -98,9 +98,9 @@ impl fmt::Display for TableProblem {
             ),
             TableProblem::NoTimes => write!(
                 f,
-                "no column `{TIME}`: the first line has the names of the columns, as in `t,F`"
+                "no column `{TIME}`: the first line has to name the columns, as in `t,F`"
             ),
-            TableProblem::NoRows => f.write_str("there are no rows behind the header"),
+            TableProblem::NoRows => f.write_str("there are no rows after the header"),
             TableProblem::Order { line, time, before } => write!(
                 f,
                 "line {line}: t = {} is not behind t = {} of the row before",
@@ -126,7 +126,7 @@ impl fmt::Display for TableProblem {
             ),
             TableProblem::Outside { line, time, run } => write!(
                 f,
-                "line {line}: t = {} is outside of the run, which is from {} to {}",
+                "line {line}: t = {} is outside the run, which is from {} to {}",
                 short(*time),
                 short(run[0]),
                 short(run[1])

@@ -62,7 +62,7 @@ impl fmt::Display for InputProblem {
             }
             InputProblem::Twice { name } => write!(
                 f,
-                "`{name}` has a column of --inputs and an --input: one of the two is needed"
+                "`{name}` is given by a column of --inputs and by --input: remove one of the two"
             ),
         }
     }
