@@ -72,7 +72,7 @@ const ATTACK_TASKS: Task = &[
     "bash tests/emitted/install.sh",
     "HAMEL_ATTACK=more cargo test --workspace --locked",
     "HAMEL_ATTACK=more cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test built",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- claims:: expressions:: massless:: mounts:: tilted:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- claims:: expressions:: massless:: mounts:: tilted:: rounding:: constrained:: prescribed:: trees:: work:: observed:: random_scenes::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-native --test suite random::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test suite -- free_rotation:: stiff::",

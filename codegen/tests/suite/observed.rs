@@ -3,7 +3,7 @@
 //! against differences of what they are slopes of, in numbers. What a proof says of them is another matter: here no derivative is taken.
 
 use crate::common::{Random, attack, generated, value};
-use crate::some::some;
+use crate::thinning::thin_out;
 use crate::tree::{ALL, Kind, Link, text};
 use hamel_codegen::functions::{FrameFunction, Jacobian};
 use hamel_codegen::generate::{Generated, from_text};
@@ -143,7 +143,7 @@ fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
 fn slow() -> (Vec<PathBuf>, impl Fn(usize) -> usize) {
     let all = crate::models::models(Path::new(FOLDER));
     let of = all.len();
-    let some = some(all);
+    let some = thin_out(all);
     let looked = some.len();
     (some, move |number| number * looked / of)
 }

@@ -1,7 +1,7 @@
 //! All functions of the models of the tests: by machine code as step by step to the bit, and as the graph itself gives
 //! them, within 10⁻¹³ of scale and what rounding makes of arguments and of statements.
 
-use crate::some::some;
+use crate::thinning::thin_out;
 use hamel_codegen::algebra::rounding::evaluate_rounded;
 use hamel_codegen::generate::{Generated, from_file};
 use hamel_codegen::model::states::states;
@@ -141,7 +141,7 @@ fn generated(path: &Path) -> Generated {
 
 #[test]
 fn code_of_models_gives_what_their_graphs_give() {
-    let some = some(models());
+    let some = thin_out(models());
     let least = 200 * some.len();
     let counts = some.into_par_iter().map(|path| {
         let (mut compared, mut ended) = (0, 0);

@@ -17,8 +17,8 @@ mod models;
 mod names;
 #[path = "../../../lab/big/src/quadruped.rs"]
 mod quadruped;
-#[path = "../../../codegen/tests/suite/common/some.rs"]
-mod some;
+#[path = "../../../codegen/tests/suite/common/thinning.rs"]
+mod thinning;
 
 use case::Case;
 use common::{Random, size};
@@ -29,8 +29,8 @@ use hamel_codegen::emit::c::{self, Precision};
 use hamel_codegen::generate::{Generated, from_file, from_text};
 use hamel_codegen::render::render;
 use rayon::prelude::*;
-use some::some;
 use std::path::{Path, PathBuf};
+use thinning::thin_out;
 
 /// Descriptions in one source of C.
 const DESCRIPTIONS_PER_SOURCE: usize = 12;
@@ -83,7 +83,7 @@ fn models_give_what_the_interpreter_gives() {
     let mut paths = descriptions(&root.join("../models"));
     paths.push(root.join("../../examples/dzhanibekov.eom"));
     assert!(paths.len() > 60, "{} models", paths.len());
-    let cases: Vec<Case> = some(paths)
+    let cases: Vec<Case> = thin_out(paths)
         .par_iter()
         .map(|path| {
             let stem = path.file_stem().expect("a name").to_string_lossy();
@@ -149,7 +149,7 @@ fn what_is_asked_for_gives_what_the_interpreter_gives() {
 #[test]
 fn names_of_c_and_of_the_generated_text_are_names_in_descriptions() {
     // Each name has eight places: a third of the descriptions has it in two or three of them.
-    let texts = some(names::descriptions());
+    let texts = thin_out(names::descriptions());
     // Some names are words of the language in some places.
     let made = texts.iter().filter_map(|text| from_text(text).ok());
     let cases: Vec<Case> = made

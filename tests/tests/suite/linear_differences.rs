@@ -1,7 +1,7 @@
 //! The linearisation of every model against differences of its own motion, taken along the manifold;
 //! what costs nothing in it; and that a wrong sign in any derived function is never emitted.
 
-use crate::some::some;
+use crate::thinning::thin_out;
 use hamel::{Block, manifold};
 use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::generate::{Generated, from_text};
@@ -129,7 +129,7 @@ fn along(a: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
 
 #[test]
 fn linearize_is_the_difference_of_neighbouring_motions() {
-    some(models()).par_iter().for_each(|path| {
+    thin_out(models()).par_iter().for_each(|path| {
         let generated = linearized(path);
         // Where constraints hold velocities back, the build compares with dual numbers.
         if !generated.model.constraints.is_empty() {

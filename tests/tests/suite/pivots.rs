@@ -47,7 +47,7 @@ fn mass(generated: &Generated) -> DMatrix<f64> {
 #[test]
 fn pivots_lie_between_the_inertias_of_their_velocities() {
     let all = crate::models::models(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/models")));
-    let (of, all) = (all.len(), crate::some::some(all));
+    let (of, all) = (all.len(), crate::thinning::thin_out(all));
     let compared = all.par_iter().filter_map(|path| {
         let asked = "accel, mass_matrix, linearize, velocity_from_momentum";
         // M of systems with constraints is not asked for everywhere.

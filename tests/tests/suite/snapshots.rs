@@ -2,10 +2,10 @@
 //!
 //! What they lock has been proved before: generation validates every function, and `checks.rs`
 //! checks every identity. The code of every model is compiled by `build.rs`, is the same through every front end
-//! (`doors.rs`), and repeats to the byte.
+//! (`front_ends.rs`), and repeats to the byte.
 
 use crate::derived::{model, models};
-use crate::some::some;
+use crate::thinning::thin_out;
 use hamel_codegen::builder::{source, written};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::{Count, count};
@@ -227,7 +227,7 @@ fn constant_mass_costs_nothing() {
 
 #[test]
 fn generation_repeats_to_the_byte() {
-    some(models().iter().collect())
+    thin_out(models().iter().collect())
         .par_iter()
         .for_each(|model| {
             let first = written(model.generated(), &model.name).expect("correct");
