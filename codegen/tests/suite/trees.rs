@@ -6,7 +6,7 @@ use crate::tree::{ALL, Kind, Link, Tree, humanoid, text};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::Generated;
-use hamel_codegen::proof::levi_civita::{contracted, levi_civita};
+use hamel_codegen::proof::levi_civita::{contract, levi_civita};
 
 /// Roundings of a few thousand operations, forces of the order of 100.
 const TOLERANCE: f64 = 1e-10;
@@ -136,7 +136,7 @@ fn obeys_the_tables(system: &Generated, seed: u64) {
     let (mass, connection) = (geometry.mass.clone(), geometry.connection.clone());
     let dot = geometry.model.xi_dot.clone();
     let (model, calculus) = (&mut geometry.model, &mut geometry.calculus);
-    let bias = contracted(model, &connection);
+    let bias = contract(model, &connection);
     let potential = geometry.potential;
     let whole = levi_civita(model, calculus, &mass, &bias, potential, &dot);
     let mut random = Random::new(seed);
