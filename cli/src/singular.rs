@@ -13,7 +13,7 @@ use hamel_codegen::program::Cause;
 use nalgebra::DMatrix;
 
 /// Pivots below this, relative to the original diagonal entry, are rounding errors of zero.
-const ROUNDING: f64 = 1e-12;
+const PIVOT_TOLERANCE: f64 = 1e-12;
 /// Largest number of constraints listed.
 const MAX_LISTED: usize = 6;
 /// Messages for singular states at which every velocity has inertia.
@@ -59,7 +59,7 @@ pub fn dependent_message(model: &Model, text: &str) -> String {
 /// The message for a mass matrix that is not positive definite, with the labels of its rows.
 pub fn mass_message(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
     let (place, part) = weakest(mass)?;
-    (part <= ROUNDING).then(|| pivot_message(place, names))
+    (part <= PIVOT_TOLERANCE).then(|| pivot_message(place, names))
 }
 
 fn pivot_message(place: usize, names: &[String]) -> String {
@@ -110,7 +110,7 @@ fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
     for k in 0..rest.nrows() {
         let pivot = rest[(k, k)];
         // NaN is not positive either.
-        let part = Some(pivot / mass[(k, k)].abs()).filter(|part| *part > ROUNDING);
+        let part = Some(pivot / mass[(k, k)].abs()).filter(|part| *part > PIVOT_TOLERANCE);
         let Some(part) = part else {
             return Some((k, 0.0));
         };
