@@ -201,7 +201,7 @@ fn merging_report(generated: &Generated) -> String {
 }
 
 /// Lists the velocities that constraints leave, and the constraints that determine the others.
-fn constrained(generated: &Generated, text: &str) -> String {
+fn constraints_report(generated: &Generated, text: &str) -> String {
     let lines = constraint_lines(generated, text);
     lines.iter().map(|line| format!("  {line}\n")).collect()
 }

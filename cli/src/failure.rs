@@ -57,13 +57,13 @@ impl Failure {
 
     /// What is shown of it, on as many lines as that takes.
     pub fn render(&self, color: bool) -> String {
-        let headed = |message: &str| match color {
+        let format_error = |message: &str| match color {
             true => format!("\x1b[1;31merror\x1b[0m: {message}\n"),
             false => format!("error: {message}\n"),
         };
         let list = |about: &str, messages: &[String]| {
             let lines = messages.iter().map(|message| format!("{about}: {message}"));
-            let mut text: String = lines.map(|line| headed(&line)).collect();
+            let mut text: String = lines.map(|line| format_error(&line)).collect();
             if messages.len() > 1 {
                 text.push_str(&format!("{} errors\n", messages.len()));
             }
@@ -73,9 +73,9 @@ impl Failure {
             Failure::Engine(error) => match (underlined(error, color), error.list()) {
                 (Some(text), _) => text,
                 (None, Some((about, messages))) => list(&about, &messages),
-                (None, None) => headed(&error.to_string()),
+                (None, None) => format_error(&error.to_string()),
             },
-            Failure::Failed(message) | Failure::Usage(message) => headed(message),
+            Failure::Failed(message) | Failure::Usage(message) => format_error(message),
             Failure::Usages { about, messages } => list(about, messages),
             Failure::CommandLine(text) => text.clone(),
             Failure::Several(all) => all.iter().map(|failure| failure.render(color)).collect(),

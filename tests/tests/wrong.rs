@@ -55,7 +55,7 @@ fn messages() {
 
 /// Descriptions whose messages are locked in rendered form, underlined in the text: single and multiple errors, on one
 /// line and on several, with notes. The snapshots of all others contain places and texts.
-const RENDERED: [&str; 8] = [
+const RENDERED_DESCRIPTIONS: [&str; 8] = [
     "01-unknown-name.eom",
     "08-shapes-of-statements.eom",
     "13-entries.eom",

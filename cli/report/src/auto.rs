@@ -16,7 +16,7 @@ pub fn entry(method: &str) -> String {
     }
 }
 
-/// Returns the wall time in µs in which a method reaches the [`TARGET`].
+/// Returns the wall time in µs in which a method reaches the [`TARGET_ERROR`].
 pub fn micros(method: &MethodRuns) -> Work {
     work(&method.runs, TARGET_ERROR, |run: &MethodRun| {
         run.seconds.map(|seconds| 1e6 * seconds)
@@ -46,9 +46,9 @@ pub fn ratio(case: &Case) -> Option<f64> {
 }
 
 /// Largest accepted time of the chosen method, relative to the fastest.
-pub const BAR: f64 = 2.0;
+pub const MAX_TIME_RATIO: f64 = 2.0;
 
-/// Summarises the choices over all cases in words: choices beyond the [`BAR`], and choices that cannot be judged.
+/// Summarises the choices over all cases in words: choices beyond the [`MAX_TIME_RATIO`], and choices that cannot be judged.
 /// `None` if nothing was chosen.
 pub fn verdict(report: &Report) -> Option<String> {
     let chosen: Vec<&Case> = report

@@ -19,7 +19,7 @@ fn parts(text: &str) -> Vec<(&str, bool)> {
 }
 
 /// Renders a text as HTML.
-pub fn marked(text: &str) -> Markup {
+pub fn mark_up(text: &str) -> Markup {
     html! {
         @for (part, code) in parts(text) {
             @if code { code { (part) } } @else { (part) }

@@ -4,7 +4,7 @@ use crate::data::{Case, MethodRun, MethodRuns};
 use crate::number::{error, group_thousands};
 
 /// The tolerances of the table; a tolerance that was not measured is left out.
-const SHOWN: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
+const TABLE_TOLERANCES: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
 
 /// Returns the heading and the rows: for every method, error, steps and rejected attempts at each tolerance; `None` if
 /// no method of the case has error control.
@@ -31,7 +31,7 @@ pub fn table(case: &Case) -> Option<(Vec<String>, Vec<Vec<String>>)> {
 }
 
 /// Returns error, steps and rejected attempts.
-fn counts(run: Option<&MethodRun>) -> [String; 3] {
+fn count(run: Option<&MethodRun>) -> [String; 3] {
     let none = || "-".to_string();
     let Some(run) = run else {
         return [none(), none(), none()];

@@ -203,7 +203,7 @@ pub struct Peer {
 }
 
 /// Rounds a number to three significant digits, as results are stored; `None` if it is not finite.
-pub fn kept(value: f64) -> Option<f64> {
+pub fn round_to_three_digits(value: f64) -> Option<f64> {
     value
         .is_finite()
         .then(|| format!("{value:.2e}").parse().unwrap_or(value))

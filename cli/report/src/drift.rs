@@ -4,7 +4,7 @@ use crate::data::{Drift, round_to_three_digits};
 use crate::entry::{Division, Entry, Worst};
 
 /// Number of windows of a run.
-pub const WINDOWS: u64 = 100;
+pub const WINDOWS_PER_RUN: u64 = 100;
 
 /// Runs `steps` steps of one length, and keeps the largest deviations of each window; `None` for a method with error
 /// control.

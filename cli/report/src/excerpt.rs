@@ -7,9 +7,9 @@ use crate::work::{Work, work};
 use std::fmt::Write;
 
 /// Marks the beginning of the block.
-pub const BEGIN: &str = "<!-- report: begin -->";
+pub const BEGIN_MARKER: &str = "<!-- report: begin -->";
 /// Marks its end.
-pub const END: &str = "<!-- report: end -->";
+pub const END_MARKER: &str = "<!-- report: end -->";
 
 /// Renders a table of the fastest method of every case and its cost for an error of 1e-9, compared with rkmk4 and the
 /// method that `auto` takes.
@@ -50,9 +50,9 @@ fn micros(time: Option<Work>) -> String {
 }
 
 /// Replaces the block of a text; `None` if the comments are missing.
-pub fn replaced(text: &str, block: &str) -> Option<String> {
-    let (before, rest) = text.split_once(BEGIN)?;
-    let (_, after) = rest.split_once(END)?;
+pub fn replace_block(text: &str, block: &str) -> Option<String> {
+    let (before, rest) = text.split_once(BEGIN_MARKER)?;
+    let (_, after) = rest.split_once(END_MARKER)?;
     Some(format!("{before}{BEGIN}\n{block}{END}{after}"))
 }
 

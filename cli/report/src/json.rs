@@ -6,7 +6,7 @@ use serde_json::ser::{Formatter, Serializer};
 use std::io::{self, Write};
 
 /// Members of objects nested deeper than this are on one line: the runs of the methods of a case.
-const DEPTH: usize = 6;
+const MAX_BROKEN_DEPTH: usize = 6;
 
 /// Formats a report, with a final line break.
 ///

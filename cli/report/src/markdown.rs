@@ -242,7 +242,7 @@ pub fn name(method: &MethodRuns) -> String {
 }
 
 /// Formats work with three digits.
-pub fn worked(work: Work) -> String {
+pub fn format_work(work: Work) -> String {
     let three = |value: f64| digits(value, 3);
     match work {
         Work::Reached(value) => three(value),

@@ -3,7 +3,7 @@
 //! Errors, drifts and evaluations are reproducible: one watched run gives them. Times are not: machines are noisy, in
 //! phases longer than a run. Therefore every method is timed once at every step length before any is timed again, and
 //! the median of the repeats is kept; ratios of such medians are steadier than the times themselves. Only the first
-//! steps of a run are timed, at most [`PART`] of them, and the time is scaled to the whole run (by steps, or by
+//! steps of a run are timed, at most [`MAX_TIMED_STEPS`] of them, and the time is scaled to the whole run (by steps, or by
 //! evaluations where steps differ): a long run would be interrupted too often to be timed.
 
 use crate::data::{Case, MethodRun, MethodRuns, round_to_three_digits};
@@ -33,10 +33,10 @@ impl Plan {
 }
 
 /// Largest number of steps timed at once.
-pub const PART: u64 = 1000;
+pub const MAX_TIMED_STEPS: u64 = 1000;
 
 /// An error counts as reduced if it is less than this times the last one.
-const REDUCED: f64 = 0.7;
+const ERROR_REDUCTION: f64 = 0.7;
 
 /// Measures every entry, and adds the results to the case. `tick` is called before each piece of work with the number
 /// of finished pieces and their total.

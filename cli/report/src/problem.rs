@@ -27,7 +27,7 @@ pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
     /// Constants of motion other than the energy, as functions of (x, ξ); may be empty.
     pub momenta: Quantities<'a>,
     /// Formats the error of a failed step.
-    pub said: Told<'a>,
+    pub error_text: ErrorText<'a>,
     /// Whether T + V is constant.
     pub conservative: bool,
 }
@@ -36,7 +36,7 @@ pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
 pub type Judge<'a> = Box<dyn Fn(&[f64], &[f64]) -> f64 + 'a>;
 
 /// Formats an error.
-pub type Told<'a> = Box<dyn Fn(&StepError) -> String + 'a>;
+pub type ErrorText<'a> = Box<dyn Fn(&StepError) -> String + 'a>;
 
 /// Numbers as a function of (x, ξ).
 pub type Quantities<'a> = Box<dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a>;

@@ -27,8 +27,8 @@ fn case(case: &Case) -> Case {
 }
 
 /// Keeps the first run that reaches the error and the one before it, or the last run if none does.
-fn around(method: &MethodRuns) -> MethodRuns {
-    let reaches = |run: &MethodRun| run.error.is_some_and(|error| error <= TARGET);
+fn runs_around(method: &MethodRuns) -> MethodRuns {
+    let reaches = |run: &MethodRun| run.error.is_some_and(|error| error <= TARGET_ERROR);
     let last = method.runs.len().saturating_sub(1);
     let range = match method.runs.iter().position(reaches) {
         Some(index) => index.saturating_sub(1)..=index,

@@ -3,7 +3,7 @@
 use crate::data::MethodRun;
 
 /// The errors for which tables show the work.
-pub const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
+pub const TARGET_ERRORS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 /// The work that a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]

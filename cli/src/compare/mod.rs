@@ -38,10 +38,10 @@ const MAX_STEPS: u64 = 100_000_000;
 /// Tolerances of methods with step size control.
 const TOLERANCES: [f64; 8] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 /// Timings of each run, and the least duration of each (s).
-const REPEATS: u32 = 3;
-const LEAST: f64 = 1e-3;
+const TIMING_REPEATS: u32 = 3;
+const MIN_TIMING: f64 = 1e-3;
 /// Errors below this are taken for rounding.
-const FLOOR: f64 = 1e-13;
+const ERROR_FLOOR: f64 = 1e-13;
 /// Ratio of the steps of the reference run to those of the finest run.
 const REFERENCE_REFINEMENT: u64 = 4;
 

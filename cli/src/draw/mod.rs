@@ -86,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => Session::of_places(source)?,
     };
     let state = session.state_of(at)?;
-    let traced = traced(session.generated(), &arguments.trace)?;
+    let traced_frames = traced_frames(session.generated(), &arguments.trace)?;
     let drawing = session.drawing()?;
     let moments = match until > 0.0 {
         true => moments(arguments, &session, &state, until)?,
@@ -123,7 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shapes = Shapes::new(last);
     let picture = Space {
         title: session.name().into(),
-        subtitle: said(arguments),
+        subtitle: caption(arguments),
         base: base(vertical),
         eye: arguments.view,
         floor,

@@ -7,7 +7,7 @@ use crate::json::Json;
 use crate::robot::RobotOptions;
 use crate::source;
 use clap::Args;
-use hamel_engine::evaluate::{Cube, Kinematics, Value, asked, evaluate};
+use hamel_engine::evaluate::{Cube, Kinematics, Value, requested_jacobians, evaluate};
 use hamel_engine::state::File;
 use hamel_engine::{Evaluation, State};
 use std::path::PathBuf;
@@ -75,12 +75,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
         return sample::run(&source, at, &frames);
     }
-    let generated = source.derive_available(&asked(&frames))?;
+    let generated = source.derive_available(&requested_jacobians(&frames))?;
     let state = match &at {
         Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
     };
-    let shown = arguments.tables || generated.model.n() <= MOST_SHOWN;
+    let shown = arguments.tables || generated.model.n() <= MAX_SHOWN_VELOCITIES;
     let numbers = evaluate((&generated, source.shown()), &state, &frames, shown)?;
     if !shown {
         warn(&format!(

@@ -155,7 +155,7 @@ fn members(
     // A missing function has been reported before.
     let is_there = generated.program.function(FunctionId::Accel).is_some();
     if let (None, true, Some(mass)) = (&accel.value, is_there, &mass) {
-        let why = mechanism::of(generated, &state.params, mass, text);
+        let why = mechanism::description_message(generated, &state.params, mass, text);
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));

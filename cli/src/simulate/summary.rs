@@ -3,7 +3,7 @@
 use crate::columns::aligned;
 use hamel_codegen::syntax::ast::CoordKind;
 use hamel_engine::run::{Run, Sample};
-use hamel_files::number::{digits, error, grouped, short};
+use hamel_files::number::{digits, error, group_thousands, short};
 
 /// Number of rows of the table.
 const ROWS: usize = 20;

@@ -1,7 +1,7 @@
 //! A member: its state, its run, and its row of results.
 
-use super::vary::Vary;
-use super::watch::{Keeping, Watch};
+use super::vary::Variations;
+use super::watch::{KeptColumns, MemberObserver};
 use hamel::{State, StepError};
 use hamel_codegen::generate::Generated;
 use hamel_engine::mechanism::{Instance, Mechanism};
@@ -265,7 +265,7 @@ mod tests {
         let (Some(vary), Some(stepping)) = (&arguments.vary, &arguments.stepping) else {
             panic!("--vary and --until are needed");
         };
-        let sweep = prepared(&arguments, &source.in_numbers(), vary, &stepping.into());
+        let sweep = prepare(&arguments, &source.in_numbers(), vary, &stepping.into());
         sweep.expect("a sweep").0
     }
 

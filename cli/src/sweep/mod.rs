@@ -44,7 +44,7 @@ use hamel_engine::source::added;
 use hamel_engine::state::File;
 use hamel_engine::text;
 use hamel_engine::{Error, Source, Stepping};
-use hamel_files::number::grouped;
+use hamel_files::number::group_thousands;
 use manifest::Manifest;
 use member::{Family, Sweep};
 use serde_json::{Map, Value};
@@ -297,7 +297,7 @@ fn prepare(
             Ok(generated) => both(error, &generated),
             Err(_) => error.into(),
         })?;
-    let keeping = Keeping::new(&kept, &generated).map_err(|(item, why)| {
+    let keeping = KeptColumns::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
         both(text::refused(option.0, option.1, &[error]), &generated)
     })?;

@@ -3,7 +3,7 @@
 use super::folder::{Finished, Folder};
 use super::shard::{Columns, numbers};
 use crate::failure::{self, Failure};
-use hamel_files::number::grouped;
+use hamel_files::number::group_thousands;
 use hamel_report::plot::{Scatter, scatter};
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use super::folder::{find_finished, read_manifest};
 use crate::columns::aligned;
 use crate::failure::{Failure, print};
-use hamel_files::number::grouped;
+use hamel_files::number::group_thousands;
 use std::path::Path;
 
 /// Largest number of ranges of missing shards listed.

@@ -1,6 +1,6 @@
 //! Collects the kept results of a member while it runs.
 
-use super::keep::{Item, Kept, Of};
+use super::keep::{Item, KeptItem, Quantity};
 use hamel::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;

@@ -9,7 +9,7 @@
 
 use super::derivation::Derivation;
 use super::graph::{Edge, Function, Graph, Node, NodeId};
-use super::transplant::merged;
+use super::transplant::merge;
 use num_traits::Signed;
 use std::collections::BTreeSet;
 
@@ -272,7 +272,7 @@ impl Graph {
             whole &= known.is_some();
             known.unwrap_or(child)
         });
-        whole.then(|| merged(self, node))
+        whole.then(|| merge(self, node))
     }
 }
 

@@ -122,9 +122,9 @@ impl<'a> Degrees<'a> {
                 let once = vec![(divisor, 1.0)];
                 Fraction {
                     degree: above.degree,
-                    powers: Rc::new(merged(
+                    powers: Rc::new(merge_powers(
                         &above.powers,
-                        &merged(&inverse, &once, |m, n| m + n),
+                        &merge_powers(&inverse, &once, |m, n| m + n),
                         |m, n| m + n,
                     )),
                 }
@@ -194,7 +194,7 @@ impl<'a> Degrees<'a> {
         for (divisor, power) in norms {
             let number = self.number(divisor, 2.0);
             degree += 2.0 * power;
-            powers = merged(&powers, &vec![(number, power)], |m, n| m + n);
+            powers = merge_powers(&powers, &vec![(number, power)], |m, n| m + n);
         }
         Fraction {
             degree,
@@ -223,7 +223,7 @@ impl<'a> Degrees<'a> {
             };
         }
         // A divisor that is missing on one side has the power 0 there.
-        let powers = merged(&a.powers, &b.powers, f64::max);
+        let powers = merge_powers(&a.powers, &b.powers, f64::max);
         // So one with a negative power on the other side has the power 0 in the sum.
         let raised = |f: &Fraction| {
             let mut degree = f.degree;
@@ -250,7 +250,7 @@ impl<'a> Degrees<'a> {
         for root in roots {
             let fraction = self.read(*root);
             most = most.max(self.degree_of(&fraction));
-            powers = merged(&powers, &fraction.powers, |m, n| m.max(n.abs()));
+            powers = merge_powers(&powers, &fraction.powers, |m, n| m.max(n.abs()));
         }
         most + self.norm_degree(&powers)
     }
@@ -280,7 +280,7 @@ fn merge(a: &Powers, b: &Powers, mut each: impl FnMut(u32, f64, f64)) {
 }
 
 /// Merges two lists of powers with the function `by`, and drops powers of 0.
-fn merged(a: &Powers, b: &Powers, by: impl Fn(f64, f64) -> f64) -> Powers {
+fn merge_powers(a: &Powers, b: &Powers, by: impl Fn(f64, f64) -> f64) -> Powers {
     let mut all = Powers::with_capacity(a.len().max(b.len()));
     merge(a, b, |number, m, n| {
         let power = by(m, n);
@@ -295,7 +295,7 @@ fn product(a: &Fraction, b: &Fraction) -> Fraction {
     let powers = match (a.powers.is_empty(), b.powers.is_empty()) {
         (_, true) => a.powers.clone(),
         (true, _) => b.powers.clone(),
-        _ => Rc::new(merged(&a.powers, &b.powers, |m, n| m + n)),
+        _ => Rc::new(merge_powers(&a.powers, &b.powers, |m, n| m + n)),
     };
     Fraction {
         degree: a.degree + b.degree,

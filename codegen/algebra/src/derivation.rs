@@ -27,7 +27,7 @@ impl Derivation {
     /// Differentiates one expression.
     pub fn of(&mut self, graph: &mut Graph, edge: Edge) -> Edge {
         self.run(graph, edge.node());
-        self.seen(graph, edge)
+        self.known_derivative(graph, edge)
     }
 
     /// Differentiates several expressions.
@@ -35,7 +35,7 @@ impl Derivation {
         edges.iter().map(|&edge| self.of(graph, edge)).collect()
     }
 
-    fn seen(&self, graph: &Graph, edge: Edge) -> Edge {
+    fn known_derivative(&self, graph: &Graph, edge: Edge) -> Edge {
         let value = self.memo.get(&edge.node()).copied().unwrap_or(graph.zero());
         value.signed(edge.is_negative())
     }
@@ -56,39 +56,48 @@ impl Derivation {
                     .filter(|child| !self.memo.contains_key(child)),
             );
             if stack.len() == before {
-                let derivative = self.local(graph, id, node);
+                let derivative = self.derive_node(graph, id, node);
                 self.memo.insert(id, derivative);
                 stack.pop();
             }
         }
     }
 
-    fn local(&mut self, graph: &mut Graph, id: NodeId, node: Node) -> Edge {
+    fn derive_node(&mut self, graph: &mut Graph, id: NodeId, node: Node) -> Edge {
         let zero = graph.zero();
         match node {
             Node::Constant(_) | Node::Symbol(_) => zero,
             Node::Add(a, b) => {
-                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                let (da, db) = (
+                    self.known_derivative(graph, a),
+                    self.known_derivative(graph, b),
+                );
                 graph.add(da, db)
             }
             Node::Mul(a, b) => {
                 if let Some(derivative) = self.of_power(graph, id) {
                     return derivative;
                 }
-                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                let (da, db) = (
+                    self.known_derivative(graph, a),
+                    self.known_derivative(graph, b),
+                );
                 let left = graph.mul(da, b);
                 let right = graph.mul(a, db);
                 graph.add(left, right)
             }
             Node::Div(a, b) => {
                 // (a/b)' = (a' − (a/b) b')/b; b is not the zero node, or the quotient would not exist.
-                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                let (da, db) = (
+                    self.known_derivative(graph, a),
+                    self.known_derivative(graph, b),
+                );
                 let product = graph.mul(Edge::of(id), db);
                 let numerator = graph.sub(da, product);
                 graph.div(numerator, b).unwrap_or(zero)
             }
             Node::Apply(function, a) => {
-                let da = self.seen(graph, a);
+                let da = self.known_derivative(graph, a);
                 if da == zero {
                     return zero;
                 }
@@ -128,7 +137,10 @@ impl Derivation {
                 }
             }
             Node::Select(c, a, b) => {
-                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                let (da, db) = (
+                    self.known_derivative(graph, a),
+                    self.known_derivative(graph, b),
+                );
                 graph.select(c, da, db)
             }
             Node::Listed(..) => zero,
@@ -136,7 +148,7 @@ impl Derivation {
                 let terms = graph.list(list).into_iter().enumerate();
                 let terms: Vec<Edge> = terms
                     .map(|(place, a)| {
-                        let da = self.seen(graph, a);
+                        let da = self.known_derivative(graph, a);
                         if da == zero {
                             return zero;
                         }
@@ -148,7 +160,10 @@ impl Derivation {
             }
             Node::Atan2(y, x) => {
                 // (x y' − y x')/(x² + y²)
-                let (dy, dx) = (self.seen(graph, y), self.seen(graph, x));
+                let (dy, dx) = (
+                    self.known_derivative(graph, y),
+                    self.known_derivative(graph, x),
+                );
                 if dy == zero && dx == zero {
                     return zero;
                 }
@@ -181,7 +196,7 @@ impl Derivation {
         if !all().all(is_known) {
             return None;
         }
-        let constant = |factor: &Edge| self.seen(graph, *factor) == graph.zero();
+        let constant = |factor: &Edge| self.known_derivative(graph, *factor) == graph.zero();
         if !constants.iter().all(constant) {
             return None;
         }
@@ -200,7 +215,7 @@ impl Derivation {
     fn of_product(&self, graph: &mut Graph, factors: &[Edge]) -> (Edge, Edge) {
         let start = (graph.one(), graph.zero());
         factors.iter().fold(start, |(product, slope), &factor| {
-            let own = self.seen(graph, factor);
+            let own = self.known_derivative(graph, factor);
             let (left, right) = (graph.mul(slope, factor), graph.mul(product, own));
             (graph.mul(product, factor), graph.add(left, right))
         })

@@ -67,7 +67,7 @@ fn by_primes<const K: usize>(n: &BigInt) -> Residue<K> {
                 break;
             }
             rest = quotient;
-            root = root * chosen(u64::from(prime));
+            root = root * choose_root(u64::from(prime));
         }
         prime += if prime == 2 { 1 } else { 2 };
     }
@@ -81,7 +81,7 @@ fn split<const K: usize>(mut n: u64, first: u32) -> (u64, Residue<K>) {
     while prime < u64::from(PRIME_BOUND) && n > 1 {
         while n.is_multiple_of(prime) {
             n /= prime;
-            root = root * chosen(prime);
+            root = root * choose_root(prime);
         }
         prime += if prime == 2 { 1 } else { 2 };
     }
@@ -99,6 +99,6 @@ fn of_rough<const K: usize>(n: &BigInt) -> Residue<K> {
 }
 
 /// Root that is chosen for a prime, in F_p or F_p(i).
-fn chosen<const K: usize>(prime: u64) -> Residue<K> {
+fn choose_root<const K: usize>(prime: u64) -> Residue<K> {
     Residue::new(prime).sqrt().unwrap_or(Residue::ONE)
 }

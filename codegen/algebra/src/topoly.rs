@@ -93,8 +93,8 @@ impl Expander {
         if self.bases.is_some() {
             self.keep_powers(graph, &graph.reachable(&[edge]));
         }
-        for id in self.unknown(graph, edge) {
-            let polynomial = self.local(graph, id, self.most_terms);
+        for id in self.unexpanded(graph, edge) {
+            let polynomial = self.expand_node(graph, id, self.most_terms);
             self.memo.insert(id, polynomial);
         }
         self.signed(edge).map(Cow::into_owned)
@@ -114,8 +114,8 @@ impl Expander {
         reduce: &mut dyn FnMut(&Graph, Poly<BigRational>) -> Poly<BigRational>,
     ) -> Option<Poly<BigRational>> {
         self.work = work;
-        for id in self.unknown(graph, edge) {
-            let mut polynomial = self.local(graph, id, UNREDUCED_FACTOR * self.most_terms);
+        for id in self.unexpanded(graph, edge) {
+            let mut polynomial = self.expand_node(graph, id, UNREDUCED_FACTOR * self.most_terms);
             if self.work == 0 {
                 return None;
             }
@@ -133,7 +133,7 @@ impl Expander {
     }
 
     /// Returns the parts of an expression that have not been expanded, children first.
-    fn unknown(&self, graph: &Graph, edge: Edge) -> Vec<NodeId> {
+    fn unexpanded(&self, graph: &Graph, edge: Edge) -> Vec<NodeId> {
         let mut found = FxHashSet::default();
         let mut open = vec![edge.node()];
         while let Some(id) = open.pop() {
@@ -191,7 +191,7 @@ impl Expander {
         Some(self.memo.get(&edge.node())?.as_ref()?.terms().len())
     }
 
-    fn local(&mut self, graph: &Graph, id: NodeId, most: usize) -> Option<Poly<BigRational>> {
+    fn expand_node(&mut self, graph: &Graph, id: NodeId, most: usize) -> Option<Poly<BigRational>> {
         match graph.node(id) {
             Node::Add(a, b) => self.spend(self.terms(a)? + self.terms(b)?)?,
             Node::Mul(a, b) => self.spend(self.terms(a)? * self.terms(b)?)?,

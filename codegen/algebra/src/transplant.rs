@@ -4,13 +4,13 @@ use super::graph::{Edge, Graph, Node};
 
 /// Rebuilds the expressions in another graph, where they merge with nodes of equal value.
 pub fn rebuild(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
-    carry(from, into, edges, same_symbol, merged)
+    carry(from, into, edges, same_symbol, merge)
 }
 
 /// Rebuilds the expressions with every symbol replaced by an expression of the other graph; `images` is in
 /// the order of the symbols.
 pub fn map_symbols(from: &Graph, into: &mut Graph, edges: &[Edge], images: &[Edge]) -> Vec<Edge> {
-    carry(from, into, edges, |_, index| images[index as usize], merged)
+    carry(from, into, edges, |_, index| images[index as usize], merge)
 }
 
 fn same_symbol(into: &Graph, index: u32) -> Edge {
@@ -23,7 +23,7 @@ pub(crate) fn read(image: &[Edge], edge: Edge) -> Edge {
 }
 
 /// Adds a node to a graph, where it merges with a node of equal value.
-pub(crate) fn merged(into: &mut Graph, node: Node) -> Edge {
+pub(crate) fn merge(into: &mut Graph, node: Node) -> Edge {
     match node {
         Node::Add(a, b) => into.add(a, b),
         Node::Mul(a, b) => into.mul(a, b),
@@ -50,7 +50,7 @@ pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> V
                 let found = set.iter().find(|(symbol, _)| *symbol == index as usize);
                 found.map_or(Edge::of(id), |(_, value)| *value)
             }
-            node => merged(graph, node.map_children(|child| read(&image, child))),
+            node => merge(graph, node.map_children(|child| read(&image, child))),
         };
         image[id as usize] = made;
     }
@@ -71,7 +71,7 @@ pub fn substitute_under_roots(
         let made = match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => Edge::of(id),
             node if node.is_root() => substitute(graph, &[Edge::of(id)], set)[0],
-            node => merged(graph, node.map_children(|child| read(&image, child))),
+            node => merge(graph, node.map_children(|child| read(&image, child))),
         };
         image[id as usize] = made;
     }
@@ -93,7 +93,7 @@ pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
 pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     carry(from, into, edges, same_symbol, |into, node| {
         if node.children().all(|child| into.is_free(child.node())) {
-            return merged(into, node);
+            return merge(into, node);
         }
         match unsigned(node) {
             // The positive operand first, as sums are built.
@@ -104,7 +104,7 @@ pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
             (other @ (Node::Add(..) | Node::Mul(..) | Node::Div(..)), negative) => {
                 into.push_distinct(other).signed(negative)
             }
-            _ => merged(into, node),
+            _ => merge(into, node),
         }
     })
 }

@@ -35,7 +35,7 @@ pub fn error(value: f64) -> String {
 }
 
 /// Formats a whole number with grouped thousands: `100 000`.
-pub fn grouped(value: u64) -> String {
+pub fn group_thousands(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {

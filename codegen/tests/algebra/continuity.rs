@@ -46,8 +46,8 @@ fn what_jumps_is_found() {
     assert_eq!(found, [false, false, false, false, false, true]);
     assert!(jumps(&g, sign) && jumps(&g, step) && jumps(&g, curved) && !jumps(&g, product));
     // If no symbol can be moved alone, c = 0 is still used.
-    assert!(g.jump(&[inner], 1, &|_| false).is_none());
-    assert!(g.jump(&[step], 1, &|_| false).is_some());
+    assert!(g.find_discontinuity(&[inner], 1, &|_| false).is_none());
+    assert!(g.find_discontinuity(&[step], 1, &|_| false).is_some());
 }
 
 /// The maximum of two expressions is continuous, and so are functions of it.

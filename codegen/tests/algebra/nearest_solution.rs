@@ -52,8 +52,8 @@ fn the_nearest_point_of_a_circle_is_found() {
         // The points are 1e-3 apart, and the distance is stationary at the minimum.
         assert!(distance(&x) < least + 1e-7, "{} {least}", distance(&x));
         // The distance is stationary along the circle.
-        let (apart, slopes) = circle.apart(&x);
-        let slope = apart[1] * slopes[1][1] * x[0] - apart[0] * slopes[0][0] * x[1];
+        let (error, slopes) = circle.error(&x);
+        let slope = error[1] * slopes[1][1] * x[0] - error[0] * slopes[0][0] * x[1];
         assert!(slope.abs() < 1e-12, "{slope}");
     }
 }

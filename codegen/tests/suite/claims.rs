@@ -19,13 +19,13 @@ use pieces::{Piece, View};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Least pivot, relative to the diagonal, of a matrix that counts as regular.
-const REGULAR: f64 = 1e-3;
+const MIN_PIVOT: f64 = 1e-3;
 /// Rates of change below this, relative to those of the terms, count as 0.
-const ZERO: f64 = 1e-9;
+const ZERO_TOLERANCE: f64 = 1e-9;
 /// Rates of change above this cannot be rounding.
-const CERTAIN: f64 = 1e-6;
+const CERTAIN_RATE: f64 = 1e-6;
 /// Number of states at which claims are checked numerically.
-const STATES: usize = 3;
+const STATES_PER_SYSTEM: usize = 3;
 
 /// The form in which a claim contains its terms.
 #[derive(Clone, Copy)]

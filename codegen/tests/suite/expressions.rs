@@ -11,9 +11,9 @@ use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 
 /// Number of outputs of a system.
-const OUTPUTS: usize = 12;
+const OUTPUTS_PER_SYSTEM: usize = 12;
 /// Factor for the rounding of the same operations in another order.
-const ORDERS: f64 = 64.0;
+const REORDERING_ROUNDINGS: f64 = 64.0;
 
 #[derive(Clone, Debug)]
 enum Expr {

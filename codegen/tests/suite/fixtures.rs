@@ -7,9 +7,9 @@ use hamel_codegen::generate::Generated;
 use std::fmt::Write;
 
 /// Rounding of a few hundred operations.
-const CLOSE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-11;
 /// Number of states per system.
-const STATES: usize = 5;
+const STATES_PER_SYSTEM: usize = 5;
 
 fn text(path: &str) -> String {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/models/");
@@ -118,7 +118,7 @@ fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
                 .map(|i| from(i).filter(|&k| k > 0).map(weight).sum())
                 .collect();
             let found = value(&system, "potential_force", at);
-            assert!(difference(&wanted, &found) < CLOSE, "gravity of {n} rods");
+            assert!(difference(&wanted, &found) < TOLERANCE, "gravity of {n} rods");
             // Only the centripetal forces of the rods act on the cart.
             let pull: f64 = (1..=n)
                 .map(|k| -moment(k) * theta[k - 1].sin() * spin[k - 1] * spin[k - 1])

@@ -7,12 +7,12 @@ use hamel_codegen::program::count::count;
 use hamel_codegen::proof::check::{Verdict, check};
 
 /// Tolerance for two descriptions of one system in the same coordinates: rounding of a few hundred operations.
-const SAME: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-12;
 /// Number of states per pair.
-const STATES: usize = 5;
+const STATES_PER_PAIR: usize = 5;
 
 /// The base and the body of the joint.
-const REST: &str = "
+const SURROUNDINGS: &str = "
     joint ground: revolute [0, 0, 1] moves base { damping 0.3; };
     body on base { mass 2; com [0.1, 0, 0.2]; inertia diag(0.3, 0.2, 0.1) about com; }
     body on g { mass 1.5; com [0.1, 0.2, -0.3]; inertia diag(0.2, 0.3, 0.25) about com; }

@@ -4,10 +4,8 @@
 #[path = "common/arm.rs"]
 mod arm;
 mod assembly;
-mod built;
-mod care;
+mod builder_errors;
 mod claims;
-mod closing;
 mod common;
 mod components;
 mod constrained;
@@ -33,36 +31,38 @@ mod jet;
 mod jointed;
 mod joints;
 mod language;
+mod lie_algebras;
 mod loops;
 mod massless;
+mod message_vocabulary;
 #[path = "common/models.rs"]
 mod models;
 mod mounts;
+mod numerical_loss;
 mod observed;
-mod own_words;
 mod powers;
 #[path = "common/precise.rs"]
 mod precise;
 mod prescribed;
 mod proofs;
 mod proved;
-mod recognise;
+mod random_scenes;
 mod recursions;
 mod redundant;
 mod regressions;
 mod reuse;
+mod robot_loops;
 mod roots;
 mod rounding;
-mod said;
 mod scene;
-#[path = "common/some.rs"]
-mod some;
+#[path = "common/thinning.rs"]
+mod thinning;
 mod tilted;
 #[path = "common/tree/mod.rs"]
 mod tree;
 mod trees;
-mod unsaid;
 mod urdf;
+mod velocity_definitions;
 mod work;
 
 use common::Random;

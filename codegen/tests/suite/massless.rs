@@ -12,9 +12,9 @@ use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 
 /// Least pivot, relative to the diagonal, of a matrix that counts as regular.
-const REGULAR: f64 = 1e-3;
+const MIN_PIVOT: f64 = 1e-3;
 /// Bound of rounding, relative to the size of the compared values.
-const ROUNDING: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-9;
 
 /// Σ cⱼ qⱼ + d sin qᵢ.
 struct Function {

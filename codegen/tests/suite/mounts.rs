@@ -15,7 +15,7 @@ use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 
 /// Rounding of a program, relative to the size of its terms.
-const CLOSE: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-13;
 
 /// A number: its text in the language and its value.
 type Number = (String, Precise);
@@ -324,7 +324,7 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
                 .map(|(a, b)| (a - b).abs())
                 .fold(0.0, f64::max);
             // False for NaN as well.
-            if error <= CLOSE * scale {
+            if error <= TOLERANCE * scale {
                 return Ok(());
             }
             Err(format!(

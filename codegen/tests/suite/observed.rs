@@ -3,7 +3,7 @@
 //! with numerical differences. This is independent of the proofs: no derivative is taken here.
 
 use crate::common::{Random, attack, generated, value};
-use crate::some::some;
+use crate::thinning::thin_out;
 use crate::tree::{ALL, Kind, Link, text};
 use hamel_codegen::functions::{FrameFunction, Jacobian};
 use hamel_codegen::generate::{Generated, from_text};
@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/models");
 /// Step of differences, which are extrapolated to fourth order.
-const STEP: f64 = 2e-4;
+const DIFFERENCE_STEP: f64 = 2e-4;
 /// Relative to the largest entry: h⁴ times derivatives, and rounding over h.
-const CLOSE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-8;
 
 struct Case {
     name: String,
@@ -143,7 +143,7 @@ fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
 fn slow() -> (Vec<PathBuf>, impl Fn(usize) -> usize) {
     let all = crate::models::models(Path::new(FOLDER));
     let of = all.len();
-    let some = some(all);
+    let some = thin_out(all);
     let looked = some.len();
     (some, move |number| number * looked / of)
 }

@@ -8,9 +8,9 @@ use hamel_codegen::model::Group;
 use hamel_codegen::render::render;
 
 /// Rounding of a few thousand operations, with forces of order 100, times the condition of M.
-const CLOSE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-9;
 /// Number of states per tree.
-const STATES: usize = 3;
+const STATES_PER_TREE: usize = 3;
 
 /// The prescription of a joint's velocity.
 enum Given {
@@ -111,7 +111,7 @@ fn places<'a>(groups: &'a [Group], name: &str) -> Option<std::ops::Range<usize>>
 }
 
 /// A state of the tree: x, ξ and ξ̇ of all joints, from those of the free ones.
-struct Whole {
+struct FullState {
     x: Vec<f64>,
     xi: Vec<f64>,
     dot: Vec<f64>,

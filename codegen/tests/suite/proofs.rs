@@ -17,7 +17,7 @@ use hamel_codegen::syntax::parse_text;
 
 /// A model for every path of derivation: bodies with centres off the origin, a particle, a `kinetic` statement,
 /// noncommuting velocities, loads and dampers of all kinds.
-const WHOLE: &str = "system Whole {
+const ALL_ROUTES: &str = "system Whole {
     param m = 1.3, g = 9.81, J = 0.02, k = 3, c = 0.4;
     param s: vec3 = [0.1, -0.2, 0.3];
     param Theta: sym3 = [[2.1, 0.1, -0.2], [0.1, 1.7, 0.15], [-0.2, 0.15, 1.2]];

@@ -1,7 +1,7 @@
 //! Every emitted function is proved: a wrong sign in an entry of any function of any model is refused.
 
 use crate::models::{asked_for, models};
-use crate::some::some;
+use crate::thinning::thin_out;
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::derive::reduction::reduce;
 use hamel_codegen::generate::Generated;
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// The largest request that a model may support, then smaller ones.
-const ASKED: [&str; 3] = [
+const REQUESTS: [&str; 3] = [
     "all, linearize, inverse_dynamics_slopes, parameter_slopes, centre_of_mass, centroidal_momentum, centroidal_map, centroidal_bias",
     "all, linearize",
     "all",

@@ -6,7 +6,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::count;
 
 /// Rounding of a few operations, with some cancellation.
-const CLOSE: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-13;
 
 /// An expression of parameters a, b and coordinates x, y, with its value.
 type Case = (&'static str, fn([f64; 4]) -> f64);

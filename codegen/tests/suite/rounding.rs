@@ -11,11 +11,11 @@ use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
 
 /// Bound of the error, relative to the scale of a result.
-const CLOSE: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-13;
 /// Number of arms by default and at full size.
-const ARMS: (u64, u64) = (10, 1000);
+const ARM_COUNTS: (u64, u64) = (10, 1000);
 /// Number of states of each arm.
-const STATES: usize = 3;
+const STATES_PER_ARM: usize = 3;
 
 fn largest<'a>(entries: impl IntoIterator<Item = &'a Double>) -> f64 {
     let sizes = entries.into_iter().map(|entry| entry.abs().to_f64());

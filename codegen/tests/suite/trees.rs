@@ -6,14 +6,14 @@ use crate::tree::{ALL, Kind, Link, Tree, humanoid, text};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::Generated;
-use hamel_codegen::proof::levi_civita::{contracted, levi_civita};
+use hamel_codegen::proof::levi_civita::{contract, levi_civita};
 
 /// Rounding of a few thousand operations, with forces of order 100.
-const CLOSE: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 /// Rounding where accelerations of light links at the end of a long chain are large.
-const LONG: f64 = 1e-8;
+const LONG_CHAIN_TOLERANCE: f64 = 1e-8;
 /// Number of states per tree.
-const STATES: usize = 3;
+const STATES_PER_TREE: usize = 3;
 
 const SIMPLE_TREES: [Kind; 4] = [
     Kind::Revolute,
@@ -136,7 +136,7 @@ fn obeys_the_tables(system: &Generated, seed: u64) {
     let (mass, connection) = (geometry.mass.clone(), geometry.connection.clone());
     let dot = geometry.model.xi_dot.clone();
     let (model, calculus) = (&mut geometry.model, &mut geometry.calculus);
-    let bias = contracted(model, &connection);
+    let bias = contract(model, &connection);
     let potential = geometry.potential;
     let whole = levi_civita(model, calculus, &mass, &bias, potential, &dot);
     let mut random = Random::new(seed);

@@ -4,7 +4,7 @@
 //! momentum by ξ, and the bias is its derivative along ẋ at ξ̇ = 0.
 
 use super::frames::along_velocities;
-use super::kernel::applied;
+use super::kernel::multiply;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
@@ -59,7 +59,7 @@ pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Opt
     };
     if let Some(found) = emitted(FunctionId::CentroidalMap) {
         let (eta, turned) = along_velocities(program, &rate);
-        holds &= applied(6, &value(found)?, &eta) == slopes(&turned)?;
+        holds &= multiply(6, &value(found)?, &eta) == slopes(&turned)?;
     }
     if let Some(found) = emitted(FunctionId::CentroidalBias) {
         holds &= value(found)? == slopes(&along)?;

@@ -57,7 +57,7 @@ fn verdicts(
 ) -> Vec<Identity> {
     let mut all = description_sides(&mut symbols);
     if !model.is_constrained() {
-        all.extend(motion::emitted(&mut symbols, program));
+        all.extend(motion::emitted_sides(&mut symbols, program));
     }
     // Identities without entries are not reported.
     all.retain(|sides| !sides.left.is_empty());

@@ -40,7 +40,7 @@ impl Confidence {
             .iter()
             .map(|(graph, roots)| Degrees::new(graph, groups(model)).bound(roots))
             .sum();
-        Confidence::of_degree(degree, solved(model), terms, points, comparisons)
+        Confidence::of_degree(degree, solved_degree(model), terms, points, comparisons)
     }
 
     fn of_degree(degree: f64, solved: f64, terms: usize, points: u64, comparisons: usize) -> Self {
@@ -71,7 +71,7 @@ impl<'a> ComparisonRecord<'a> {
         ComparisonRecord {
             graph,
             degrees: Degrees::new(graph, groups(model)),
-            solved: solved(model),
+            solved: solved_degree(model),
             merging: None,
         }
     }
@@ -103,7 +103,7 @@ fn groups(model: &Model) -> Vec<Option<usize>> {
 }
 
 /// Returns the product of the degrees of the constraints that coordinates solve.
-fn solved(model: &Model) -> f64 {
+fn solved_degree(model: &Model) -> f64 {
     let constraints = model.points.constraints.iter();
     let degrees = constraints.map(|&row| {
         let mut degrees = Degrees::new(&model.points.free, Vec::new());

@@ -1,6 +1,6 @@
 //! Proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
 
-use super::kernel::applied;
+use super::kernel::multiply;
 use super::points::{Unequal, at_fresh_points};
 use super::verdict::{failure, nowhere};
 use hamel_algebra::fp::{Fp, Random};
@@ -41,8 +41,8 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             let step: Vec<Fp> = (0..nu).map(|_| random.element()).collect();
             let mut direction = vec![Fp::ZERO; free.symbols().len()];
             direction[first..first + nu].copy_from_slice(&step);
-            let seen = applied(n, y, &step);
-            let tangent = applied(nu, a, &seen);
+            let seen = multiply(n, y, &step);
+            let tangent = multiply(nu, a, &seen);
             let slopes = tangent.iter().zip(&step).map(|(&tangent, &h)| tangent - h);
             // The correction is 0 on X.
             let expected: Vec<Dual> = slopes.map(|slope| (Fp::ZERO, slope)).collect();

@@ -3,7 +3,7 @@
 //! They are compared with dual numbers along random directions in the functions that they are derivatives of, which
 //! have proofs of their own. None of the generator's derivatives is used.
 
-use super::kernel::applied;
+use super::kernel::multiply;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::numeric::evaluate_at;
@@ -78,5 +78,5 @@ fn are_slopes(
     let table = evaluate_at(&program.graph, &slopes.outputs, &mut point.clone())?;
     let duals = tangent_at(&program.graph, &of.outputs, &mut point.clone(), direction)?;
     let expected: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
-    Some(applied(expected.len(), &table, columns) == expected)
+    Some(multiply(expected.len(), &table, columns) == expected)
 }

@@ -52,7 +52,7 @@ impl Symbols {
         let gibbs = gibbs::gibbs_appell(model, &mut motion, &gamma_of_rows);
         let applied = loads::applied_force(model, &mut geometry.calculus);
         let mut graph = model.graph.clone();
-        let virtual_work = virtual_power::applied(model, &mut graph, &mut geometry.calculus);
+        let virtual_work = virtual_power::applied_forces(model, &mut graph, &mut geometry.calculus);
         model.graph = graph;
         Symbols {
             geometry,

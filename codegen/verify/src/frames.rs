@@ -4,7 +4,7 @@
 //! columns of J are the derivatives of the twist by ξ, and the bias acceleration is the derivative of the twist along ẋ
 //! at ξ̇ = 0. None of the generator's derivatives is used.
 
-use super::kernel::applied;
+use super::kernel::multiply;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
@@ -82,7 +82,7 @@ fn frame_holds(
     Some(
         value(pose)? == placed
             && value(twist)? == expected
-            && applied(6, &value(rows)?, &eta) == slopes(&turned)?
+            && multiply(6, &value(rows)?, &eta) == slopes(&turned)?
             && value(bias)? == slopes(&moving)?,
     )
 }

@@ -103,7 +103,7 @@ pub fn dot(a: &[Fp], b: &[Fp]) -> Fp {
 }
 
 /// Returns a matrix, given by rows, times a vector; `count` zeros if the vector is empty.
-pub fn applied(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
+pub fn multiply(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
     match vector.len() {
         0 => vec![Fp::ZERO; count],
         n => rows.chunks(n).map(|row| dot(row, vector)).collect(),

@@ -6,7 +6,7 @@ use hamel_dynamics::calculus::Calculus;
 use hamel_language::model::Model;
 
 /// Returns Γᵢⱼₖ ξʲ ξᵏ, contracted from the table of Γ.
-pub fn contracted(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
+pub fn contract(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
     let xi = model.xi.clone();
     let graph = &mut model.graph;
     connection

@@ -4,7 +4,7 @@
 use super::forms::Symbols;
 use super::gibbs::{Coverage, coverage};
 use super::hamel_form::by_velocity;
-use super::levi_civita::{contracted, levi_civita};
+use super::levi_civita::{contract, levi_civita};
 use super::verdict::Sides;
 use super::virtual_power;
 use hamel_algebra::graph::{Edge, Graph};
@@ -21,7 +21,7 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
         .iter()
         .flat_map(|&entry| by_velocity(&mut geometry.model, entry))
         .collect();
-    let bias = contracted(&mut geometry.model, &geometry.connection);
+    let bias = contract(&mut geometry.model, &geometry.connection);
     let xi_dot = geometry.model.xi_dot.clone();
     let explicit = levi_civita(
         &mut geometry.model,
@@ -70,7 +70,7 @@ pub(super) fn loads(symbols: &Symbols) -> Sides {
 }
 
 /// Returns the sides of (30c) and d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇, and those of emitted ż and loads.
-pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
+pub(super) fn emitted_sides(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
     let Some(xi_dot) = program.xi_dot() else {
         return Vec::new();
     };
@@ -78,7 +78,7 @@ pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
     let xi = geometry.model.xi.clone();
     let xi_dot = rebuild(&program.graph, &mut geometry.model.graph, xi_dot);
     let mut calculus = Calculus::new(&geometry.model);
-    let bias = contracted(&mut geometry.model, &geometry.connection);
+    let bias = contract(&mut geometry.model, &geometry.connection);
     let forces = levi_civita(
         &mut geometry.model,
         &mut calculus,
@@ -154,7 +154,7 @@ fn of_loads(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
         Some(rebuild(&program.graph, graph, &function.outputs))
     };
     if let Some(force) = emitted(graph, "generalized_force") {
-        let virtual_force = virtual_power::applied(model, graph, calculus);
+        let virtual_force = virtual_power::applied_forces(model, graph, calculus);
         let equation = "fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted f";
         side("(28)", equation, (force, virtual_force));
     }
@@ -169,7 +169,7 @@ fn of_loads(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
             .iter()
             .map(|&edge| graph.add(edge, edge))
             .collect();
-        let power = vec![virtual_power::dissipated(model, graph, calculus)];
+        let power = vec![virtual_power::dissipated_power(model, graph, calculus)];
         side("Rayleigh", "2 D = −fᵢ ξⁱ of dampers", (twice, power));
     }
     let lengths = virtual_power::lengths(model, graph);

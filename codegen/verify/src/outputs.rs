@@ -1,6 +1,6 @@
 //! Outputs and their derivatives at a point modulo p, compared with the description.
 
-use super::kernel::applied;
+use super::kernel::multiply;
 use super::states::slopes_of;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::fp::Fp;
@@ -44,7 +44,7 @@ pub(super) fn slopes_hold(
         };
         let table = evaluate_at(&program.graph, &function.outputs, &mut point.clone())?;
         let expected = slopes_of(model, &value.entries(), motion, point, direction)?;
-        if applied(expected.len(), &table, columns) != expected {
+        if multiply(expected.len(), &table, columns) != expected {
             return Some(false);
         }
     }

@@ -43,8 +43,8 @@ impl Reference {
             .map(|i| calculus.along(&mut model.graph, i, potential))
             .collect();
         let mut graph = model.graph.clone();
-        let force = virtual_power::applied(&model, &mut graph, &mut calculus);
-        let power = virtual_power::dissipated(&model, &mut graph, &mut calculus);
+        let force = virtual_power::applied_forces(&model, &mut graph, &mut calculus);
+        let power = virtual_power::dissipated_power(&model, &mut graph, &mut calculus);
         let half = graph.ratio(1, 2);
         let dissipation = graph.mul(half, power);
         model.graph = graph;

@@ -176,7 +176,7 @@ impl Slopes {
             .collect();
         let here = evaluate_at(&model.graph, &roots, &mut point.clone())?;
         let displaced = Displaced::new(model, &here[nu * n..]);
-        let moved = displaced.moved(model, &here[..nu * n]);
+        let moved = displaced.direction(model, &here[..nu * n]);
         let kinematics = |moved: &[Fp]| -> Option<Vec<Fp>> {
             let duals = tangent_at(&model.graph, &roots, &mut point.clone(), moved)?;
             Some(duals.into_iter().map(|dual| dual.1).collect())
@@ -184,7 +184,7 @@ impl Slopes {
         let changed = kinematics(&moved)?;
         let moving = kinematics(&displaced.moving)?;
         let linear = value("linearize")?;
-        let found = displaced.found(&linear);
+        let found = displaced.emitted_rates(&linear);
         let matrix = |flat: &[Fp]| -> Vec<Vec<Fp>> { matrix(flat, n) };
         let left = difference(
             &changed[nu * n..],
@@ -299,7 +299,7 @@ impl Displaced {
     }
 
     /// Returns (A h, δξ, δz, δu) as a direction in the symbols.
-    fn moved(&self, model: &Model, a: &[Fp]) -> Vec<Fp> {
+    fn direction(&self, model: &Model, a: &[Fp]) -> Vec<Fp> {
         let n = model.n();
         let (h, rest) = self.columns.split_at(n);
         let a: Vec<Vec<Fp>> = matrix(a, n);
@@ -314,7 +314,7 @@ impl Displaced {
     }
 
     /// Returns (ḣ, δξ̇, δż) by the emitted matrices.
-    fn found(&self, linear: &[Fp]) -> Vec<Fp> {
+    fn emitted_rates(&self, linear: &[Fp]) -> Vec<Fp> {
         product(&matrix(linear, self.columns.len()), &self.columns)
     }
 }
@@ -338,9 +338,9 @@ fn derived_at(
     let xi_dot = solve(here.mass.clone(), here.force.clone())?;
     let displaced = Displaced::new(model, &here.rate);
     let moving = slope(&displaced.moving)?;
-    let changed = slope(&displaced.moved(model, &here.a.concat()))?;
+    let changed = slope(&displaced.direction(model, &here.a.concat()))?;
     let linear = &program.function(FunctionId::Linearize)?.outputs;
-    let found = displaced.found(&evaluate_at(&program.graph, linear, &mut point.clone())?);
+    let found = displaced.emitted_rates(&evaluate_at(&program.graph, linear, &mut point.clone())?);
     // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
     let left = difference(&changed.rate, &product(&moving.a, &displaced.columns[..n]));
     if product(&here.a, &found[..n]) != left {
@@ -352,7 +352,7 @@ fn derived_at(
     if product(&here.mass, changed_rates) != right {
         return Some(Err(DYNAMIC.into()));
     }
-    let moved = displaced.moved(model, &here.a.concat());
+    let moved = displaced.direction(model, &here.a.concat());
     if states::slopes(model, (&xi_dot, changed_rates), point, &moved)? != state_rates {
         return Some(Err(states::SUBJECT.into()));
     }

@@ -46,7 +46,7 @@ const MAX_EXPLAINED_VELOCITIES: usize = 8;
 /// A fault of the generator; the program is not emitted. The message also names the broken identities of the symbols,
 /// to help to find the fault.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    compared(model, program).map_err(|unequal| {
+    first_failure(model, program).map_err(|unequal| {
         let Unequal::Differs(what) = unequal else {
             return nowhere(model);
         };
@@ -62,7 +62,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
 }
 
 /// Returns the first comparison that fails, at the first point at which one does.
-pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<String>> {
+pub(super) fn first_failure(model: &Model, program: &Program) -> Result<(), Unequal<String>> {
     let without = |what: &str| Unequal::Differs(what.to_string());
     let with_rates = states::with_rates(model, program);
     let numbers = Numbers::new(model).ok_or_else(|| without("Y A = I"))?;

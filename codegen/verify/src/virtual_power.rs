@@ -93,7 +93,7 @@ impl<'a> Forces<'a> {
 }
 
 /// Returns fᵢ of all loads: wrenches, forces along lines, dampers, dissipation, generalised forces.
-pub fn applied(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
+pub fn applied_forces(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
     let mut forces = Forces::none(graph, calculus);
     forces.add(&model.elements.generalized);
     for wrench in &model.elements.wrenches {
@@ -113,13 +113,13 @@ pub fn applied(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec
             forces.along(force, from, to);
         }
     }
-    resisting(model, &mut forces);
+    add_resistance(model, &mut forces);
     forces.sum
 }
 
 /// Adds what dissipates energy: dampers along lines as forces −c (d·ḋ)/(d·d) d on their second points, dampers of a
 /// rate e as −c e ∂e/∂ξⁱ, and −C ξ with C the second derivatives of the given dissipation.
-fn resisting(model: &Model, forces: &mut Forces) {
+fn add_resistance(model: &Model, forces: &mut Forces) {
     for damper in &model.elements.dampers {
         let graph = &mut *forces.graph;
         match damper.along {
@@ -152,9 +152,9 @@ fn resisting(model: &Model, forces: &mut Forces) {
 }
 
 /// Returns 2 D, the power −fᵢ ξⁱ that dampers and dissipation take.
-pub fn dissipated(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Edge {
+pub fn dissipated_power(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Edge {
     let mut forces = Forces::none(graph, calculus);
-    resisting(model, &mut forces);
+    add_resistance(model, &mut forces);
     let sum = forces.sum;
     -graph.dot(&sum, &model.xi)
 }
@@ -252,13 +252,13 @@ fn derived(model: &Model, graph: &mut Graph, calculus: &mut Calculus, observed: 
         })
         .collect();
     let columns = calculus.point_jacobian(graph, *position);
-    let omega = combined(graph, &turns, &model.xi);
-    let velocity = combined(graph, &columns, &model.xi);
+    let omega = combine(graph, &turns, &model.xi);
+    let velocity = combine(graph, &columns, &model.xi);
     // d/dt of a function of x and ξ that is linear in ξ.
     let mut second = |graph: &mut Graph, first: Vec3, columns: &[Vec3]| {
         let drift = calculus.point_jacobian(graph, first);
-        let drift = combined(graph, &drift, &model.xi);
-        let driven = combined(graph, columns, &model.xi_dot);
+        let drift = combine(graph, &drift, &model.xi);
+        let driven = combine(graph, columns, &model.xi_dot);
         add3(graph, drift, driven)
     };
     match observed.quantity {
@@ -289,7 +289,7 @@ fn derived(model: &Model, graph: &mut Graph, calculus: &mut Calculus, observed: 
 }
 
 /// Returns Σ columnᵢ cᵢ.
-fn combined(graph: &mut Graph, columns: &[Vec3], factors: &[Edge]) -> Vec3 {
+fn combine(graph: &mut Graph, columns: &[Vec3], factors: &[Edge]) -> Vec3 {
     let mut sum = zero3(graph);
     for (column, &factor) in columns.iter().zip(factors) {
         let part = scale3(graph, factor, *column);

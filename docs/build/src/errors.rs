@@ -35,7 +35,7 @@ pub struct Example {
 }
 
 /// The folders with examples.
-const FOLDERS: [&str; 2] = ["tests/wrong", "docs/book/errors"];
+const EXAMPLE_FOLDERS: [&str; 2] = ["tests/wrong", "docs/book/errors"];
 
 /// Returns all examples, in the order of their files.
 pub fn examples(root: &Path) -> Vec<Example> {
@@ -179,9 +179,9 @@ fn statement_at(text: &str, place: usize) -> &'static str {
 }
 
 /// Lines of code shown before a site.
-const BEFORE: usize = 14;
+const LINES_BEFORE: usize = 14;
 /// Lines of code shown after it.
-const BEHIND: usize = 5;
+const LINES_AFTER: usize = 5;
 
 /// Finds the sites below a folder where sources create messages, each with the code around it.
 pub fn sites(root: &Path, folder: &str) -> BTreeMap<Site, String> {

@@ -46,7 +46,7 @@ pub struct Exhibit {
 }
 
 /// The results of the commands that show an exhibit.
-pub struct Shown {
+pub struct ShownExhibit {
     /// Its picture.
     pub picture: String,
     /// Names of functions, each with its operations and its pairs of sine and cosine.
@@ -54,7 +54,7 @@ pub struct Shown {
 }
 
 /// The functions whose operations are shown, each with its label.
-const COUNTED: [(&str, &str); 4] = [
+const COUNTED_FUNCTIONS: [(&str, &str); 4] = [
     ("accel", "accelerations"),
     ("inverse_dynamics", "forces"),
     ("mass_matrix", "mass matrix"),
@@ -114,7 +114,7 @@ impl Exhibit {
     ///
     /// # Errors
     /// If a command fails.
-    pub fn shown(&self, shell: &Shell) -> Result<Shown> {
+    pub fn shown(&self, shell: &Shell) -> Result<ShownExhibit> {
         let file = self.file();
         let picture = shell.run(&format!("hamel draw {file} {}", self.draw))?;
         let table = shell.run(&format!("hamel ops {file}"))?;
@@ -133,7 +133,7 @@ impl Exhibit {
     }
 
     /// Renders its section of the page.
-    pub fn section(&self, shown: &Shown) -> String {
+    pub fn section(&self, shown: &ShownExhibit) -> String {
         let mut text = format!(
             "## {}\n\n![{}](gallery/{}.svg)\n\n{} {}\n\n",
             self.title, self.title, self.name, self.about, self.remark

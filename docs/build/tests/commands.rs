@@ -11,7 +11,7 @@ use hamel_book::page::{CRATES, blocks, own};
 use hamel_book::shell::Shell;
 
 /// Largest number of lines of a README.
-const SHORT: usize = 150;
+const MAX_README_LINES: usize = 150;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

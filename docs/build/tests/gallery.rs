@@ -10,9 +10,9 @@ use hamel_book::shell::Shell;
 use hamel_engine::{Motion, OpenOptions, Session, Simulation, Stepping, WarningTexts};
 
 /// Smallest number of mechanisms.
-const LEAST: usize = 24;
+const MIN_MECHANISMS: usize = 24;
 /// Largest size of all pictures, in bytes.
-const LARGEST: usize = 1_200_000;
+const MAX_PICTURE_BYTES: usize = 1_200_000;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

@@ -85,7 +85,7 @@ fn mass(
     generated: &Generated,
     state: &State,
     directions: &[Vec<f64>],
-) -> Result<Vec<Sloped>, Error> {
+) -> Result<Vec<ValueWithSlopes>, Error> {
     let full = &generated.model;
     let of =
         |graph: &Graph, roots: &[Edge]| slopes(graph, roots, &numbers(full, state), directions);
@@ -101,7 +101,7 @@ fn mass(
 }
 
 /// γᵢⱼᵏ = (∂ᵢAⱼ^β − ∂ⱼAᵢ^β) Y_β^k, KR18 (12).
-fn gamma(model: &Model, numbers: &[f64], a: &[Sloped]) -> Result<Cube, Error> {
+fn gamma(model: &Model, numbers: &[f64], a: &[ValueWithSlopes]) -> Result<Cube, Error> {
     let (n, nu) = (model.n(), model.nu());
     let mut model = model.clone();
     let rows = kinematics::left_inverse(&mut model).ok_or(Error::NoLeftInverse)?;

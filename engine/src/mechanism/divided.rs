@@ -8,7 +8,7 @@ use hamel_codegen::algebra::text::short;
 use hamel_codegen::generate::Generated;
 
 /// Maximal length of a factor in a message.
-const LONGEST: usize = 40;
+const MAX_SHOWN_LENGTH: usize = 40;
 
 /// The divisors that depend on parameters, each with the message for the case that it is 0.
 pub struct Divisors {
@@ -29,7 +29,7 @@ impl Divisors {
                 return None;
             }
             let (row, name) = (shown(constraint, text), names.get(velocity)?);
-            let factor = short(&model.graph, edge, LONGEST);
+            let factor = short(&model.graph, edge, MAX_SHOWN_LENGTH);
             let factor = factor.map_or(String::new(), |factor| format!(" `{factor}`"));
             let said = format!("{row}, gives `{name}` by others, but its factor{factor} is 0");
             Some((edge, said))

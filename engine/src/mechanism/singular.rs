@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 use std::fmt;
 
 /// Pivots below this, relative to the original diagonal entry, are rounding errors of zero.
-const ROUNDING: f64 = 1e-12;
+const PIVOT_TOLERANCE: f64 = 1e-12;
 /// Largest number of constraints listed.
 const MAX_LISTED: usize = 6;
 /// Messages for singular states at which every velocity has inertia.
@@ -95,9 +95,9 @@ impl fmt::Display for SingularState {
 impl std::error::Error for SingularState {}
 
 /// What is wrong with a mass matrix that is not positive definite, by the labels of its rows.
-fn of_mass(mass: &DMatrix<f64>, names: &[String]) -> Option<SingularState> {
+fn mass_message(mass: &DMatrix<f64>, names: &[String]) -> Option<SingularState> {
     let (place, part) = weakest(mass)?;
-    (part <= ROUNDING).then(|| at_pivot(place, names))
+    (part <= PIVOT_TOLERANCE).then(|| at_pivot(place, names))
 }
 
 fn at_pivot(place: usize, names: &[String]) -> SingularState {
@@ -122,8 +122,8 @@ pub fn cause_message(cause: Cause, model: &Model, text: &str) -> String {
 }
 
 /// Why ξ̇ has no value at a state, from the mass matrix there.
-fn at(mass: &DMatrix<f64>, names: &[String]) -> SingularState {
-    of_mass(mass, names).unwrap_or(SingularState::Configuration)
+fn state_message(mass: &DMatrix<f64>, names: &[String]) -> SingularState {
+    mass_message(mass, names).unwrap_or(SingularState::Configuration)
 }
 
 /// Why ξ̇ of a description has no value with parameters and a mass matrix: what was divided by 0 comes first.
@@ -132,7 +132,7 @@ pub fn of(generated: &Generated, params: &[f64], mass: &DMatrix<f64>, text: &str
     let divided = divisors.as_ref().and_then(|all| all.zero(params));
     match divided {
         Some(divided) => SingularState::ZeroDivisor(divided.to_owned()),
-        None => at(mass, &labels(&generated.active, text)),
+        None => state_message(mass, &velocity_labels(&generated.active, text)),
     }
 }
 
@@ -144,7 +144,7 @@ fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
     for k in 0..rest.nrows() {
         let pivot = rest[(k, k)];
         // NaN is not positive either.
-        let part = Some(pivot / mass[(k, k)].abs()).filter(|part| *part > ROUNDING);
+        let part = Some(pivot / mass[(k, k)].abs()).filter(|part| *part > PIVOT_TOLERANCE);
         let Some(part) = part else {
             return Some((k, 0.0));
         };
@@ -165,7 +165,7 @@ impl Instance {
     /// Fails if the mass matrix is constant in time and not positive definite with the parameters.
     pub fn check_parameters(&self, x: &[f64]) -> Result<(), Error> {
         match self.constant_singular() {
-            true => Err(Error::SingularParameters(self.at(x))),
+            true => Err(Error::SingularParameters(self.state_message(x))),
             false => Ok(()),
         }
     }
@@ -180,7 +180,7 @@ impl Instance {
     }
 
     /// Why ξ̇, a projection or a change to velocities has failed.
-    pub fn singular(&self, cause: Singular) -> SingularState {
+    pub fn singular_message(&self, cause: Singular) -> SingularState {
         if let Some(divided) = self.divided() {
             return SingularState::ZeroDivisor(divided.to_owned());
         }
@@ -209,7 +209,7 @@ impl Instance {
     pub fn step_error(&self, error: &StepError) -> Error {
         match error {
             StepError::Singular { cause, time } => Error::SingularStep {
-                state: self.singular(*cause),
+                state: self.singular_message(*cause),
                 time: *time,
             },
             other => Error::Step(*other),
@@ -217,7 +217,7 @@ impl Instance {
     }
 
     /// Why ξ̇ has no value at a state.
-    pub fn at(&self, x: &[f64]) -> SingularState {
+    pub fn state_message(&self, x: &[f64]) -> SingularState {
         if let Some(divided) = self.divided() {
             return SingularState::ZeroDivisor(divided.to_owned());
         }
@@ -250,7 +250,7 @@ mod tests {
     fn the_velocity_without_inertia_is_named() {
         let names = ["`a`", "`w[1]`, line 3", "`w[2]`"].map(String::from);
         let told = |entries: [f64; 9]| {
-            let state = of_mass(&DMatrix::from_row_slice(3, 3, &entries), &names);
+            let state = mass_message(&DMatrix::from_row_slice(3, 3, &entries), &names);
             state.map(|state| state.to_string())
         };
         assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);

@@ -7,7 +7,7 @@
 //! suffices for dragging by hand.
 
 use super::Session;
-use crate::drawing::{Drawn, Scene, Vector};
+use crate::drawing::{ParametrizedDrawing, Scene, Vector};
 use crate::error::Error;
 use crate::mechanism::{Instance, Numbers};
 use crate::state::State;
@@ -63,7 +63,7 @@ impl Session {
         grip: Grip,
         (target, sight): (Vector, Option<Vector>),
     ) -> Result<State, Error> {
-        let drawn = self.drawing()?.with(&state.params);
+        let drawn = self.drawing()?.with_parameters(&state.params);
         let instance = self.instance(state)?;
         let n = self.active().n();
         let mut pulled = Pulled {

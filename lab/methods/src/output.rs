@@ -3,7 +3,7 @@
 use crate::cases::ALL;
 use crate::pictures::motions;
 use crate::runner::BenchError;
-use hamel_files::number::grouped;
+use hamel_files::number::group_thousands;
 use hamel_report::data::{Case, Drift, Report};
 use hamel_report::page::{self, Picture};
 use hamel_report::plot::{Figure, PlotError, drifts, precision};

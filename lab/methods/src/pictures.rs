@@ -8,12 +8,12 @@ use hamel_report::page::Picture;
 use hamel_report::plot::{self, Panel, Path, PlotError, Poinsot};
 
 /// Moments of inertia of a plate, and its start near the middle axis.
-const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
-const START: [f64; 3] = [1e-3, 1.0, 0.0];
-const UNTIL: f64 = 100.0;
-const STEP: f64 = 0.01;
+const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
+const START_VELOCITY: [f64; 3] = [1e-3, 1.0, 0.0];
+const DURATION: f64 = 100.0;
+const STEP_LENGTH: f64 = 0.01;
 /// Number of steps between two points.
-const STRIDE: u32 = 10;
+const STEPS_PER_POINT: u32 = 10;
 
 /// Draws both pictures, and returns them with the names of their files.
 ///

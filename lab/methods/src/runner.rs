@@ -9,18 +9,18 @@ use hamel_report::solution::{Solution, SolutionError};
 use std::fmt;
 
 /// The smallest number of steps, which is then doubled repeatedly.
-const COARSEST: u64 = 10;
-const DOUBLINGS: u32 = 14;
+const MIN_STEPS: u64 = 10;
+const STEP_DOUBLINGS: u32 = 14;
 /// Error tolerances of methods that choose their steps.
-const TOLERANCES: [f64; 11] = [
+const STEP_TOLERANCES: [f64; 11] = [
     1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13,
 ];
 /// Shortest duration of a timing, in s.
-const LEAST: f64 = 3e-4;
+const MIN_TIMING: f64 = 3e-4;
 /// Errors below this are taken for rounding.
-const FLOOR: f64 = 1e-12;
+const ERROR_FLOOR: f64 = 1e-12;
 /// Number of steps of a long run.
-const LONG: u64 = 1_000_000;
+const LONG_RUN_STEPS: u64 = 1_000_000;
 
 /// A failure before anything was measured.
 #[derive(Debug)]

@@ -17,16 +17,16 @@ fn steps() -> u32 {
 }
 
 /// Bound of the largest energy error of the last quarter relative to that of the first.
-const GROWTH: f64 = 1.05;
+const MAX_GROWTH: f64 = 1.05;
 /// Smaller energy errors are rounding, which may grow: a random walk of a million steps of ten operations each.
 const ENERGY_ROUNDING: f64 = 1e-11;
 /// Bound of the relative error of the vertical or total momentum.
-const MOMENTUM: f64 = 1e-10;
+const MOMENTUM_TOLERANCE: f64 = 1e-10;
 /// Bound of |RᵀR − I| after every step.
-const ORTHONORMAL: f64 = 1e-14;
+const ORTHONORMALITY_TOLERANCE: f64 = 1e-14;
 
 /// Bound of the largest energy error relative to that of the prototypes, which are known to two digits.
-const SEEN: f64 = 1.1;
+const PROTOTYPE_MARGIN: f64 = 1.1;
 
 /// The errors of a run. Energies are relative to T₀ + m |g| |s|, an upper bound of a top's kinetic and potential
 /// energies at its start.
@@ -39,7 +39,7 @@ struct Drift {
 }
 
 /// The quantities that differ between bodies.
-trait Watched: Energies<Scalar = f64> {
+trait WatchedBody: Energies<Scalar = f64> {
     fn body(&self) -> &Body<f64>;
     fn rotation(x: &Self::Coordinates) -> so3::Matrix<f64>;
     fn velocity(xi: &Self::Velocities) -> so3::Vector<f64>;

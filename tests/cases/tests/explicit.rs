@@ -6,12 +6,12 @@ use hamel::methods::{Cf4, Method, Rkmk4, Rkmk8, Rkmk54};
 use hamel_cases::{Case, bodies, mechanisms};
 
 /// Relative tolerance of a measured error.
-const SIZE: f64 = 0.10;
-/// Factor for errors below [`SMALL`], whose rounding depends on the order of operations.
-const ROUNDED: f64 = 3.0;
-const SMALL: f64 = 1e-9;
+const ERROR_TOLERANCE: f64 = 0.10;
+/// Factor for errors below [`ROUNDED_ERROR`], whose rounding depends on the order of operations.
+const ROUNDING_FACTOR: f64 = 3.0;
+const ROUNDED_ERROR: f64 = 1e-9;
 /// Rounding over a run of thousands of steps: smaller expected errors are bounds.
-const FLOOR: f64 = 1e-11;
+const ROUNDING_FLOOR: f64 = 1e-11;
 
 /// Expected errors for some numbers of steps.
 type Sizes<'a> = &'a [(u32, f64)];

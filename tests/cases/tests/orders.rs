@@ -10,9 +10,9 @@ use hamel_cases::by_hand::{Reference, Spin, Top, distance, run, slopes};
 use hamel_engine::baselines::{Buss, Slide};
 
 /// Relative tolerance of a measured error.
-const SIZE: f64 = 0.10;
+const ERROR_TOLERANCE: f64 = 0.10;
 /// Tolerance as a factor if the expected error is below 1e-9, near rounding.
-const SMALL: f64 = 3.0;
+const ROUNDING_FACTOR: f64 = 3.0;
 
 const TOPS: [(&str, f64, u32); 3] = [
     ("heavy-top-benchmark-150", 1.0, 2000),
@@ -152,7 +152,7 @@ fn sizes_of_baselines() {
 }
 
 /// Smaller errors show rounding in the slopes.
-const CLEAN: f64 = 5e-13;
+const MIN_CLEAN_ERROR: f64 = 5e-13;
 
 /// Asserts the slopes of errors between halvings, as far as they exceed rounding.
 fn assert_order(what: &str, errors: &[f64], order: f64, tolerance: f64) {

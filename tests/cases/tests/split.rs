@@ -8,9 +8,9 @@ use hamel_cases::{Case, bodies};
 
 /// Bound of ω of the closed form, relative to max(1, |ω|): about ten roundings, through Jacobi's functions near modulus
 /// one.
-const SPIN: f64 = 1e-13;
+const SPIN_TOLERANCE: f64 = 1e-13;
 /// Bound of R of the closed form: the angle about the momentum grows with time, and its rounding too.
-const ATTITUDE: f64 = 1e-11;
+const ATTITUDE_TOLERANCE: f64 = 1e-11;
 
 /// Checks all listed times of all free bodies, each in one evaluation from the start.
 #[test]

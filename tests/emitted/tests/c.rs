@@ -18,8 +18,8 @@ mod models;
 mod names;
 #[path = "../../../lab/big/src/quadruped.rs"]
 mod quadruped;
-#[path = "../../../codegen/tests/suite/common/some.rs"]
-mod some;
+#[path = "../../../codegen/tests/suite/common/thinning.rs"]
+mod thinning;
 
 use case::Case;
 use common::{Random, size};
@@ -30,11 +30,11 @@ use hamel_codegen::emit::c::{self, Precision};
 use hamel_codegen::generate::{Generated, from_file, from_text};
 use hamel_codegen::render::render;
 use rayon::prelude::*;
-use some::some;
 use std::path::{Path, PathBuf};
+use thinning::thin_out;
 
 /// Descriptions per C source.
-const TOGETHER: usize = 12;
+const DESCRIPTIONS_PER_SOURCE: usize = 12;
 
 /// Lists all descriptions below a folder.
 fn descriptions(folder: &Path) -> Vec<PathBuf> {
@@ -84,7 +84,7 @@ fn models_give_what_the_interpreter_gives() {
     let mut paths = descriptions(&root.join("../models"));
     paths.push(root.join("../../examples/dzhanibekov.eom"));
     assert!(paths.len() > 60, "{} models", paths.len());
-    let cases: Vec<Case> = some(paths)
+    let cases: Vec<Case> = thin_out(paths)
         .par_iter()
         .map(|path| {
             let stem = path.file_stem().expect("a name").to_string_lossy();
@@ -138,7 +138,7 @@ fn what_is_asked_for_gives_what_the_interpreter_gives() {
         .par_iter()
         .filter_map(|(path, k)| {
             // Functions that a model does not support are covered by other tests.
-            let generated = models::asked_for(path, ASKED[*k]).ok()?;
+            let generated = models::asked_for(path, REQUESTS[*k]).ok()?;
             let stem = path.file_stem()?.to_string_lossy();
             Some(Case::new(generated, Some(&format!("{stem}_{k}")), 1.0))
         })

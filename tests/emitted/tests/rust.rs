@@ -17,9 +17,9 @@ mod common;
 mod describe;
 
 /// As many states as the widest lanes.
-const STATES: usize = 8;
+const STATE_COUNT: usize = 8;
 /// Number of descriptions in the default run that are only parsed.
-const PARSED: u64 = 40;
+const PARSED_DESCRIPTIONS: u64 = 40;
 
 /// The arguments x, ξ, ξ̇, p, u.
 type State = [Vec<f64>; 5];

@@ -19,7 +19,7 @@ use std::path::Path;
 
 /// Relative drift of an invariant in a run of 2 s with steps of 0.5 ms: h⁴ times the fifth power of rates of up to 20 /
 /// s.
-const DRIFT: f64 = 1e-7;
+const MAX_DRIFT: f64 = 1e-7;
 
 fn text(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));

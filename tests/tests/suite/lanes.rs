@@ -18,7 +18,7 @@ use hamel_tests::two_bodies::TwoBodies;
 
 /// Rounding of sin and cos, which differ by a unit in the last place, over 100 steps of motions that are not chaotic on
 /// this time scale.
-const ROUNDING: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-12;
 const H: f64 = 0.01;
 const UNTIL: f64 = 1.0;
 

@@ -1,7 +1,7 @@
 //! Compares the linearisation of every model with differences of its motion along the manifold; checks that trivial
 //! parts cost nothing, and that a wrong sign in any derived function is never emitted.
 
-use crate::some::some;
+use crate::thinning::thin_out;
 use hamel::{Block, manifold};
 use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::generate::{Generated, from_text};
@@ -14,9 +14,9 @@ use std::path::{Path, PathBuf};
 
 /// Step of central differences, extrapolated once: truncation like h⁴/480 times fifth derivatives
 /// (rates reach 150 / s), rounding 1e-16 / h.
-const STEP: f64 = 1e-4;
+const DIFFERENCE_STEP: f64 = 1e-4;
 /// Bound of their errors, relative to the largest entry.
-const DIFFERENCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-7;
 
 fn models() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
@@ -129,7 +129,7 @@ fn along(a: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
 
 #[test]
 fn linearize_is_the_difference_of_neighbouring_motions() {
-    some(models()).par_iter().for_each(|path| {
+    thin_out(models()).par_iter().for_each(|path| {
         let generated = linearized(path);
         // For models with velocity constraints, the build compares with dual numbers.
         if !generated.model.constraints.is_empty() {

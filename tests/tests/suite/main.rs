@@ -2,14 +2,15 @@
 //! `cargo test -p hamel-tests --test suite checks::`.
 
 mod adviser;
+mod broken_models;
 mod broken_symbols;
 mod checks;
-mod circles;
 mod derived;
 mod described;
-mod doors;
 mod externals;
+mod front_ends;
 mod functions;
+mod import_cycles;
 mod invariants;
 mod lanes;
 mod linear_differences;
@@ -38,13 +39,12 @@ mod references;
 #[path = "../../../codegen/tests/suite/common/size.rs"]
 mod size;
 mod snapshots;
-#[path = "../../../codegen/tests/suite/common/some.rs"]
-mod some;
 mod states;
 mod step_slopes;
 mod structure;
 mod tables;
+#[path = "../../../codegen/tests/suite/common/thinning.rs"]
+mod thinning;
 mod time;
-mod twins;
 mod views;
 mod warnings;

@@ -18,7 +18,7 @@ use hamel_tests::spherical_bob::SphericalBob;
 use hamel_tests::two_bodies::TwoBodies;
 
 /// Bound of the difference of two high-order methods, with steps at which rounding dominates both.
-const SAME: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 
 fn end<Sys, M>(system: &Sys, method: M, steps: u32, until: f64, u: &Sys::Inputs) -> State<Sys>
 where

@@ -19,13 +19,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Number of cases for the parser, by default and at full size.
-const PARSED: [u64; 2] = [10_000, 1_000_000];
+const PARSED_CASES: [u64; 2] = [10_000, 1_000_000];
 /// Number of cases for all stages, by default and at full size, unless `HAMEL_FUZZ_CASES` is set.
-const GENERATED: [u64; 2] = [500, 100_000];
+const GENERATED_CASES: [u64; 2] = [500, 100_000];
 /// Generous time limit of one case: the machine may be busy with other tests.
-const PATIENCE: Duration = Duration::from_secs(10);
+const CASE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Stack size of threads, as that of a program's main thread.
-const STACK: usize = 8 << 20;
+const STACK_BYTES: usize = 8 << 20;
 
 fn number(variable: &str, otherwise: usize) -> usize {
     let text = std::env::var(variable).ok();
@@ -122,7 +122,7 @@ fn smallest(text: &str, fails: impl Fn(&str) -> bool) -> String {
 }
 
 /// Number of joints and coordinates above which a description is expected to be slow.
-const LONG: usize = 24;
+const LONG_DESCRIPTION_JOINTS: usize = 24;
 
 /// Returns whether a description repeats so much that its equations of motion are long.
 fn is_long(text: &str) -> bool {

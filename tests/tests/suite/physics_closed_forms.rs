@@ -195,7 +195,7 @@ fn planar_body_in_free_fall() {
 #[test]
 fn symmetric_top_in_steady_precession() {
     /// h |ω| is at most 0.02, and the error of RKMK4 is 6e-3 (h |ω|)⁴ per radian, over 70 radians.
-    const PRECESSION: f64 = 1e-7;
+    const PRECESSION_TOLERANCE: f64 = 1e-7;
     let (m, g, l, j1, j3) = (1.0, 9.81, 0.5, 0.3, 0.05);
     let theta = [[j1, 0.0, 0.0], [0.0, j1, 0.0], [0.0, 0.0, j3]];
     let third = HeavyTop::new(HeavyTopParameters {

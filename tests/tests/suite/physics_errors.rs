@@ -10,7 +10,7 @@ use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::two_bodies::TwoBodies;
 
 /// Numbers that are neither a mass nor a moment of inertia.
-const REFUSED: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+const INVALID_NUMBERS: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 #[test]
 fn a_refused_mass_leaves_everything_unchanged() {

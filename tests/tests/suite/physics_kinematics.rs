@@ -17,7 +17,7 @@ use hamel_tests::rod_particles_rows::RodParticlesRows;
 use hamel_tests::slider_crank::SliderCrank;
 
 /// Rounding of several hundred operations, relative.
-const ROUNDING: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-12;
 
 #[track_caller]
 fn assert_close(what: &str, a: &[f64], b: &[f64], bound: f64) {

@@ -10,9 +10,9 @@ use hamel_tests::spring_chain::SpringChain;
 use hamel_tests::suspended_body::SuspendedBody;
 
 /// Rounding of sums of a few dozen products of numbers of order 100, in another order.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING_TOLERANCE: f64 = 1e-12;
 /// Step of central differences (s): errors of order h², rounding of order 1e-16/h².
-const STEP: f64 = 1e-4;
+const DIFFERENCE_STEP: f64 = 1e-4;
 /// Errors of first and second central differences, with margin: a wrong term gives 1e-2 and more.
 const DIFFERENCE_TOLERANCE: f64 = 1e-6;
 
@@ -255,7 +255,7 @@ fn sensors_of_a_drone_see_its_motion() {
     let felt = drone.accelerometer(x, xi, &xi_dot);
     assert_near("accelerometer", &felt, &expected, DIFFERENCE_TOLERANCE);
     let turning = drone.turning(&xi_dot);
-    assert_near("ω̇", &turning, &xi_dot[3..], ROUNDING);
+    assert_near("ω̇", &turning, &xi_dot[3..], ROUNDING_TOLERANCE);
     // The speed of the centre of mass, on which the drag acts.
     let w = [xi[3], xi[4], xi[5]];
     let lever = so3::cross(w, drone.s());

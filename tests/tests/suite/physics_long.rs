@@ -12,7 +12,7 @@ use hamel_tests::two_bodies::TwoBodies;
 /// An invariant drifts like h⁴ if step errors accumulate, like h⁵ if they average out.
 const DRIFT_ORDER: f64 = 3.9;
 /// Tolerance between a slope and the order of a convergent run.
-const SLOPE: f64 = 0.1;
+const ORDER_TOLERANCE: f64 = 0.1;
 
 #[test]
 fn heavy_top_keeps_energy_vertical_momentum_and_rotation() {
@@ -132,7 +132,7 @@ fn rods_are_integrated_with_order_four() {
 #[test]
 fn hoop_takes_up_the_work_of_its_torque() {
     /// Steps of 1 ms: the errors of Simpson's rule and RKMK4 are 1e-11, with margin for rounding.
-    const WORK: f64 = 1e-9;
+    const WORK_TOLERANCE: f64 = 1e-9;
     let system: HoopBead<f64> = HoopBead::default();
     let torque = |t: f64| 0.3 * (3.0 * t).cos() + 0.1;
     let impulse = |t: f64| 0.1 * (3.0 * t).sin() + 0.1 * t;

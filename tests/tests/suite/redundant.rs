@@ -25,10 +25,10 @@ hamel::rigid_eom! {
 }
 
 /// Error of extrapolated differences with steps of 2⁻⁴ … 2⁻⁹.
-const DIFFERENCE: f64 = 1e-11;
+const DIFFERENCE_TOLERANCE: f64 = 1e-11;
 
 /// The motion of all joints, relative to the first crank.
-const ALONG: [f64; 4] = [1.0, 1.0, 1.0, -1.0];
+const CRANK_DIRECTIONS: [f64; 4] = [1.0, 1.0, 1.0, -1.0];
 
 /// Returns the state at an angle and a rate of the cranks.
 fn at(angle: f64, rate: f64) -> State<Platform<f64>> {

@@ -13,7 +13,7 @@ use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::reference::{Reference, distance, relative, run};
 
 /// Relative tolerance of a measured error.
-const SIZE: f64 = 0.10;
+const ERROR_TOLERANCE: f64 = 0.10;
 
 fn assert_size(what: &str, error: f64, expected: f64) {
     println!("{what}: {error:.3e}, expected {expected:.2e}");
@@ -120,7 +120,7 @@ fn join<const A: usize, const B: usize, const C: usize>(a: [f64; A], b: [f64; B]
 
 /// Errors of the chaotic double pendulum: the coarse run has lost the motion, the fine one almost, both in the same way
 /// as the independent implementation.
-const CHAOTIC: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
+const CHAOTIC_ERRORS: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
 
 #[test]
 fn chaotic_double_pendulum_on_circles() {

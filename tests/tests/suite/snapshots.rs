@@ -5,7 +5,7 @@
 //! byte by byte.
 
 use crate::derived::{model, models};
-use crate::some::some;
+use crate::thinning::thin_out;
 use hamel_codegen::builder::{source, written};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::{Count, count};
@@ -216,7 +216,7 @@ fn constant_mass_costs_nothing() {
 
 #[test]
 fn generation_repeats_to_the_byte() {
-    some(models().iter().collect())
+    thin_out(models().iter().collect())
         .par_iter()
         .for_each(|model| {
             let first = written(model.generated(), &model.name).expect("correct");

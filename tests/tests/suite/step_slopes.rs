@@ -45,15 +45,15 @@ hamel::rigid_eom! {
 
 /// Error of extrapolated differences with steps of 2⁻⁴ … 2⁻⁹: truncation like 2⁻³⁶ of derivatives of order 13, rounding
 /// 1e-13.
-const DIFFERENCE: f64 = 2e-10;
+const DIFFERENCE_TOLERANCE: f64 = 2e-10;
 /// Error of states computed by the same sums in another order.
-const STATE: f64 = 1e-14;
+const STATE_TOLERANCE: f64 = 1e-14;
 /// Error of states of iterative steps.
-const CONVERGED: f64 = 1e-10;
+const ITERATED_STATE_TOLERANCE: f64 = 1e-10;
 /// Error of differences of iterative steps.
-const ITERATED: f64 = 1e-7;
+const ITERATED_DIFFERENCE_TOLERANCE: f64 = 1e-7;
 /// Error of sums of products of slopes.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING_TOLERANCE: f64 = 1e-12;
 
 /// A matrix by rows.
 type Rows = Vec<Vec<f64>>;
@@ -113,8 +113,8 @@ fn chart(blocks: &[Block], mut x: &[f64], mut dx: &[f64]) -> Vec<f64> {
 type Step<'a, Sys> = dyn Fn(&mut State<Sys>, &<Sys as System>::Inputs) + 'a;
 
 /// A step from the start with its slopes, with inputs.
-type Slopes<'a, Sys> = dyn Fn(&<Sys as System>::Inputs) -> Sloped<Sys> + 'a;
-type Sloped<Sys> = (State<Sys>, <Sys as Tangent>::Slopes);
+type Slopes<'a, Sys> = dyn Fn(&<Sys as System>::Inputs) -> StepWithSlopes<Sys> + 'a;
+type StepWithSlopes<Sys> = (State<Sys>, <Sys as Tangent>::Slopes);
 
 /// A step that writes the slopes to a table of the caller.
 type SlopesInto<'a, Sys> =

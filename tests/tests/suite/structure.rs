@@ -16,15 +16,15 @@ use std::fmt::Write;
 use std::ops::Range;
 
 /// Rounding of exact laws, relative to the largest term.
-const ROUNDING: f64 = 1e-10;
-/// Error of central differences of step [`STEP`]: rounding 1e-16 / 1e-5 times the terms, truncation 1e-10 times third
+const ROUNDING_TOLERANCE: f64 = 1e-10;
+/// Error of central differences of step [`DIFFERENCE_STEP`]: rounding 1e-16 / 1e-5 times the terms, truncation 1e-10 times third
 /// derivatives.
-const DIFFERENCE: f64 = 2e-7;
-const STEP: f64 = 1e-5;
+const DIFFERENCE_TOLERANCE: f64 = 2e-7;
+const DIFFERENCE_STEP: f64 = 1e-5;
 /// Relative difference above which numbers count as different.
-const APART: f64 = 1e-4;
+const DISTINCT_TOLERANCE: f64 = 1e-4;
 /// Number of states for each law.
-const STATES: u64 = 5;
+const STATES_PER_LAW: u64 = 5;
 
 fn close(a: &DVector<f64>, b: &DVector<f64>, tolerance: f64, what: &str) {
     let scale = a.amax().max(b.amax()).max(1.0);

@@ -48,7 +48,7 @@ impl Axis {
     }
 
     /// Creates an axis for all finite values, with a margin; a constant is in the middle.
-    pub fn around(values: impl Iterator<Item = f64>) -> Self {
+    pub fn with_margin(values: impl Iterator<Item = f64>) -> Self {
         let (low, high) = extent(values).unwrap_or((0.0, 0.0));
         let size = low.abs().max(high.abs());
         if high - low <= 1e-9 * size || high - low < 1e-300 {
@@ -123,7 +123,7 @@ fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 }
 
 /// Formats an exponent in superscript digits.
-fn raised(power: i32) -> String {
+fn superscript(power: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let raise = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
     power.to_string().chars().map(raise).collect()
@@ -162,7 +162,7 @@ impl Axes {
     ///
     /// # Errors
     /// If the drawing library fails.
-    pub fn draw(&self, area: &Area, labels_below: bool) -> Drawn {
+    pub fn draw(&self, area: &Area, labels_below: bool) -> DrawResult {
         let Frame {
             x,
             y,
@@ -214,7 +214,7 @@ impl Axes {
     ///
     /// # Errors
     /// If the drawing library fails.
-    pub fn name(&self, area: &Area, name: &str) -> Drawn {
+    pub fn name(&self, area: &Area, name: &str) -> DrawResult {
         let style = letters(12.0, theme::INK.0, Anchor::Start, true);
         let name = fit(name, 12.0, true, self.frame.width);
         write(area, &name, (self.frame.x, self.frame.y - 13.0), &style)
@@ -224,7 +224,7 @@ impl Axes {
     ///
     /// # Errors
     /// If the drawing library fails.
-    pub fn below(&self, area: &Area, name: &str) -> Drawn {
+    pub fn below(&self, area: &Area, name: &str) -> DrawResult {
         let style = letters(12.0, theme::SOFT.0, Anchor::Middle, false);
         let at = (
             self.frame.x + 0.5 * self.frame.width,

@@ -7,11 +7,11 @@ use super::width::width;
 use super::{Panel, theme};
 
 /// Distance between two labels.
-const LABEL: f64 = 15.0;
+const LABEL_SPACING: f64 = 15.0;
 /// Size of labels, their distance from a frame, and the margin after them.
-const SIZE: f64 = 12.0;
-const BEGIN: f64 = 14.0;
-const MARGIN: f64 = 10.0;
+const LABEL_SIZE: f64 = 12.0;
+const LABEL_OFFSET: f64 = 14.0;
+const LABEL_MARGIN: f64 = 10.0;
 
 /// Returns the width that names of lines need next to a frame.
 pub fn room<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
@@ -27,7 +27,7 @@ pub fn height(lines: usize) -> f64 {
 }
 
 /// Draws a panel; the last one has the labels of the time axis.
-pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool) -> Drawn {
+pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool) -> DrawResult {
     let (from, to) = match time {
         [first, .., last] if last > first => (*first, *last),
         _ => (0.0, 1.0),
@@ -68,7 +68,7 @@ pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool)
 }
 
 /// Writes names next to the ends of lines, moved apart; each has the index of its colour and the height of its end.
-pub fn names(area: &Area, ends: &[(usize, &str, f64)], frame: Frame) -> Drawn {
+pub fn names(area: &Area, ends: &[(usize, &str, f64)], frame: Frame) -> DrawResult {
     let right = frame.x + frame.width;
     let mut order: Vec<&(usize, &str, f64)> = ends.iter().collect();
     order.sort_by(|a, b| a.2.total_cmp(&b.2));

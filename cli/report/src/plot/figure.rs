@@ -14,7 +14,7 @@ use std::error::Error;
 use std::fmt;
 
 /// Scale of drawings, since `plotters` supports only whole pixels.
-pub const FINE: f64 = 10.0;
+pub const SUBPIXELS: f64 = 10.0;
 
 /// The area to draw on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -35,7 +35,7 @@ impl Error for PlotError {}
 pub type DrawResult = Result<(), PlotError>;
 
 /// Converts an error of `plotters`.
-pub fn failed(error: impl fmt::Display) -> PlotError {
+pub fn draw_error(error: impl fmt::Display) -> PlotError {
     PlotError(error.to_string())
 }
 
@@ -218,7 +218,7 @@ pub fn letters(size: f64, colour: RGBColor, anchor: Anchor, bold: bool) -> TextS
         Anchor::End => HPos::Right,
     };
     // `plotters` writes sizes divided by 1.24.
-    let size = size * FINE * 1.24;
+    let size = size * SUBPIXELS * 1.24;
     let mut style = TextStyle::from(("sans-serif", size, weight).into_font());
     style.color = colour.to_backend_color();
     style.pos = Pos::new(across, VPos::Center);
@@ -251,11 +251,11 @@ pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> DrawResult {
 }
 
 /// Fills the background, and writes a heading and a sentence below it, cut to the width.
-pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
-    const LEFT: f64 = 24.0;
-    const RIGHT: f64 = 10.0;
-    area.fill(&theme::GROUND.0).map_err(failed)?;
-    let widest = f64::from(area.dim_in_pixel().0) / FINE - LEFT - RIGHT;
+pub fn draw_heading(area: &Area, title: &str, subtitle: &str) -> DrawResult {
+    const LEFT_MARGIN: f64 = 24.0;
+    const RIGHT_MARGIN: f64 = 10.0;
+    area.fill(&theme::GROUND.0).map_err(draw_error)?;
+    let widest = f64::from(area.dim_in_pixel().0) / SUBPIXELS - LEFT_MARGIN - RIGHT_MARGIN;
     let head = letters(18.0, theme::INK.0, Anchor::Start, true);
     let title = fit(&plain(title), 18.0, true, widest);
     write(area, &title, (LEFT_MARGIN, 28.0), &head)?;

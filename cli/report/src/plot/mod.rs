@@ -71,16 +71,16 @@ pub struct Picture {
     pub poinsot: Option<Poinsot>,
 }
 
-const HEAD: f64 = 66.0;
-const TITLE: f64 = 26.0;
-const GAP: f64 = 22.0;
-const FOOT: f64 = 50.0;
-const LEFT: f64 = 66.0;
+const HEADING_HEIGHT: f64 = 66.0;
+const TITLE_HEIGHT: f64 = 26.0;
+const PANEL_GAP: f64 = 22.0;
+const FOOT_HEIGHT: f64 = 50.0;
+const LEFT_MARGIN: f64 = 66.0;
 /// Least width for the names of lines.
-const LABELS: f64 = 78.0;
+const MIN_LABEL_WIDTH: f64 = 78.0;
 /// Width and height of a sphere with its labels.
-const SPHERE: (f64, f64) = (380.0, 410.0);
-const RADIUS: f64 = 140.0;
+const SPHERE_SIZE: (f64, f64) = (380.0, 410.0);
+const SPHERE_RADIUS: f64 = 140.0;
 
 /// Draws the picture of a run.
 ///

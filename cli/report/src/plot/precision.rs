@@ -37,7 +37,7 @@ impl Precision {
     fn point(self, run: &MethodRun) -> Option<(f64, f64)> {
         let (work, error) = (self.work(run)?, run.error?);
         // An error of order 1 means that a run failed; zero has no place on a logarithmic scale.
-        (work > 0.0 && error > 0.0 && error < LARGEST).then_some((work, error))
+        (work > 0.0 && error > 0.0 && error < MAX_DRAWN_ERROR).then_some((work, error))
     }
 }
 
@@ -46,10 +46,10 @@ const MAX_DRAWN_ERROR: f64 = 30.0;
 const FRAME_WIDTH: f64 = 350.0;
 const FRAME_HEIGHT: f64 = 330.0;
 /// Height of a line of the legend.
-const ROW: f64 = 17.0;
+const LEGEND_ROW_HEIGHT: f64 = 17.0;
 /// Position of names in a line of the legend, and their least width.
-const NAME: f64 = 29.0;
-const LEAST: f64 = 105.0;
+const NAME_OFFSET: f64 = 29.0;
+const MIN_NAME_WIDTH: f64 = 105.0;
 
 /// Draws error against evaluations, and error against time where it was measured.
 ///
@@ -137,7 +137,7 @@ fn style(index: usize, method: &MethodRuns) -> ShapeStyle {
 }
 
 /// Draws a disk, smaller for baselines and peers.
-fn mark(area: &Area, at: Point, index: usize, method: &MethodRuns) -> Drawn {
+fn mark(area: &Area, at: Point, index: usize, method: &MethodRuns) -> DrawResult {
     let radius = if method.kind == Kind::Method {
         2.7
     } else {

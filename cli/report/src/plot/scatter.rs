@@ -19,13 +19,13 @@ pub struct Scatter {
     pub up: Vec<(String, Vec<f64>)>,
 }
 
-const TOP: f64 = 96.0;
-const LEFT: f64 = 76.0;
-const WIDE: f64 = 230.0;
-const HIGH: f64 = 150.0;
+const TOP_MARGIN: f64 = 96.0;
+const LEFT_MARGIN: f64 = 76.0;
+const FRAME_WIDTH: f64 = 230.0;
+const FRAME_HEIGHT: f64 = 150.0;
 /// Gaps between frames, with room for the name of the frame below or the labels of the frame to the right.
-const GAP: (f64, f64) = (86.0, 40.0);
-const BOTTOM: f64 = 62.0;
+const FRAME_GAPS: (f64, f64) = (86.0, 40.0);
+const BOTTOM_MARGIN: f64 = 62.0;
 
 /// Draws a diagram for each pair.
 ///

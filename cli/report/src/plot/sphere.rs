@@ -10,15 +10,15 @@ use crate::number::short;
 use plotters::style::{Color, ShapeStyle};
 
 /// Azimuth and elevation of the eye (rad).
-const EYE: (f64, f64) = (0.6, 0.36);
+const EYE_DIRECTION: (f64, f64) = (0.6, 0.36);
 /// Number of single-coloured pieces.
-const PIECES: usize = 60;
+const MAX_PATH_PIECES: usize = 60;
 /// Number of points of a circle of the mesh.
-const CIRCLE: u32 = 72;
+const CIRCLE_POINTS: u32 = 72;
 /// Distance of the names of axes, relative to the radius of the sphere.
-const NAMES: f64 = 0.22;
+const NAME_DISTANCE: f64 = 0.22;
 /// Largest extent of the ellipsoid with its names, relative to the available radius.
-const REACH: f64 = 1.27;
+const MAX_REACH: f64 = 1.27;
 
 type Vector = [f64; 3];
 
@@ -81,7 +81,7 @@ fn lines(area: &Area, parts: &[Vec<Point>], style: ShapeStyle) -> DrawResult {
 }
 
 /// Draws the sphere with the path of a body axis in the world, and the scale of time.
-pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> Drawn {
+pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> DrawResult {
     let view = View {
         x: at.0,
         y: at.1,
@@ -95,7 +95,7 @@ pub fn path(area: &Area, path: &Path, end: f64, at: Point, radius: f64) -> Drawn
 }
 
 /// Draws Poinsot's construction, and the scale of time.
-pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64) -> Drawn {
+pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64) -> DrawResult {
     heading(area, "Poinsot: P in body axes", at, radius)?;
     let size = |p: &Vector| p.iter().map(|v| v * v).sum::<f64>().sqrt();
     let first = poinsot.momenta.iter().map(size).find(|size| *size > 0.0);
@@ -160,7 +160,7 @@ fn unit(axis: usize) -> Vector {
 
 /// Draws a ball with its mesh and a curve on it; `between` draws everything between the hidden and the visible parts of
 /// the curve.
-fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> Drawn) -> Drawn {
+fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> DrawResult) -> DrawResult {
     let middle = (view.x, view.y);
     let ball = ShapeStyle::from(theme::BALL.0).filled();
     circle(area, middle, view.radius, ball)?;
@@ -257,7 +257,7 @@ fn pieces(view: &View, points: &[Vector]) -> Vec<(f64, [Vec<Vec<Point>>; 2])> {
 }
 
 /// Draws the first or the last point, with its name above or below, towards the middle.
-fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bool) -> Drawn {
+fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bool) -> DrawResult {
     let ((x, y), depth) = view.project(point);
     let colour = ramp(time).mix(if depth < 0.0 { 0.55 } else { 1.0 });
     circle(area, (x, y), 4.5, ShapeStyle::from(colour).filled())?;
@@ -272,7 +272,7 @@ fn dot(area: &Area, view: &View, point: Vector, time: f64, name: &str, above: bo
 }
 
 /// Draws the colours and the times that they represent.
-fn scale(area: &Area, end: f64, at: Point) -> Drawn {
+fn scale(area: &Area, end: f64, at: Point) -> DrawResult {
     const WIDTH: f64 = 140.0;
     const PARTS: usize = 28;
     let left = at.0 - 0.5 * WIDTH;

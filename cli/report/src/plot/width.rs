@@ -8,7 +8,7 @@ pub fn width(text: &str, size: f64, bold: bool) -> f64 {
 }
 
 /// Returns the text, or a beginning of it with `…` if it is wider than `widest`.
-pub fn fitted(text: &str, size: f64, bold: bool, widest: f64) -> String {
+pub fn fit(text: &str, size: f64, bold: bool, widest: f64) -> String {
     if width(text, size, bold) <= widest {
         return text.to_string();
     }
@@ -20,7 +20,7 @@ pub fn fitted(text: &str, size: f64, bold: bool, widest: f64) -> String {
 }
 
 /// Width of a letter that is not bold, relative to a bold one.
-const REGULAR: f64 = 0.9;
+const REGULAR_WIDTH: f64 = 0.9;
 
 /// Returns the width of a bold letter, relative to the size of the font.
 fn letter(letter: char) -> f64 {

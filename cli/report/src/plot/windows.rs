@@ -8,7 +8,7 @@ use super::theme;
 use crate::data::Drift;
 
 /// Larger deviations are a blow-up, and are drawn at the upper edge.
-const LARGEST: f64 = 1e3;
+const MAX_DEVIATION: f64 = 1e3;
 
 /// Draws long runs of one case on a logarithmic scale.
 ///

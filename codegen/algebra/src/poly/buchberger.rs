@@ -97,7 +97,7 @@ impl<F: Field> State<'_, F> {
         }
         for _ in 0..self.limits.pairs {
             let Some(pair) = self.next_pair() else {
-                return self.reduced();
+                return self.reduce_basis();
             };
             let s = self.s_polynomial(&pair)?;
             self.insert(&s)?;
@@ -177,7 +177,7 @@ impl<F: Field> State<'_, F> {
     }
 
     /// Returns the basis of the alive elements, each reduced by the others.
-    fn reduced(mut self) -> Option<Basis<F>> {
+    fn reduce_basis(mut self) -> Option<Basis<F>> {
         let mut result = Vec::with_capacity(self.alive.len());
         for position in 0..self.alive.len() {
             let mut others = self.alive.clone();

@@ -6,7 +6,7 @@ use super::field::Field;
 use super::monomial::Monomial;
 use super::order::Order;
 use super::polynomial::Poly;
-use super::sums::{merged, placed};
+use super::sums::{insert_terms, merge_terms};
 
 /// A monic divisor with the mask of its leading monomial.
 #[derive(Clone, Debug)]
@@ -131,8 +131,8 @@ fn subtract<F: Field>(
         (monomial.mul(m), value)
     });
     let result = match tail.len() <= MAX_BINARY_INSERTIONS {
-        true => placed(order, rest, products),
-        false => merged(order, rest, products.rev(), tail.len()),
+        true => insert_terms(order, rest, products),
+        false => merge_terms(order, rest, products.rev(), tail.len()),
     };
     *budget = budget.checked_sub(work)?;
     Some(result)

@@ -113,7 +113,7 @@ impl<F: Field> Poly<F> {
         if self.order != other.order {
             return self.add(&other.with_order(self.order));
         }
-        Self::from_sorted(self.order, united(self.order, &self.terms, &other.terms))
+        Self::from_sorted(self.order, unite(self.order, &self.terms, &other.terms))
     }
 
     /// −f.
@@ -193,7 +193,7 @@ impl<F: Field> Poly<F> {
 }
 
 /// Returns the sum of two descending lists.
-fn united<F: Field>(
+fn unite<F: Field>(
     order: Order,
     one: &[(Monomial, F)],
     other: &[(Monomial, F)],

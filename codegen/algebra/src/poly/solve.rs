@@ -117,13 +117,13 @@ impl Search<'_> {
         if let Some(f) = system.iter().filter(single).min_by_key(|f| f.degree())
             && let Some(variable) = f.variables().first()
         {
-            return self.finite(system, &dense(f), open, *variable);
+            return self.choose_root(system, &dense(f), open, *variable);
         }
         let variables = by_preference(system, open);
         if self.quick
             && let Some(&free) = free_variables(system, &variables, self.random).first()
         {
-            return self.free(system, None, open, free);
+            return self.choose_free(system, None, open, free);
         }
         let work = if self.quick {
             MAX_SYSTEM_WORK.0
@@ -143,7 +143,7 @@ impl Search<'_> {
             let Some(&variable) = variables.first() else {
                 return Err(Failure::Unlucky);
             };
-            return self.free(system, None, open, variable);
+            return self.choose_free(system, None, open, variable);
         };
         if basis.is_unit() {
             return Err(Failure::Inconsistent);
@@ -166,16 +166,16 @@ impl Search<'_> {
         let variable = match determined(system, open) {
             Some(variable) => {
                 let minimal = minimal_polynomial(basis, variable, MAX_MINIMAL_DEGREE);
-                return self.finite(system, &minimal.ok_or(Failure::Unlucky)?, open, variable);
+                return self.choose_root(system, &minimal.ok_or(Failure::Unlucky)?, open, variable);
             }
             None => by_preference(system, open).first().copied(),
         };
-        self.free(system, Some(basis), open, variable.ok_or(Failure::Unlucky)?)
+        self.choose_free(system, Some(basis), open, variable.ok_or(Failure::Unlucky)?)
     }
 
     /// Sets a variable at random. If the basis is known and this leads to a contradiction, the variable has
     /// only finitely many values.
-    fn free<const K: usize>(
+    fn choose_free<const K: usize>(
         &mut self,
         system: &[Poly<Residue<K>>],
         basis: Option<&Basis<Residue<K>>>,
@@ -190,13 +190,18 @@ impl Search<'_> {
         for _ in 0..tries {
             let value = self.random.residue();
             self.choices += 1;
-            let result = self.set(system, open, variable, value);
+            let result = self.fix(system, open, variable, value);
             self.choices -= 1;
             match (result, basis) {
                 (Ok(values), _) => return Ok(values),
                 (Err(Failure::Inconsistent), Some(basis)) => {
                     let minimal = minimal_polynomial(basis, variable, MAX_MINIMAL_DEGREE);
-                    return self.finite(system, &minimal.ok_or(Failure::Unlucky)?, open, variable);
+                    return self.choose_root(
+                        system,
+                        &minimal.ok_or(Failure::Unlucky)?,
+                        open,
+                        variable,
+                    );
                 }
                 (Err(_), _) => {}
             }
@@ -205,7 +210,7 @@ impl Search<'_> {
     }
 
     /// Sets a variable to a root of a polynomial that has all possible values of the variable as roots.
-    fn finite<const K: usize>(
+    fn choose_root<const K: usize>(
         &mut self,
         system: &[Poly<Residue<K>>],
         polynomial: &[Residue<K>],
@@ -216,7 +221,7 @@ impl Search<'_> {
         while !candidates.is_empty() {
             let index = self.random.bits() % candidates.len() as u64;
             let root = candidates.swap_remove(index as usize);
-            if let Ok(values) = self.set(system, open, variable, root) {
+            if let Ok(values) = self.fix(system, open, variable, root) {
                 return Ok(values);
             }
         }
@@ -224,7 +229,7 @@ impl Search<'_> {
     }
 
     /// Sets one variable, and solves the rest.
-    fn set<const K: usize>(
+    fn fix<const K: usize>(
         &mut self,
         system: &[Poly<Residue<K>>],
         open: &BTreeSet<Var>,

@@ -6,7 +6,7 @@ use super::order::Order;
 use std::cmp::Ordering;
 
 /// Adds a few descending terms to an ascending list, without visiting entries below all of them.
-pub(super) fn placed<F: Field>(
+pub(super) fn insert_terms<F: Field>(
     order: Order,
     mut list: Vec<(Monomial, F)>,
     terms: impl Iterator<Item = (Monomial, F)>,
@@ -31,7 +31,7 @@ pub(super) fn placed<F: Field>(
 }
 
 /// Adds `count` ascending terms to an ascending list.
-pub(super) fn merged<F: Field>(
+pub(super) fn merge_terms<F: Field>(
     order: Order,
     list: Vec<(Monomial, F)>,
     terms: impl Iterator<Item = (Monomial, F)>,

@@ -13,7 +13,7 @@ use crate::graph::{Graph, canonical};
 use crate::node::{Edge, Node, NodeId};
 use crate::prime::Residue;
 use crate::real_enclosure::RealValues;
-use crate::transplant::{merged, read, rebuild};
+use crate::transplant::{merge, read, rebuild};
 use rustc_hash::FxHashMap;
 use sieve::Sieve;
 use spread::{Spread, spreads};
@@ -126,7 +126,7 @@ impl<'a> Network<'a> {
     }
 
     /// Whether a node is a sum or product of nodes other than its present operands.
-    fn may_be_other(&self, id: NodeId) -> bool {
+    fn is_replaceable(&self, id: NodeId) -> bool {
         let mut children = self.children(id);
         let own = (children.next(), children.next());
         let mut pairs = self.pairs(id).iter();
@@ -141,7 +141,7 @@ impl<'a> Network<'a> {
     }
 
     /// Returns the nodes that the roots need, children first; `leaf` and run-time constants count as given.
-    fn alive(&self, leaf: Option<NodeId>) -> Vec<NodeId> {
+    fn live_nodes(&self, leaf: Option<NodeId>) -> Vec<NodeId> {
         self.below(self.roots, leaf)
     }
 
@@ -182,7 +182,7 @@ impl<'a> Network<'a> {
     fn improve(&mut self) -> bool {
         let mut improved = false;
         loop {
-            let order = self.alive(None);
+            let order = self.live_nodes(None);
             let total = self.cost(&order);
             let mut uses: FxHashMap<NodeId, usize> = FxHashMap::default();
             for child in order
@@ -200,11 +200,11 @@ impl<'a> Network<'a> {
                 if self.graph.is_free(id)
                     || !operation
                     || !self.children(id).any(|child| uses.get(&child) == Some(&1))
-                    || !self.may_be_other(id)
+                    || !self.is_replaceable(id)
                 {
                     return None;
                 }
-                let rest = self.alive(Some(id));
+                let rest = self.live_nodes(Some(id));
                 // The node itself is among the rest, and keeps its cost.
                 (self.cost(&rest) < total)
                     .then(|| self.other_definition(id, &rest))
@@ -221,13 +221,15 @@ impl<'a> Network<'a> {
 
     /// Eliminates a sum where that saves an operation; returns whether one was found.
     fn spread(&mut self, spreads: &[Spread]) -> bool {
-        let total = self.cost(&self.alive(None));
-        spreads.iter().any(|spread| self.without(spread, total))
+        let total = self.cost(&self.live_nodes(None));
+        spreads
+            .iter()
+            .any(|spread| self.eliminate_sum(spread, total))
     }
 
     /// Computes all terms without their sum if that takes fewer than `total` operations; returns whether it
     /// does.
-    fn without(&mut self, spread: &Spread, total: usize) -> bool {
+    fn eliminate_sum(&mut self, spread: &Spread, total: usize) -> bool {
         let ends = spread.terms.iter().flat_map(|term| [term.rest, term.part]);
         let below = self.below(&ends.collect::<Vec<_>>(), None);
         let sums = spread.terms.iter().map(|term| {
@@ -244,7 +246,7 @@ impl<'a> Network<'a> {
         for (whole, node) in sums {
             self.definitions[whole as usize] = Some(node);
         }
-        let better = self.cost(&self.alive(None)) < total;
+        let better = self.cost(&self.live_nodes(None)) < total;
         if !better {
             self.definitions = before;
         }
@@ -310,7 +312,7 @@ impl<'a> Network<'a> {
 
     fn rebuild(&self, into: &mut Graph) -> Vec<Edge> {
         let mut image = vec![Edge::of(0); self.graph.len()];
-        let alive = self.alive(None);
+        let alive = self.live_nodes(None);
         let is_constant = |id: &&NodeId| self.graph.is_free(**id);
         let constants: Vec<Edge> = alive
             .iter()
@@ -325,7 +327,7 @@ impl<'a> Network<'a> {
             into.announce_copy(self.graph, id);
             image[id as usize] = match self.definitions[id as usize] {
                 Some(Node::Symbol(index)) => Edge::of(into.symbols()[index as usize].node),
-                Some(node) => merged(into, node.map_children(|child| read(&image, child))),
+                Some(node) => merge(into, node.map_children(|child| read(&image, child))),
                 None => continue,
             };
         }

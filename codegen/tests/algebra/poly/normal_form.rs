@@ -6,7 +6,7 @@ use hamel_algebra::poly::{field, monomial, order};
 use monomial::Monomial;
 use num_rational::BigRational as Rational;
 use order::Order;
-use sums::{merged, placed};
+use sums::{insert_terms, merge_terms};
 
 // Included, since these sums are used only by divisions, which do not distinguish the two algorithms.
 #[path = "../../../algebra/src/poly/sums.rs"]
@@ -32,8 +32,8 @@ fn terms_in_their_places_are_terms_merged() {
         let terms = (first..60).step_by(7);
         let cancelling = |k: u32| [50 - i64::from(k), 3][k as usize % 2];
         let terms = sorted(terms.map(|k| term(k, cancelling(k))).collect());
-        let down = placed(order, list.clone(), terms.iter().rev().cloned());
-        let up = merged(order, list.clone(), terms.iter().cloned(), terms.len());
+        let down = insert_terms(order, list.clone(), terms.iter().rev().cloned());
+        let up = merge_terms(order, list.clone(), terms.iter().cloned(), terms.len());
         assert_eq!(down, up);
         assert!(up.len() < list.len() + terms.len());
     }

@@ -209,7 +209,7 @@ fn at_most_a_hundred_errors() {
 }
 
 /// Tokens to insert at wrong places.
-const ODD: [&str; 36] = [
+const MISPLACED_TOKENS: [&str; 36] = [
     "(", ")", "[", "]", "{", "}", ";", ",", ".", ":", "=", "+", "-", "*", "/", "^", "'", "\"", "#",
     "!", "at", "on", "in", "about", "param", "rate", "body", "system", "1e-3", "0x1", "\\", "∂",
     "é", "\n", "//", "/*",

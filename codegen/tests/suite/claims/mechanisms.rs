@@ -378,7 +378,7 @@ fn depends_on_time(system: &System) -> bool {
 }
 
 /// Draws a system that moves, and in which every spring moves.
-pub fn drawn(random: &mut Random) -> Kept {
+pub fn drawn(random: &mut Random) -> ConservativeMechanism {
     loop {
         let kept = ConservativeMechanism::random(random);
         let (pivot, left, independent) = kept.system.regularity(&kept.system.start());

@@ -67,7 +67,7 @@ pub struct Joint {
 pub struct Arm(pub Vec<Joint>);
 
 /// Number of cases for the relative position of neighbouring axes.
-const PLACES: usize = 5;
+const AXIS_PLACEMENTS: usize = 5;
 
 impl Arm {
     /// Returns an arm with axes 10^-1 … 10^-16 rad from parallel or perpendicular, and as many metres from
@@ -181,7 +181,7 @@ impl Joint {
         let small = |random: &mut Random| Decimal::random(random, power);
         let (a, b, c) = (small(random), small(random), small(random));
         let any = Angle(0, Decimal::random(random, 0));
-        let rpy = match random.below(PLACES) {
+        let rpy = match random.below(AXIS_PLACEMENTS) {
             // Almost parallel, with any rotation about the axis.
             0 => [Angle(0, a), Angle(0, b), any],
             // Almost antiparallel.

@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Largest number of variables, including the time.
-pub const VARIABLES: usize = 8;
+pub const MAX_VARIABLES: usize = 8;
 
 /// A value, its gradient and its Hessian.
 #[derive(Clone, Copy)]

@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Bits of the mantissa.
-const BITS: usize = 200;
-const ROUND: RoundingMode = RoundingMode::ToEven;
+const PRECISION_BITS: usize = 200;
+const ROUNDING_MODE: RoundingMode = RoundingMode::ToEven;
 
 thread_local! {
     static CONSTANTS: RefCell<Consts> = RefCell::new(Consts::new().expect("memory"));

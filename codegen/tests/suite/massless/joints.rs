@@ -11,7 +11,7 @@ use hamel_codegen::render::render;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Number of states per system.
-const STATES: usize = 2;
+const STATES_PER_SYSTEM: usize = 2;
 /// Axes of joints.
 const AXES: [[f64; 3]; 5] = [
     [1.0, 0.0, 0.0],

@@ -116,9 +116,9 @@ impl<'a> PointComparison<'a> {
                     .map(|row| dot(row, &self.values.xi))
                     .collect();
                 self.equal("mass_matrix", &self.mass)?
-                    && self.equal("momentum", &self.projected(&momentum))?
+                    && self.equal("momentum", &self.project(&momentum))?
             }
-            Claim::Bias => self.equal("bias", &self.projected(&self.bias))?,
+            Claim::Bias => self.equal("bias", &self.project(&self.bias))?,
             Claim::Loads => self.loads()?,
             // Compared at points of its own.
             Claim::Power => true,
@@ -144,7 +144,7 @@ impl<'a> PointComparison<'a> {
     }
 
     /// Returns Cᵀ v.
-    fn projected(&self, v: &[Fp]) -> Vec<Fp> {
+    fn project(&self, v: &[Fp]) -> Vec<Fp> {
         let na = self.reduction.active.len();
         let entry = |j: usize| {
             let rows = v.iter().enumerate();
@@ -154,7 +154,7 @@ impl<'a> PointComparison<'a> {
     }
 
     /// Returns the values of an emitted function; `Some(None)` if it is not emitted, `None` if it has no value.
-    fn emitted(&self, name: &str) -> Option<Option<Vec<Fp>>> {
+    fn emitted_values(&self, name: &str) -> Option<Option<Vec<Fp>>> {
         match self.program.function(name) {
             None => Some(None),
             Some(f) => {
@@ -166,7 +166,10 @@ impl<'a> PointComparison<'a> {
     }
 
     fn equal(&self, name: &str, expected: &[Fp]) -> Option<bool> {
-        Some(self.emitted(name)?.is_none_or(|found| found == expected))
+        Some(
+            self.emitted_values(name)?
+                .is_none_or(|found| found == expected),
+        )
     }
 
     /// Returns whether B C = 0 and B c = 0 for the solved rows.
@@ -207,16 +210,17 @@ impl<'a> PointComparison<'a> {
     }
 
     /// Returns the ξ̇ₐ and λ that the forces imply.
-    fn implied(&self) -> Option<Solved> {
+    fn solve_implied(&self) -> Option<Solved> {
         let Values { force, slope, .. } = &self.values;
         let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
         let rest: Vec<Fp> = rest.collect();
-        self.solution(Some(&self.projected(&rest)), &self.right, &self.driven)
+        self.solution(Some(&self.project(&rest)), &self.right, &self.driven)
     }
 
     /// Returns M ξ̇ + h + ∂V of the full frame for rates of the active velocities.
-    fn needed(&self, xi_dot: &[Fp]) -> Vec<Fp> {
-        self.values.needed(&self.values.lift(&self.at.c, xi_dot))
+    fn required_force(&self, xi_dot: &[Fp]) -> Vec<Fp> {
+        self.values
+            .required_force(&self.values.lift(&self.at.c, xi_dot))
     }
 
     /// Compares every row of the full frame with the emitted multipliers, and the power along virtual velocities
@@ -225,10 +229,10 @@ impl<'a> PointComparison<'a> {
     /// If ξ̇ is not emitted, multipliers are compared with the ξ̇ that the forces imply.
     fn balances(&self) -> Option<bool> {
         let force = &self.values.force;
-        let lambda = self.emitted("constraint_force")?;
+        let lambda = self.emitted_values("constraint_force")?;
         let lambda = lambda.map(|lambda| self.full.of_all_rows(lambda));
         let xi_dot = match (&self.xi_dot, &lambda) {
-            (None, Some(_)) => Some(self.implied()?.xi_dot),
+            (None, Some(_)) => Some(self.solve_implied()?.xi_dot),
             (emitted, _) => emitted.clone(),
         };
         if let (Some(xi_dot), Some(lambda)) = (&xi_dot, &lambda)
@@ -238,9 +242,9 @@ impl<'a> PointComparison<'a> {
         }
         // A virtual velocity v has B v = 0 and moves no drive: neither multipliers nor drives do work along v.
         if let Some(xi_dot) = &xi_dot {
-            let needed = self.needed(xi_dot);
+            let needed = self.required_force(xi_dot);
             let left = needed.iter().zip(force).map(|(&needed, &f)| needed - f);
-            let left = self.projected(&left.collect::<Vec<_>>());
+            let left = self.project(&left.collect::<Vec<_>>());
             let v = virtual_velocity(&self.full.reduced, &self.kept, &self.values.xi)?;
             if !dot(&v, &left).is_zero() {
                 return Some(false);
@@ -249,7 +253,10 @@ impl<'a> PointComparison<'a> {
         // Inverse dynamics holds for any ξ̇.
         let reduced = &self.full.reduced;
         let rates = evaluate_at(&reduced.graph, &reduced.xi_dot, &mut self.at.inner.clone())?;
-        self.equal("inverse_dynamics", &self.projected(&self.needed(&rates)))
+        self.equal(
+            "inverse_dynamics",
+            &self.project(&self.required_force(&rates)),
+        )
     }
 
     /// Returns whether the rows of the full frame balance with the multipliers of all constraints and the forces of
@@ -257,7 +264,7 @@ impl<'a> PointComparison<'a> {
     fn bonds_balance(&self, xi_dot: &[Fp], lambda: &[Fp]) -> Option<bool> {
         let model = &self.full.reference.model;
         let (n, force) = (self.n(), &self.values.force);
-        let needed = self.needed(xi_dot);
+        let needed = self.required_force(xi_dot);
         let time = model.clock.map(|clock| clock.xi);
         // The row of ξ⁰ is not an equation of motion.
         let compared = (0..n).filter(|&i| Some(i) != time && !self.contradicts(i));
@@ -298,7 +305,7 @@ impl<'a> PointComparison<'a> {
         if !self.has_dependent_rows() {
             return Some(true);
         }
-        let implied = self.implied()?.multipliers;
+        let implied = self.solve_implied()?.multipliers;
         let mut kept = self.reduction.kept.iter().zip(&implied);
         Some(kept.all(|(&row, implied)| lambda.get(row) == Some(implied)))
     }
@@ -309,7 +316,7 @@ impl<'a> PointComparison<'a> {
             return Some(true);
         };
         if self.full.reduced.overconstrained {
-            return Some(self.implied()?.xi_dot == *xi_dot);
+            return Some(self.solve_implied()?.xi_dot == *xi_dot);
         }
         let mut driven = self.driven.iter();
         let mut rows = (self.right.iter()).zip(self.kept.chunks(xi_dot.len().max(1)));
@@ -322,8 +329,8 @@ impl<'a> PointComparison<'a> {
     fn loads(&self) -> Option<bool> {
         let values = &self.values;
         let all = [
-            ("generalized_force", self.projected(&values.force)),
-            ("potential_force", self.projected(&values.slope)),
+            ("generalized_force", self.project(&values.force)),
+            ("potential_force", self.project(&values.slope)),
             ("kinetic_energy", vec![values.in_energy]),
             ("potential_energy", vec![values.potential]),
             ("energy", vec![values.in_energy + values.potential]),
@@ -354,12 +361,12 @@ impl<'a> PointComparison<'a> {
             let solution = self.solution(None, &right, &held)?;
             Some(solution.xi_dot)
         };
-        if let Some(found) = self.emitted("project_position")?
+        if let Some(found) = self.emitted_values("project_position")?
             && found[..na] != back(&residuals)?
         {
             return Some(false);
         }
-        if let Some(found) = self.emitted("project_velocity")? {
+        if let Some(found) = self.emitted_values("project_velocity")? {
             let rows = self.kept.chunks(na.max(1)).zip(inner(&shifts)?);
             let speeds: Vec<Fp> = rows.map(|(row, shift)| dot(row, &xi) + shift).collect();
             let step = back(&speeds)?;
@@ -376,13 +383,13 @@ impl<'a> PointComparison<'a> {
         let loops = constraints.iter().zip(residuals);
         let loops = loops.filter(|(constraint, _)| constraint.residual != zero);
         let loops: Vec<Fp> = loops.map(|(_, residual)| residual).collect();
-        let emitted = self.emitted("constraint")?;
+        let emitted = self.emitted_values("constraint")?;
         Some(emitted.is_none_or(|found| found.ends_with(&loops)))
     }
 
     fn invariants(&self) -> Option<bool> {
         for (name, entries) in &self.full.claims {
-            if let Some(found) = self.emitted(name)? {
+            if let Some(found) = self.emitted_values(name)? {
                 let graph = &self.full.reference.model.graph;
                 if found != evaluate_at(graph, entries, &mut self.at.point.clone())? {
                     return Some(false);

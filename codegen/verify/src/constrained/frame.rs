@@ -144,7 +144,7 @@ impl Full {
     fn prescribe(&mut self) {
         let reference = &mut self.reference;
         let model = &mut reference.model;
-        let (set, graph) = (given(model), &mut model.graph);
+        let (set, graph) = (prescribed_values(model), &mut model.graph);
         let solved = self.solved.iter_mut();
         solved.for_each(|(_, edge)| *edge = substitute(graph, &[*edge], &set)[0]);
         let put = |graph: &mut Graph, edges: &[Edge]| {
@@ -205,7 +205,7 @@ fn in_energy(full: &mut Model, kinetic: Edge) -> Option<Edge> {
 }
 
 /// Returns the symbols of prescribed coordinates with their prescribed values, and ξ⁰ with 1.
-pub(super) fn given(model: &Model) -> Vec<(usize, Edge)> {
+pub(super) fn prescribed_values(model: &Model) -> Vec<(usize, Edge)> {
     let first = model.points.first;
     let given = model.prescribed.iter();
     let given = given.map(|(place, edge)| (first + place, *edge));
@@ -246,7 +246,7 @@ pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         Some(if same { Ok(()) } else { Err(()) })
     };
     let anywhere = |number| model.points.lane(0xf4a_3e0 + number);
-    let given = given(model);
+    let given = prescribed_values(model);
     let prescribed = |number| {
         let unmoved = |_| Some(Vec::new());
         (model.points).lane_moved(0xf4a_3e0 + number, &model.graph, &given, &unmoved)

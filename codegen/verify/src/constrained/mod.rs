@@ -13,7 +13,7 @@ use super::kernel::rows_at_rest;
 use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use super::verdict::{Identity, Verdict, failure, nowhere};
 use comparison::PointComparison;
-use frame::{Full, given};
+use frame::{Full, prescribed_values};
 use hamel_algebra::graph::Edge;
 use hamel_dynamics::reduction::Reduction;
 use hamel_language::diagnostics::Diagnostic;
@@ -217,7 +217,7 @@ fn compare_at(
     let mut failed: Vec<Claim> = Vec::new();
     let charts = Charts::new(program)?;
     // Prescribed coordinates take their prescribed values, so that roots of them have values.
-    let given = given(&full.reference.model);
+    let given = prescribed_values(&full.reference.model);
     let compared = at_fresh_points(
         |number| {
             // Roots of velocities that constraints determine need values, too.

@@ -52,7 +52,7 @@ impl Values {
     }
 
     /// Returns M ξ̇ + h + ∂V, the force that a motion of the full frame needs.
-    pub(super) fn needed(&self, xi_dot: &[Fp]) -> Vec<Fp> {
+    pub(super) fn required_force(&self, xi_dot: &[Fp]) -> Vec<Fp> {
         let rows = self
             .mass
             .chunks(xi_dot.len())

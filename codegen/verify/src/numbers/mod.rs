@@ -115,7 +115,7 @@ impl Kinematics {
 
     /// Returns γᵢⱼᵏ ξʲ p_k by (12), (∂ᵢẋ − Ȧᵢ) Y p.
     fn turn(&self, p: &[Fp]) -> Vec<Fp> {
-        let weighted = self.weighted(p, |jet| jet.value);
+        let weighted = self.transposed_product(p, |jet| jet.value);
         let turn = |i: usize| {
             let moved = self.column(i, |jet| jet.along);
             dot(&weighted, &self.drift(i)) - dot(&weighted, &moved)
@@ -126,7 +126,7 @@ impl Kinematics {
     /// Returns γᵢⱼᵏ ξʲ p_k by (13), (Ẏ Aᵢ − ∂ᵢY ẋ) p.
     fn turn_of_rows(&self, p: &[Fp]) -> Vec<Fp> {
         let rate: Vec<Fp> = self.rate.iter().map(|jet| jet.value).collect();
-        let moved = self.weighted(p, |jet| jet.along);
+        let moved = self.transposed_product(p, |jet| jet.along);
         // Entries Y_α^k that are not constant, weighted by p_k ẋ^α; in large frames there are few of them.
         let mut moving: Vec<(&Jet, Fp)> = Vec::new();
         for (row, &p) in self.rows().zip(p) {
@@ -144,7 +144,7 @@ impl Kinematics {
     }
 
     /// Returns Y_α^k p_k, or the same with derivatives of Y.
-    fn weighted(&self, p: &[Fp], of: impl Fn(&Jet) -> Fp) -> Vec<Fp> {
+    fn transposed_product(&self, p: &[Fp], of: impl Fn(&Jet) -> Fp) -> Vec<Fp> {
         let mut sum = vec![Fp::ZERO; self.nu];
         for (row, &p) in self.rows().zip(p) {
             for (sum, jet) in sum.iter_mut().zip(row) {
@@ -257,7 +257,7 @@ impl Numbers {
         let slope = along(potential);
         let mut left_of_written = vec![Fp::ZERO; n];
         if all.writes_kinetic() {
-            left_of_written = self.written(
+            left_of_written = self.add_written_kinetic(
                 field_point,
                 &kinematics,
                 &mut sums,
@@ -294,7 +294,7 @@ impl Numbers {
     }
 
     /// Adds the kinetic energy that the user wrote to the sums, and returns its contribution to (30b).
-    fn written(
+    fn add_written_kinetic(
         &self,
         field_point: &FieldPoint,
         kinematics: &Kinematics,

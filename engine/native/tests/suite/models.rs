@@ -1,7 +1,7 @@
 //! Compares all functions of the test models: machine code with interpreted tapes bit by bit, and with the graph up to
 //! 10⁻¹³ of the scale and the rounding of arguments and statements.
 
-use crate::some::some;
+use crate::thinning::thin_out;
 use hamel_codegen::algebra::rounding::evaluate_rounded;
 use hamel_codegen::generate::{Generated, from_file};
 use hamel_codegen::model::states::states;
@@ -142,7 +142,7 @@ fn generated(path: &Path) -> Generated {
 
 #[test]
 fn code_of_models_gives_what_their_graphs_give() {
-    let some = some(models());
+    let some = thin_out(models());
     let least = 200 * some.len();
     let counts = some.into_par_iter().map(|path| {
         let (mut compared, mut ended) = (0, 0);

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The command that installs it.
-pub const START: &str = "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
+pub const SETUP_COMMAND: &str = "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
 
 /// Default path of its Python.
 pub const PYTHON: &str = "target/mujoco/bin/python";
@@ -21,7 +21,7 @@ struct Output {
 ///
 /// # Errors
 /// A message if there is no such Python, the script fails, or its output cannot be read.
-pub fn run(python: &Path) -> Result<(String, Vec<Foreign>), String> {
+pub fn run(python: &Path) -> Result<(String, Vec<ForeignResults>), String> {
     if !python.exists() {
         return Err(format!("no Python with it at {}", python.display()));
     }

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Number of random states, in addition to those at which the generator measures its programs.
-const RANDOM: usize = 3;
+const RANDOM_STATES: usize = 3;
 /// The arguments, in the order of [`State`].
 const ARGUMENTS: [Argument; 5] = [
     Argument::Coordinates,

@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::LazyLock;
 
 /// Turns warnings into errors.
-pub const STRICT: &str = "-Wall -Wextra -Wpedantic -Wconversion -Werror";
+pub const STRICT_FLAGS: &str = "-Wall -Wextra -Wpedantic -Wconversion -Werror";
 
 /// Whether to use all compilers, and to enable the warnings of gcc that need optimisation.
 static EVERYTHING: LazyLock<bool> = LazyLock::new(|| std::env::var_os("HAMEL_ATTACK").is_some());

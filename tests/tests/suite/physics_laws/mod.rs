@@ -8,10 +8,10 @@ use lists::{assert_close, derivative, dot, factor, largest, plus, solve, times};
 use point::{Point, everywhere};
 
 /// Rounding of several hundred operations, 1e-16 each, relative to the largest term.
-const ROUNDING: f64 = 1e-13;
+const ROUNDING_TOLERANCE: f64 = 1e-13;
 /// Relative error of an extrapolated central difference: h⁴/480 times fifth derivatives, which are below 1e4 in states
 /// and systems of this size, and rounding of 1e-12.
-const DIFFERENCE: f64 = 1e-10;
+const DIFFERENCE_TOLERANCE: f64 = 1e-10;
 
 /// Returns the columns of A at the state.
 fn frame(point: &dyn Point, x: &[f64]) -> Vec<Vec<f64>> {
@@ -164,7 +164,7 @@ fn power_balance() {
         let scale = point.kinetic(x).max(point.potential(x).abs()).max(1.0);
         // One order of the step's error enters as one of the difference's: it is 100 times larger, since the motion's
         // derivatives grow with powers of its speeds.
-        let bound = 100.0 * DIFFERENCE * scale.max(power.abs());
+        let bound = 100.0 * DIFFERENCE_TOLERANCE * scale.max(power.abs());
         assert_close(point.label(), &energy_dot, &[power], bound);
     });
 }

@@ -7,13 +7,13 @@ use hamel::{Block, Singular, State, System, manifold};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Number of states per system and law.
-const STATES: u64 = 24;
+const STATES_PER_LAW: u64 = 24;
 /// The inputs are halved while accelerations exceed this (SI units), at most this often, so that motions are smooth on
 /// the scale of differences.
-const FASTEST: f64 = 1e3;
-const HALVINGS: usize = 12;
+const MAX_ACCELERATION: f64 = 1e3;
+const MAX_INPUT_HALVINGS: usize = 12;
 /// Tolerance of f32 against f64: 6e-8 of rounding times the operations and the condition of M.
-const SINGLE: f64 = 1e-4;
+const F32_TOLERANCE: f64 = 1e-4;
 
 /// A system at a state, with lists of any length. Functions without arguments are evaluated at the state.
 pub trait Point {
@@ -96,7 +96,7 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
         let mut inputs = system.zero_inputs();
         random.fill(inputs.as_mut(), 2.0);
         // Light parts get small inputs.
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_INPUT_HALVINGS {
             let accel = system.forward_dynamics(&state.x, &state.xi, &inputs);
             if accel.is_ok_and(|accel| largest(accel.as_ref()) <= MAX_ACCELERATION) {
                 break;
@@ -344,7 +344,7 @@ fn no_model_is_left_out() {
             let generated = model.generated();
             // Differences are not valid for kinks and jumps: see `physics_functions.rs`.
             let graph = &generated.program.graph;
-            let bends = (0..graph.len() as u32).any(|id| graph.chosen_by(id).is_some());
+            let bends = (0..graph.len() as u32).any(|id| graph.condition_of(id).is_some());
             // Aerodynamic forces by angles of a velocity have no slopes at zero: see `physics_flight.rs`.
             let steep = model.text.contains("asin(");
             // First-order states follow the velocities: see `states.rs`.

@@ -10,20 +10,20 @@ use plotters::style::RGBColor;
 use std::fmt::Write;
 
 /// The style of lines, and the light on ellipsoids, which comes from the upper left.
-pub const LIGHT: &str = "<style>svg .line{fill:none;stroke-linejoin:round;stroke-linecap:round}</style>\n<defs><radialGradient id=\"light\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".32\" fy=\".26\">\
+pub const STYLE_AND_LIGHT: &str = "<style>svg .line{fill:none;stroke-linejoin:round;stroke-linecap:round}</style>\n<defs><radialGradient id=\"light\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".32\" fy=\".26\">\
 <stop offset=\"0\" stop-color=\"#fff\" stop-opacity=\".55\"/><stop offset=\".55\" stop-color=\"#fff\" stop-opacity=\".08\"/>\
 <stop offset=\".75\" stop-color=\"#000\" stop-opacity=\".02\"/><stop offset=\"1\" stop-color=\"#000\" stop-opacity=\".3\"/>\
 </radialGradient></defs>\n";
 
 /// Number of teeth of a spring, and their amplitude (pixels).
-const TEETH: u32 = 7;
-const TOOTH: f64 = 5.0;
+const SPRING_TEETH: u32 = 7;
+const TOOTH_HEIGHT: f64 = 5.0;
 /// The fraction of a spring or damper that is straight, at each end.
-const LEAD: f64 = 0.18;
+const STRAIGHT_PART: f64 = 0.18;
 /// Number of single-coloured pieces of a path.
-const PIECES: usize = 48;
+const PATH_PIECES: usize = 48;
 /// Ellipses with a shorter half axis below this are drawn as lines (pixels).
-const THIN: f64 = 0.2;
+const MIN_DRAWN_RADIUS: f64 = 0.2;
 
 /// The transformation from space to the drawing.
 pub struct Sheet {
@@ -189,8 +189,8 @@ impl Sheet {
 
     /// Draws the directions of the world axes, at the lower left.
     pub fn compass(&self, height: f64) -> String {
-        const LENGTH: f64 = 22.0;
-        const NAMED: f64 = LENGTH + 9.0;
+        const AXIS_LENGTH: f64 = 22.0;
+        const NAME_DISTANCE: f64 = AXIS_LENGTH + 9.0;
         // Leaves room for the leftmost and the lowest name.
         let ends = [0, 1, 2].map(|axis| self.view.place(along(axis)));
         let left = ends.iter().fold(0.0, |least: f64, end| least.min(end.0));
@@ -208,7 +208,7 @@ impl Sheet {
             let (x, y) = self.view.place(along(axis));
             let end = (origin.0 + AXIS_LENGTH * x, origin.1 + AXIS_LENGTH * y);
             text += &polyline(&[origin, end], axis_colour(axis), 1.6, "");
-            let name = (origin.0 + NAMED * x - 3.0, origin.1 + NAMED * y + 4.0);
+            let name = (origin.0 + NAME_DISTANCE * x - 3.0, origin.1 + NAME_DISTANCE * y + 4.0);
             // There is no room to name an axis that points towards the eye.
             if x.hypot(y) > 0.3 {
                 let _ = writeln!(
@@ -257,7 +257,7 @@ fn ellipse((x, y): (i32, i32), of: Ellipse, style: &str) -> String {
 }
 
 /// The end of the text that [`polyline`] writes.
-const CLOSED: &str = "\"/>\n";
+const POLYLINE_END: &str = "\"/>\n";
 
 fn polyline(points: &[Point], colour: RGBColor, width: f64, more: &str) -> String {
     let points: Vec<String> = points.iter().map(|point| written(*point)).collect();
@@ -270,7 +270,7 @@ fn polyline(points: &[Point], colour: RGBColor, width: f64, more: &str) -> Strin
 }
 
 /// Concatenates elements; consecutive lines of one kind become one element.
-pub fn joined(elements: impl Iterator<Item = String>) -> String {
+pub fn join_elements(elements: impl Iterator<Item = String>) -> String {
     let mut text = String::new();
     let mut open = String::new();
     for element in elements {
@@ -294,7 +294,7 @@ pub fn joined(elements: impl Iterator<Item = String>) -> String {
 }
 
 /// Returns the point at a fraction of a line, moved sideways by a number of pixels.
-fn beside(from: Point, to: Point, part: f64, aside: f64) -> Point {
+fn point_beside(from: Point, to: Point, part: f64, aside: f64) -> Point {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let length = x.hypot(y).max(f64::MIN_POSITIVE);
     (

@@ -10,15 +10,15 @@ use plotters::style::RGBColor;
 use std::fmt::Write;
 
 /// Margins around the shapes and below hanging shapes, relative to their size.
-const ROOM: f64 = 0.12;
-const BELOW: f64 = 0.06;
+const MARGIN: f64 = 0.12;
+const GAP_BELOW: f64 = 0.06;
 /// The floor is at height 0 if no shape is lower and the lowest is no higher than this, relative to the size.
-const NEAR: f64 = 0.8;
+const MAX_HEIGHT_ABOVE_ZERO: f64 = 0.8;
 /// Approximate number of squares along its longer side.
-const SQUARES: f64 = 7.0;
+const GRID_SQUARES: f64 = 7.0;
 
 /// Black on light ground and on dark.
-const SHADOW: RGBColor = RGBColor(0, 0, 0);
+const SHADOW_COLOR: RGBColor = RGBColor(0, 0, 0);
 
 /// A rectangular grid.
 pub struct Floor {
@@ -94,12 +94,12 @@ impl Floor {
     }
 
     /// Returns a text with the size of its squares.
-    pub fn said(&self) -> String {
+    pub fn describe_grid(&self) -> String {
         format!("grid {}", short(self.spacing))
     }
 
     /// Draws the rectangle and its lines.
-    pub fn drawn(&self, sheet: &Sheet) -> String {
+    pub fn draw(&self, sheet: &Sheet) -> String {
         let corners = self.corners().map(|corner| sheet.point(corner));
         let mut text = format!(
             "<polygon points=\"{}\" fill=\"{}\"/>\n<path stroke=\"{}\" stroke-width=\"7\" fill=\"none\" d=\"",
@@ -118,7 +118,7 @@ impl Floor {
     }
 
     /// Moves a point or direction vertically down to the floor.
-    fn dropped(&self, point: Vector, height: f64) -> Vector {
+    fn project_down(&self, point: Vector, height: f64) -> Vector {
         let up = self.base[2];
         let above = dot(up, point) - height;
         std::array::from_fn(|k| point[k] - above * up[k])

@@ -49,17 +49,17 @@ pub struct Space {
 }
 
 /// Width of a drawing, and its smallest and largest height (pixels).
-const WIDTH: f64 = 520.0;
-const HEIGHT: (f64, f64) = (240.0, 460.0);
+const DRAWING_WIDTH: f64 = 520.0;
+const HEIGHT_RANGE: (f64, f64) = (240.0, 460.0);
 /// Margins: at the top and on the other sides.
-const HEAD: f64 = 58.0;
-const SIDE: f64 = 26.0;
-/// Longest piece of a bar, each of which has a separate depth, and largest number of pieces; bars thinner than `THICK`
+const TOP_MARGIN: f64 = 58.0;
+const SIDE_MARGIN: f64 = 26.0;
+/// Longest piece of a bar, each of which has a separate depth, and largest number of pieces; bars thinner than `MIN_SPLIT_WIDTH`
 /// have one piece (pixels).
-const LONGEST: f64 = 40.0;
-const PIECES: f64 = 5.0;
+const MAX_PIECE_LENGTH: f64 = 40.0;
+const MAX_BAR_PIECES: f64 = 5.0;
 /// Opacities of the faintest and the strongest of the faint poses.
-const FAINT: (f64, f64) = (0.1, 0.24);
+const FAINT_OPACITY: (f64, f64) = (0.1, 0.24);
 
 impl Shape {
     /// Returns the points that have to be visible with a margin in pixels.
@@ -189,7 +189,7 @@ pub fn space(space: &Space) -> Figure {
 }
 
 /// Draws the shapes of a pose, from the farthest to the nearest; faint ones are outlines, each in one piece.
-fn ordered(parts: &[Part], sheet: &Sheet, faint: bool) -> String {
+fn order_by_depth(parts: &[Part], sheet: &Sheet, faint: bool) -> String {
     let mut pieces: Vec<(f64, Ink, Shape)> = Vec::new();
     for part in parts {
         let whole = || vec![part.shape.clone()];
@@ -254,7 +254,7 @@ impl Bounds {
     }
 
     /// Returns the scale and origin at which everything fits, and the height of the drawing.
-    fn fitted(&self, view: View) -> (Sheet, f64) {
+    fn fit(&self, view: View) -> (Sheet, f64) {
         let Bounds { least, most } = self;
         let size = |least: f64, most: f64| {
             let size = most - least;

@@ -1,7 +1,7 @@
 //! Shapes in space.
 
 /// The width from which a bar is split into pieces and has a shadow (pixels).
-pub(super) const THICK: f64 = 3.0;
+pub(super) const MIN_SPLIT_WIDTH: f64 = 3.0;
 
 /// A point or a direction.
 pub type Vector = [f64; 3];

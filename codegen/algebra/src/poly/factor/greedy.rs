@@ -6,7 +6,7 @@ use super::system::{Literal, Literals, System};
 use std::cmp::Reverse;
 
 /// Returns the system after extraction, and the work it took. Stops early once the work exceeds `most`.
-pub(super) fn extracted(system: &System, strategy: Strategy, most: u64) -> (System, u64) {
+pub(super) fn extract_divisors(system: &System, strategy: Strategy, most: u64) -> (System, u64) {
     let mut network = Network::new(system, strategy);
     while network.work <= most {
         let Some((score, Reverse(divisor))) = network.queue.pop() else {
@@ -80,7 +80,7 @@ impl Network {
         let Some(&model) = chosen.first() else {
             return;
         };
-        let (_, first, second) = self.divided(model);
+        let (_, first, second) = self.divide(model);
         let sign = self.nodes[model.first].negative;
         let definition = if defined {
             self.nodes[model.first].sum
@@ -93,7 +93,7 @@ impl Network {
         };
         let literal = self.literal(definition);
         for &o in chosen.iter().skip(usize::from(defined)) {
-            let (mut cofactor, a, b) = self.divided(o);
+            let (mut cofactor, a, b) = self.divide(o);
             // Products with equal hashes are almost certainly equal; this comparison makes sure. In
             // addition, a product may have been removed because a literal in it was forwarded.
             let alive = self.nodes[o.first].alive && self.nodes[o.second].alive;
@@ -149,7 +149,7 @@ impl Network {
     }
 
     /// Returns the cofactor m and the parts c₁, c₂ of an occurrence.
-    fn divided(&self, o: Occurrence) -> (Literals, Literals, Literals) {
+    fn divide(&self, o: Occurrence) -> (Literals, Literals, Literals) {
         let (mut m, mut first) = (Literals::new(), Literals::new());
         let mut second = self.nodes[o.second].literals.clone();
         for &literal in &self.nodes[o.first].literals {

@@ -17,7 +17,7 @@ pub use program::{Operand, Program, Step, Value};
 
 use super::monomial::Monomial;
 use divisor::{Strategy, mix};
-use greedy::extracted;
+use greedy::extract_divisors;
 
 use std::collections::{BTreeMap, BTreeSet};
 use system::{Literal, Product, System, cancelled};
@@ -80,7 +80,7 @@ pub fn factor(polynomials: &[Vec<Term>]) -> Program {
                 (start, strategy(kernel, cube, noise, mix(attempt)))
             }
         };
-        let (result, spent) = extracted(&start, chosen, 4 * PAIR_BUDGET);
+        let (result, spent) = extract_divisors(&start, chosen, 4 * PAIR_BUDGET);
         work += spent + 50 + 4 * start.sums.len() as u64;
         let operations = result.operations();
         failures = if operations < least { 0 } else { failures + 1 };

@@ -10,7 +10,7 @@ use crate::dense::{kernel, least_pivot, shortest, solution};
 use crate::jet::{Jet, constant, sum, turned};
 
 /// Largest number of Newton steps to close the loops.
-const STEPS: usize = 40;
+const MAX_NEWTON_STEPS: usize = 40;
 
 #[derive(Clone)]
 pub struct System {

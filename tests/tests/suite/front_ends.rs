@@ -34,7 +34,7 @@ fn items(code: &str) -> String {
 
 #[test]
 fn the_macro_expands_to_what_the_builder_writes() {
-    crate::some::some(models())
+    crate::thinning::thin_out(models())
         .par_iter()
         .for_each(|(name, text)| {
             let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
@@ -70,7 +70,7 @@ fn script(test: &str, folder: &Path, builder: impl FnOnce() -> Builder) -> Optio
     }
     let this = std::env::current_exe().expect("a program");
     let script = std::process::Command::new(this)
-        .args(["--exact", "--nocapture", &format!("doors::{test}")])
+        .args(["--exact", "--nocapture", &format!("front_ends::{test}")])
         .env(own, "1")
         // The stack size of the main thread on Windows.
         .env("RUST_MIN_STACK", (1 << 20).to_string())

@@ -12,15 +12,15 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 /// Shorter names are placeholders in proposals, such as `rate q = v;`.
-const LETTERS: usize = 4;
+const MAX_PLACEHOLDER_LETTERS: usize = 4;
 
 /// Suffixes of names derived from joints, functions and keywords of Rust.
-const BEHIND: [&str; 13] = [
+const SUFFIXES: [&str; 13] = [
     "dot", "r", "R", "v", "w", "d", "p", "1", "2", "slopes", "twist", "body", "",
 ];
 
 /// Words of proposals that are placeholders for what the user would write.
-const PROPOSED: &str = "DEFAULT EXPRESSION LOWER NAME Name UPPER argument error f64 false file foot force from ground knee left link mat3
+const PROPOSAL_WORDS: &str = "DEFAULT EXPRESSION LOWER NAME Name UPPER argument error f64 false file foot force from ground knee left link mat3
     mount name number path pchip point rate sym2 sym3 system then torque true values vec2 vec3 vecN when with y_slopes";
 
 /// Returns the identifiers of a text.

@@ -9,7 +9,7 @@ use hamel_codegen::program::{FunctionId, Program};
 /// Potentials (x − a)² (x − b)² with zeros near the start, far from the origin. The slope of their force is a sum of
 /// squares and products of such differences; expanded, it is cheaper: a x² + b x + c, the difference of large terms.
 /// With the constraint, states are only measured near the start. Near the origin, where START is 0.1, nothing is lost.
-const TEXT: &str = "system Far {
+const FAR_POTENTIALS: &str = "system Far {
     coord x, y, z; velocity u, v; rate x = u; rate y = y * v; rate z = -z * v;
     constraint y * z = 1; kinetic (u^2 + v^2) / 2;
     potential ((x - 9999)^2 * (x - 10000)^2 + (x - 10001)^2 * (x - 10002)^2) / 2;

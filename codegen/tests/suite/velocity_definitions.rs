@@ -5,7 +5,7 @@ use crate::common::{Random, difference, generated, value};
 use hamel_codegen::generate::Generated;
 
 /// Rounding of a few hundred operations of f64.
-const CLOSE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-11;
 
 type V3 = [f64; 3];
 type M3 = [V3; 3];

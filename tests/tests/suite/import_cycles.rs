@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Largest number of files in a cycle.
-const MOST: usize = 3;
+const MAX_CYCLE_FILES: usize = 3;
 
 /// Returns the modules of a crate by their paths, each with its file.
 fn modules(source: &Path) -> BTreeMap<Vec<String>, PathBuf> {

@@ -8,7 +8,7 @@ use hamel_codegen::scene::{
 };
 
 /// Legal names: keywords of the language where they are allowed, words of generated code, other letters.
-const NAMES: [&str; 20] = [
+const LEGAL_NAMES: [&str; 20] = [
     "a",
     "m",
     "θ",
@@ -31,10 +31,10 @@ const NAMES: [&str; 20] = [
     "__",
 ];
 /// Number of names that a statement can declare.
-const DECLARED: usize = 16;
+const DECLARABLE_NAMES: usize = 16;
 
 /// A built part with its text.
-type Both<T> = (T, String);
+type BuiltAndWritten<T> = (T, String);
 
 fn name(random: &mut Random) -> &'static str {
     LEGAL_NAMES[random.below(LEGAL_NAMES.len())]
@@ -45,7 +45,7 @@ fn word(random: &mut Random) -> &'static str {
 }
 
 /// Returns an exact number in one of several spellings.
-fn number(random: &mut Random) -> Both<Expr> {
+fn number(random: &mut Random) -> BuiltAndWritten<Expr> {
     let whole = random.below(2000) as i32;
     let few = random.below(3) as i32;
     match random.below(6) {
