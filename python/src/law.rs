@@ -132,7 +132,7 @@ fn called(
     let list: Vec<f64> = array.as_array().iter().copied().collect();
     if array.ndim() != 1 || list.len() != length {
         return Err(PyValueError::new_err(format!(
-            "inputs are {length} numbers, the function has given {}",
+            "expected {length} inputs, but the function returned {}",
             given.repr()?
         )));
     }

@@ -23,7 +23,7 @@ pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py
     };
     if array.ndim() > AXES {
         let message = format!(
-            "{what} has {AXES} axes at most, this array has {}",
+            "{what} has at most {AXES} axes, but this array has {}",
             array.ndim()
         );
         return Err(PyValueError::new_err(message));
@@ -65,22 +65,24 @@ fn made<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny
         .call_method1("is_masked", (value,))?
         .is_truthy()?
     {
-        return Err(PyValueError::new_err(format!(
-            "{what} has entries that are masked"
-        )));
+        return Err(PyValueError::new_err(format!("{what} has masked entries")));
     }
     let array = numpy.call_method1("asarray", (value,)).map_err(own)?;
     let dtype = array.getattr("dtype")?;
     let kind = dtype.getattr("kind")?.to_string();
     if !"biufO".contains(&kind) {
-        let message = format!("{what} has real numbers, this array has the dtype {dtype}");
+        let message =
+            format!("{what} has to contain real numbers, but this array has the dtype {dtype}");
         return Err(PyTypeError::new_err(message));
     }
     if kind == "O" {
         for entry in array.getattr("flat")?.try_iter()? {
             let entry = entry?;
             if entry.is_none() || numpy.call_method1("iscomplexobj", (&entry,))?.is_truthy()? {
-                let message = format!("{what} has real numbers, {} was given", entry.repr()?);
+                let message = format!(
+                    "{what} has to contain real numbers, but {} was given",
+                    entry.repr()?
+                );
                 return Err(PyTypeError::new_err(message));
             }
         }
@@ -97,7 +99,7 @@ pub fn given<'py>(what: &str, length: usize, value: &Bound<'py, PyAny>) -> PyRes
         Some(last) if *last == length => Ok(array),
         None if length == 1 => Ok(array),
         _ => Err(PyValueError::new_err(format!(
-            "{what} has {length} entries along its last axis, this array has the shape {shape:?}"
+            "{what} has {length} entries along its last axis, but this array has the shape {shape:?}"
         ))),
     }
 }

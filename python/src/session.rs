@@ -93,7 +93,7 @@ fn length(h: f64) -> PyResult<()> {
     match h.is_finite() && h != 0.0 {
         true => Ok(()),
         false => Err(HamelError::new_err(format!(
-            "a step of the length {h} is none: `h` is a finite number other than 0"
+            "{h} is not the length of a step: `h` has to be a finite number other than 0"
         ))),
     }
 }
@@ -104,14 +104,14 @@ fn list(what: &str, length: usize, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64
     if array.ndim() > 1 {
         let shape = array.shape();
         return Err(PyValueError::new_err(format!(
-            "{what} has {length} entries and no other axes, this array has the shape {shape:?}"
+            "{what} has {length} entries and no other axes, but this array has the shape {shape:?}"
         )));
     }
     let numbers: Vec<f64> = array.as_array().iter().copied().collect();
     match numbers.iter().position(|number| !number.is_finite()) {
         None => Ok(numbers),
         Some(place) => Err(HamelError::new_err(format!(
-            "{what} has finite numbers, {} stands at the index {place}",
+            "{what} has to contain finite numbers, but {} is at the index {place}",
             numbers[place]
         ))),
     }
@@ -335,7 +335,7 @@ impl Session {
             rows.push(Rows::new(array, &lead)?);
         }
         let [x_rows, xi_rows, u_rows] = rows.as_mut_slice() else {
-            return Err(PyTypeError::new_err("x, xi and u are needed"));
+            return Err(PyTypeError::new_err("expected x, xi and u"));
         };
         let (mut all_x, mut all_xi) = (unknown(&lead, lengths[0])?, unknown(&lead, lengths[1])?);
         let stepped = py.detach(|| -> PyResult<()> {

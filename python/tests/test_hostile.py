@@ -56,11 +56,11 @@ def test_a_state_has_finite_numbers(top):
     broken = hamel.State(x, XI, start.u, start.parameters)
     asked = (top.simulate, top.linearize, top.evaluate, top.step_slopes)
     for ask, options in zip(asked, ({"until": 1.0}, {}, {}, {"h": 0.1})):
-        with pytest.raises(hamel.HamelError, match="`x` of a state has finite numbers, NaN stands at the index 4"):
+        with pytest.raises(hamel.HamelError, match="`x` of a state has to contain finite numbers, but NaN is at the index 4"):
             ask(at=broken, **options)
     with pytest.raises(ValueError, match=r"`xi` of a state has 3 entries and no other axes.*\[1, 3\]"):
         top.linearize(hamel.State(start.x, [XI], start.u, start.parameters))
-    with pytest.raises(TypeError, match="`xi` of a state has real numbers, None was given"):
+    with pytest.raises(TypeError, match="`xi` of a state has to contain real numbers, but None was given"):
         top.linearize(hamel.State(start.x, None, start.u, start.parameters))
     with pytest.raises(hamel.HamelError, match="state.param.m: a finite number is needed, 1000"):
         top.with_parameters(m=10**400)

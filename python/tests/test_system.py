@@ -348,7 +348,7 @@ def test_errors_show_their_place(models, tmp_path):
         hamel.System.from_file(tmp_path / "nothing.eom")
     with pytest.raises(FileNotFoundError):
         hamel.System.from_urdf(tmp_path / "nothing.urdf")
-    with pytest.raises(hamel.HamelError, match="is no robot in URDF"):
+    with pytest.raises(hamel.HamelError, match="is not a robot in URDF"):
         hamel.System.from_urdf(models / "pendulum.eom")
     with pytest.raises(hamel.HamelError, match="no constants"):
         hamel.System.from_text(PENDULUM, constants={"n": 3})

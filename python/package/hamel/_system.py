@@ -379,7 +379,7 @@ class System:
         }
         file, text = _read(path)
         if not text.lstrip("\ufeff \t\r\n").startswith("<"):
-            raise HamelError(f"{file} is no robot in URDF; `System.from_file` reads descriptions")
+            raise HamelError(f"{file} is not a robot in URDF; `System.from_file` reads descriptions")
         return cls._open(file, text, options)
 
     def with_parameters(self, **values: ArrayLike) -> System:

@@ -74,8 +74,9 @@ impl Writer<'_> {
         if !cleaned.is_empty() {
             self.page.top("//");
             let tolerance = options.tolerance;
-            self.page
-                .top(&format!("// Taken for roundings, within {tolerance:e}:"));
+            self.page.top(&format!(
+                "// Corrected as rounding errors, within {tolerance:e}:"
+            ));
             for change in cleaned {
                 self.page.top(&format!("// - {change}"));
             }

@@ -163,7 +163,7 @@ impl Writer<'_> {
         self.page.blank();
         if !self.options.floating {
             self.page
-                .comment(&range, &format!("`{name}` stands in the world."));
+                .comment(&range, &format!("`{name}` is fixed in the world."));
             return;
         }
         let (root, frame) = (&self.names.root, &self.names.links[self.tree.root]);
