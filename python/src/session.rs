@@ -353,7 +353,7 @@ impl Session {
             rows.push(Rows::new(array, &lead)?);
         }
         let [x_rows, xi_rows, u_rows] = rows.as_mut_slice() else {
-            return Err(PyTypeError::new_err("x, xi and u are needed"));
+            return Err(PyTypeError::new_err("expected x, xi and u"));
         };
         let (mut all_x, mut all_xi) = (unknown(&lead, lengths[0])?, unknown(&lead, lengths[1])?);
         let stepped = py.detach(|| -> PyResult<()> {

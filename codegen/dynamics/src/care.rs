@@ -19,7 +19,8 @@ use hamel_program::rounding::{Measured, digits_lost};
 /// Number of lost digits from which on the documentation of a function mentions them.
 pub const MANY: f64 = 6.0;
 /// Advice to users if all candidates lose digits.
-pub const HELP: &str = "Frames near their bodies, and no differences of large terms, keep more.";
+pub const HELP: &str =
+    "Frames close to their bodies and no differences of large terms lose fewer digits.";
 /// Number of digits that a function may lose before candidates are compared by them.
 const ENOUGH: f64 = 2.5;
 /// Number of digits that a candidate may lose without being penalised.
@@ -121,7 +122,7 @@ pub fn note(program: &mut Program, losses: &[Option<f64>]) {
             let digits = digits.min(16.0);
             function.docs.extend([
                 String::new(),
-                format!("Rounding takes about {digits:.0} of its 16 digits at the start or near it. {HELP}"),
+                format!("Rounding loses about {digits:.0} of its 16 digits at the start or near it. {HELP}"),
             ]);
         }
     }

@@ -144,7 +144,7 @@ fn names_with_line_breaks_stay_in_comments() {
         "{text}"
     );
     assert!(
-        text.contains("// `b  param grounded = 1; //` stands in the world."),
+        text.contains("// `b  param grounded = 1; //` is fixed in the world."),
         "{text}"
     );
 }

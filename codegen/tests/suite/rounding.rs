@@ -182,7 +182,7 @@ fn lost_digits_are_measured() {
         system.program.functions[index]
             .docs
             .concat()
-            .contains("Rounding takes")
+            .contains("Rounding loses")
     };
     assert!(says(small) && !says(fine));
     // The measure agrees with f64: compared with x² − 1e-8 x⁴ / 12.

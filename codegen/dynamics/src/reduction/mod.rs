@@ -314,7 +314,7 @@ fn impossible(
     let others = (0..row.len()).filter(|&j| row[j] != graph.zero() && j != place);
     let name = entry_name(model, place);
     let message = match others.count() {
-        0 => format!("`{name}` cannot be independent: a constraint gives it"),
+        0 => format!("`{name}` cannot be independent: a constraint determines it"),
         _ => format!("`{name}` cannot be independent: a constraint can be solved only for it"),
     };
     let error = Diagnostic::new(span, message)

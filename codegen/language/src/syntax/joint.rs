@@ -63,7 +63,7 @@ const FIELDS: [(&str, JointField, &str); 8] = [
     (
         "rest",
         JointField::Rest,
-        "where a spring is without force is written `rest q0;`",
+        "the rest position of a spring is written `rest q0;`",
     ),
     (
         "force",

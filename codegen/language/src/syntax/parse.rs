@@ -37,9 +37,8 @@ fn header(cursor: &mut Cursor<'_>) -> Parsed<System> {
     let public = cursor.eat_word("pub");
     if public && cursor.is_open(Delimiter::Parenthesis) {
         return Err(
-            Diagnostic::new(cursor.here(), "a system is `pub` or private").help(
-                "write `pub system Name { … }`, and restrict it with the module it stands in",
-            ),
+            Diagnostic::new(cursor.here(), "a system is `pub` or private")
+                .help("write `pub system Name { … }`, and restrict it by its enclosing module"),
         );
     }
     cursor.expect_word("system")?;

@@ -59,7 +59,7 @@ system S {}"#,
     1:1 expected `system`, found `sytem` <sytem>
       a description is written `system Name { … }`
     1:4 a system is `pub` or private <(>
-      write `pub system Name { … }`, and restrict it with the module it stands in
+      write `pub system Name { … }`, and restrict it by its enclosing module
     1:8 expected the name of the system, found `{` <{>
       a description is written `system Name { … }`
     1:8 expected `{`, found the end of the input <S>

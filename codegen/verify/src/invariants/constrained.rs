@@ -28,7 +28,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
         let message = match find_refutation(model, program, claim) {
             None => continue,
             Some(Unequal::Nowhere) => format!(
-                "the claim `{}` cannot be checked: the motion has no value where it is claimed",
+                "the claim `{}` cannot be checked: the motion has no value where the claim is made",
                 claim.name
             ),
             Some(Unequal::Differs(entry)) => format!(

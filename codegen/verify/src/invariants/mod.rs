@@ -51,7 +51,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
             None => {}
             Some(Unequal::Nowhere) => {
                 let message = format!(
-                    "the claim `{}` cannot be checked: the motion has no value where it is claimed",
+                    "the claim `{}` cannot be checked: the motion has no value where the claim is made",
                     claim.name
                 );
                 let help = "check the values after `when`: they may make the mass matrix singular, or a divisor zero";

@@ -221,7 +221,7 @@ impl Start {
                 ),
                 _ => (
                     format!("`{written}` has an exact start and a guess"),
-                    "remove the guess to keep the exact start, or the exact start to be near the guess",
+                    "remove the guess to keep the exact start, or remove the exact start to use the guess",
                 ),
             };
             let error = Diagnostic::new(target.span(), message).help(help);
