@@ -7,7 +7,7 @@ use crate::json::Json;
 use crate::robot::RobotOptions;
 use crate::source;
 use clap::Args;
-use hamel_engine::evaluate::{Cube, Kinematics, Value, requested_jacobians, evaluate};
+use hamel_engine::evaluate::{Cube, Kinematics, Value, evaluate, requested_jacobians};
 use hamel_engine::state::File;
 use hamel_engine::{Evaluation, State};
 use std::path::PathBuf;

@@ -118,7 +118,10 @@ fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
                 .map(|i| from(i).filter(|&k| k > 0).map(weight).sum())
                 .collect();
             let found = value(&system, "potential_force", at);
-            assert!(difference(&wanted, &found) < TOLERANCE, "gravity of {n} rods");
+            assert!(
+                difference(&wanted, &found) < TOLERANCE,
+                "gravity of {n} rods"
+            );
             // Only the centripetal forces of the rods act on the cart.
             let pull: f64 = (1..=n)
                 .map(|k| -moment(k) * theta[k - 1].sin() * spin[k - 1] * spin[k - 1])

@@ -160,7 +160,12 @@ fn unit(axis: usize) -> Vector {
 
 /// Draws a ball with its mesh and a curve on it; `between` draws everything between the hidden and the visible parts of
 /// the curve.
-fn curve(area: &Area, view: &View, points: &[Vector], between: impl FnOnce() -> DrawResult) -> DrawResult {
+fn curve(
+    area: &Area,
+    view: &View,
+    points: &[Vector],
+    between: impl FnOnce() -> DrawResult,
+) -> DrawResult {
     let middle = (view.x, view.y);
     let ball = ShapeStyle::from(theme::BALL.0).filled();
     circle(area, middle, view.radius, ball)?;

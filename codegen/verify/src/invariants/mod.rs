@@ -106,7 +106,9 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     for claim in &model.invariants {
         let entries = motion.entries(claim);
         let verdict = match motion.find_refutation(claim, &entries) {
-            Some(Unequal::Nowhere) => Verdict::Failed("no point was found at which to check it".into()),
+            Some(Unequal::Nowhere) => {
+                Verdict::Failed("no point was found at which to check it".into())
+            }
             Some(Unequal::Differs(entry)) => Verdict::Failed(format!(
                 "entry {} of {} is not constant",
                 entry + 1,

@@ -208,7 +208,10 @@ impl Sheet {
             let (x, y) = self.view.place(along(axis));
             let end = (origin.0 + AXIS_LENGTH * x, origin.1 + AXIS_LENGTH * y);
             text += &polyline(&[origin, end], axis_colour(axis), 1.6, "");
-            let name = (origin.0 + NAME_DISTANCE * x - 3.0, origin.1 + NAME_DISTANCE * y + 4.0);
+            let name = (
+                origin.0 + NAME_DISTANCE * x - 3.0,
+                origin.1 + NAME_DISTANCE * y + 4.0,
+            );
             // There is no room to name an axis that points towards the eye.
             if x.hypot(y) > 0.3 {
                 let _ = writeln!(
