@@ -1,6 +1,6 @@
 //! What commands report of a description, for other front ends: identities, costs, generated code, tables, comparisons.
 
-use crate::check::{self, Checked};
+use crate::check::{self, CheckedIdentity};
 use crate::compare::{self, Comparison};
 use crate::failure::Failure;
 use crate::ops;
@@ -10,9 +10,9 @@ use hamel_codegen::emit::c::{Files, Precision};
 use hamel_engine::{Error, Session, State, method};
 
 /// The results of `hamel check`: the identities with their verdicts, and the lines below them.
-pub fn check(session: &Session) -> (Vec<Checked>, String) {
+pub fn check(session: &Session) -> (Vec<CheckedIdentity>, String) {
     let remarks = check::remarks(session.generated(), session.source().shown());
-    (check::checked(session.generated()), remarks)
+    (check::check_identities(session.generated()), remarks)
 }
 
 /// The output of `hamel ops --format json`.
@@ -20,7 +20,7 @@ pub fn check(session: &Session) -> (Vec<Checked>, String) {
 /// # Errors
 /// Errors of the derivation.
 pub fn operations(session: &Session) -> Result<String, Failure> {
-    ops::counted(session.source())
+    ops::counts_json(session.source())
 }
 
 /// The output of `hamel ops --advise --format json`.
@@ -28,7 +28,7 @@ pub fn operations(session: &Session) -> Result<String, Failure> {
 /// # Errors
 /// If there are no velocities to compare.
 pub fn advice(session: &Session) -> Result<String, Failure> {
-    ops::advised(session.source())
+    ops::advice_json(session.source())
 }
 
 /// The generated Rust, as for a description in a file of this name.

@@ -45,7 +45,7 @@ pub mod source;
 pub mod state;
 pub mod text;
 
-pub use drawing::{Drawing, Drawn, Scene};
+pub use drawing::{Drawing, ParametrizedDrawing, Scene};
 pub use error::Error;
 pub use evaluate::Evaluation;
 pub use linearize::Linearization;

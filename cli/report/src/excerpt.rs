@@ -53,7 +53,9 @@ fn micros(time: Option<Work>) -> String {
 pub fn replace_block(text: &str, block: &str) -> Option<String> {
     let (before, rest) = text.split_once(BEGIN_MARKER)?;
     let (_, after) = rest.split_once(END_MARKER)?;
-    Some(format!("{before}{BEGIN}\n{block}{END}{after}"))
+    Some(format!(
+        "{before}{BEGIN_MARKER}\n{block}{END_MARKER}{after}"
+    ))
 }
 
 /// Returns the block of a text; `None` if the comments are missing.

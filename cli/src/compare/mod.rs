@@ -227,7 +227,7 @@ pub fn case(
         inputs,
         error: Box::new(|_, _| f64::NAN),
         momenta: Box::new(momenta),
-        said: Box::new(|error| system.step_error(error).to_string()),
+        error_text: Box::new(|error| system.step_error(error).to_string()),
         conservative: true,
     };
     let mut steps = asked.steps.clone();

@@ -5,7 +5,7 @@ use crate::failure::{Failure, print};
 use crate::json::Json;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
-use hamel_engine::evaluate::{NamedFrame, asked, kinematics};
+use hamel_engine::evaluate::{NamedFrame, kinematics, requested_jacobians};
 use hamel_engine::mechanism::{self, constant_singular, function};
 use hamel_engine::names;
 use hamel_engine::state::{File, ORDER, Sample, rows};
@@ -155,7 +155,7 @@ fn members(
     // A missing function has been reported before.
     let is_there = generated.program.function(FunctionId::Accel).is_some();
     if let (None, true, Some(mass)) = (&accel.value, is_there, &mass) {
-        let why = mechanism::description_message(generated, &state.params, mass, text);
+        let why = mechanism::of(generated, &state.params, mass, text);
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));

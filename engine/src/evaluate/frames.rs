@@ -43,7 +43,7 @@ fn both(frame: &str) -> [Jacobian; 2] {
 }
 
 /// The Jacobians of all requested frames.
-pub fn asked(frames: &[NamedFrame]) -> Vec<Jacobian> {
+pub fn requested_jacobians(frames: &[NamedFrame]) -> Vec<Jacobian> {
     frames.iter().flat_map(|(_, frame)| both(frame)).collect()
 }
 

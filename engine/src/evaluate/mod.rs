@@ -4,7 +4,7 @@ mod frames;
 mod geometry;
 mod value;
 
-pub use frames::{Kinematics, NamedFrame, asked, kinematics};
+pub use frames::{Kinematics, NamedFrame, kinematics, requested_jacobians};
 pub use geometry::Cube;
 pub use value::Value;
 
@@ -13,7 +13,7 @@ use crate::mechanism::{Instance, function};
 use crate::names;
 use crate::state::{State, joints, rows};
 use geometry::Geometry;
-use hamel::System;
+use hamel::{Energies, System};
 use hamel_codegen::derive::undetermined::undetermined;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;

@@ -58,7 +58,7 @@ pub fn linearize(
     let xi_dot = system.motion(x, xi, u).map_err(Error::NoLinearization)?;
     let flat = function(program, "linearize", params)?
         .call(x, xi, u, &[])
-        .map_err(|_| Error::NoLinearization(system.at(x)))?;
+        .map_err(|_| Error::NoLinearization(system.state_message(x)))?;
     let inputs: Vec<String> = generated
         .model
         .inputs
@@ -95,7 +95,7 @@ pub fn linearize(
         slopes.extend(
             function
                 .call(x, xi, u, &[])
-                .map_err(|_| Error::NoLinearization(system.at(x)))?,
+                .map_err(|_| Error::NoLinearization(system.state_message(x)))?,
         );
         let shape = program.function(name).map_or(Shape::Scalar, |f| f.shape);
         outputs.extend(names::shaped(name, shape));
@@ -118,7 +118,7 @@ pub fn linearize(
     if !full {
         let flat = function(program, "displacement_frame", params)?
             .call(x, &[], &[], &[])
-            .map_err(|_| Error::NoLinearization(system.at(x)))?;
+            .map_err(|_| Error::NoLinearization(system.state_message(x)))?;
         let columns = flat.len() / x.len().max(1);
         let rows: Vec<Vec<f64>> = flat.chunks(columns.max(1)).map(<[f64]>::to_vec).collect();
         if let Some(tangent) = minimal::tangent(generated, state, &rows) {

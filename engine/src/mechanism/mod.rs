@@ -26,7 +26,7 @@ use hamel_native::Compiled;
 use momenta::Momenta;
 pub use numbers::Numbers;
 use singular::Failed;
-pub use singular::{SingularState, meaning, of};
+pub use singular::{SingularState, cause_message, of};
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 pub use varied::{End, Varied};

@@ -255,10 +255,10 @@ mod tests {
         };
         assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);
         // Row 2 is half of row 1: the rest is a rounding error.
-        let dependent = message([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
+        let dependent = told([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
         let expected = "the mass matrix is not positive definite at pivot 2 (`w[1]`, line 3)";
         assert_eq!(dependent.as_deref(), Some(expected));
-        let nowhere = message([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
+        let nowhere = told([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
         assert!(nowhere.is_some_and(|why| why.ends_with("pivot 3 (`w[2]`)")));
     }
 }

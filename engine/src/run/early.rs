@@ -110,7 +110,7 @@ impl EarlyEnd {
             },
             Err(StepError::Singular { time, cause }) => EarlyEnd::Singular {
                 time,
-                state: system.singular(cause),
+                state: system.singular_message(cause),
             },
             Err(StepError::NonFinite { time }) => EarlyEnd::NotFinite {
                 time,

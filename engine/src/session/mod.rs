@@ -356,7 +356,7 @@ impl Session {
     /// Explains a pivot that is not positive, in the names of the description.
     pub fn meaning(&self, cause: Cause) -> String {
         let shown = self.source.shown();
-        mechanism::meaning(cause, self.active(), shown)
+        mechanism::cause_message(cause, self.active(), shown)
     }
 
     fn mechanism(&self) -> Result<&Arc<Mechanism>, Error> {

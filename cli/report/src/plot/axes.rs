@@ -224,7 +224,7 @@ impl Axes {
     ///
     /// # Errors
     /// If the drawing library fails.
-    pub fn below(&self, area: &Area, name: &str) -> DrawResult {
+    pub fn write_x_label(&self, area: &Area, name: &str) -> DrawResult {
         let style = letters(12.0, theme::SOFT.0, Anchor::Middle, false);
         let at = (
             self.frame.x + 0.5 * self.frame.width,

@@ -2,7 +2,7 @@
 
 use super::axes::{Axes, Axis, Frame};
 use super::figure::{
-    Anchor, Area, DrawResult, Figure, PlotError, circle, headed, letters, line, stroke, write,
+    Anchor, Area, DrawResult, Figure, PlotError, circle, draw_heading, letters, line, stroke, write,
 };
 use super::line::Point;
 use super::theme;

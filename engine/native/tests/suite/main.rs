@@ -6,5 +6,5 @@ mod models;
 mod random;
 #[path = "../../../../codegen/tests/suite/common/size.rs"]
 mod size;
-#[path = "../../../../codegen/tests/suite/common/some.rs"]
-mod some;
+#[path = "../../../../codegen/tests/suite/common/thinning.rs"]
+mod thinning;
