@@ -10,6 +10,7 @@
 //! | `command` | the command line, with the feature of that name |
 //! | `source`, `robot` | descriptions as the command line opens them, and the options for that |
 //! | `reports` | what commands report, for other front ends |
+//! | `parse` | numbers on the command line |
 //! | `json`, `columns`, `outputs` | how results are written; pictures are those of `hamel-report` |
 //! | `progress` | what long work shows |
 //! | `failure` | errors and warnings as they are shown, and exit statuses |
@@ -45,6 +46,7 @@ mod linearize;
 mod ops;
 #[cfg(feature = "command")]
 mod outputs;
+mod parse;
 #[cfg(feature = "command")]
 mod progress;
 #[cfg(feature = "command")]

@@ -5,6 +5,7 @@ mod reference;
 mod write;
 
 use crate::failure::{Failure, print};
+use crate::parse::positive;
 #[cfg(feature = "command")]
 use crate::progress;
 use crate::robot::RobotOptions;
@@ -68,7 +69,7 @@ pub struct Arguments {
     #[arg(long, value_name = "M", value_delimiter = ',')]
     methods: Vec<String>,
     /// Length of the run; default: the last time of the reference, or 10.
-    #[arg(long, value_name = "T", value_parser = super::simulate::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Numbers of steps.
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = number_of_steps, allow_negative_numbers = true)]

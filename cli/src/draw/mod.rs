@@ -4,8 +4,9 @@ mod shapes;
 
 use crate::failure::{self, Failure, print};
 use crate::outputs;
+use crate::parse::positive;
 use crate::robot::RobotOptions;
-use crate::simulate::{InputArguments, positive};
+use crate::simulate::InputArguments;
 use crate::source;
 use clap::Args;
 use hamel_codegen::generate::Generated;

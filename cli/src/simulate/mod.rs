@@ -9,6 +9,7 @@ mod write;
 
 use crate::failure::{Failure, print};
 use crate::outputs;
+use crate::parse::positive;
 use crate::robot::RobotOptions;
 use crate::source;
 use clap::Args;
@@ -16,7 +17,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
 use hamel_engine::run::Every;
 use hamel_engine::{Drive, Samples, Session, Simulation, Stepping, method};
-pub use options::{InputArguments, SteppingArguments, positive};
+pub use options::{InputArguments, SteppingArguments};
 use picture::picture;
 use std::path::PathBuf;
 use write::Format;

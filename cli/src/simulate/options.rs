@@ -1,5 +1,6 @@
 //! Options of runs.
 
+use crate::parse::{positive, rate};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use hamel_engine::method::{self, AUTO};
@@ -64,17 +65,4 @@ impl From<&InputArguments> for InputOptions {
             expressions: arguments.input.clone(),
         }
     }
-}
-
-/// Parses a number greater than zero.
-pub fn positive(text: &str) -> Result<f64, &'static str> {
-    let number = text.parse::<f64>().ok();
-    let number = number.filter(|number| number.is_finite() && *number > 0.0);
-    number.ok_or("expected a number greater than zero")
-}
-
-fn rate(text: &str) -> Result<f64, &'static str> {
-    let number = text.parse::<f64>().ok();
-    let number = number.filter(|number| number.is_finite() && *number >= 0.0);
-    number.ok_or("expected a number, zero or greater")
 }
