@@ -6,6 +6,7 @@ mod idle;
 use crate::diagnostics::Diagnostic;
 use crate::functions::Needs;
 use crate::render::{Level, Note, notes, render};
+use crate::syntax::ast::Texts;
 pub use hamel_import::{Imported, Mimic, Options, Problem, TOLERANCE, Undecoded, decode};
 use std::path::Path;
 
@@ -69,7 +70,7 @@ pub fn refused(errors: &[Diagnostic], path: &str, text: &str, color: bool) -> St
 fn about_the_robot(mut error: Diagnostic) -> Diagnostic {
     if error.lacking == Some(Needs::Inertia) {
         error.help = Some(BARE.to_string());
-        error.statement = None;
+        error.texts = Texts::default();
     }
     error
 }

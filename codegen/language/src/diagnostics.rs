@@ -15,10 +15,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Other places involved, each with a short label.
     pub notes: Vec<(Span, String)>,
-    /// Statement of the description, if its place is that of the part of another file, such as a URDF file, from which
-    /// it was made.
-    pub statement: Option<String>,
-    /// Included texts that contain the places of this error.
+    /// Included texts that contain the places of this error, and the statement that it is about if that is not in the
+    /// text with the places.
     pub texts: Texts,
     /// Inertia that the system lacks, if only the functions that need it are at fault and all others can be derived.
     pub lacking: Option<Needs>,
@@ -37,7 +35,6 @@ impl Diagnostic {
             message: message.into(),
             help: None,
             notes: Vec::new(),
-            statement: None,
             texts: Texts::default(),
             lacking: None,
             unproved: false,

@@ -244,7 +244,7 @@ mod text {
         if let Some(help) = &error.help {
             messages.push(annotate_snippets::Level::HELP.message(help.as_str()));
         }
-        if let Some(statement) = &error.statement {
+        if let Some(statement) = error.texts.statement() {
             let help = format!("the description made from it has `{statement}`");
             messages.push(annotate_snippets::Level::HELP.message(help));
         }

@@ -18,7 +18,7 @@ fn energy<Sys: Energies<Scalar = f64>>(system: &Sys, state: &State<Sys>) -> f64 
 }
 
 /// Returns the largest relative change of energy, the largest |φ|, and the last state.
-fn drift<Sys: System<Scalar = f64>>(
+fn drift<Sys: Energies<Scalar = f64>>(
     system: &Sys,
     until: f64,
     step: f64,

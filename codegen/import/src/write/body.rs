@@ -112,5 +112,5 @@ fn matrix(rows: &[[&Decimal; 3]; 3]) -> Expr {
     if is_diagonal {
         return diagonal([rows[0][0], rows[1][1], rows[2][2]]);
     }
-    rows.map(|row| Expr::from(row)).into()
+    rows.map(Expr::from).into()
 }

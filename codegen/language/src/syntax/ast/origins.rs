@@ -71,9 +71,18 @@ impl Included {
     }
 }
 
-/// Included texts that the places of an error lie in.
+/// Texts, in addition to the description, that an error refers to.
 #[derive(Clone, Debug, Default)]
-pub struct Texts(Vec<Arc<Included>>);
+pub struct Texts(Vec<Text>);
+
+#[derive(Clone, Debug)]
+enum Text {
+    /// An included text that a place of the error lies in.
+    Included(Arc<Included>),
+    /// The statement at fault. Its place is that of the part of another file, such as a URDF file, from which it was
+    /// made.
+    Statement(String),
+}
 
 impl Texts {
     /// Returns the included text that contains a region, and the byte range in that text.
@@ -82,9 +91,21 @@ impl Texts {
         let inside = |text: &&Arc<Included>| {
             (text.start..=text.start + text.text.len()).contains(&range.start)
         };
-        let text = self.0.iter().find(inside)?;
+        let mut included = self.0.iter().filter_map(|text| match text {
+            Text::Included(text) => Some(text),
+            Text::Statement(_) => None,
+        });
+        let text = included.find(inside)?;
         let local = range.start - text.start..range.end - text.start;
         Some((text, local))
+    }
+
+    /// Returns the statement at fault, if its place is that of the part of another file from which it was made.
+    pub fn statement(&self) -> Option<&str> {
+        self.0.iter().find_map(|text| match text {
+            Text::Included(_) => None,
+            Text::Statement(statement) => Some(statement.as_str()),
+        })
     }
 }
 
@@ -209,7 +230,7 @@ impl Origins {
             *span = self.source(*span);
             *label = self.in_words(label);
         }
-        error.statement = self.imported(error.span).map(str::to_owned);
+        let statement = self.imported(error.span).map(str::to_owned);
         error.span = self.unwound(error.span, &mut copies);
         let mut noted = 0;
         let mut seen = BTreeSet::new();
@@ -229,6 +250,7 @@ impl Origins {
         error.message = self.in_words(&error.message);
         error.help = error.help.map(|help| self.in_words(&help));
         self.attach(&mut error);
+        error.texts.0.extend(statement.map(Text::Statement));
         error
     }
 
@@ -245,7 +267,7 @@ impl Origins {
         }
         let spans = [error.span].into_iter();
         let spans = spans.chain(error.notes.iter().map(|(span, _)| *span));
-        error.texts = Texts(spans.filter_map(text).collect());
+        error.texts = Texts(spans.filter_map(text).map(Text::Included).collect());
     }
 
     /// Locates all errors. Errors that are the same for several copies are kept once.
