@@ -1,4 +1,4 @@
-"""Notices of the crates that the Python package is made of: `python/THIRD-PARTY.txt`, which the wheel carries.
+"""Notices of the crates that the Python package is made of: `bindings/python/THIRD-PARTY.txt`, which the wheel carries.
 
 Written by `python3 tests/licences/notices.py`; `--check` says whether it is what it would write. Crates with the same text
 share it, in the order of their names. Only crates that become part of the extension module count: neither tools of the
@@ -9,7 +9,7 @@ import pathlib
 import subprocess
 import sys
 
-TARGET = pathlib.Path("python/THIRD-PARTY.txt")
+TARGET = pathlib.Path("bindings/python/THIRD-PARTY.txt")
 NAMES = ("licen", "copying", "notice", "unlicense")
 HEAD = """The Python package of hamel contains code of the following crates, under the licences below. A crate that may be used under
 the MIT licence or another one is used under the MIT licence.
@@ -29,7 +29,7 @@ def shipped() -> list[dict]:
     found: dict[str, dict] = {}
     for platform in PLATFORMS:
         command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", platform]
-        command += ["--manifest-path", "python/Cargo.toml"]
+        command += ["--manifest-path", "bindings/python/Cargo.toml"]
         metadata = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
         packages = {package["id"]: package for package in metadata["packages"]}
         nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}

@@ -245,7 +245,7 @@ fn nothing_else_is_unsafe() {
         "cli/src",
         "report/src",
         "files/src",
-        "page/wasm/src",
+        "bindings/page/wasm/src",
     ] {
         for (path, text) in sources(folder) {
             let found = code_of(&text)
@@ -255,7 +255,7 @@ fn nothing_else_is_unsafe() {
                 found == 0
                     || path.ends_with("native/src/code.rs")
                     // Names of exports are, nothing else.
-                    || path.ends_with("page/wasm/src/exports.rs")
+                    || path.ends_with("bindings/page/wasm/src/exports.rs")
                         && code_of(&text).all(|line| {
                             !line.contains("unsafe")
                                 || line == "#[unsafe(no_mangle)]"
@@ -271,8 +271,7 @@ fn nothing_else_is_unsafe() {
 #[test]
 fn every_file_says_what_it_is() {
     for folder in [
-        "codegen", "files", "macros", "engine", "runtime", "report", "cli", "page", "python",
-        "bench",
+        "codegen", "files", "macros", "engine", "runtime", "report", "cli", "bindings", "bench",
     ] {
         let described = |text: &str| text.starts_with("//!") || text.starts_with("#![");
         for (path, text) in sources(folder) {

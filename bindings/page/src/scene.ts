@@ -37,7 +37,7 @@ const THIN = 0.012;
 // How many times its own size a mechanism may move without being followed.
 const FAR = 8;
 
-// What is drawn as one list of numbers, in the order in which `page/wasm/src/scenes.rs` writes it.
+// What is drawn as one list of numbers, in the order in which `bindings/page/wasm/src/scenes.rs` writes it.
 class Reader {
   private at = 0;
   constructor(private readonly numbers: ArrayLike<number>) {}

@@ -1,4 +1,4 @@
-// What the generator answers, as `page/wasm/src/requests.rs` writes it.
+// What the generator answers, as `bindings/page/wasm/src/requests.rs` writes it.
 
 export interface Mark {
   severity: "error" | "warning";

@@ -337,7 +337,7 @@ async function decoded(file: File): Promise<string> {
   }
 }
 
-// A part of the file, unpacked, from `page/src/loader.ts`.
+// A part of the file, unpacked, from `bindings/page/src/loader.ts`.
 declare const hamelPart: (id: string) => Uint8Array<ArrayBuffer>;
 
 async function begin(): Promise<void> {
