@@ -14,7 +14,7 @@ if [ ! -f "$out/installed" ]; then
     "$out/venv/bin/pip" install --quiet --disable-pip-version-check pin==4.1.0 --requirement lab/pinocchio/requirements.txt
     touch "$out/installed"
 fi
-CARGO_TARGET_DIR="$target/wheel" "$out/venv/bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps ./python
+CARGO_TARGET_DIR="$target/wheel" "$out/venv/bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps ./bindings/python
 prefix=$(find "$out/venv" -type d -name cmeel.prefix | head -n 1)
 defined=(
     -DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_LIMIT_VECTOR_SIZE=30 -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS

@@ -1,4 +1,4 @@
-"""Notices of the crates in the Python package: `python/THIRD-PARTY.txt`, which the wheel contains.
+"""Notices of the crates in the Python package: `bindings/python/THIRD-PARTY.txt`, which the wheel contains.
 
 Written by `python3 tests/licences/notices.py`; `--check` tells whether it is up to date. Crates with the same text
 share it, in the order of their names. Only crates that become part of the extension module count, neither build
@@ -9,7 +9,7 @@ import pathlib
 import subprocess
 import sys
 
-TARGET = pathlib.Path("python/THIRD-PARTY.txt")
+TARGET = pathlib.Path("bindings/python/THIRD-PARTY.txt")
 NAMES = ("licen", "copying", "notice", "unlicense")
 HEAD = """The Python package of hamel contains code of the following crates, under the licences below. A crate that may be used under
 the MIT licence or another one is used under the MIT licence.
@@ -29,7 +29,7 @@ def shipped() -> list[dict]:
     found: dict[str, dict] = {}
     for platform in PLATFORMS:
         command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", platform]
-        command += ["--manifest-path", "python/Cargo.toml"]
+        command += ["--manifest-path", "bindings/python/Cargo.toml"]
         metadata = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
         packages = {package["id"]: package for package in metadata["packages"]}
         nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}

@@ -11,11 +11,11 @@ if [ ! -x "$chromium" ]; then
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core > /dev/null
 fi
 bash tests/robots/install.sh
-bash page/build.sh
+bash bindings/page/build.sh
 target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
 # The command line with whose numbers the page is compared; reused if it was built with the tests.
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$target/debug/hamel" ]; then
     cargo build --quiet --locked -p hamel-cli
 fi
 robots="$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)"
-CHROMIUM="$chromium" HAMEL="$target/debug/hamel" HAMEL_ROBOTS="$robots" node --test --test-concurrency=1 page/tests/*.test.mjs
+CHROMIUM="$chromium" HAMEL="$target/debug/hamel" HAMEL_ROBOTS="$robots" node --test --test-concurrency=1 bindings/page/tests/*.test.mjs

@@ -16,12 +16,12 @@ fi
 package="$target/python-package"
 rm -rf "$package"
 mkdir -p "$package"
-cp -r python/package/hamel "$package/hamel"
+cp -r bindings/python/package/hamel "$package/hamel"
 cp "$module" "$package/hamel/_hamel.abi3.so"
 export PYTHONPATH="$package" MYPYPATH="$package" MPLBACKEND=agg
 
 "$environment/bin/mypy" --strict --cache-dir "$package/.mypy" "$package/hamel" examples/python
-"$environment/bin/python" -m pytest --quiet -p no:cacheprovider python/tests
+"$environment/bin/python" -m pytest --quiet -p no:cacheprovider bindings/python/tests
 scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
 "$environment/bin/python" examples/python/balance.py "$scratch"

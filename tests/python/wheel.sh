@@ -8,8 +8,8 @@ scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch/environment"
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/target}/wheel"
-"$scratch/environment/bin/pip" --quiet --disable-pip-version-check install ./python
-"$scratch/environment/bin/pip" --quiet --disable-pip-version-check wheel --no-deps --wheel-dir "$scratch" ./python
+"$scratch/environment/bin/pip" --quiet --disable-pip-version-check install ./bindings/python
+"$scratch/environment/bin/pip" --quiet --disable-pip-version-check wheel --no-deps --wheel-dir "$scratch" ./bindings/python
 cd "$scratch"
 "$scratch/environment/bin/hamel" --version
 "$scratch/environment/bin/python" - "$scratch" <<'PYTHON'

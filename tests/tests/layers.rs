@@ -245,7 +245,7 @@ fn nothing_else_is_unsafe() {
         "cli/src",
         "cli/report/src",
         "codegen/files/src",
-        "page/wasm/src",
+        "bindings/page/wasm/src",
     ] {
         for (path, text) in sources(folder) {
             let found = code_of(&text)
@@ -255,7 +255,7 @@ fn nothing_else_is_unsafe() {
                 found == 0
                     || path.ends_with("native/src/code.rs")
                     // Except for attributes that export names.
-                    || path.ends_with("page/wasm/src/exports.rs")
+                    || path.ends_with("bindings/page/wasm/src/exports.rs")
                         && code_of(&text).all(|line| {
                             !line.contains("unsafe")
                                 || line == "#[unsafe(no_mangle)]"

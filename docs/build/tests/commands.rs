@@ -24,7 +24,7 @@ fn pages() -> Vec<(PathBuf, String)> {
     let chapters = chapters
         .into_iter()
         .map(|(path, text)| (root.join("docs/book/src").join(path), text));
-    let others = ["README.md", "python/README.md"].map(|name| root.join(name));
+    let others = ["README.md", "bindings/python/README.md"].map(|name| root.join(name));
     let others = others.map(|path| (path.clone(), fs::read_to_string(path).expect("a page")));
     chapters.chain(others).collect()
 }
@@ -97,7 +97,8 @@ fn run(page: &Path, text: &str) -> [usize; 2] {
 #[test]
 fn nothing_is_only_shown() {
     let programs = fs::read_to_string(root().join("docs/build/src/lib.rs")).expect("the library");
-    let python = fs::read_to_string(root().join("python/tests/test_pages.py")).expect("tests");
+    let python =
+        fs::read_to_string(root().join("bindings/python/tests/test_pages.py")).expect("tests");
     let mut wrong = Vec::new();
     for (page, text) in pages() {
         let root = root();
@@ -115,7 +116,7 @@ fn nothing_is_only_shown() {
                 }
                 // By tests/emitted/tests/c.rs.
                 "c" => name == "docs/book/src/front-ends.md",
-                // By python/tests/test_pages.py and tests/sweep/readers.py.
+                // By bindings/python/tests/test_pages.py and tests/sweep/readers.py.
                 "python" => python.contains(&name) || name == "docs/book/src/ensembles.md",
                 _ => false,
             };

@@ -1,4 +1,4 @@
-// Assembles the page into a single file, page/dist/index.html, which needs no other files and no server.
+// Assembles the page into a single file, bindings/page/dist/index.html, which needs no other files and no server.
 
 import { build, transform } from "esbuild";
 import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
@@ -13,7 +13,7 @@ import { MODES } from "./node_modules/lzma1/lib/lzma.js";
 import { InputBuffer, OutputBuffer } from "./node_modules/lzma1/lib/streams.js";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const root = join(here, "..");
+const root = join(here, "..", "..");
 const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
 
 // Removes the encoder from the page, which only decompresses.
@@ -145,6 +145,6 @@ await mkdir(join(here, "dist"), { recursive: true });
 await writeFile(join(here, "dist", "index.html"), whole);
 const size = (text) => gzipSync(text, { level: 9 }).length;
 console.log(
-  `page/dist/index.html: ${size(whole).toLocaleString("en")} bytes gzipped; module ${size(generator).toLocaleString("en")}, ` +
+  `bindings/page/dist/index.html: ${size(whole).toLocaleString("en")} bytes gzipped; module ${size(generator).toLocaleString("en")}, ` +
     `script ${size(script).toLocaleString("en")}, style ${size(css).toLocaleString("en")}, ${list.length} examples`,
 );

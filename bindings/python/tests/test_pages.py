@@ -9,7 +9,7 @@ import pytest
 
 import hamel
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 # A thrown ball in place of the chapter's leg: it has a frame `foot` and a velocity `v`.
 LEG = """
@@ -41,7 +41,7 @@ def names(tmp_path: Path, models: Path, robots: Path, monkeypatch: pytest.Monkey
     return {"hamel": hamel, "x": x, "xi": xi, "u": u, "leg": hamel.System.from_text(LEG)}
 
 
-@pytest.mark.parametrize("page, count", [("README.md", 1), ("python/README.md", 1), ("docs/book/src/python.md", 3)])
+@pytest.mark.parametrize("page, count", [("README.md", 1), ("bindings/python/README.md", 1), ("docs/book/src/python.md", 3)])
 def test_they_run(page: str, count: int, names: dict[str, Any]):
     found = programs(page)
     assert len(found) == count

@@ -8,7 +8,7 @@ from known import PENDULUM
 
 import hamel
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 # Builds the generator for browsers: target/page/hamel_page.wasm. If rustup cannot install the WebAssembly target,
 # Debian's sources of the standard library are built with Debian's compiler, unpacked below `target`.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 target=wasm32-unknown-unknown
 folder="${CARGO_TARGET_DIR:-target}"

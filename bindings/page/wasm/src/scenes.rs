@@ -34,7 +34,7 @@ pub fn scenes(session: &Session, params: &[f64], x: &[f64]) -> Option<Scenes> {
     })
 }
 
-/// Lists the moving vectors of a scene, in the order in which `page/src/scene.ts` reads them.
+/// Lists the moving vectors of a scene, in the order in which `bindings/page/src/scene.ts` reads them.
 fn listed(scene: &Scene) -> Vec<f32> {
     let frames = scene.frames.iter();
     let frames = frames.flat_map(|frame| [&frame.rotation[..], &[frame.position]].concat());

@@ -37,7 +37,7 @@ const THIN = 0.012;
 // Extent of a run, relative to the size of the mechanism, above which the camera follows.
 const FAR = 8;
 
-// Reads the vectors of a scene, in the order in which `page/wasm/src/scenes.rs` writes them.
+// Reads the vectors of a scene, in the order in which `bindings/page/wasm/src/scenes.rs` writes them.
 class Reader {
   private at = 0;
   constructor(private readonly numbers: ArrayLike<number>) {}

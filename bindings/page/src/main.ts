@@ -337,7 +337,7 @@ async function decoded(file: File): Promise<string> {
   }
 }
 
-// Unpacks a part of the file; defined in `page/src/loader.ts`.
+// Unpacks a part of the file; defined in `bindings/page/src/loader.ts`.
 declare const hamelPart: (id: string) => Uint8Array<ArrayBuffer>;
 
 async function begin(): Promise<void> {

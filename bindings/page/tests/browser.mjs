@@ -7,8 +7,8 @@ import { readFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
-export const root = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
-export const built = join(root, "page", "dist", "index.html");
+export const root = join(dirname(fileURLToPath(import.meta.url)), "..", "..", "..");
+export const built = join(root, "bindings", "page", "dist", "index.html");
 export const address = pathToFileURL(built).href;
 
 const FLAGS = [

@@ -1,4 +1,4 @@
-// Types of the generator's answers, written by `page/wasm/src/requests.rs`.
+// Types of the generator's answers, written by `bindings/page/wasm/src/requests.rs`.
 
 export interface Mark {
   severity: "error" | "warning";
