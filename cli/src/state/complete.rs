@@ -12,8 +12,8 @@ use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::sizes::relative;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::closest::Constraints;
-use hamel_codegen::model::closure::{Closure, Open, normalise};
-use hamel_codegen::model::opening::Opening;
+use hamel_codegen::model::initial_conditions::InitialConditions;
+use hamel_codegen::model::loop_closure::{LoopClosure, Open, normalise};
 use hamel_codegen::model::pfaffian::Kind;
 use hamel_codegen::model::twists::Moving;
 
@@ -67,9 +67,9 @@ impl State {
 
 /// The start of the description with the parameters of a state, and with what it gives in place of what the text gives; from
 /// another state than the start, that one has the values.
-fn opening(generated: &Generated, state: &State, given: &Given, from: &State) -> Opening {
+fn opening(generated: &Generated, state: &State, given: &Given, from: &State) -> InitialConditions {
     let (model, active) = (&generated.model, &generated.active);
-    let mut opening = model.opening.at(&state.params);
+    let mut opening = model.initial_conditions.at(&state.params);
     if from.x != active.start_x {
         opening.x.clone_from(&from.x);
     }
@@ -95,7 +95,7 @@ fn opening(generated: &Generated, state: &State, given: &Given, from: &State) ->
 
 impl Completion<'_> {
     /// x as the start of the description would be with what is given in its text.
-    fn as_written(&self, opening: &Opening) -> Result<Vec<f64>, Vec<String>> {
+    fn as_written(&self, opening: &InitialConditions) -> Result<Vec<f64>, Vec<String>> {
         let model = &self.generated.model;
         let mut opening = opening.clone();
         let (near, kept) = (opening.guesses_coordinates(), opening.exact_x.clone());
@@ -112,7 +112,7 @@ impl Completion<'_> {
 
     /// x where what is given contradicts what the description gives: nearest to its start, first with all that is exact, then
     /// without those exact starts that are tied to what is open.
-    fn giving_way(&self, opening: &Opening) -> Result<Vec<f64>, Vec<String>> {
+    fn giving_way(&self, opening: &InitialConditions) -> Result<Vec<f64>, Vec<String>> {
         let mut from = self.state.x.clone();
         let all = 0..from.len();
         // Exact starts may depend on parameters.
@@ -160,7 +160,7 @@ impl Completion<'_> {
     /// ξ of the full frame.
     fn velocities(
         &self,
-        mut opening: Opening,
+        mut opening: InitialConditions,
         x: &[f64],
         from: &State,
     ) -> Result<Vec<f64>, Vec<String>> {
@@ -243,8 +243,8 @@ impl Completion<'_> {
         }
     }
 
-    fn closure(&self) -> Closure<'_> {
-        let closure = Closure::of(&self.generated.model, &self.state.params);
+    fn closure(&self) -> LoopClosure<'_> {
+        let closure = LoopClosure::of(&self.generated.model, &self.state.params);
         closure.with_inputs(&self.state.u)
     }
 

@@ -1,6 +1,7 @@
 //! Laws of the language, one module for each file of `src`; a module alone: `cargo test -p hamel-language --test suite syntax::`.
 
 mod axes;
+mod chart_difference;
 mod charts;
 mod functions;
 mod nearest;
@@ -9,5 +10,4 @@ mod shapes;
 mod suggest;
 mod syntax;
 mod unused;
-mod way;
 mod written;
