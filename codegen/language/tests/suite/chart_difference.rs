@@ -3,7 +3,7 @@
 use hamel_language::algebra::fp::Random;
 // The included file has it by this name, too.
 use hamel_language::model::layout;
-use included::{chart_rate, turned, way};
+use included::{chart_difference, chart_rate, turned};
 use layout::{Block, rotation};
 
 // Searches for the nearest configuration take ways, and show where they end alone.
