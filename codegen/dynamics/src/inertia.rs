@@ -9,7 +9,7 @@ use hamel_algebra::linear::{apply3, cross};
 use hamel_algebra::numeric::{evaluate, rank};
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::functions::Needs;
-use hamel_language::model::closure::normalise;
+use hamel_language::model::loop_closure::normalise;
 use hamel_language::model::twists::Moving;
 use hamel_language::model::{Body, Model, Particle};
 

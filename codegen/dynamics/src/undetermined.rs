@@ -8,7 +8,7 @@ use super::reduction::{independent, unit};
 use hamel_algebra::fp::Random;
 use hamel_algebra::numeric::evaluate;
 use hamel_language::model::Model;
-use hamel_language::model::closure::{Closure, normalise};
+use hamel_language::model::loop_closure::{LoopClosure, normalise};
 
 /// Distance from the start, in the units of the coordinates, at which rows are examined as well,
 /// since a start may be singular.
@@ -45,7 +45,7 @@ pub fn undetermined(full: &Model) -> Vec<bool> {
 
 /// Returns configurations that close the loops: some near the start, then the start itself.
 fn places(full: &Model) -> Vec<Vec<f64>> {
-    let closure = Closure::of(full, &full.defaults);
+    let closure = LoopClosure::of(full, &full.defaults);
     let time = full.clock.map(|clock| clock.x);
     let beside = (0..PLACES).filter_map(|place| {
         let mut random = Random::new(0x57a7 + place);

@@ -5,9 +5,9 @@ use hamel_language::syntax::ast::Expr;
 
 /// Largest size of an exponent: beyond it a number is no length, mass or angle, and later computations would
 /// overflow.
-const MOST_EXPONENT: i32 = 300;
+const MAX_EXPONENT: i32 = 300;
 /// Largest number of digits: no measurement has more.
-const MOST_DIGITS: usize = 200;
+const MAX_DIGITS: usize = 200;
 
 /// A finite decimal number.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,9 +49,9 @@ impl Decimal {
         let digits = whole.chars().chain(fraction.chars());
         let count = whole.len() + fraction.len();
         if count == 0
-            || count > MOST_DIGITS
+            || count > MAX_DIGITS
             || !digits.into_iter().all(|c| c.is_ascii_digit())
-            || exponent.is_some_and(|e| e.abs() > MOST_EXPONENT)
+            || exponent.is_some_and(|e| e.abs() > MAX_EXPONENT)
         {
             return None;
         }

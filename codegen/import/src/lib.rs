@@ -6,7 +6,7 @@
 //!
 //! [`import`] reads the tree of links and joints and builds a description from it: one `joint` statement for each
 //! joint, one `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for rounded
-//! multiples of π/2 and rounded zeros; a comment says which numbers were changed. `read/list.rs` lists the elements and
+//! multiples of π/2 and rounded zeros; a comment says which numbers were changed. `read/schema.rs` lists the elements and
 //! attributes that a file may contain.
 //!
 //! Each statement knows the part of the file that it was made from, and later errors about it have their place there.

@@ -4,7 +4,7 @@
 use crate::derive::reduction::reduce;
 use crate::lower;
 use crate::model::Model;
-use crate::model::closure::Closure;
+use crate::model::loop_closure::LoopClosure;
 use hamel_import::{Idle, Imported, Options, import_without};
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ fn fewer(xml: &str, options: &Options, imported: &Imported) -> Option<Imported> 
     let fewer = import_without(xml, options, &idle).ok()?;
     let mut start = lower::build(&fewer.system).ok()?.start_x;
     let given = vec![true; start.len()];
-    let all = Closure::of(&model, &model.defaults);
+    let all = LoopClosure::of(&model, &model.defaults);
     all.close_loops(&mut start, &given).ok()?;
     Some(fewer)
 }

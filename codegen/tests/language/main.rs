@@ -10,5 +10,5 @@ mod shapes;
 mod suggest;
 mod syntax;
 mod unused;
-mod way;
+mod chart_difference;
 mod written;

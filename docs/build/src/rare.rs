@@ -118,7 +118,7 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "an energy, frame or constraint depends on it through other names",
     ),
     (
-        "lower/variety.rs",
+        "lower/configuration_manifold.rs",
         "\"this constraint does not hold where it was solved\"",
         "this constraint does not hold where it was solved",
         "it is an equation of roots: write it as a polynomial equation",

@@ -13,8 +13,8 @@ use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::residual_scale::relative_residuals;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::closest::Constraints;
-use hamel_codegen::model::closure::{Closure, Open, normalise};
-use hamel_codegen::model::opening::Opening;
+use hamel_codegen::model::initial_conditions::InitialConditions;
+use hamel_codegen::model::loop_closure::{LoopClosure, Open, normalise};
 use hamel_codegen::model::pfaffian::Kind;
 use hamel_codegen::model::twists::Moving;
 
@@ -68,9 +68,9 @@ impl State {
 
 /// The start of the description with the parameters of a state, in which given values replace those of the text; if
 /// `from` is not the start, its values replace those of the start.
-fn opening(generated: &Generated, state: &State, given: &Given, from: &State) -> Opening {
+fn opening(generated: &Generated, state: &State, given: &Given, from: &State) -> InitialConditions {
     let (model, active) = (&generated.model, &generated.active);
-    let mut opening = model.opening.at(&state.params);
+    let mut opening = model.initial_conditions.at(&state.params);
     if from.x != active.start_x {
         opening.x.clone_from(&from.x);
     }
@@ -96,7 +96,7 @@ fn opening(generated: &Generated, state: &State, given: &Given, from: &State) ->
 
 impl Completion<'_> {
     /// x as the start of the description with the given values in its text.
-    fn as_written(&self, opening: &Opening) -> Result<Vec<f64>, Vec<StateProblem>> {
+    fn as_written(&self, opening: &InitialConditions) -> Result<Vec<f64>, Vec<StateProblem>> {
         let model = &self.generated.model;
         let mut opening = opening.clone();
         let (near, kept) = (opening.guesses_coordinates(), opening.exact_x.clone());
@@ -113,7 +113,7 @@ impl Completion<'_> {
 
     /// x if given values contradict those of the description: nearest to its start, first with all exact starts, then
     /// without the exact starts that are tied to violated equations.
-    fn giving_way(&self, opening: &Opening) -> Result<Vec<f64>, Vec<StateProblem>> {
+    fn giving_way(&self, opening: &InitialConditions) -> Result<Vec<f64>, Vec<StateProblem>> {
         let mut from = self.state.x.clone();
         let all = 0..from.len();
         // Exact starts may depend on parameters.
@@ -161,7 +161,7 @@ impl Completion<'_> {
     /// ξ of the full frame.
     fn velocities(
         &self,
-        mut opening: Opening,
+        mut opening: InitialConditions,
         x: &[f64],
         from: &State,
     ) -> Result<Vec<f64>, Vec<StateProblem>> {
@@ -245,8 +245,8 @@ impl Completion<'_> {
         }
     }
 
-    fn closure(&self) -> Closure<'_> {
-        let closure = Closure::of(&self.generated.model, &self.state.params);
+    fn closure(&self) -> LoopClosure<'_> {
+        let closure = LoopClosure::of(&self.generated.model, &self.state.params);
         closure.with_inputs(&self.state.u)
     }
 

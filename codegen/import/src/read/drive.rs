@@ -1,7 +1,7 @@
 //! Reads joint properties that dialects of URDF keep elsewhere: rotor inertias in `<transmission>`, springs in
 //! `<gazebo>`.
 
-use super::list::{RATIOS, ROTORS};
+use super::schema::{RATIOS, ROTORS};
 use super::xml::{Reader, tag, written};
 use crate::decimal::Decimal;
 use crate::robot::{Joint, Kind, Named};

@@ -2,12 +2,11 @@
 
 mod drive;
 mod joint;
-mod known;
 mod link;
-mod list;
 mod plugin;
-mod strange;
+mod schema;
 mod ties;
+mod unrecognized;
 mod xml;
 
 use crate::options::Options;
@@ -68,7 +67,7 @@ pub(crate) fn robot<'t>(
         errors,
         warnings,
         cleaned: Vec::new(),
-        strange: Vec::new(),
+        unrecognized: Vec::new(),
     };
     let name = reader.robot_name(&root, options.name.is_some());
     let mut robot = Robot {
@@ -88,8 +87,8 @@ pub(crate) fn robot<'t>(
     }
     reader.beside(&root, &mut robot);
     reader.plugins(&root, &robot.joints);
-    reader.compare(&root, &list::ROBOT);
-    reader.tell();
+    reader.compare(&root, &schema::ROBOT);
+    reader.warn_of_unrecognized();
     let cleaned = reader.cleaned;
     Some(Read { robot, cleaned })
 }

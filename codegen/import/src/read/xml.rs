@@ -1,6 +1,6 @@
 //! Reads elements, attributes and numbers of XML, with the place of whatever is missing or unreadable.
 
-use super::strange::Strange;
+use super::unrecognized::Unrecognized;
 use crate::angle::{Angle, Rotation};
 use crate::decimal::Decimal;
 use crate::problem::Problems;
@@ -119,7 +119,7 @@ pub(super) struct Reader<'a, 'p, 't> {
     pub(super) errors: &'p mut Problems<'t>,
     pub(super) warnings: &'p mut Problems<'t>,
     pub(super) cleaned: Vec<Cleaned>,
-    pub(super) strange: Vec<Strange>,
+    pub(super) unrecognized: Vec<Unrecognized>,
 }
 
 impl<'a> Reader<'a, '_, '_> {

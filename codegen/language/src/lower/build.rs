@@ -1,19 +1,19 @@
 //! Reads a description: the order of the steps, and the checks between them.
 
-use super::ground::Ground;
+use super::configuration_manifold::ConfigurationManifold;
 use super::motion::TimeDerivative;
 use super::rate::At;
-use super::variety::Variety;
+use super::static_scope::StaticScope;
 use super::{
-    corners, dynamics, externals, invariants, joints, kinematics, negative, pfaffian, prescribe,
-    start, states, staying, strange, time, unused,
+    dynamics, externals, independent_velocities, invariants, joints, kinematics, negative,
+    pfaffian, plausibility, prescribe, speed_jumps, start, states, time, unused,
 };
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::inertia;
 use crate::model::Model;
-use crate::model::closure::Closure;
-use crate::model::opening::Opening;
+use crate::model::loop_closure::LoopClosure;
+use crate::model::initial_conditions::InitialConditions;
 use crate::model::provenance::Statements;
 use crate::model::samples;
 use crate::reuse;
@@ -41,7 +41,7 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
     build_at(system, 0)
 }
 
-/// Reads a description as [`build`] does, at other points of the variety, chosen by a number.
+/// Reads a description as [`build`] does, at other points of the manifold, chosen by a number.
 ///
 /// # Errors
 /// Returns the errors of the description.
@@ -65,21 +65,21 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
     let system = &time::expand(system, &mut first);
     let names = symbols::resolve(system, &mut first);
     shapes::check(system, &names, &mut first);
-    let mut variety = Variety::of(system, &names, own, &mut first);
+    let mut manifold = ConfigurationManifold::of(system, &names, own, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;
     let mut doubts = 0;
     for seed in own..own + ATTEMPTS {
         let mut choice = Report::new();
-        let point = variety.choose(system, seed, &mut choice);
+        let point = manifold.choose(system, seed, &mut choice);
         errors.extend(choice.finish().err().unwrap_or_default());
         let mut report = Report::new();
         errors.iter().cloned().for_each(|error| report.push(error));
-        let mut ground = Ground::on(&variety, &point, system, &names, seed, &mut report);
+        let mut statics = StaticScope::on(&manifold, &point, system, &names, seed, &mut report);
         if doubts == DOUBTS {
-            ground.graph.forbid_root_merges();
+            statics.graph.forbid_root_merges();
         }
-        let result = read_at(system, &variety, &names.order, ground, report);
+        let result = read_at(system, &manifold, &names.order, statics, report);
         match result {
             Ok(model) if model.graph.has_bad_prime() => {
                 errors.push(
@@ -95,21 +95,21 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
             Ok(model) if model.graph.has_contradicted_samples() => branches = true,
             Err((_, Some(graph))) if graph.has_contradicted_samples() => branches = true,
             Ok(model) if model.graph.has_missing_root() => {
-                variety.points.require_roots(&model.graph)
+                manifold.points.require_roots(&model.graph)
             }
             Err((_, Some(graph))) if graph.has_missing_root() => {
-                variety.points.require_roots(&graph)
+                manifold.points.require_roots(&graph)
             }
-            Ok(model) if doubts < DOUBTS && is_doubtful(&variety, &model) => doubts += 1,
+            Ok(model) if doubts < DOUBTS && is_doubtful(&manifold, &model) => doubts += 1,
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
-                let strange = strange::warnings(described, &model);
-                let corners = corners::warnings(described, &model);
+                let implausible = plausibility::warnings(described, &model);
+                let jumps = speed_jumps::warnings(described, &model);
                 let idle = std::mem::take(&mut model.warnings);
                 model.warnings = unused::warnings(described, &(&names.used | used));
                 model.warnings.extend(idle);
-                model.warnings.extend(strange);
-                model.warnings.extend(corners);
+                model.warnings.extend(implausible);
+                model.warnings.extend(jumps);
                 let negative = negative::warnings(system, &model);
                 model.warnings.extend(negative);
                 return Ok(model);
@@ -143,51 +143,51 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
 
 /// Returns whether an expression was identified with another one that it equals only at some real points, such as
 /// √(e²) with e.
-fn is_doubtful(variety: &Variety, model: &Model) -> bool {
-    let near = variety.near.as_deref();
+fn is_doubtful(manifold: &ConfigurationManifold, model: &Model) -> bool {
+    let near = manifold.near.as_deref();
     let samples =
-        (1..=DRAWN).map(|seed| samples::sample(&variety.points, &variety.phi, seed, near));
+        (1..=DRAWN).map(|seed| samples::sample(&manifold.points, &manifold.phi, seed, near));
     model.graph.has_doubtful_merges(samples)
 }
 
 /// The errors, and the graph if there is one.
 type Failure = (Vec<Diagnostic>, Option<Box<Graph>>);
 
-/// Reads a description at a point of its variety, given its motion-independent part.
+/// Reads a description at a point of its manifold, given its motion-independent part.
 fn read_at(
     system: &System,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     order: &symbols::Order,
-    mut ground: Ground,
+    mut statics: StaticScope,
     mut report: Report,
 ) -> Result<Model, Failure> {
-    let Ground {
+    let StaticScope {
         graph,
         scope,
         declared,
         defaults,
         names,
         constraints: written,
-    } = &mut ground;
+    } = &mut statics;
     let errors = &mut report;
-    variety.check(written, graph, errors);
+    manifold.check(written, graph, errors);
     // The start is needed to choose pivots; its errors are reported last.
     let mut last = Report::new();
     let mut starts = start::read(system, graph, scope, declared, defaults, &mut last);
     start::guess::check(system, declared, &mut last);
     let written = starts.as_ref().map(|start| start.x.clone());
-    if let (Some(start), Some(x)) = (&mut starts, &variety.assembled) {
+    if let (Some(start), Some(x)) = (&mut starts, &manifold.assembled) {
         start.x.clone_from(x);
     }
     if let Some(start) = &starts {
-        start::check::check(system, variety, declared, defaults, &start.x, &mut last);
+        start::check::check(system, manifold, declared, defaults, &start.x, &mut last);
     }
     let known = last.is_empty() && !defaults.iter().any(|number| number.is_nan());
     let at = starts.as_ref().filter(|_| known).map(|start| At {
         defaults,
         x: &start.x,
     });
-    let kinematics = kinematics::read(system, graph, scope, variety, declared, at, errors);
+    let kinematics = kinematics::read(system, graph, scope, manifold, declared, at, errors);
     if let Some(kinematics) = &kinematics {
         let motion = TimeDerivative::new(
             &declared.x,
@@ -214,31 +214,34 @@ fn read_at(
         graph,
         scope,
         declared,
-        variety,
+        manifold,
         kinematics.as_ref(),
         errors,
     );
     constraints.extend(drives);
     let states = states::read(system, graph, scope, declared, defaults, errors);
-    let independent = staying::read(system, graph, scope, declared, &constraints, errors);
-    let opening = starts.as_ref().map(|start| start.opening(graph, &states));
-    if let (Some(start), Some(opening), Some(kinematics), true) = (
+    let independent =
+        independent_velocities::read(system, graph, scope, declared, &constraints, errors);
+    let initial = starts
+        .as_ref()
+        .map(|start| start.initial_conditions(graph, &states));
+    if let (Some(start), Some(initial), Some(kinematics), true) = (
         &mut starts,
-        &opening,
+        &initial,
         &kinematics,
         errors.is_empty() && last.is_empty(),
     ) && !defaults.iter().any(|number| number.is_nan())
     {
         let (all, n) = (&declared.coordinates, declared.xi.len());
-        let rows = || variety.phi.iter().map(|(edge, _)| *edge).collect();
-        let constrained = !variety.user_rows().is_empty();
-        let closure = Closure::new(
+        let rows = || manifold.phi.iter().map(|(edge, _)| *edge).collect();
+        let constrained = !manifold.user_rows().is_empty();
+        let closure = LoopClosure::new(
             graph,
             all,
             (&kinematics.a, n),
             declared.clock,
             &constraints,
-            constrained.then(|| (&variety.points.free, rows())),
+            constrained.then(|| (&manifold.points.free, rows())),
             defaults,
         );
         let mass = |x: &[f64]| {
@@ -246,7 +249,7 @@ fn read_at(
             start::guess::mass(graph, inertia, moved, &numbers, x)
         };
         let tied = (&constraints[..], &prescribed[..]);
-        errors.keep(start.complete(opening.clone(), &closure, tied, &mass));
+        errors.keep(start.complete(initial.clone(), &closure, tied, &mass));
     }
     last.finish()
         .err()
@@ -263,27 +266,27 @@ fn read_at(
             &dynamics.asked,
             claims,
         ));
-        return Err((errors, Some(Box::new(ground.graph))));
+        return Err((errors, Some(Box::new(statics.graph))));
     }
-    let (Some(kinematics), Some(start), Some(opening), Some(written), false) = (
+    let (Some(kinematics), Some(start), Some(initial), Some(written), false) = (
         kinematics,
         starts,
-        opening,
+        initial,
         written,
-        ground.scope.missed.get(),
+        statics.scope.missed.get(),
     ) else {
         let error = Diagnostic::new(system.name.span, "the description could not be read");
         return Err((vec![error], None));
     };
-    let externals = externals::places(&ground.scope);
-    let Ground {
+    let externals = externals::places(&statics.scope);
+    let StaticScope {
         graph,
         scope,
         declared,
         defaults,
         names,
         ..
-    } = ground;
+    } = statics;
     let (motion, called) = (scope.motion, scope.called.into_inner());
     let zero = graph.zero();
     let mut model = Model {
@@ -291,13 +294,13 @@ fn read_at(
         public: system.public,
         docs: system.docs.clone(),
         graph,
-        points: variety.points.clone(),
+        points: manifold.points.clone(),
         params: declared.params,
         defaults,
         coordinates: declared.coordinates,
-        blocks: variety.points.blocks.clone(),
+        blocks: manifold.points.blocks.clone(),
         x: declared.x,
-        phi: variety.phi.clone(),
+        phi: manifold.phi.clone(),
         velocities: declared.velocities,
         xi: declared.xi,
         velocity_spans: declared.velocity_spans,
@@ -344,9 +347,9 @@ fn read_at(
         start_x: start.x,
         start_xi: start.xi,
         start_z: states.start,
-        opening: Opening {
+        initial_conditions: InitialConditions {
             x: written,
-            ..opening
+            ..initial
         },
         asked: dynamics.asked,
         span: system.name.span,

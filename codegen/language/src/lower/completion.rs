@@ -3,10 +3,10 @@
 //! Coordinates without a `rate` move along the tangents K of their kinds, ẋ = K η, which leaves Y K η = ξ and, for
 //! the constraints of the description, Φ K η = 0. Rates that are given are moved to the right-hand side.
 
+use super::configuration_manifold::ConfigurationManifold;
 use super::declare::{Declared, size};
 use super::definitions::Row;
 use super::rate::advised;
-use super::variety::Variety;
 use crate::algebra::blocks::{Failure, StartValues, solve};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
@@ -42,7 +42,7 @@ struct Equation<'a> {
 pub fn complete(
     system: &System,
     graph: &mut Graph,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     declared: &Declared,
     given: &Given,
     report: &mut Report,
@@ -61,7 +61,7 @@ pub fn complete(
             velocity: Some(i),
         })
     });
-    let user = variety.user_rows();
+    let user = manifold.user_rows();
     let constraints = given.independent.iter().filter(|row| user.contains(row));
     let constraints = constraints.map(|&row| Equation {
         coefficients: &given.jacobian[row],

@@ -61,7 +61,7 @@ const ZERO_DIVISOR: Fault = Some((
     "this is 0 for every configuration that satisfies the constraints",
 ));
 
-/// Evaluates a call of a built-in function; `free` is true at points off the variety.
+/// Evaluates a call of a built-in function; `free` is true at points off the manifold.
 fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {
     use Value::{Matrix, Pose, Scalar, Vector};
     let value = match (name, values) {

@@ -1,5 +1,6 @@
 //! Reads the rates ẋ = A ξ, statement by statement.
 
+use super::configuration_manifold::ConfigurationManifold;
 use super::declare::{Declared, size};
 use super::definitions;
 use super::expression::Evaluator;
@@ -8,7 +9,6 @@ use super::relations::relate;
 use super::scope::Scope;
 use super::states;
 use super::tangency::linear_part;
-use super::variety::Variety;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
@@ -20,7 +20,7 @@ pub fn read(
     system: &System,
     graph: &mut Graph,
     scope: &Scope,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     declared: &Declared,
     at: Option<At>,
     report: &mut Report,
@@ -40,7 +40,7 @@ pub fn read(
         read_rate(target, value, item, evaluator, declared, &mut rates, system);
     }
     let definitions = definitions::read(system, graph, scope, declared, report);
-    let derivable = definitions.any || !variety.user_rows().is_empty();
+    let derivable = definitions.any || !manifold.user_rows().is_empty();
     let mut complete = definitions.complete;
     for coordinate in &declared.coordinates {
         let range = coordinate.offset..coordinate.offset + size(coordinate.kind);
@@ -64,7 +64,7 @@ pub fn read(
     relate(
         system,
         graph,
-        variety,
+        manifold,
         declared,
         (&rates, a, &definitions.rows),
         at,

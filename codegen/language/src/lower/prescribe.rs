@@ -6,12 +6,12 @@
 //! of the state, and inverse dynamics replaces forward dynamics for it (Featherstone 2008, 9.2); the rate may be an
 //! input, or any expression of the state.
 
+use super::configuration_manifold::{ConfigurationManifold, Origin};
 use super::declare::Declared;
 use super::expression::Evaluator;
 use super::rate::{Kinematics, entry, part};
 use super::scope::Scope;
 use super::time;
-use super::variety::{Origin, Variety};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::diagnostics::{Diagnostic, Report};
@@ -30,7 +30,7 @@ pub fn read(
     graph: &mut Graph,
     scope: &Scope,
     declared: &Declared,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     kinematics: Option<&Kinematics>,
     report: &mut Report,
 ) -> Prescribed {
@@ -57,7 +57,7 @@ pub fn read(
             system,
             evaluator: Evaluator::new(graph, scope, report),
             declared,
-            variety,
+            manifold,
             kinematics,
         };
         match rate {
@@ -72,7 +72,7 @@ struct Reader<'a> {
     system: &'a System,
     evaluator: Evaluator<'a>,
     declared: &'a Declared,
-    variety: &'a Variety,
+    manifold: &'a ConfigurationManifold,
     kinematics: Option<&'a Kinematics>,
 }
 
@@ -181,14 +181,14 @@ impl Reader<'_> {
                 error.help("prescribe its velocity, or make the pose of a frame depend on time"),
             );
         }
-        let mut statements = (self.variety.origins.iter().zip(&self.variety.phi)).filter_map(
+        let mut statements = (self.manifold.origins.iter().zip(&self.manifold.phi)).filter_map(
             |(origin, (row, _))| match origin {
                 Origin::Statement(item) => Some((*item, *row)),
                 Origin::Coordinate(_) => None,
             },
         );
-        let free = &self.variety.points.free;
-        let first = self.variety.points.first;
+        let free = &self.manifold.points.free;
+        let first = self.manifold.points.first;
         let (given, _) = part(target, self.declared)?;
         let given = first + given.start..first + given.end;
         let tied = statements.find(|(_, row)| {

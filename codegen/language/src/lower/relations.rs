@@ -2,11 +2,11 @@
 //! KR18 (6).
 
 use super::completion::{Given, complete};
+use super::configuration_manifold::{ConfigurationManifold, Origin};
 use super::declare::Declared;
 use super::definitions::Row;
 use super::rate::{At, Kinematics, Rate};
 use super::tangency::{Checker, constraint_span};
-use super::variety::{Origin, Variety};
 use super::{agreement, independent};
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
@@ -25,21 +25,21 @@ pub type Statements<'a> = (
 pub fn relate(
     system: &System,
     graph: &mut Graph,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     declared: &Declared,
     (rates, a, rows): Statements,
     at: Option<At>,
     report: &mut Report,
 ) -> Option<Kinematics> {
-    if !variety.complete || declared.faulty || declared.x.is_empty() || declared.xi.is_empty() {
+    if !manifold.complete || declared.faulty || declared.x.is_empty() || declared.xi.is_empty() {
         return None;
     }
-    let jacobian = jacobian(&variety.points, &variety.phi, declared.x.len(), graph);
+    let jacobian = jacobian(&manifold.points, &manifold.phi, declared.x.len(), graph);
     let checker = |graph: &Graph, report: &mut Report, check: fn(&mut Checker) -> bool| {
         check(&mut Checker {
             system,
             graph,
-            variety,
+            manifold,
             declared,
             jacobian: &jacobian,
             report,
@@ -66,7 +66,7 @@ pub fn relate(
         // Errors in the start have been reported.
         let at = at?;
         if let Some(row) = independent.singular {
-            let span = match variety.origins[row] {
+            let span = match manifold.origins[row] {
                 Origin::Statement(item) => constraint_span(system, item),
                 Origin::Coordinate(index) => declared.coordinates[index].span,
             };
@@ -87,7 +87,7 @@ pub fn relate(
             independent: &independent.rows,
             start: &start,
         };
-        (a, completion) = complete(system, graph, variety, declared, &given, report)?;
+        (a, completion) = complete(system, graph, manifold, declared, &given, report)?;
     }
     completion.independent = independent.rows;
     completion.y = rows
@@ -97,7 +97,7 @@ pub fn relate(
     let mut checks = Checker {
         system,
         graph,
-        variety,
+        manifold,
         declared,
         jacobian: &jacobian,
         report,

@@ -18,7 +18,7 @@ pub struct Scope<'a> {
     values: Vec<Option<Option<Value>>>,
     /// Whether the user wrote constraints, so that coordinates do not move independently.
     constrained: bool,
-    /// Whether values are taken off the variety, so that properties that hold only on it are not checked.
+    /// Whether values are taken off the manifold, so that properties that hold only on it are not checked.
     pub free: bool,
     /// Derivatives of x and ξ, once the rates are known.
     pub motion: Option<TimeDerivative>,

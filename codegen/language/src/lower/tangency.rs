@@ -1,10 +1,10 @@
 //! Checks ẋ = A ξ: that it is linear in ξ and tangent to φ = 0, and that A is a basis of the tangent space.
 
 use super::affine::Affine;
+use super::configuration_manifold::{ConfigurationManifold, Origin};
 use super::declare::Declared;
 use super::rate::{Rate, advised};
 use super::time;
-use super::variety::{Origin, Variety};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::rank;
@@ -86,7 +86,7 @@ pub fn constraint_span(system: &System, item: usize) -> Span {
 pub struct Checker<'a> {
     pub system: &'a System,
     pub graph: &'a Graph,
-    pub variety: &'a Variety,
+    pub manifold: &'a ConfigurationManifold,
     pub declared: &'a Declared,
     /// ∂φ/∂x.
     pub jacobian: &'a [Vec<Edge>],
@@ -106,7 +106,7 @@ impl Checker<'_> {
         let zero = self.graph.zero();
         let mut regular = true;
         let mut reported = Vec::new();
-        for (row, origin) in self.jacobian.iter().zip(&self.variety.origins) {
+        for (row, origin) in self.jacobian.iter().zip(&self.manifold.origins) {
             let Origin::Statement(item) = *origin else {
                 continue;
             };
@@ -130,7 +130,7 @@ impl Checker<'_> {
     pub fn tangent(&mut self, rates: &[Option<Rate>], a: &[Vec<Edge>]) -> bool {
         let mut tangent = true;
         let mut reported: Vec<usize> = Vec::new();
-        for row in 0..self.variety.phi.len() {
+        for row in 0..self.manifold.phi.len() {
             for i in 0..self.declared.xi.len() {
                 if !self.leaves(a, row, i) {
                     continue;
@@ -194,8 +194,8 @@ impl Checker<'_> {
             return;
         };
         let velocity = self.velocity(i);
-        let text = &self.variety.phi[row].1;
-        let error = match self.variety.origins[row] {
+        let text = &self.manifold.phi[row].1;
+        let error = match self.manifold.origins[row] {
             Origin::Coordinate(index) => {
                 let coordinate = &self.declared.coordinates[index];
                 let message = match text.split_once(", entry ") {

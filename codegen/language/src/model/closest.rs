@@ -3,9 +3,9 @@
 //! For loops the distance is measured in the metric of M; for the description's own constraints, where velocities are
 //! not known yet, in that of the coordinates.
 
-use super::closure::{Closure, normalise};
+use super::chart_difference::{chart_difference, chart_rate};
 use super::layout::Block;
-use super::way::{chart_rate, way};
+use super::chart_difference::{chart_difference, chart_rate};
 use crate::algebra::dense::{
     apply, backward, cholesky, cholesky_with, dot, forward, gram, least_norm, product,
 };
@@ -21,7 +21,7 @@ const LEAST: f64 = 1e-9;
 
 /// The equations of loops that are to be closed near a guess.
 pub struct Loops<'c, 'a> {
-    closure: &'c Closure<'a>,
+    closure: &'c LoopClosure<'a>,
     guess: &'c [f64],
     given: Vec<usize>,
     /// For each entry of x, whether it is given.
@@ -38,7 +38,7 @@ impl<'c, 'a> Loops<'c, 'a> {
     /// Sets up the loops of a description with residuals scaled by `sizes`; the entries of x that are given stay as
     /// in the guess.
     pub fn new(
-        closure: &'c Closure<'a>,
+        closure: &'c LoopClosure<'a>,
         mass: &[Vec<f64>],
         guess: &'c [f64],
         given: &[bool],
@@ -140,7 +140,7 @@ impl Equations for Loops<'_, '_> {
         let mut place = 0;
         for &block in &self.closure.blocks {
             let end = place + block.len();
-            let (way, bent) = way(block, &self.guess[place..end], &x[place..end]);
+            let (way, bent) = chart_difference(block, &self.guess[place..end], &x[place..end]);
             let rows = &rates[apart.len()..apart.len() + way.len()];
             slopes.extend(bent.iter().map(|row| {
                 let entry = |i: usize| row.iter().zip(rows).map(|(a, b)| a * b[i]).sum();

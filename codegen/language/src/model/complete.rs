@@ -1,8 +1,8 @@
 //! Completes a start: exact values stay, prescribed coordinates and velocities are set, and the rest closes loops and
 //! satisfies constraints. A description and a state from outside are completed by the same rules.
 
-use super::closure::{Closure, Open};
-use super::opening::Opening;
+use super::initial_conditions::InitialConditions;
+use super::loop_closure::{LoopClosure, Open};
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
 
@@ -18,7 +18,7 @@ pub enum Refused {
 /// Function that returns M at a configuration.
 pub type Mass<'a> = &'a dyn Fn(&[f64]) -> Vec<Vec<f64>>;
 
-impl Opening {
+impl InitialConditions {
     /// Sets prescribed coordinates, closes loops and satisfies constraints. Exact values stay; they are refused if
     /// they contradict the constraints. If coordinates are guessed, the result is the nearest configuration in the
     /// metric of M; likewise for guessed velocities.
@@ -27,7 +27,7 @@ impl Opening {
     /// Returns the constraint that cannot be satisfied.
     pub fn complete(
         &mut self,
-        closure: &Closure,
+        closure: &LoopClosure,
         prescribed: &[(usize, Edge)],
         mass: Mass,
     ) -> Result<(), Refused> {
@@ -42,7 +42,7 @@ impl Opening {
     /// Returns the constraint that cannot be satisfied.
     pub fn configure(
         &mut self,
-        closure: &Closure,
+        closure: &LoopClosure,
         prescribed: &[(usize, Edge)],
         mass: Mass,
     ) -> Result<(), Open> {
@@ -68,7 +68,7 @@ impl Opening {
     ///
     /// # Errors
     /// Returns the constraint that cannot be satisfied.
-    pub fn settle(&mut self, closure: &Closure, mass: Mass) -> Result<(), Open> {
+    pub fn settle(&mut self, closure: &LoopClosure, mass: Mass) -> Result<(), Open> {
         match self.guessed_xi.contains(&true) {
             true => {
                 let mass = mass(&self.x);

@@ -2,19 +2,20 @@
 //!
 //! Configuration, kinematics, inertia and loads are expressions of a graph whose points lie on X.
 
+mod chart_difference;
 pub mod charts;
 pub mod closest;
-pub mod closure;
 pub mod complete;
 pub mod completion;
 mod edges;
 pub mod elements;
+pub mod initial_conditions;
 pub mod invariants;
 pub mod joints;
 pub mod layout;
+pub mod loop_closure;
 pub mod motion;
 pub mod nearest;
-pub mod opening;
 pub mod pfaffian;
 pub mod points;
 pub mod provenance;
@@ -23,7 +24,6 @@ pub mod samples;
 pub mod states;
 pub mod twists;
 pub mod value;
-mod way;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
@@ -32,9 +32,9 @@ use crate::functions::Asked;
 use crate::syntax::ast::{Axes, CoordKind, Origins, ShapeKind, Span};
 use completion::Completion;
 use elements::Elements;
+use initial_conditions::InitialConditions;
 use layout::Block;
 use motion::Observed;
-use opening::Opening;
 use pfaffian::Pfaffian;
 use points::Points;
 use provenance::Statements;
@@ -194,7 +194,7 @@ pub struct Model {
     pub docs: Vec<String>,
     /// The graph, with points on X.
     pub graph: Graph,
-    /// The variety X: φ itself, and a way to find further points.
+    /// The manifold X: φ itself, and a way to find further points.
     pub points: Points,
     /// Run-time parameters.
     pub params: Vec<Group>,
@@ -305,7 +305,7 @@ pub struct Model {
     /// z at the start.
     pub start_z: Vec<f64>,
     /// The start as the description gives it, in the full frame; the rest is computed from it.
-    pub opening: Opening,
+    pub initial_conditions: InitialConditions,
     /// The functions to generate.
     pub asked: Asked,
     /// Span for errors about the start that are found later.

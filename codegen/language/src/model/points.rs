@@ -29,7 +29,7 @@ pub const HIGHEST_DEGREE: u32 = 32;
 /// Largest number of terms of a constraint.
 const MOST_TERMS: usize = 2000;
 
-/// The variety X as the generator samples it.
+/// The manifold X as the generator samples it.
 #[derive(Clone, Debug)]
 pub struct Points {
     /// Graph with unconstrained points, in which `constraints` live.
@@ -49,7 +49,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// Creates the variety of constraints that live in a graph with unconstrained points.
+    /// Creates the manifold of constraints that live in a graph with unconstrained points.
     pub fn new(free: Graph, constraints: Vec<Edge>, blocks: Vec<Block>, first: usize) -> Self {
         let symbols = free.symbols().len();
         Points {
@@ -213,7 +213,7 @@ impl Points {
         found.is_some_and(|found| self.roots != Roots::BaseField || found.iter().all(inside))
     }
 
-    /// Returns the same variety with roots in F_p(i), where every number of F_p is a square; `None` if it has these
+    /// Returns the same manifold with roots in F_p(i), where every number of F_p is a square; `None` if it has these
     /// already.
     pub fn extended(&self) -> Option<Self> {
         (self.roots == Roots::BaseField).then(|| Points {
@@ -222,7 +222,7 @@ impl Points {
         })
     }
 
-    /// Returns the same variety without the requirement that roots have values.
+    /// Returns the same manifold without the requirement that roots have values.
     pub(crate) fn without_roots(&self) -> Self {
         Points {
             radicals: Vec::new(),

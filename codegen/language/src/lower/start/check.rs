@@ -4,8 +4,8 @@ use crate::algebra::graph::Node;
 use crate::algebra::numeric::evaluate;
 use crate::algebra::residual_scale::relative_residuals;
 use crate::diagnostics::{Diagnostic, Report, rough};
+use crate::lower::configuration_manifold::{ConfigurationManifold, Origin};
 use crate::lower::declare::Declared;
-use crate::lower::variety::{Origin, Variety};
 use crate::model::nearest::Nearest;
 use crate::syntax::ast::{CoordKind, ItemKind, Span, System};
 
@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-9;
 /// Checks φ(x) = 0 at the start.
 pub fn check(
     system: &System,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     declared: &Declared,
     defaults: &[f64],
     x: &[f64],
@@ -26,29 +26,29 @@ pub fn check(
     }
     let mut numbers = vec![std::f64::consts::PI];
     numbers.extend(defaults.iter().chain(x));
-    numbers.resize(variety.points.symbols, 0.0);
-    let rows: Vec<_> = variety.phi.iter().map(|(edge, _)| *edge).collect();
-    let residuals = evaluate(&variety.points.free, &rows, &numbers);
+    numbers.resize(manifold.points.symbols, 0.0);
+    let rows: Vec<_> = manifold.phi.iter().map(|(edge, _)| *edge).collect();
+    let residuals = evaluate(&manifold.points.free, &rows, &numbers);
     let parts = relative_residuals(
-        &variety.points.free,
+        &manifold.points.free,
         &rows,
         &numbers,
-        variety.points.places(),
+        manifold.points.places(),
     );
     let mut reported: Vec<Origin> = Vec::new();
     let mut nearest = None;
     for (row, &residual) in residuals.iter().enumerate() {
-        let origin = variety.origins[row];
+        let origin = manifold.origins[row];
         if parts[row].abs() <= ROUNDING || reported.contains(&origin) {
             continue;
         }
         reported.push(origin);
-        let mut error = violation(system, variety, declared, row, residual);
+        let mut error = violation(system, manifold, declared, row, residual);
         if let Origin::Statement(_) = origin {
             let found = nearest.get_or_insert_with(|| {
-                crate::model::nearest::nearest(&variety.points, &variety.phi, &numbers, x)
+                crate::model::nearest::nearest(&manifold.points, &manifold.phi, &numbers, x)
             });
-            advise(&mut error, found, variety, declared, row);
+            advise(&mut error, found, manifold, declared, row);
         }
         report.push(error);
     }
@@ -96,16 +96,16 @@ fn given(system: &System, names: &[&str]) -> Option<Span> {
 
 fn violation(
     system: &System,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     declared: &Declared,
     row: usize,
     residual: f64,
 ) -> Diagnostic {
-    let text = &variety.phi[row].1;
-    let names = coordinates_of(variety, declared, row);
+    let text = &manifold.phi[row].1;
+    let names = coordinates_of(manifold, declared, row);
     let given = given(system, &names);
     let difference = format!("the difference is {}", rough(residual));
-    match variety.origins[row] {
+    match manifold.origins[row] {
         Origin::Coordinate(index) => {
             let coordinate = &declared.coordinates[index];
             let text = text.split(", entry").next().unwrap_or(text);
@@ -145,7 +145,7 @@ fn violation(
 fn advise(
     error: &mut Diagnostic,
     found: &Nearest,
-    variety: &Variety,
+    manifold: &ConfigurationManifold,
     declared: &Declared,
     row: usize,
 ) {
@@ -162,7 +162,7 @@ fn advise(
             return;
         }
     };
-    let names = coordinates_of(variety, declared, row);
+    let names = coordinates_of(manifold, declared, row);
     let starts: Option<Vec<String>> = declared
         .coordinates
         .iter()
@@ -198,11 +198,15 @@ fn short(number: f64) -> String {
 }
 
 /// Returns the names of the coordinates in a row of φ.
-fn coordinates_of<'a>(variety: &Variety, declared: &'a Declared, row: usize) -> Vec<&'a str> {
-    let free = &variety.points.free;
-    let first = variety.points.first;
+fn coordinates_of<'a>(
+    manifold: &ConfigurationManifold,
+    declared: &'a Declared,
+    row: usize,
+) -> Vec<&'a str> {
+    let free = &manifold.points.free;
+    let first = manifold.points.first;
     let mut names = Vec::new();
-    for id in free.reachable(&[variety.phi[row].0]) {
+    for id in free.reachable(&[manifold.phi[row].0]) {
         if let Node::Symbol(index) = free.node(id)
             && let Some(alpha) = (index as usize).checked_sub(first)
             && alpha < declared.x.len()

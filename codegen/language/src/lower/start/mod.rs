@@ -12,10 +12,10 @@ use crate::lower::rate::{entry, part};
 use crate::lower::scope::Scope;
 use crate::lower::states::States;
 use crate::model::class;
-use crate::model::closure::{Closure, Open};
 use crate::model::complete::{Mass, Refused};
+use crate::model::initial_conditions::{Formulas, InitialConditions};
 use crate::model::layout::{blocks, identity};
-use crate::model::opening::{Formulas, Opening};
+use crate::model::loop_closure::{LoopClosure, Open};
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
@@ -80,12 +80,12 @@ pub fn read(
 
 impl Start {
     /// Returns the start as it is given, before the rest is computed.
-    pub fn opening(&self, graph: &Graph, states: &States) -> Opening {
+    pub fn initial_conditions(&self, graph: &Graph, states: &States) -> InitialConditions {
         let is_there =
             |list: &[Option<Span>]| -> Vec<bool> { list.iter().map(Option::is_some).collect() };
         let lists = [&self.formulas_x, &self.formulas_xi, &states.formulas];
         let varies = lists.iter().any(|list| !list.is_empty());
-        Opening {
+        InitialConditions {
             x: self.x.clone(),
             xi: self.xi.clone(),
             z: states.start.clone(),
@@ -107,14 +107,14 @@ impl Start {
     /// Returns an error about the constraint that cannot be satisfied.
     pub fn complete(
         &mut self,
-        mut opening: Opening,
-        closure: &Closure,
+        mut initial: InitialConditions,
+        closure: &LoopClosure,
         (constraints, prescribed): (&[Pfaffian], &[(usize, Edge)]),
         mass: Mass,
     ) -> Result<(), Diagnostic> {
-        let refused = match opening.complete(closure, prescribed, mass) {
+        let refused = match initial.complete(closure, prescribed, mass) {
             Ok(()) => {
-                (self.x, self.xi) = (opening.x, opening.xi);
+                (self.x, self.xi) = (initial.x, initial.xi);
                 return Ok(());
             }
             Err(refused) => refused,
@@ -122,7 +122,7 @@ impl Start {
         let open = match refused {
             Refused::Configuration(open) => open,
             Refused::Velocities(open) => {
-                let given = closure.any_speed(&opening.exact_xi);
+                let given = closure.any_speed(&initial.exact_xi);
                 return Err(violated(constraints, open, given));
             }
         };
@@ -133,7 +133,7 @@ impl Start {
                 format!("the start differs from this motion by {by}"),
                 "remove the `start` of what is prescribed: it follows from the motion",
             ),
-            _ if opening.guesses_coordinates() => (
+            _ if initial.guesses_coordinates() => (
                 format!(
                     "no configuration near the guesses closes this loop, which is open by {by} there"
                 ),

@@ -1,7 +1,7 @@
-//! The variety X of the geometric constraints: φ in a graph with unconstrained points, and points that satisfy it.
+//! The manifold X of the geometric constraints: φ in a graph with unconstrained points, and points that satisfy it.
 
 use super::declare::{Declared, size};
-use super::ground::{Constraint, Ground};
+use super::static_scope::{Constraint, StaticScope};
 use super::{branch, component, start};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
@@ -28,8 +28,8 @@ pub enum Origin {
     Statement(usize),
 }
 
-/// The variety X, as far as the constraints could be read.
-pub struct Variety {
+/// The manifold X, as far as the constraints could be read.
+pub struct ConfigurationManifold {
     pub points: Points,
     /// Rows of φ in the graph with unconstrained points, each with its text.
     pub phi: Vec<(Edge, String)>,
@@ -44,27 +44,27 @@ pub struct Variety {
     /// x at the start, if it was solved for from guesses so that it satisfies the constraints.
     pub assembled: Option<Vec<f64>>,
     /// For each statement, the errors that kept a constraint from having a value off X. Those that occur on X, too,
-    /// are reported there; [`Variety::check`] gives the others as the reason.
+    /// are reported there; [`ConfigurationManifold::check`] gives the others as the reason.
     unread: BTreeMap<usize, Vec<Diagnostic>>,
 }
 
-impl Variety {
+impl ConfigurationManifold {
     /// Creates X of a description, from a graph whose symbols have independent values.
     ///
-    /// Errors in names are kept for [`Variety::check`], which reports them on X, where expressions that are equal
+    /// Errors in names are kept for [`ConfigurationManifold::check`], which reports them on X, where expressions that are equal
     /// modulo φ are one node.
     pub fn of(system: &System, names: &Resolved, seed: u64, report: &mut Report) -> Self {
         let mut before = Report::new();
-        let ground = Ground::free(system, names, seed, &mut before);
+        let statics = StaticScope::free(system, names, seed, &mut before);
         let before = before.finish().err().unwrap_or_default();
-        let Ground {
+        let StaticScope {
             mut graph,
             scope,
             declared,
             defaults,
             constraints: written,
             ..
-        } = ground;
+        } = statics;
         let (mut rows, mut unread, mut complete) = (Vec::new(), BTreeMap::new(), !declared.faulty);
         for constraint in written {
             let Some(difference) = constraint.difference else {
@@ -112,7 +112,7 @@ impl Variety {
             }
             None => constraints,
         };
-        let mut variety = Variety {
+        let mut manifold = ConfigurationManifold {
             points: Points::new(graph, constraints, blocks, first),
             phi: Vec::new(),
             origins: Vec::new(),
@@ -122,11 +122,11 @@ impl Variety {
             assembled,
             unread,
         };
-        variety.collect(&declared, &rows);
-        if let Some(near) = variety.near.clone().filter(|_| complete) {
-            component::separate(&mut variety.points, &variety.phi, &near);
+        manifold.collect(&declared, &rows);
+        if let Some(near) = manifold.near.clone().filter(|_| complete) {
+            component::separate(&mut manifold.points, &manifold.phi, &near);
         }
-        variety
+        manifold
     }
 
     /// Collects φ of every block and of the user, in the free graph, with the text of each row.

@@ -30,7 +30,7 @@ pub fn chart_rate(block: Block, x: &[f64], rate: &[f64]) -> Vec<f64> {
 
 /// Returns the difference between two points of a block in its chart, and the matrix that maps the chart rate to the
 /// rate of the difference.
-pub fn way(block: Block, from: &[f64], to: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+pub fn chart_difference(block: Block, from: &[f64], to: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
     match block {
         Block::Flat(n) => {
             let way = to.iter().zip(from).map(|(a, b)| a - b).collect();

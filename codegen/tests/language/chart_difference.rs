@@ -4,12 +4,12 @@
 use hamel_language::algebra::fp::Random;
 // The included file uses this name, too.
 use hamel_language::model::layout;
-use included::{chart_rate, turned, way};
+use included::{chart_difference, chart_rate, turned};
 use layout::{Block, rotation};
 
 // Included, since searches for the nearest configuration only show final positions.
-#[path = "../../language/src/model/way.rs"]
-mod included;
+#[path = "../../language/src/model/chart_difference.rs"]
+=mod included;
 
 /// The rate of the displacement between two points is the documented product, compared with differences.
 #[test]
@@ -33,19 +33,22 @@ fn the_way_changes_as_its_factor_says() {
         let matrix = |q: &[f64]| rotation([q[0], q[1], q[2], q[3]], 2.0);
         let h = 1e-5;
         let turn = |q: &dyn Fn(f64) -> Vec<f64>, block, from: &[f64]| {
-            let (ahead, behind) = (way(block, from, &q(h)).0, way(block, from, &q(-h)).0);
+            let (ahead, behind) = (
+                chart_difference(block, from, &q(h)).0,
+                chart_difference(block, from, &q(-h)).0,
+            );
             let slope: Vec<f64> = (0..3).map(|k| (ahead[k] - behind[k]) / (2.0 * h)).collect();
             let (a, b) = (q(h), q(-h));
             let x_dot: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - b) / (2.0 * h)).collect();
             let spin = chart_rate(block, &q(0.0), &x_dot);
-            let factor = way(block, from, &q(0.0)).1;
+            let factor = chart_difference(block, from, &q(0.0)).1;
             for k in 0..3 {
                 let expected: f64 = (0..3).map(|l| factor[k][l] * spin[l]).sum();
                 // The displacement is discontinuous at a rotation by π.
                 let cut = (slope[k]).abs() > 1e3;
                 assert!(cut || (slope[k] - expected).abs() < 1e-6 * (1.0 + expected.abs()));
             }
-            way(block, from, &q(0.0)).0
+            chart_difference(block, from, &q(0.0)).0
         };
         let one = turn(&shifted, Block::Quaternion, &from);
         let other = turn(&|h| matrix(&shifted(h)), Block::Rotation, &matrix(&from));

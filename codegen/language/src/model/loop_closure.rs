@@ -18,7 +18,7 @@ use crate::algebra::slopes::slopes;
 
 /// Largest number of steps of Newton's method.
 const STEPS: usize = 60;
-/// Number of searches in `Closure::assemble`; each scales the equations by their sizes where the last one ended.
+/// Number of searches in `LoopClosure::assemble`; each scales the equations by their sizes where the last one ended.
 const JUDGED: usize = 3;
 /// Smallest number of steps for constraints on velocities, so that rounding is refined away.
 const LEAST_ROUNDS: usize = 3;
@@ -29,7 +29,7 @@ const SOLVED: f64 = 1e-12;
 const ROUNDING: f64 = 1e-6;
 
 /// The equations φ(x) = 0 of loops and B(x) ξ = 0, with numeric parameters.
-pub struct Closure<'a> {
+pub struct LoopClosure<'a> {
     pub(super) graph: &'a Graph,
     pub(super) blocks: Vec<Block>,
     /// φ of the coordinates, in the graph with free points, if the description has constraints of its own.
@@ -52,7 +52,7 @@ pub struct Open {
     pub residual: f64,
 }
 
-impl<'a> Closure<'a> {
+impl<'a> LoopClosure<'a> {
     /// Sets up the equations of a description that is being read, with φ if it has constraints of its own.
     pub fn new(
         graph: &'a Graph,
@@ -64,7 +64,7 @@ impl<'a> Closure<'a> {
         params: &'a [f64],
     ) -> Self {
         let kinds = coordinates.iter().map(|coordinate| coordinate.kind);
-        Closure {
+        LoopClosure {
             graph,
             blocks: kinds.flat_map(blocks).collect(),
             phi,
@@ -81,7 +81,7 @@ impl<'a> Closure<'a> {
     pub fn of(model: &'a Model, params: &'a [f64]) -> Self {
         let rows = || model.phi.iter().map(|(edge, _)| *edge).collect();
         let constrained = !model.points.constraints.is_empty();
-        Closure {
+        LoopClosure {
             graph: &model.graph,
             blocks: model.blocks.clone(),
             phi: constrained.then(|| (&model.points.free, rows())),

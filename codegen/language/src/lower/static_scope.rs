@@ -5,12 +5,12 @@
 //! seen, and points of X are found. The second has the values of such a point, so that expressions that are equal on
 //! X are one node. The rest of a description is read only in the second.
 
+use super::configuration_manifold::ConfigurationManifold;
 use super::declare::{Declared, NextValue, declare};
 use super::defaults;
 use super::expression::Evaluator;
 use super::names::Names;
 use super::scope::Scope;
-use super::variety::Variety;
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -32,7 +32,7 @@ pub struct Constraint {
 }
 
 /// The motion-independent part of a description, in a graph.
-pub struct Ground<'a> {
+pub struct StaticScope<'a> {
     pub graph: Graph,
     pub scope: Scope<'a>,
     pub declared: Declared,
@@ -43,7 +43,7 @@ pub struct Ground<'a> {
     pub constraints: Vec<Constraint>,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> StaticScope<'a> {
     /// Reads the description with independent values of all symbols.
     pub fn free(
         system: &'a System,
@@ -58,12 +58,12 @@ impl<'a> Ground<'a> {
             graph.set_reals(samples::anywhere(graph.symbols().len(), seed));
         };
         let graph = Graph::new(class::PARAM);
-        Ground::read(system, names, true, graph, &mut next, reals, report)
+        StaticScope::read(system, names, true, graph, &mut next, reals, report)
     }
 
     /// Reads the description at a point of X.
     pub fn on(
-        variety: &Variety,
+        manifold: &ConfigurationManifold,
         point: &[Fp],
         system: &'a System,
         names: &'a Resolved<'a>,
@@ -73,13 +73,13 @@ impl<'a> Ground<'a> {
         let mut point = point.iter();
         let mut next = |_: &mut Graph| point.next().copied().unwrap_or(Fp::ONE);
         let reals = |graph: &mut Graph| {
-            let near = variety.near.as_deref();
-            graph.set_reals(samples::sample(&variety.points, &variety.phi, seed, near));
-            graph.compare_samples(near.is_some() && variety.complete);
+            let near = manifold.near.as_deref();
+            graph.set_reals(samples::sample(&manifold.points, &manifold.phi, seed, near));
+            graph.compare_samples(near.is_some() && manifold.complete);
         };
         let mut graph = Graph::new(class::PARAM);
-        graph.set_roots(variety.points.roots);
-        Ground::read(system, names, false, graph, &mut next, reals, report)
+        graph.set_roots(manifold.points.roots);
+        StaticScope::read(system, names, false, graph, &mut next, reals, report)
     }
 
     fn read(
@@ -99,7 +99,7 @@ impl<'a> Ground<'a> {
         let mut values = Names::default();
         values.read(&names.order.before, &mut graph, &mut scope, report);
         let constraints = constraints(system, &mut graph, &scope);
-        Ground {
+        StaticScope {
             graph,
             scope,
             declared,

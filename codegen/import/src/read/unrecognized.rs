@@ -1,7 +1,7 @@
 //! Warnings about legal XML that is not understood or probably not meant: names that are not on the closed list,
 //! numbers in other units.
 
-use super::known::{Element, Level};
+use super::schema::{Element, Level};
 use super::xml::{Reader, property, tag, written};
 use crate::decimal::Decimal;
 use crate::tree::near;
@@ -11,13 +11,13 @@ use std::ops::Range;
 /// Namespace of attributes that locate the schema of a file.
 const SCHEMA: &str = "http://www.w3.org/2001/XMLSchema-instance";
 /// Largest plausible angle (rad): a full turn, with room for rounding.
-const TURN: f64 = 6.5;
+const MAX_ANGLE: f64 = 6.5;
 /// Largest plausible length (m).
-const FAR: f64 = 100.0;
+const MAX_LENGTH: f64 = 100.0;
 
 /// A note about something that is not on the closed list: message, first place, and number of occurrences.
 #[derive(Debug)]
-pub(super) struct Strange {
+pub(super) struct Unrecognized {
     message: String,
     range: Range<usize>,
     help: String,
@@ -73,10 +73,10 @@ impl<'a> Reader<'a, '_, '_> {
 
     /// Adds a note, once for all places with the same message.
     pub(super) fn note(&mut self, range: Range<usize>, message: String, help: String) {
-        let mut noted = self.strange.iter_mut();
-        match noted.find(|strange| strange.message == message) {
-            Some(strange) => strange.count += 1,
-            None => self.strange.push(Strange {
+        let mut noted = self.unrecognized.iter_mut();
+        match noted.find(|unrecognized| unrecognized.message == message) {
+            Some(unrecognized) => unrecognized.count += 1,
+            None => self.unrecognized.push(Unrecognized {
                 message,
                 range,
                 help,
@@ -86,21 +86,22 @@ impl<'a> Reader<'a, '_, '_> {
     }
 
     /// Turns all notes into warnings.
-    pub(super) fn tell(&mut self) {
-        for strange in std::mem::take(&mut self.strange) {
-            let more = match strange.count {
+    pub(super) fn warn_of_unrecognized(&mut self) {
+        for unrecognized in std::mem::take(&mut self.unrecognized) {
+            let more = match unrecognized.count {
                 1 => String::new(),
                 2 => ", here and at one more place".to_string(),
                 count => format!(", here and at {} more places", count - 1),
             };
-            let message = format!("{}{more}", strange.message);
-            self.warnings.push(&strange.range, message, strange.help);
+            let message = format!("{}{more}", unrecognized.message);
+            self.warnings
+                .push(&unrecognized.range, message, unrecognized.help);
         }
     }
 
     /// Warns of angles and lengths that look like degrees and millimetres.
     pub(super) fn units(&mut self, numbers: &[Decimal; 3], range: &Range<usize>, angles: bool) {
-        let most = if angles { TURN } else { FAR };
+        let most = if angles { MAX_ANGLE } else { MAX_LENGTH };
         let Some(large) = numbers.iter().find(|number| number.value.abs() > most) else {
             return;
         };
@@ -114,7 +115,7 @@ impl<'a> Reader<'a, '_, '_> {
                 ),
             ),
             false => (
-                format!("the length {text} m is more than {FAR} m"),
+                format!("the length {text} m is more than {MAX_LENGTH} m"),
                 "lengths are in metres".to_string(),
             ),
         };

@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Given values of x and ξ, of which some are exact and some are guesses. Entries that are neither are at the
 /// identity or at rest.
 #[derive(Clone, Debug, Default)]
-pub struct Opening {
+pub struct InitialConditions {
     /// Values of x.
     pub x: Vec<f64>,
     /// Values of ξ of the full frame.
@@ -39,20 +39,20 @@ pub struct Formulas {
     pub z: Vec<(usize, Edge)>,
 }
 
-impl Opening {
+impl InitialConditions {
     /// Returns the start for given values of the parameters.
-    pub fn at(&self, params: &[f64]) -> Opening {
-        let mut opening = self.clone();
+    pub fn at(&self, params: &[f64]) -> InitialConditions {
+        let mut initial = self.clone();
         let Some(formulas) = &self.formulas else {
-            return opening;
+            return initial;
         };
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend_from_slice(params);
         numbers.resize(formulas.graph.symbols().len(), f64::NAN);
         for (into, list) in [
-            (&mut opening.x, &formulas.x),
-            (&mut opening.xi, &formulas.xi),
-            (&mut opening.z, &formulas.z),
+            (&mut initial.x, &formulas.x),
+            (&mut initial.xi, &formulas.xi),
+            (&mut initial.z, &formulas.z),
         ] {
             let edges: Vec<Edge> = list.iter().map(|(_, edge)| *edge).collect();
             let values = evaluate(&formulas.graph, &edges, &numbers);
@@ -60,7 +60,7 @@ impl Opening {
                 .zip(values)
                 .for_each(|(&(place, _), value)| into[place] = value);
         }
-        opening
+        initial
     }
 
     /// Returns whether coordinates are guessed, so that loops are closed as near to the guesses as possible.
