@@ -44,6 +44,7 @@ mod step_slopes;
 mod structure;
 mod tables;
 mod time;
+mod trace;
 mod twins;
 mod views;
 mod warnings;
