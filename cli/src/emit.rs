@@ -7,6 +7,10 @@ use crate::source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::builder;
 use hamel_codegen::emit::c::{Files, Precision, includable};
+use hamel_codegen::emit::trace::Traced;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::trace::Places;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Writes the generated Rust, or C99.
@@ -17,6 +21,7 @@ use std::path::{Path, PathBuf};
   hamel emit heavy_top.eom                          to the terminal
   hamel emit heavy_top.eom -o src/heavy_top.rs      to a file
   hamel emit heavy_top.eom -o src/heavy_top.rs --check    in CI: is the file up to date?
+  hamel emit heavy_top.eom -o src/heavy_top.rs --trace heavy_top.json    and what each statement is
   hamel emit --language c heavy_top.eom -o src/heavy_top  C99: src/heavy_top.h and src/heavy_top.c
   hamel emit --language c --precision float drone.eom -o drone    the same with `float`
 C on the terminal is the header and the source in one, which compiles alone.")]
@@ -37,6 +42,10 @@ pub struct Arguments {
     /// Number type of C: `double` or `float`; default: `double`. Rust is generic over it.
     #[arg(long, value_name = "NUMBERS")]
     precision: Option<Precision>,
+    /// Also writes every statement of the code as JSON: name, expression, quantity, equation, and line and column of the
+    /// description.
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    trace: Option<PathBuf>,
     #[command(flatten)]
     robot: RobotOptions,
 }
@@ -62,6 +71,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => None,
     };
     let source = source::open(&arguments.file, &arguments.robot)?;
+    let trace = arguments.trace.as_deref();
+    if trace.is_some() {
+        let beside = source.files()?;
+        let read = std::iter::once(&arguments.file).chain(&beside);
+        outputs::apart(
+            [("-o", arguments.out.as_deref()), ("--trace", trace)],
+            read.map(|path| Some(path.as_path())),
+        )?;
+    }
     if let Some(out) = arguments.out.as_deref().filter(|_| !arguments.check) {
         let out = match &stem {
             Some(stem) => [".h", ".c"].map(|ending| out.with_file_name(format!("{stem}{ending}"))),
@@ -87,6 +105,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let name = name.to_string_lossy();
     let generated = source.derive()?;
+    if let Some(trace) = trace {
+        let written = source
+            .robot
+            .as_ref()
+            .map_or(&source.text, |robot| &robot.urdf);
+        update(trace, &traced(&generated, written, &source.path))?;
+    }
     match arguments.language {
         Language::Rust => {
             let code =
@@ -103,6 +128,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             write_c(arguments, &files, stem.as_deref())
         }
     }
+}
+
+/// The statements of all functions as JSON. `text` and `path` are those of the description, or of the robot's file.
+fn traced(generated: &Generated, text: &str, path: &str) -> String {
+    let mut places = Places::of(generated, text);
+    let mut statement = |traced: &Traced| {
+        let mut value = json!({ "name": traced.name, "expression": traced.expression });
+        if let Some(origin) = &traced.origin {
+            value["quantity"] = json!(origin.quantity);
+            value["equation"] = json!(origin.equation);
+        }
+        if let Some(place) = places.place(traced) {
+            value["line"] = json!(place.line);
+            value["column"] = json!(place.column);
+            if let Some(file) = place.file {
+                value["file"] = json!(file);
+            }
+        }
+        value
+    };
+    let functions = generated.trace().into_iter().map(|function| {
+        let statements = function.statements.iter().map(&mut statement);
+        let statements: Vec<Value> = statements.collect();
+        json!({ "name": function.function, "statements": statements })
+    });
+    let functions: Vec<Value> = functions.collect();
+    let all = json!({ "description": path, "functions": functions });
+    format!("{all:#}\n")
 }
 
 /// Writes header and source to their files, or both as one source to the terminal.

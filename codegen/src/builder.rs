@@ -375,6 +375,7 @@ pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnost
     let options = emit::Options {
         source_hash: generated.hash,
         command: format!("hamel emit {}", quoted(name)),
+        description: generated.text.clone(),
         ..Default::default()
     };
     emit::file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
@@ -405,6 +406,7 @@ pub fn written_in_c(
     let options = emit::c::Options {
         source_hash: generated.hash,
         command: format!("hamel emit --language c{numbers} {name}{out}"),
+        description: generated.text.clone(),
         header: format!("{}.h", stem.unwrap_or_default()),
         precision,
     };

@@ -33,6 +33,8 @@ pub struct Generated {
     pub program: Program,
     /// Hash of the description's tokens, the same for all front ends.
     pub hash: u64,
+    /// Text of the description; empty if it was read from tokens.
+    pub text: String,
 }
 
 /// Number of further evaluation points that are tried if a proof fails at the first.
@@ -72,7 +74,8 @@ pub fn text_of(path: &Path) -> std::io::Result<String> {
 pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagnostic>> {
     let mut system = syntax::parse_text(text)?;
     let texts = syntax::read_files(&mut system, open)?;
-    derive(&system, fingerprint(&(canonical(text) + &texts.concat())))
+    let hash = fingerprint(&(canonical(text) + &texts.concat()));
+    Ok(derive(&system, hash)?.described(text))
 }
 
 /// Derives the description of a robot as far as possible. If M is not positive definite, functions that need M⁻¹ are
@@ -84,8 +87,10 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
 #[cfg(feature = "files")]
 pub fn available_in(system: &ast::System) -> Result<(Generated, Option<LeftOut>), Vec<Diagnostic>> {
     // The hash is that of the printed description, so that the code generated from it is the same.
-    let hash = fingerprint(&canonical(&syntax::print::text(system)));
-    at_some_point(system, |model| Generated::available(model, hash))
+    let text = syntax::print::text(system);
+    let hash = fingerprint(&canonical(&text));
+    let (generated, left_out) = at_some_point(system, |model| Generated::available(model, hash))?;
+    Ok((generated.described(&text), left_out))
 }
 
 /// What was left out because M is not positive definite, or because nothing has inertia.
@@ -127,7 +132,7 @@ pub fn from_text(text: &str) -> Result<Generated, Vec<Diagnostic>> {
 /// Derives a description that was parsed from a text.
 #[cfg(feature = "files")]
 pub(crate) fn of_system(system: &ast::System, text: &str) -> Result<Generated, Vec<Diagnostic>> {
-    derive(system, fingerprint(&canonical(text)))
+    Ok(derive(system, fingerprint(&canonical(text)))?.described(text))
 }
 
 #[cfg(feature = "files")]
@@ -172,6 +177,14 @@ fn has_roots(graph: &Graph) -> bool {
 }
 
 impl Generated {
+    /// Sets the text of the description.
+    fn described(self, text: &str) -> Self {
+        Generated {
+            text: text.into(),
+            ..self
+        }
+    }
+
     /// Derives a model, and refuses false claims.
     pub fn of(model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
         let linearized = model.asked.names(FunctionId::Linearize);
@@ -277,6 +290,7 @@ impl Generated {
             model,
             program,
             hash,
+            text: String::new(),
         })
     }
 }

@@ -47,6 +47,8 @@ mod expand;
 pub mod generate;
 #[cfg(feature = "files")]
 pub mod scene;
+#[cfg(feature = "files")]
+pub mod trace;
 #[cfg(feature = "urdf")]
 pub mod urdf;
 

@@ -52,8 +52,8 @@ pub struct Graph {
     bad_prime: bool,
     /// External functions, which are defined elsewhere.
     externals: Arc<Vec<External>>,
-    /// Labels of nodes.
-    labels: FxHashMap<NodeId, Label>,
+    /// Labels of nodes, as far as the last node that has one.
+    labels: Vec<Option<Label>>,
     /// Class of the symbols that are constant at run time. Products and sums of these are kept together so
     /// that they can be computed once.
     free_class: u8,
@@ -75,7 +75,7 @@ impl Graph {
             copied: Fp::ZERO,
             bad_prime: false,
             externals: Arc::default(),
-            labels: FxHashMap::default(),
+            labels: Vec::new(),
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.

@@ -103,6 +103,7 @@ impl<'a> Builder<'a> {
                 graph.label(&[pivot], Quantity::Pivot.of(i));
             }
         }
+        graph.label(&self.kinematic_guards, Quantity::KinematicPivot.of(0));
         graph.label(&self.chosen.multipliers, Quantity::Multiplier.of(0));
     }
 

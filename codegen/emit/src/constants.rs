@@ -1,9 +1,9 @@
 //! Expressions of the kept constants, as comments where they are computed.
 
 use super::Emitter;
-use super::print::Headings;
 use hamel_algebra::graph::NodeId;
 use hamel_algebra::text::{short, short_with};
+use hamel_language::model::provenance::Origin;
 use hamel_program::origins::served;
 use hamel_program::statements::Body;
 use rustc_hash::FxHashMap;
@@ -12,21 +12,26 @@ use std::rc::Rc;
 /// Largest number of characters of an expression that is written out.
 const WIDTH: usize = 80;
 
-/// Returns the headings of the function that computes the constants, such as `k[2] = m * g`.
-pub fn headings(emitter: &Emitter, body: &Body) -> Headings {
+/// Finds the constant that each statement of their function serves, by the nodes that the statements define. The
+/// quantity of a constant is its expression, such as `k[2] = m * g`.
+pub fn origins(emitter: &Emitter, body: &Body) -> FxHashMap<NodeId, Rc<Origin>> {
     let kept = emitter.kept.iter().enumerate();
     let places: FxHashMap<NodeId, usize> = kept.map(|(place, edge)| (edge.node(), place)).collect();
-    let texts: Vec<Rc<str>> = (0..emitter.kept.len())
+    let origins: Vec<Rc<Origin>> = (0..emitter.kept.len())
         .map(|place| {
             let value = expression(emitter, &places, place);
             let value = value.map_or_else(String::new, |text| format!(" = {text}"));
-            format!("k[{place}]{value}").into()
+            Rc::new(Origin {
+                quantity: format!("k[{place}]{value}"),
+                equation: "parameters",
+                span: emitter.program.provenance.system(),
+            })
         })
         .collect();
     let served = served(body, |node| places.get(&node).copied());
     let served = served.into_iter();
     served
-        .map(|(node, place)| (node, texts[place].clone()))
+        .map(|(node, place)| (node, origins[place].clone()))
         .collect()
 }
 

@@ -1,7 +1,7 @@
 //! Doc comments of the generated code.
 
 use super::names;
-use hamel_algebra::graph::NodeId;
+use hamel_algebra::graph::{Edge, NodeId};
 use hamel_language::model::layout::Block;
 use hamel_language::model::{Coordinate, Group};
 use hamel_language::syntax::ast::{CoordKind, ShapeKind};
@@ -66,27 +66,29 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
     let result = result(function.shape);
     lines.extend([String::new(), format!("Returns {result}.")]);
     if function.fallible {
-        lines.extend(errors(program, function));
+        lines.extend(errors(program, &function.guards, "the arguments"));
     }
     lines
 }
 
-/// Returns the section on errors.
-pub fn errors(program: &Program, function: &Function) -> [String; 3] {
-    let why = missing(program, function);
-    [
-        String::new(),
-        "# Errors".into(),
-        format!("`Singular` where {why}."),
-    ]
+/// Returns the section on errors of a function with these guards. `depends` completes "no pivot depends on".
+pub fn errors(program: &Program, guards: &[Edge], depends: &str) -> [String; 3] {
+    let text = match singular(program, guards) {
+        Some(why) => format!("`Singular` where {why}."),
+        None => format!("None: no pivot depends on {depends}."),
+    };
+    [String::new(), "# Errors".into(), text]
 }
 
-/// Returns the conditions under which a function has no value, according to its guards.
-pub fn missing(program: &Program, function: &Function) -> String {
-    let causes = function.guards.iter().map(|&guard| program.cause(guard));
-    let causes: Vec<Cause> = causes.collect();
+/// Returns the conditions under which one of the guards is not positive; `None` if there is none.
+pub fn singular(program: &Program, guards: &[Edge]) -> Option<String> {
+    let causes: Vec<Cause> = guards.iter().map(|&guard| program.cause(guard)).collect();
     let has = |of: fn(&Cause) -> bool| causes.iter().any(of);
     let reasons = [
+        (
+            has(|cause| matches!(cause, Cause::Velocity(_) | Cause::Mass)),
+            "the mass matrix is not positive definite",
+        ),
         (
             has(|cause| matches!(cause, Cause::Constraint(_))),
             "constraints depend on one another",
@@ -96,12 +98,19 @@ pub fn missing(program: &Program, function: &Function) -> String {
             "the mechanism is at a kinematic singularity, where a pivot of [Y; Φ] changes its sign",
         ),
     ];
-    let mut text = String::from("the mass matrix is not positive definite");
-    for (_, reason) in reasons.iter().filter(|(holds, _)| *holds) {
-        text += ", or ";
-        text += reason;
+    let reasons = reasons.iter().filter(|(holds, _)| *holds);
+    let reasons: Vec<&str> = reasons.map(|&(_, reason)| reason).collect();
+    (!reasons.is_empty()).then(|| reasons.join(", or "))
+}
+
+/// Returns the lines of a description, indented, below a blank line; none for an empty text.
+pub fn description(text: &str) -> Vec<String> {
+    if text.is_empty() {
+        return Vec::new();
     }
-    text
+    let lines = text.trim_end().lines();
+    let lines = lines.map(|line| format!("    {}", spelled(line.trim_end())));
+    std::iter::once(String::new()).chain(lines).collect()
 }
 
 /// Returns the description of a function, its cost and its arguments.

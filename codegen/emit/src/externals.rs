@@ -1,6 +1,7 @@
 //! External functions, which the user implements in Rust: the trait that declares them, over which the generated type
 //! is generic. A description without external functions has neither the trait nor the type parameter.
 
+use super::structure::ALLOW_TYPE;
 use super::{Emitter, docs};
 use hamel_algebra::external::External;
 
@@ -78,7 +79,7 @@ pub fn functions(emitter: &Emitter) -> String {
         "is not that of its slopes, the linearisation is wrong and nothing says so.".into(),
     ];
     format!(
-        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, clippy::too_many_arguments, reason = \"the description's names and uses\")]\n{public}trait {}<S: ::hamel::Scalar>: ::core::clone::Clone {{\n{methods}}}\n\n",
+        "{}{ALLOW_TYPE}{public}trait {}<S: ::hamel::Scalar>: ::core::clone::Clone {{\n{methods}}}\n\n",
         docs::comment(&lines),
         names.of
     )

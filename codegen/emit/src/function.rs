@@ -91,13 +91,13 @@ pub fn text(emitter: &Emitter, spec: &Spec) -> String {
 }
 
 /// Lowers, names and splits a function, and passes it to `text`, which prints it in a language.
-pub fn draw(
+pub fn draw<T>(
     emitter: &Emitter,
     spec: &Spec,
     language: &dyn Language,
     parameters: &[String],
-    text: impl FnOnce(&Drawing) -> String,
-) -> String {
+    text: impl FnOnce(&Drawing) -> T,
+) -> T {
     let (mut locals, body) = lower(emitter, spec);
     let read = body
         .statements
@@ -122,24 +122,31 @@ pub fn draw(
         locals: &locals,
         body: &body,
         plan: &plan,
-        headings: &headings(emitter, spec, &body),
+        headings: &headings(emitter, spec, language, &body),
         written: &written.collect(),
         parameters,
     })
 }
 
 /// Returns the headings of the statements of a function: the quantity that each serves, and its equation.
-fn headings(emitter: &Emitter, spec: &Spec, body: &Body) -> Headings {
+fn headings(emitter: &Emitter, spec: &Spec, language: &dyn Language, body: &Body) -> Headings {
     if !emitter.headings {
         return Headings::default();
     }
-    if spec.functions.is_empty() {
-        return constants::headings(emitter, body);
-    }
+    let constants = spec.functions.is_empty();
+    let origins = match constants {
+        true => constants::origins(emitter, body),
+        false => origins(emitter.program, &spec.functions, body),
+    };
     let mut texts: FxHashMap<*const Origin, Rc<str>> = FxHashMap::default();
-    let origins = origins(emitter.program, &spec.functions, body);
     let heading = |(node, origin): (NodeId, Rc<Origin>)| {
-        let text = || format!("{} ({})", origin.quantity, origin.equation).into();
+        let text = || match constants {
+            true => language.heading(&origin.quantity).into(),
+            false => {
+                let text = format!("{} ({})", origin.quantity, origin.equation);
+                language.heading(&text).into()
+            }
+        };
         let text = texts.entry(Rc::as_ptr(&origin)).or_insert_with(text);
         (node, text.clone())
     };
@@ -220,7 +227,7 @@ impl Drawing<'_> {
         let value = shaped(self.spec.shape, results);
         let kept = self.bind_kept(&printer.used);
         let body = format!("{kept}{text}{}", self.value(&value));
-        self.head(&printer.used, &body)
+        self.head(&body)
     }
 
     /// Binds the array of kept constants to `k`, if it is used.
@@ -241,9 +248,8 @@ impl Drawing<'_> {
     }
 
     /// Wraps a body in the signature of the function.
-    pub fn head(&self, used: &Used, body: &str) -> String {
-        let taken = |argument: Argument| used.arguments.contains(&argument);
-        head(self.emitter.program, self.spec, taken, body)
+    pub fn head(&self, body: &str) -> String {
+        head(self.emitter.program, self.spec, body)
     }
 }
 
@@ -261,22 +267,13 @@ fn shaped(shape: Shape, entries: &[String]) -> String {
     }
 }
 
-/// Wraps a body in the signature of a function; `taken` tells which arguments the body reads.
-pub fn head(
-    program: &Program,
-    spec: &Spec,
-    taken: impl Fn(Argument) -> bool,
-    body: &str,
-) -> String {
+/// Wraps a body in the signature of a function.
+pub fn head(program: &Program, spec: &Spec, body: &str) -> String {
     let mut arguments = vec!["&self".to_string()];
-    let mut unused = Vec::new();
-    for &argument in spec.arguments {
-        let name = names::argument(argument);
-        arguments.push(format!("{name}: &[S; {}]", program.length(argument)));
-        if !taken(argument) {
-            unused.push(name);
-        }
-    }
+    arguments.extend(spec.arguments.iter().map(|&argument| {
+        let (name, length) = (names::argument(argument), program.length(argument));
+        format!("{name}: &[S; {length}]")
+    }));
     if let Some(shape) = spec.beside {
         arguments.push(format!("{SLOPES}: &mut {}", shape_type(shape)));
     }
@@ -285,16 +282,10 @@ pub fn head(
         true => format!("::core::result::Result<{result}, ::hamel::Singular>"),
         false => result,
     };
-    let mut attributes = String::new();
-    if !unused.is_empty() {
-        let reason = format!("the value does not depend on {}", unused.join(", "));
-        attributes.push_str(&format!(
-            "#[allow(unused_variables, reason = \"{reason}\")]\n"
-        ));
-    }
-    if spec.public && !spec.fallible {
-        attributes.push_str("#[must_use]\n");
-    }
+    let attributes = match spec.public && !spec.fallible {
+        true => "#[must_use]\n",
+        false => "",
+    };
     let public = if spec.public { "pub " } else { "" };
     format!(
         "{}{attributes}{public}fn {}({}) -> {result} {{\n{body}}}\n\n",

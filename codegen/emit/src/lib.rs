@@ -17,6 +17,7 @@
 //! | `layout` | parses the generated text, and formats it for files |
 //! | `parts` | a function that is split into parts |
 //! | `together` | one function that computes both ξ̇ and [A B] |
+//! | [`trace`] | every statement with its expression and its origin |
 //! | `structure` | the type: fields, sizes, constructor, defaults |
 //! | `parameters` | accessors of the parameters, and the constants computed from them |
 //! | `system` | `impl hamel::System`, `impl hamel::Energies` |
@@ -55,6 +56,7 @@ mod print;
 mod structure;
 mod system;
 mod together;
+pub mod trace;
 mod views;
 
 use function::Spec;
@@ -73,6 +75,8 @@ pub struct Options {
     pub source_hash: u64,
     /// Command that regenerates the file, quoted in the header; none if empty.
     pub command: String,
+    /// Text of the description, quoted in the header; none if empty.
+    pub description: String,
     /// Largest number of `let`s in one function; rustc overflows its stack at about 3,000 when debug
     /// information is on.
     pub chunk: usize,
@@ -83,6 +87,7 @@ impl Default for Options {
         Options {
             source_hash: 0,
             command: String::new(),
+            description: String::new(),
             chunk: 500,
         }
     }
@@ -267,6 +272,10 @@ pub fn file(program: &Program, options: &Options) -> Result<String, NotRust> {
         let command: Vec<&str> = options.command.split_whitespace().collect();
         let command = docs::spelled(&command.join(" "));
         header.push_str(&format!("// Regenerate with `{command}`.\n"));
+    }
+    for line in docs::description(&options.description) {
+        header.push_str(format!("// {line}").trim_end());
+        header.push('\n');
     }
     Ok(format!("{header}\n{text}"))
 }

@@ -68,10 +68,9 @@ pub fn kept_value(group: &Group, name: &str) -> String {
     }
 }
 
-/// Returns the section on errors of a doc comment.
-pub fn errors() -> Vec<String> {
-    let text = "`Singular` where the mass matrix is not positive definite with these parameters.";
-    vec![String::new(), "# Errors".into(), text.into()]
+/// Returns the section on errors of a function that sets parameters.
+pub fn errors(program: &Program) -> [String; 3] {
+    docs::errors(program, &program.constant_guards, "the parameters")
 }
 
 /// Whether setting parameters requires constants to be computed or pivots to be checked.
@@ -100,7 +99,7 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
     let mut lines = vec![format!(
         "Sets parameter `{written}`; on an error nothing changes."
     )];
-    lines.extend(errors());
+    lines.extend(errors(emitter.program));
     let body = match needs_update(emitter) {
         true => format!(
             "let mut next = self.clone();\nnext.{field} = {value};\nnext.{}()?;\n*self = next;\n",

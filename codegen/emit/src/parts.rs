@@ -47,7 +47,6 @@ impl Drawing<'_> {
                 writes.collect()
             });
             let used = printer.used;
-            main.used.arguments.extend(&used.arguments);
             crossing |= used.access(Array::Slots) > Access::None;
             let part_name = self.emitter.names.part(name, index + 1);
             let (arguments, values) = self.part_arguments(&used);
@@ -94,7 +93,7 @@ impl Drawing<'_> {
         }
         let kept = self.bind_kept(&main.used);
         let body = format!("{kept}{text}{}", self.value("out"));
-        parts + &self.head(&main.used, &body)
+        parts + &self.head(&body)
     }
 
     /// Clears the argument `slopes`. A function in short parts clears only the entries that stay zero: this is more

@@ -60,7 +60,7 @@ pub struct Written {
     pub negative: bool,
 }
 
-/// Headings of statements, by the nodes that they define.
+/// Comments above the statements that serve one quantity, by the nodes that these define.
 pub type Headings = FxHashMap<NodeId, Rc<str>>;
 
 /// Prints the statements of one function or part.
@@ -224,7 +224,7 @@ impl Printer<'_> {
         match headings.next() {
             Some(heading) if **heading != *self.heading => {
                 self.heading = heading;
-                self.language.heading(heading)
+                heading.to_string()
             }
             _ => String::new(),
         }
@@ -248,7 +248,8 @@ impl Printer<'_> {
         }
     }
 
-    fn expression(&mut self, operation: &Operation) -> String {
+    /// Returns the expression of an operation with one result.
+    pub fn expression(&mut self, operation: &Operation) -> String {
         match *operation {
             Operation::Add(a, b) => {
                 let [mut a, mut b] = [a, b].map(|edge| self.operand(edge));

@@ -5,14 +5,20 @@ use super::parameters::{errors, group_type, kept_value, needs_update};
 use super::{Emitter, docs, externals};
 use hamel_program::{FunctionId, Shape};
 
-/// Lint attributes for generated functions, which cannot satisfy these lints in general.
+/// Lint attributes for generated functions, which cannot satisfy these lints in general. A file that is included has no
+/// inner attributes, so that each item has its own.
 pub const ALLOW: &str = concat!(
     "#[rustfmt::skip]\n",
-    "#[allow(dead_code, unreachable_pub, reason = \"a program may use a part of what is generated\")]\n",
-    "#[allow(unused_qualifications, reason = \"full paths are right whatever is imported\")]\n",
-    "#[allow(clippy::approx_constant, clippy::let_and_return, clippy::nursery, clippy::pedantic, \
-     clippy::too_many_arguments, clippy::type_complexity, clippy::wrong_self_convention, \
-     reason = \"numbers, names and shapes are those of the description\")]\n",
+    "#[allow(dead_code, unreachable_pub, unused_qualifications, unused_variables, clippy::approx_constant, \
+     clippy::let_and_return, clippy::nursery, clippy::pedantic, clippy::too_many_arguments, clippy::type_complexity, \
+     clippy::wrong_self_convention, reason = \"names, numbers and shapes are those of the description\")]\n",
+);
+
+/// Lint attributes for generated types and traits.
+pub const ALLOW_TYPE: &str = concat!(
+    "#[rustfmt::skip]\n",
+    "#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, \
+     clippy::too_many_arguments, reason = \"the description's names and uses\")]\n",
 );
 
 /// Lint attributes for generated trait implementations, which cannot satisfy these lints in general.
@@ -58,7 +64,7 @@ pub fn structure(emitter: &Emitter) -> String {
     fields.push_str(&externals::field(emitter));
     let public = if program.public { "pub " } else { "" };
     format!(
-        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, reason = \"the description's names and uses\")]\n#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
+        "{}{ALLOW_TYPE}#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
         docs::comment(&lines),
         externals::applied(emitter)
     )
@@ -82,7 +88,7 @@ pub fn sizes(emitter: &Emitter) -> String {
 fn constructor(emitter: &Emitter) -> String {
     let groups = || emitter.program.params.iter().zip(&emitter.names.fields);
     let mut lines = vec!["The system with given parameters.".to_string()];
-    lines.extend(errors());
+    lines.extend(errors(emitter.program));
     let mut arguments = Vec::new();
     if !emitter.program.params.is_empty() {
         arguments.push(format!(

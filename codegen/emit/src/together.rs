@@ -38,7 +38,7 @@ pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
         format!("Returns {}.", docs::result(rates.shape)),
     ]);
     if slopes.fallible {
-        lines.extend(docs::errors(program, slopes));
+        lines.extend(docs::errors(program, &guards, "the arguments"));
     }
     Some((
         linearize,
@@ -76,5 +76,5 @@ pub fn text(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
         zeros(linearize.shape),
         given.join(", ")
     );
-    function::text(emitter, both) + &function::head(emitter.program, linearize, |_| true, &body)
+    function::text(emitter, both) + &function::head(emitter.program, linearize, &body)
 }

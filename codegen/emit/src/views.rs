@@ -9,7 +9,7 @@
 
 use super::names::{Unique, cased};
 use super::parameters::{group_type, shaped};
-use super::structure::ALLOW_TRAIT;
+use super::structure::{ALLOW, ALLOW_TRAIT, ALLOW_TYPE};
 use super::{Emitter, docs, externals, number};
 use hamel_language::model::{Coordinate, Group};
 use hamel_language::syntax::ast::{CoordKind, ShapeKind};
@@ -164,7 +164,7 @@ impl View<'_> {
         });
         let values: Vec<String> = values.collect();
         format!(
-            "{docs}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, reason = \"the description's names and uses\")]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
+            "{docs}{ALLOW_TYPE}#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
              {ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::default::Default for {name}<S> {{\n/// {default}\nfn default() -> Self {{\nSelf {{ {} }}\n}}\n}}\n\n",
             values.join(", ")
         )
@@ -256,14 +256,10 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
             )
         })
         .collect();
-    let unused = match n {
-        0 => "#[allow(unused_variables, reason = \"there are no velocities\")]\n",
-        _ => "",
-    };
     text.push_str(&format!(
-        "{}impl<S: ::hamel::Scalar> {name}<S> {{\n{ranges}/// The state that x and ξ are.\n{unused}#[must_use]\npub fn from_arrays(x: &[S; {nu}], xi: &[S; {n}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
+        "{}impl<S: ::hamel::Scalar> {name}<S> {{\n{ranges}/// The state that x and ξ are.\n#[must_use]\npub fn from_arrays(x: &[S; {nu}], xi: &[S; {n}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
          /// x and ξ, as the functions of `{of}` take them.\n#[must_use]\npub fn to_arrays(&self) -> ([S; {nu}], [S; {n}]) {{\n([{}], [{}])\n}}\n}}\n\n",
-        super::structure::ALLOW,
+        ALLOW,
         values.join(", "),
         entries("x"),
         entries("xi"),
@@ -322,7 +318,7 @@ pub fn inputs(emitter: &Emitter) -> String {
     text.push_str(&format!(
         "{}impl<S: ::hamel::Scalar> {name}<S> {{\n/// The inputs that u is.\n#[must_use]\npub fn from_array(u: &[S; {m}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
          /// u, as the functions of `{of}` take it.\n#[must_use]\npub fn to_array(&self) -> [S; {m}] {{\n[{}]\n}}\n}}\n\n",
-        super::structure::ALLOW,
+        ALLOW,
         values.join(", "),
         entries.join(", "),
     ));

@@ -17,66 +17,120 @@ pub fn origins(
     functions: &[&Function],
     body: &Body,
 ) -> FxHashMap<NodeId, Rc<Origin>> {
-    let results = functions.iter().flat_map(|function| {
-        let columns = match function.shape {
-            Shape::Matrix(_, columns) => columns,
-            Shape::Scalar | Shape::Vector(_) => 1,
+    let provenance = &program.provenance;
+    let mut all = Interned::default();
+    let mut named: FxHashMap<NodeId, usize> = FxHashMap::default();
+    let mut outputs = body.outputs.iter();
+    for function in functions {
+        let (rows, columns) = match function.shape {
+            Shape::Matrix(rows, columns) => (rows, columns),
+            Shape::Scalar | Shape::Vector(_) => (function.shape.entries(), 1),
         };
-        let name = &function.name;
-        let result = move |index| program.provenance.result(function.id, name, index, columns);
-        (0..function.shape.entries()).map(result)
-    });
-    let outputs = body.outputs.iter().map(|edge| edge.node());
-    let mut named: FxHashMap<NodeId, Rc<Origin>> = FxHashMap::default();
-    for (node, origin) in outputs.zip(results) {
-        if let Some(origin) = origin {
-            named.entry(node).or_insert_with(|| Rc::new(origin));
+        for row in 0..rows.max(1) {
+            let origin = all.place(provenance.result(function.id, &function.name, row));
+            for output in outputs.by_ref().take(columns) {
+                named.entry(output.node()).or_insert(origin);
+            }
         }
     }
-    let mut labels: FxHashMap<Label, Option<Rc<Origin>>> = FxHashMap::default();
-    served(body, |node| {
-        named.get(&node).cloned().or_else(|| {
+    let mut labels: FxHashMap<Label, Option<usize>> = FxHashMap::default();
+    let served = served(body, |node| {
+        named.get(&node).copied().or_else(|| {
             let label = program.graph.label_of(node)?;
-            let origin = || program.provenance.origin(label).map(Rc::new);
-            labels.entry(label).or_insert_with(origin).clone()
+            let mut place = || Some(all.place(provenance.origin(label)?));
+            *labels.entry(label).or_insert_with(&mut place)
         })
-    })
+    });
+    let served = served.into_iter();
+    served
+        .map(|(node, place)| (node, all.list[place].clone()))
+        .collect()
+}
+
+/// Origins, each kept once.
+#[derive(Default)]
+struct Interned {
+    list: Vec<Rc<Origin>>,
+    places: FxHashMap<String, usize>,
+}
+
+impl Interned {
+    fn place(&mut self, origin: Origin) -> usize {
+        if let Some(&known) = self.places.get(&origin.quantity) {
+            return known;
+        }
+        self.places.insert(origin.quantity.clone(), self.list.len());
+        self.list.push(Rc::new(origin));
+        self.list.len() - 1
+    }
 }
 
 /// Finds what the statements of a body serve, by the nodes that they define; `own` tells what a node is an entry of.
+/// Quantities are numbered.
 ///
 /// A statement without an own answer continues that of the next statement if its result is needed there, or else serves
 /// the first statement that reads its result.
-pub fn served<T: Clone + PartialEq>(
+pub fn served(
     body: &Body,
-    mut own: impl FnMut(NodeId) -> Option<T>,
-) -> FxHashMap<NodeId, T> {
-    let mut all: FxHashMap<NodeId, T> = FxHashMap::default();
-    // What the readers of each node serve. Statements are visited backwards, so that the first reader is the last one.
-    let mut readers: FxHashMap<NodeId, Vec<T>> = FxHashMap::default();
-    let mut next: Option<T> = None;
+    mut own: impl FnMut(NodeId) -> Option<usize>,
+) -> FxHashMap<NodeId, usize> {
+    let mut all: FxHashMap<NodeId, usize> = FxHashMap::default();
+    let mut readers: FxHashMap<NodeId, Readers> = FxHashMap::default();
+    let mut next: Option<usize> = None;
+    // Backwards, so that readers come before what they read.
     for statement in body.statements.iter().rev() {
         if matches!(statement.operation, Operation::Check(..)) {
             continue;
         }
         let needed = || {
-            let reads = statement.defined().filter_map(|node| readers.get(&node));
-            let reads: Vec<&T> = reads.flatten().collect();
-            match reads.last() {
-                Some(&first) if !reads.iter().any(|&of| next.as_ref() == Some(of)) => {
-                    Some(first.clone())
-                }
-                _ => next.clone(),
-            }
+            let reads = || statement.defined().filter_map(|node| readers.get(&node));
+            let continues = next.is_some_and(|next| reads().any(|all| all.contain(next)));
+            let first = reads().map(|all| all.first).next();
+            // Of values that only checks read, the first quantity.
+            first.filter(|_| !continues).or(next).or(Some(0))
         };
-        let Some(of) = statement.defined().find_map(&mut own).or_else(needed) else {
+        let whole = |node: &NodeId| !body.partial.contains(node);
+        let found = statement.defined().filter(whole).find_map(&mut own);
+        let Some(of) = found.or_else(needed) else {
             continue;
         };
         for edge in statement.operation.operands() {
-            readers.entry(edge.node()).or_default().push(of.clone());
+            let entry = readers.entry(edge.node());
+            entry
+                .and_modify(|all| all.precede(of))
+                .or_insert_with(|| Readers::only(of));
         }
-        all.extend(statement.defined().map(|node| (node, of.clone())));
+        all.extend(statement.defined().map(|node| (node, of)));
         next = Some(of);
     }
     all
+}
+
+/// What the readers of a node serve.
+struct Readers {
+    /// The quantity of the first reader.
+    first: usize,
+    /// The quantities of the others.
+    others: Vec<usize>,
+}
+
+impl Readers {
+    fn only(first: usize) -> Self {
+        Readers {
+            first,
+            others: Vec::new(),
+        }
+    }
+
+    /// Adds a reader before the others.
+    fn precede(&mut self, quantity: usize) {
+        if quantity != self.first {
+            self.others.push(self.first);
+            self.first = quantity;
+        }
+    }
+
+    fn contain(&self, quantity: usize) -> bool {
+        self.first == quantity || self.others.contains(&quantity)
+    }
 }

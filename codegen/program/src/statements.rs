@@ -121,6 +121,8 @@ pub struct Body {
     pub statements: Vec<Statement>,
     /// Results.
     pub outputs: Vec<Edge>,
+    /// Nodes of which a statement has the name but not the value: it computes a part of a sum.
+    pub partial: FxHashSet<NodeId>,
 }
 
 /// Translates nodes, given children first, to statements. Nodes in `named` keep a statement of their own.
@@ -206,6 +208,7 @@ pub fn statements(
     Body {
         statements,
         outputs: outputs.iter().map(|&output| read(output)).collect(),
+        partial: sums.partial,
     }
 }
 

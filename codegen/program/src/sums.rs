@@ -14,6 +14,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 pub struct Sums {
     /// Nodes without a statement of their own: sums, and the products and sums fused into them.
     pub absorbed: FxHashSet<NodeId>,
+    /// Nodes whose names stand for a partial sum, or for the negative of a product, and not for their own values.
+    pub partial: FxHashSet<NodeId>,
     /// Statements that follow the node at an index.
     pub after: FxHashMap<usize, Vec<Statement>>,
 }
@@ -82,6 +84,11 @@ pub fn sums<'a>(
             }
         }
         sums.absorbed.extend(absorbed);
+        sums.partial.extend(&names[1..]);
+        let products = terms
+            .iter()
+            .filter(|term| term.product.is_some() && term.edge.is_negative());
+        sums.partial.extend(products.map(|term| term.edge.node()));
         // Operands come before their readers.
         for (at, statement) in chain(terms, names, root_at).into_iter().rev() {
             sums.after.entry(at).or_default().insert(0, statement);

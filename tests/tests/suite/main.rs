@@ -46,5 +46,6 @@ mod tables;
 #[path = "../../../codegen/tests/suite/common/thinning.rs"]
 mod thinning;
 mod time;
+mod trace;
 mod views;
 mod warnings;

@@ -138,7 +138,7 @@ impl Inertia {
         }
     }
 
-    fn label(&self, graph: &mut Graph, label: Label) {
+    fn label(&self, graph: &mut Graph, label: Option<Label>) {
         for block in [&self.j, &self.h, &self.m] {
             graph.label(&block.concat(), label);
         }

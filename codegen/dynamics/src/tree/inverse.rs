@@ -35,7 +35,7 @@ impl Wrench {
     }
 
     /// Labels force and torque.
-    pub fn label(&self, graph: &mut Graph, label: Label) {
+    pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
         graph.label(&self.torque, label);
         graph.label(&self.force, label);
     }

@@ -30,7 +30,7 @@ impl Mass {
     }
 
     /// Labels mass and moments.
-    pub fn label(&self, graph: &mut Graph, label: Label) {
+    pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
         graph.label(&[self.mass], label);
         graph.label(&self.first, label);
         graph.label(&self.second.concat(), label);

@@ -21,7 +21,7 @@ pub enum Turn {
 
 impl Turn {
     /// Labels the entries of the rotation.
-    pub fn label(&self, graph: &mut Graph, label: Label) {
+    pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
         match self {
             Turn::By(matrix) => graph.label(&matrix.concat(), label),
             Turn::About { cos, sin, .. } => graph.label(&[*cos, *sin], label),

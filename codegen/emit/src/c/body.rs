@@ -32,6 +32,7 @@ pub fn whole(texts: &Texts, drawing: &Drawing) -> String {
     let body = Body {
         statements: [values, checks].concat(),
         outputs: drawing.body.outputs.clone(),
+        partial: drawing.body.partial.clone(),
     };
     for part in &drawing.plan.parts {
         text.push_str(&statements(&mut printer, &body, part, |_, _| String::new()));

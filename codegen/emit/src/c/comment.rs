@@ -4,7 +4,9 @@ use crate::docs::spelled;
 
 /// Prints lines as a documentation comment, indented.
 pub fn documentation(lines: &[String], indent: usize) -> String {
-    block("/**", lines, indent)
+    let lines = lines.iter().flat_map(|line| line.split(['\n', '\r']));
+    let lines = lines.map(|line| line.trim_start_matches(' ').to_owned());
+    block("/**", &lines.collect::<Vec<_>>(), indent)
 }
 
 /// Prints lines as a plain comment.
@@ -39,7 +41,7 @@ fn block(start: &str, lines: &[String], indent: usize) -> String {
 
 /// Breaks up character pairs that begin or end a comment or form trigraphs, and removes control characters.
 fn tame(line: &str) -> String {
-    let line = line.trim_end().trim_start_matches(' ');
+    let line = line.trim_end();
     let line: String = line.chars().filter(|c| !c.is_control()).collect();
     let mut text = String::new();
     let mut last = ' ';

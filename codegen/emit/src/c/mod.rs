@@ -41,6 +41,8 @@ pub struct Options {
     pub source_hash: u64,
     /// Command that regenerates the files, quoted in the file headers; none if empty.
     pub command: String,
+    /// Text of the description, quoted in the header file; none if empty.
+    pub description: String,
     /// Name of the header file, as included by the source.
     pub header: String,
     /// Floating-point type of the generated code.
@@ -107,11 +109,13 @@ pub fn files(program: &Program, options: &Options) -> Files {
         let command: Vec<&str> = options.command.split_whitespace().collect();
         origin.push(format!("Regenerate with `{}`.", command.join(" ")));
     }
+    let description = docs::description(&options.description);
+    let described = comment::plain(&[origin.clone(), description].concat());
     let origin = comment::plain(&origin);
     let rest = source::text(&texts);
     let include = format!("#include \"{}\"\n\n", options.header);
     Files {
-        header: format!("{origin}\n{}", header::text(&texts)),
+        header: format!("{described}\n{}", header::text(&texts)),
         source: format!("{origin}\n{include}{rest}"),
         rest,
     }
@@ -187,11 +191,13 @@ fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Ve
     };
     lines.push(format!("- `out`: {result}{rows}"));
     if function.fallible {
-        let why = docs::missing(program, function);
-        lines.extend([
-            String::new(),
-            format!("Returns a status other than 0, and leaves `out` alone, where {why}."),
-        ]);
+        let why = match docs::singular(program, &function.guards) {
+            Some(why) => {
+                format!("Returns a status other than 0, and leaves `out` alone, where {why}.")
+            }
+            None => "Returns 0: no pivot depends on the arguments.".into(),
+        };
+        lines.extend([String::new(), why]);
     }
     lines
 }

@@ -5,7 +5,7 @@
 
 use super::chart_difference::{chart_difference, chart_rate};
 use super::layout::Block;
-use super::chart_difference::{chart_difference, chart_rate};
+use super::loop_closure::{LoopClosure, normalise};
 use crate::algebra::dense::{
     apply, backward, cholesky, cholesky_with, dot, forward, gram, least_norm, product,
 };

@@ -138,6 +138,7 @@ quantities! {
     InverseDynamics Velocities "force M ξ̇ + Γ ξ ξ + ∂V" "KR18 (30c)"
     Pivot Velocities "pivot of M = L D Lᵀ" "KR18 (30c)"
     Acceleration Velocities "acceleration ξ̇" "KR18 (30c)"
+    KinematicPivot System "pivot of [Y; Φ]" "KR18 (5)"
     Multiplier System "multipliers λ" "M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ"
     LinkRotation Frames "rotation of the link in its parent" "KR18 (31)"
     LinkAngularVelocity Frames "angular velocity ω of the link, link axes" "KR18 (38)"
@@ -160,11 +161,8 @@ quantities! {
 
 impl Quantity {
     /// Returns the label of the quantity of an entry of its list.
-    pub fn of(self, entry: usize) -> Label {
-        Label {
-            kind: self as u16,
-            entry: u32::try_from(entry).unwrap_or(u32::MAX),
-        }
+    pub fn of(self, entry: usize) -> Option<Label> {
+        Label::new(self as u8, entry)
     }
 }
 
@@ -258,36 +256,32 @@ impl Provenance {
 
     /// Returns what a label stands for.
     pub fn origin(&self, label: Label) -> Option<Origin> {
-        let quantity = Quantity::ALL.get(usize::from(label.kind))?;
+        let quantity = Quantity::ALL.get(label.kind())?;
         let (list, text, equation) = quantity.row();
-        let mut origin = self.entry(list, label.entry as usize, text, equation)?;
+        let mut origin = self.entry(list, label.entry(), text, equation)?;
         if list == List::Lets {
-            origin.quantity = format!("`{}`", self.name(list, label.entry as usize)?);
+            origin.quantity = format!("`{}`", self.name(list, label.entry())?);
         }
         Some(origin)
     }
 
-    /// Returns what an entry of the result of a function is. The result has `columns` entries in a row; `name` is that
-    /// of an output or invariant of the description.
-    pub fn result(
-        &self,
-        id: Option<FunctionId>,
-        name: &str,
-        index: usize,
-        columns: usize,
-    ) -> Option<Origin> {
-        let Some(id) = id else {
-            let span = self.outputs.get(name).copied();
-            return Some(Origin {
-                quantity: format!("`{name}`"),
-                equation: "description",
-                span: span.or(self.span())?,
-            });
+    /// Returns what a row of the result of a function is; `name` is that of an output or invariant of the description.
+    pub fn result(&self, id: Option<FunctionId>, name: &str, row: usize) -> Origin {
+        let described = || Origin {
+            quantity: format!("`{name}`"),
+            equation: "description",
+            span: self
+                .outputs
+                .get(name)
+                .copied()
+                .unwrap_or_else(|| self.system()),
         };
-        let (list, text, equation) = result(id);
-        let row = index / columns.max(1);
-        let named = self.entry(list, row, text, equation);
-        named.or_else(|| self.entry(List::System, 0, text, equation))
+        let of_row = |id: FunctionId| {
+            let (list, text, equation) = result(id);
+            let named = self.entry(list, row, text, equation);
+            named.or_else(|| self.entry(List::System, 0, text, equation))
+        };
+        id.and_then(of_row).unwrap_or_else(described)
     }
 
     fn entry(
@@ -314,9 +308,10 @@ impl Provenance {
         Some(name)
     }
 
-    fn span(&self) -> Option<Span> {
-        let (_, span) = self.lists.first()?.first()?;
-        Some(*span)
+    /// Returns the place of the name of the system.
+    pub fn system(&self) -> Span {
+        let system = self.lists.first().and_then(|list| list.first());
+        system.map_or(Span::NOWHERE, |(_, span)| *span)
     }
 }
 
