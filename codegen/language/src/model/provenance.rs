@@ -160,7 +160,7 @@ quantities! {
 }
 
 impl Quantity {
-    /// Returns the label of the quantity of an entry of its list.
+    /// Returns the label of the quantity of an entry of its list; `None` beyond 16 million entries.
     pub fn of(self, entry: usize) -> Option<Label> {
         Label::new(self as u8, entry)
     }
@@ -169,7 +169,7 @@ impl Quantity {
 /// What an expression is, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Origin {
-    /// The quantity, such as ``forearm: angular velocity ω, own axes``.
+    /// The quantity, such as `forearm: angular velocity ω, own axes`.
     pub quantity: String,
     /// Equation that defines it, in the notation of NOTATION.md.
     pub equation: &'static str,
