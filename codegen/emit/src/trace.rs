@@ -107,8 +107,8 @@ fn values(
             let given = call.arguments.iter().map(|&a| printer.signed(a));
             let given = given.collect::<Vec<_>>().join(", ");
             let results = call.results.iter().copied().flatten();
-            let called = results.map(|node| match graph.called_with(Edge::of(node)) {
-                Some((component, _)) => traced(node, graph.called(component, &given)),
+            let called = results.map(|node| match graph.as_external_call(Edge::of(node)) {
+                Some((component, _)) => traced(node, graph.external_call_text(component, &given)),
                 None => traced(node, String::new()),
             });
             called.collect()

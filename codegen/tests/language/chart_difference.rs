@@ -9,7 +9,7 @@ use layout::{Block, rotation};
 
 // Included, since searches for the nearest configuration only show final positions.
 #[path = "../../language/src/model/chart_difference.rs"]
-=mod included;
+mod included;
 
 /// The rate of the displacement between two points is the documented product, compared with differences.
 #[test]

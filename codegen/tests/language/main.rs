@@ -2,6 +2,7 @@
 //! `cargo test -p hamel-language --test suite syntax::`.
 
 mod axes;
+mod chart_difference;
 mod charts;
 mod functions;
 mod nearest;
@@ -10,5 +11,4 @@ mod shapes;
 mod suggest;
 mod syntax;
 mod unused;
-mod chart_difference;
 mod written;
