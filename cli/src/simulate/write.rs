@@ -36,7 +36,7 @@ impl Format {
 }
 
 /// Names of the columns.
-fn columns<'a>(run: &'a Run) -> impl Iterator<Item = &'a String> {
+fn columns(run: &Run) -> impl Iterator<Item = &String> {
     let coordinates = run.coordinate_names.iter().enumerate();
     let coordinates = coordinates.filter(|(place, _)| run.time.place != Some(*place));
     std::iter::once(&run.time.name)
