@@ -245,8 +245,8 @@ where
         if let Some(clock) = &clock {
             clock.set(&mut next);
         }
-        let led_back = !method.preserves_constraints() && project_coordinates(system, &mut next);
-        if project(system, &mut next)? || led_back {
+        let corrected = !method.preserves_constraints() && project_coordinates(system, &mut next);
+        if project(system, &mut next)? || corrected {
             force = None;
         }
         *state = next;

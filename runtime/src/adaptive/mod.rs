@@ -372,8 +372,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             if let Some(clock) = &clock {
                 clock.set(&mut end);
             }
-            let led_back = project_coordinates(system, &mut end);
-            let moved = project(system, &mut end)? || led_back;
+            let corrected = project_coordinates(system, &mut end);
+            let moved = project(system, &mut end)? || corrected;
             let mut stopped_by = None;
             if dense {
                 let mut step = Step::new(system, state, end, h, &stages, self.pair, change);
