@@ -70,7 +70,7 @@ fn robots(bencher: divan::Bencher, robot: &str) {
     };
     bencher.bench(|| {
         let imported = import(divan::black_box(&text), &options, robot, false);
-        let description = imported.expect("a sound robot").text;
+        let description = imported.expect("a sound robot").text();
         source(&description, robot).expect("the description is correct")
     });
 }

@@ -30,7 +30,7 @@ fn symbols(graph: &Graph, edges: &[Edge]) -> Vec<usize> {
 }
 
 /// Returns ẋ and ẍ at a point with these values of ξ.
-fn motion(model: &Model, lane: &FieldPoint, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
+fn motion(model: &Model, point: &FieldPoint, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     let (chosen, _) = accel(model, &Care::default()).expect("M is regular");
     let graph = &model.graph;
     let places = symbols(graph, &model.xi);

@@ -83,7 +83,7 @@ fn run(
                     && failure.lock().expect("unpoisoned").is_none()
                 {
                     // The thread cannot be stopped, so the process ends.
-                    eprintln!("more than {PATIENCE:?} for:\n{text}");
+                    eprintln!("more than {CASE_TIMEOUT:?} for:\n{text}");
                     std::process::exit(1);
                 }
             }

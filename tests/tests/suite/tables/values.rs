@@ -79,7 +79,7 @@ fn compare(what: &str, listing: &Listing, mut values: Values, expected: &[f64]) 
         let value = term(&values, &definition.value);
         values.insert(definition.name.clone(), value);
     }
-    let entries = listing.listed(true);
+    let entries = listing.entries_to_list(true);
     assert_eq!(entries.len(), expected.len(), "{what}");
     for (entry, expected) in entries.iter().zip(expected) {
         let value = term(&values, &entry.value);
