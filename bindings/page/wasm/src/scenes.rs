@@ -16,7 +16,7 @@ pub struct Scenes {
 /// Returns the scenes of samples, whose x are concatenated; `None` if nothing of the description can be drawn.
 pub fn scenes(session: &Session, params: &[f64], x: &[f64]) -> Option<Scenes> {
     let drawing = session.drawing().ok()?;
-    let drawn = drawing.with(params);
+    let drawn = drawing.with_parameters(params);
     let mut samples = x.chunks_exact(session.coordinates().entries.len().max(1));
     let first = drawn.scene(samples.next()?);
     let mut numbers = listed(&first);
