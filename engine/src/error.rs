@@ -349,7 +349,7 @@ impl fmt::Display for Error {
             }
             Error::UnavailableFunction { system, name } => write!(
                 f,
-                "{system} has no function `{name}`: the mass matrix has no inverse, or there is nothing that it could give"
+                "{system} has no function `{name}`: the mass matrix has no inverse, or the function would return nothing"
             ),
             Error::UnknownFunction {
                 system,

@@ -13,6 +13,8 @@ mkdir -p "$out/c"
 
 export HAMEL_C="$out/c" HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
+# Build scripts derive robots.
+export CARGO_PROFILE_RELEASE_BUILD_OVERRIDE_OPT_LEVEL=1
 cargo build --release --manifest-path lab/c/Cargo.toml --target-dir "$out/rust"
 # Pins the process to one core, if the system can.
 pin=$(command -v taskset || true)

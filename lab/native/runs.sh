@@ -8,5 +8,7 @@ bash tests/robots/install.sh
 target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
 robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
 export HAMEL_ROBOTS="$robots"
+# Build scripts derive robots.
+export CARGO_PROFILE_RELEASE_BUILD_OVERRIDE_OPT_LEVEL=1
 cargo build --release --manifest-path lab/native/Cargo.toml --target-dir target/bench-runs --bin runs
 target/bench-runs/release/runs

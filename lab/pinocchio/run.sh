@@ -53,6 +53,8 @@ fi
 
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
+# Build scripts derive robots.
+export CARGO_PROFILE_RELEASE_BUILD_OVERRIDE_OPT_LEVEL=1
 cargo build --release --locked --manifest-path "$here/Cargo.toml" --target-dir "$out/rust"
 # Pins the process to one core, if the system can.
 pin=$(command -v taskset || true)

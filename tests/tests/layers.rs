@@ -271,7 +271,7 @@ fn nothing_else_is_unsafe() {
 #[test]
 fn every_file_says_what_it_is() {
     for folder in [
-        "codegen", "macros", "engine", "runtime", "cli", "page", "python", "lab",
+        "codegen", "macros", "engine", "runtime", "cli", "bindings", "lab",
     ] {
         let described = |text: &str| text.starts_with("//!") || text.starts_with("#![");
         for (path, text) in sources(folder) {
@@ -295,6 +295,7 @@ fn the_architecture_page_is_true() {
         ("docs/decisions.md", 5),
         ("docs/book/src/inside.md", 15),
         ("docs/CONTRIBUTING.md", 20),
+        ("docs/walks.md", 20),
     ] {
         let page = fs::read_to_string(root().join(name)).expect("a page");
         let paths: Vec<&str> = page.split('`').skip(1).step_by(2).collect();
@@ -508,7 +509,7 @@ fn no_test_is_left_out() {
             }
         }
     }
-    assert_eq!((without, later), (12, 16));
+    assert_eq!((without, later), (9, 14));
 }
 
 /// Snapshots stay below 25,000 lines, so that people can review them.

@@ -65,8 +65,8 @@ pub fn verdict(report: &Report) -> Option<String> {
         .collect();
     let mut text = match judged.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
         Some((worst, most)) => format!(
-            "To an error of {TARGET_ERROR:.0e} the method that `auto` takes needs at most {most:.1} times the time of the \
-             fastest method measured, over {} of {} cases; the most is that of {}.",
+            "To reach an error of {TARGET_ERROR:.0e}, the method that `auto` takes needs at most {most:.1} times the time of the \
+             fastest method measured, over {} of {} cases; the maximum is that of {}.",
             judged.len(),
             chosen.len(),
             worst.name

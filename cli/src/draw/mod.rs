@@ -248,7 +248,6 @@ fn view(text: &str) -> Result<(f64, f64), String> {
     let angles = text
         .split_once(',')
         .and_then(|(azimuth, elevation)| Some((number(azimuth)?, number(elevation)?)));
-    angles.ok_or_else(|| {
-        format!("`{DEFAULT_VIEW}`, or two angles in degrees as in -60,20, are needed")
-    })
+    angles
+        .ok_or_else(|| format!("expected `{DEFAULT_VIEW}`, or two angles in degrees as in -60,20"))
 }

@@ -36,7 +36,7 @@ impl Manifest {
     /// Reads the file.
     pub fn read(text: &str) -> Result<Self, String> {
         let Value::Object(members) = parse(text).map_err(|error| error.to_string())? else {
-            return Err("an object is expected".into());
+            return Err("expected an object".into());
         };
         if members
             .get("format")

@@ -33,7 +33,10 @@ fn scene(session: &Session, state: &str) -> (Scene, Vec<f64>) {
     let state = state.unwrap_or_else(|error| panic!("{error}"));
     let drawing = session.drawing();
     let drawing = drawing.unwrap_or_else(|error| panic!("{error}"));
-    (drawing.with_parameters(&state.params).scene(&state.x), state.x)
+    (
+        drawing.with_parameters(&state.params).scene(&state.x),
+        state.x,
+    )
 }
 
 /// The value of a function at the start's parameters, with u = 0 and ξ = 0.
@@ -290,7 +293,10 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
     // A rolling wheel does not move sideways.
     let session = session(&models().join("../../examples/gallery/sleigh.eom"));
     let start = session.start();
-    let drawn = session.drawing().expect("a drawing").with_parameters(&start.params);
+    let drawn = session
+        .drawing()
+        .expect("a drawing")
+        .with_parameters(&start.params);
     let from = drawn.scene(&start.x).frames[0].position;
     let target = [from[0] + 0.3, from[1] + 0.2, from[2] + 1.0];
     let pulled = session.pulled(&start, Grip::Frame(0, [0.0; 3]), (target, None));

@@ -103,7 +103,7 @@ const USES: [&str; 35] = [
     "regressor TOY --format json --identified OUT/beta.json",
     "ops TOY --format text",
     "ops TOY --format json --advise",
-    "emit TOY --language rust --out OUT/toy.rs",
+    "emit TOY --language rust --out OUT/toy.rs --trace OUT/toy.json",
     "emit TOY --language c --precision float --out OUT/toy",
     "eval TOY --at OUT/state.json --frame rod --tables",
     "linearize TOY --at OUT/state.json --full --format text",

@@ -240,7 +240,10 @@ fn velocities_that_follow_may_be_given() {
         "{said}"
     );
     assert!(refused(CART, r#"{"velocity": {"x": 1}}"#).contains("velocity: violates `x = "));
-    assert!(refused(CART, r#"{"velocity": {"t_dot": 1}}"#).contains("velocity.t_dot: no velocity"));
+    assert!(
+        refused(CART, r#"{"velocity": {"t_dot": 1}}"#)
+            .contains("velocity.t_dot: not a velocity of the state")
+    );
     let drive = r#"{"velocity": {"x": 0.1}}"#;
     near(&eval(CART, drive).1, &[0.0]);
 }

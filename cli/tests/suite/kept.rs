@@ -86,7 +86,7 @@ fn nothing_is_written_over_what_is_read() {
     let both = folder.join("both.svg").display().to_string();
     refused(
         &[&simulate[..], &["--out", &both, "--plot", &both]].concat(),
-        "--out writes this file already",
+        "--out already writes this file",
     );
     let runs = folder.join("runs").display().to_string();
     let sweep = [

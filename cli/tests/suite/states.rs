@@ -332,7 +332,7 @@ fn states_of_first_order_are_read_and_shown() {
     assert_eq!(linear["A"][2], json!([0.0, -600.0, -1200.0]));
     for (wrong, said) in [
         (r#"{"state": {"j": 2}}"#, "state.j"),
-        (r#"{"state": {"i": [2]}}"#, "state.i: a number expected"),
+        (r#"{"state": {"i": [2]}}"#, "state.i: expected a number"),
         (r#"{"velocity": {"i": 2}}"#, "velocity.i"),
     ] {
         let errors = refused("dc_pendulum", wrong);

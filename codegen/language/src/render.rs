@@ -245,7 +245,7 @@ mod text {
             messages.push(annotate_snippets::Level::HELP.message(help.as_str()));
         }
         if let Some(statement) = error.texts.statement() {
-            let help = format!("the description made from it has `{statement}`");
+            let help = format!("the description made from it contains `{statement}`");
             messages.push(annotate_snippets::Level::HELP.message(help));
         }
         group.elements(messages)

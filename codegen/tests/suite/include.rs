@@ -1,5 +1,6 @@
 //! Included files: their statements take effect where they are included, and errors point into them.
 
+use crate::common::without_comments;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::{Generated, from_file, from_text, from_tokens};
 use hamel_codegen::render::{render, to_compile_errors, warnings};
@@ -59,7 +60,7 @@ const WRITTEN: &str = "system Carts {
 
 fn code(mut system: Generated) -> String {
     system.hash = 0;
-    hamel_codegen::builder::written(&system, "x.eom").expect("Rust")
+    without_comments(&hamel_codegen::builder::written(&system, "x.eom").expect("Rust"))
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Repetition, components and parts are equivalent to the statements written out, and agree with the Newton-Euler
 //! equations.
 
-use crate::common::{Random, difference, generated, value};
+use crate::common::{Random, difference, generated, value, without_comments};
 use crate::tree::{Kind, Link, Tree};
 use hamel_codegen::builder::written;
 use hamel_codegen::generate::{Generated, from_file, from_text};
@@ -33,7 +33,7 @@ fn model(name: &str) -> (String, Generated) {
 fn code(system: &Generated) -> String {
     let mut system = system.clone();
     system.hash = 0;
-    written(&system, "x.eom").expect("Rust")
+    without_comments(&written(&system, "x.eom").expect("Rust"))
 }
 
 /// Returns the statements of a rope, written by a loop of this program.

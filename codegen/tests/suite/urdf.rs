@@ -61,7 +61,7 @@ fn errors_about_the_description_are_shown_in_the_urdf() {
       |     ^^^^^^^^^
       |
       = help: known here: `hinge`, `hinge_dot`, `hinge_tau`, `rod`
-      = help: the description made from it has `body on rod { mass 2; inertia diag(0.2, 0.2, 0.01) about com; }`
+      = help: the description made from it contains `body on rod { mass 2; inertia diag(0.2, 0.2, 0.01) about com; }`
 
     1 error
     "#);
@@ -75,7 +75,7 @@ fn errors_about_the_description_are_shown_in_the_urdf() {
       |              ^^^
       |
       = help: known here: `hinge`, `hinge_dot`, `hinge_tau`, `rod`
-      = help: the description made from it has `gravity [0, 0, -9.81];`
+      = help: the description made from it contains `gravity [0, 0, -9.81];`
 
     1 error
     "#);
@@ -90,7 +90,7 @@ fn errors_about_the_description_are_shown_in_the_urdf() {
       |     ^^^^^^^^^
       |
       = help: write `mass m;` between its braces
-      = help: the description made from it has `body on rod { mass 2; inertia diag(0.2, 0.2, 0.01) about com; }`
+      = help: the description made from it contains `body on rod { mass 2; inertia diag(0.2, 0.2, 0.01) about com; }`
 
     1 error
     "#);

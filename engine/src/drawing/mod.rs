@@ -15,7 +15,7 @@
 //! let session = Session::read(text.into(), "pendulum.eom", &options, Arc::new(Quiet))?;
 //! let start = session.start();
 //! let drawing = session.drawing()?;
-//! let scene = drawing.with(&start.params).scene(&start.x);
+//! let scene = drawing.with_parameters(&start.params).scene(&start.x);
 //! assert_eq!(scene.bodies[0].centre, [0.0, 0.0, -0.5]);
 //! # Ok::<(), hamel_engine::Error>(())
 //! ```

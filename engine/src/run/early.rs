@@ -134,7 +134,7 @@ impl fmt::Display for EarlyEnd {
                 let at = if tolerance.is_some() { "at" } else { "by" };
                 write!(
                     f,
-                    "the run has lost the motion {at} t = {}: its energy has changed by {}, for which no load accounts; there may be a singularity on the way: ",
+                    "the run has lost the motion {at} t = {}: its energy has changed by {}, which no load accounts for; there may be a singularity on the way: ",
                     short(*time),
                     short(*change)
                 )?;

@@ -84,7 +84,7 @@ impl fmt::Display for SamplingProblem {
                 "t = {time} is outside the run, which is from 0 to {until}"
             ),
             SamplingProblem::Order { time, before } => {
-                write!(f, "times have to increase: {time} is not behind {before}")
+                write!(f, "times have to increase: {time} is not after {before}")
             }
             SamplingProblem::NoTimes => f.write_str("there are no times for samples"),
             SamplingProblem::TooMany { samples, most } => write!(

@@ -78,7 +78,7 @@ impl fmt::Display for SteppingProblem {
             ),
             SteppingProblem::Tolerance { method } => write!(
                 f,
-                "--tol goes with --method rkmk54 and rkmk8, which choose their steps; {method} takes --step"
+                "--tol works only with --method rkmk54 and rkmk8, which choose their steps; {method} takes --step"
             ),
         }
     }

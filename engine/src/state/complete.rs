@@ -199,7 +199,7 @@ impl Completion<'_> {
                 false => open.residual,
             };
             let message = format!(
-                "violates {} by {residual:.2e}, and no change of velocities that are not given keeps it",
+                "violates {} by {residual:.2e}, and no choice of the velocities that are not given satisfies it",
                 self.text(open)
             );
             vec![StateProblem::new("velocity", message)]
@@ -333,7 +333,7 @@ impl Completion<'_> {
 
     fn open(&self, open: Open) -> StateProblem {
         let message = format!(
-            "this configuration leaves {} open by {:.2e}, and no change of coordinates that are not given closes it",
+            "this configuration leaves {} open by {:.2e}, and no choice of the coordinates that are not given closes it",
             self.text(open),
             open.residual
         );

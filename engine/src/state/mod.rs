@@ -108,7 +108,7 @@ impl State {
                     .map_or("", |c| c.name.as_str());
                 errors.push(StateProblem::new(
                     format!("coord.{name}"),
-                    "a reflection, its determinant is -1",
+                    "a reflection: its determinant is -1",
                 ));
             }
             offset += block.len();

@@ -24,7 +24,7 @@ impl fmt::Display for JsonError {
             JsonError::Text(error) if error.is_data() => error.fmt(f),
             JsonError::Text(error) => write!(f, "not valid JSON: {error}"),
             JsonError::Twice { name, plain } => {
-                write!(f, "{name}: given twice, as `{plain}`, too")
+                write!(f, "{name}: given twice, also as `{plain}`")
             }
         }
     }
@@ -121,7 +121,7 @@ mod tests {
         let error = parse("{\"coord\": {\"q\": 1,\n \"q\": 2}}")
             .expect_err("twice")
             .to_string();
-        assert_eq!(error, "`q` stands twice in one object at line 2 column 4");
+        assert_eq!(error, "`q` occurs twice in one object at line 2 column 4");
         // The same name in two objects is not repeated.
         assert!(parse("{\"a\": {\"q\": 1}, \"b\": {\"q\": 1}}").is_ok());
         assert!(parse("\u{feff}{\"q\": 1}").is_ok());

@@ -80,7 +80,9 @@ impl Writer<'_> {
         if !cleaned.is_empty() {
             let tolerance = self.options.tolerance;
             notes.push(String::new());
-            notes.push(format!("Taken for roundings, within {tolerance:e}:"));
+            notes.push(format!(
+                "Corrected as rounding errors, within {tolerance:e}:"
+            ));
             notes.extend(cleaned.iter().map(|change| format!("- {change}")));
         }
         if !warnings.is_empty() {

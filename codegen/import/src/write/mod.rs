@@ -194,7 +194,7 @@ impl Writer<'_> {
         self.draft.blank();
         if !self.options.floating {
             self.draft
-                .comment(format!("`{}` stands in the world.", link.name));
+                .comment(format!("`{}` is fixed in the world.", link.name));
             return;
         }
         let (root, frame) = (&self.names.root, &self.names.links[self.tree.root]);

@@ -21,6 +21,7 @@ pub mod points;
 pub mod provenance;
 pub mod rotations;
 pub mod samples;
+pub mod statements;
 pub mod states;
 pub mod twists;
 pub mod value;
@@ -37,7 +38,7 @@ use layout::Block;
 use motion::Observed;
 use pfaffian::Pfaffian;
 use points::Points;
-use provenance::Statements;
+use statements::Statements;
 use std::sync::Arc;
 use value::Value;
 

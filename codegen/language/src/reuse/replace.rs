@@ -290,7 +290,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
     /// Replaces an expression that has to name a frame. Returns whether it does.
     fn frame(&mut self, expr: &mut Expr, parameter: &str) -> bool {
         let wrong = |span: Span, what: String| {
-            Diagnostic::new(span, format!("`{parameter}` has to be a frame, but but {what}"))
+            Diagnostic::new(span, format!("`{parameter}` has to be a frame, but {what}"))
                 .help("give the name of a frame, as in `mount[2]` or `left.foot`; declare a place on a frame as another `frame`")
         };
         let Some(mut name) = of_expression(expr) else {

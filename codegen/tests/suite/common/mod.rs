@@ -101,6 +101,13 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
 mod size;
 pub use size::size;
 
+/// Returns generated code without comments, which quote the description and its names.
+pub fn without_comments(code: &str) -> String {
+    let is_comment = |line: &&str| line.trim_start().split(' ').next() == Some("//");
+    let lines: Vec<&str> = code.lines().filter(|line| !is_comment(line)).collect();
+    lines.join("\n")
+}
+
 /// Asserts that no seed has faults, on all cores; `size` determines the number of seeds.
 pub fn attack(few: u64, many: u64, faults: impl Fn(u64) -> Vec<String> + Sync) {
     let count = size(few, many);

@@ -103,14 +103,14 @@ impl fmt::Display for TableProblem {
             TableProblem::NoRows => f.write_str("there are no rows after the header"),
             TableProblem::Order { line, time, before } => write!(
                 f,
-                "line {line}: t = {} is not behind t = {} of the row before",
+                "line {line}: t = {} is not after t = {} of the previous row",
                 short(*time),
                 short(*before)
             ),
             TableProblem::Unknown(unknown) => unknown.fmt(f),
             TableProblem::SameName { name } => write!(f, "two columns are called `{name}`"),
             TableProblem::NoInput { known } => {
-                write!(f, "no column of an input beside `{TIME}`: ")?;
+                write!(f, "no column besides `{TIME}` is an input: ")?;
                 match known.as_slice() {
                     [] => f.write_str("the description has no inputs"),
                     all => write!(f, "the inputs are {}", all.join(", ")),
