@@ -137,7 +137,7 @@ fn measures() -> io::Result<Vec<Measure>> {
             "lines of published sources",
             sizes.iter().sum(),
             104_000,
-            124_000,
+            125_000,
         ),
         measure(
             "lines of the largest crate",
