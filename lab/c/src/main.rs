@@ -168,7 +168,12 @@ impl<'a> InC<'a> {
                 |at, _| {
                     black_box(&accel(black_box(system), &at.x, &at.xi, &at.u));
                 },
-                |at| Ok(system.forward_dynamics(&at.x, &at.xi, &at.u)?.as_ref().to_vec()),
+                |at| {
+                    Ok(system
+                        .forward_dynamics(&at.x, &at.xi, &at.u)?
+                        .as_ref()
+                        .to_vec())
+                },
             )?,
             self.row(
                 "linearize",

@@ -6,7 +6,8 @@ use std::path::Path;
 use std::process::Command;
 
 /// The command that installs it.
-pub const SETUP_COMMAND: &str = "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
+pub const SETUP_COMMAND: &str =
+    "python3 -m venv target/mujoco && target/mujoco/bin/pip install mujoco";
 
 /// Default path of its Python.
 pub const PYTHON: &str = "target/mujoco/bin/python";
