@@ -288,7 +288,7 @@ impl Stepper {
         }
     }
 
-    /// Settings other than the name.
+    /// Returns the text that follows the method's name in a summary: `, lambda 5` for `rk4`, empty for others.
     pub fn settings(&self) -> String {
         match self {
             Stepper::General(General::Rk4 { lambda }) => format!(", lambda {}", short(*lambda)),

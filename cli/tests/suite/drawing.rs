@@ -7,8 +7,7 @@ use std::sync::Arc;
 
 fn session(path: &Path) -> Session {
     let opened = Session::open(path, &OpenOptions::default(), Arc::new(Quiet));
-    let session = opened.unwrap_or_else(|error| panic!("{error}"));
-    session
+    opened.unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn read(text: &str) -> Session {
@@ -18,8 +17,7 @@ fn read(text: &str) -> Session {
         &OpenOptions::default(),
         Arc::new(Quiet),
     );
-    let session = read.unwrap_or_else(|error| panic!("{error}"));
-    session
+    read.unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn models() -> PathBuf {

@@ -15,7 +15,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub struct Fp(pub Residue<0>, pub Residue<1>);
 
 impl Fp {
-    /// 0.
+    /// Zero of the ring: 0 in both fields.
     pub const ZERO: Fp = Fp(Residue::ZERO, Residue::ZERO);
     /// 1.
     pub const ONE: Fp = Fp(Residue::ONE, Residue::ONE);

@@ -153,10 +153,9 @@ impl Displacements {
     }
 }
 
-/// Extends the rows of the linearisation to states z of first order: (h, δξ, δz).
+/// Moves the columns of the states z before those of u, and appends the rows of ż: (h, δξ, δz).
 ///
-/// The rows of ż are appended, and the columns of z precede those of u. F is given in the graph of
-/// the rows.
+/// `xi_dot` (F) is given in the graph of the rows.
 pub fn with_states(
     model: &Model,
     displacements: &Displacements,

@@ -68,7 +68,8 @@ pub fn of_total(
     })
 }
 
-/// One mass in motion, in world axes.
+/// Mass, centre of mass, linear momentum, and angular momentum about the centre of mass of one body or particle, in world
+/// axes.
 pub struct MovingMass {
     /// Mass (kg).
     pub mass: Edge,

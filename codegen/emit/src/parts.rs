@@ -14,7 +14,7 @@ use rustc_hash::FxHashMap;
 const INLINE: usize = 2000;
 
 impl Drawing<'_> {
-    /// Prints the parts, then the function that calls them.
+    /// Returns the text of the function in parts: one function for each part, then the function that calls them.
     pub fn split(&self) -> String {
         let Spec { name, .. } = self.spec;
         let entries = self.spec.shape.entries();

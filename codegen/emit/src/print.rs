@@ -133,7 +133,7 @@ impl Printer<'_> {
         self.language.entry(Array::Slots, shape, slot)
     }
 
-    /// Returns a value with its sign, as an operand.
+    /// Returns a value with its sign, as an argument or a term: `-x` has no parentheses.
     pub fn signed(&mut self, edge: Edge) -> String {
         self.operand(edge).signed()
     }

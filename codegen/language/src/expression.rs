@@ -7,10 +7,11 @@ use num_rational::BigRational;
 use num_traits::Signed;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Placeholder for a NaN value. It is a name that no valid description can contain.
+/// Name that stands for a NaN in an expression. No valid description can contain it, so that it is found and reported.
 pub const NO_NUMBER: &str = "((0 / 0))";
 
-/// Placeholder for an infinite value. It is a name that no valid description can contain.
+/// Name that stands for an infinite `f64` in an expression. No valid description can contain it, so that it is found and
+/// reported.
 pub const INFINITE: &str = "((1 / 0))";
 
 /// Creates an identifier that has no place in a source text.

@@ -66,7 +66,8 @@ pub struct ComparisonRecord<'a> {
 }
 
 impl<'a> ComparisonRecord<'a> {
-    /// Prepares comparisons in a graph.
+    /// Prepares bounds on the chance that expressions of a graph agree at random points although they differ; `model` gives
+    /// the degrees of the constraints.
     pub fn new(model: &Model, graph: &'a Graph) -> Self {
         ComparisonRecord {
             graph,

@@ -46,7 +46,8 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
     }
 }
 
-/// Proves the base parameters, and that the emitted functions return them and their columns.
+/// Checks at fresh points that the base parameters determine the forces of (30b), and that the emitted functions return
+/// them and their columns.
 ///
 /// # Errors
 /// A fault of the generator; the program is not emitted.

@@ -10,7 +10,8 @@ use hamel_codegen::generate::Generated;
 /// Maximal length of a factor in a message.
 const MAX_SHOWN_LENGTH: usize = 40;
 
-/// The divisors that depend on parameters, each with the message for the case that it is 0.
+/// The factors by which constraints were divided to solve them for velocities, if they are not plain numbers, each with
+/// the message for the case that it is 0.
 pub struct Divisors {
     graph: Graph,
     factors: Vec<(Edge, String)>,

@@ -125,7 +125,7 @@ impl Events {
         &self.list
     }
 
-    /// The name of an event without a value, if any.
+    /// Returns the name of the event that last had no value (NaN) at a state of the run so far, if any.
     pub fn undefined(&self) -> Option<&str> {
         let event = self.list.get(self.undefined.get()?)?;
         Some(&event.name)

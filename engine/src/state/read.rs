@@ -34,7 +34,8 @@ impl Reader {
         }
     }
 
-    /// Completes the state that was read as changes of another one, or returns all errors.
+    /// Computes the entries of `state` that were not given, starting from those of `from`, so that loops close and
+    /// constraints hold; returns all errors of reading instead if there are any.
     pub fn finish(
         self,
         generated: &Generated,

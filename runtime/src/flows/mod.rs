@@ -66,7 +66,7 @@ impl Flow {
         }
     }
 
-    /// Moves the attitude and P, both with respect to body axes, by the time `h` without torque.
+    /// Returns the attitude after the time `h` without torque, and changes P accordingly, both with respect to body axes.
     #[inline(always)]
     pub fn turn<S: Scalar, A: Attitude<S>>(
         self,

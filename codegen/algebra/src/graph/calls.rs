@@ -81,7 +81,7 @@ impl Graph {
     }
 
     /// Finds the first call of an external function in the expressions that is differentiated at least
-    /// `order` times, and returns its component and its list.
+    /// `order` times (0 finds any call), and returns its component and its list of arguments.
     pub fn find_external(&self, edges: &[Edge], order: usize) -> Option<(Component, Edge)> {
         if self.externals.is_empty() {
             return None;

@@ -91,8 +91,8 @@ impl Known {
     }
 }
 
-/// Returns the relations within each link, between each link and its parent, and within groups of links that move
-/// together.
+/// Returns relations Σ v_k Y_k = 0 with exact coefficients that hold at the samples: within each link, between each link
+/// and its parent, and within groups of links that move together. There may be more.
 pub fn candidates(
     model: &mut Model,
     samples: &Samples,

@@ -25,7 +25,8 @@ pub struct Safe {
 }
 
 impl Safe {
-    /// Determines the size for the links of a model.
+    /// Determines the largest distance between an origin and that of its parent link or a centre of mass, at the default
+    /// parameters; origins may be moved by a multiple of it.
     pub fn of(model: &Model, links: &[Draft]) -> Self {
         let mut safe = Safe {
             numbers: model.numbers(&model.defaults, &[], &[], &[], &[]),

@@ -41,8 +41,8 @@ struct Variation {
     a: Vec3,
 }
 
-/// Computes the derivatives; `None` if a joint's freedoms vary with x or their rates are not plain
-/// velocities.
+/// Computes ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ requires, at constant ξ̇; `None` if a joint's freedoms vary with x
+/// or their rates are not plain velocities.
 pub fn slopes(
     graph: &mut Graph,
     tree: &Tree,

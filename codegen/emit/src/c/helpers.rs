@@ -16,7 +16,8 @@ const FUSED: &str = "\
 
 /// Name of an array of zeros, from which several results are copied at once: gcc assigns them one by one otherwise.
 pub const ZEROS: &str = "zeros";
-/// Length of the array of zeros: for more, compilers emit a loop or a call.
+/// Length of the array of zeros, and largest number of zeros that one `memcpy` copies: for more, compilers emit a loop or
+/// a call. Longer runs take several.
 pub const MOST_ZEROS: usize = 4;
 
 /// Macro with compiler attributes of the parts of long functions; undefined again by [`END`].

@@ -162,7 +162,8 @@ impl<'a> Inference<'a> {
         self.error(Diagnostic::new(value.span, message).help(help))
     }
 
-    /// Checks `prescribe q = …;` or `prescribe rate(v) = …;`.
+    /// Checks that the value of `prescribe q = …;` or `prescribe rate(v) = …;` has the shape of its target; the target
+    /// itself is checked with the symbols.
     pub fn prescribed(&mut self, target: &Target, rate: bool, value: &'a Expr) -> Option<()> {
         let found = self.of(value);
         let name = &target.name.name;

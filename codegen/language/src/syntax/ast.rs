@@ -95,7 +95,7 @@ pub struct Shape {
     pub span: Span,
 }
 
-/// The kinds of coordinates.
+/// The manifold of a coordinate: ℝ, ℝⁿ, S¹, S³, SO(3) or SE(3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoordKind {
     /// A bare real number: an unconstrained scalar, or a raw coordinate of user-written `constraint`s.

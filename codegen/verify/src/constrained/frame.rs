@@ -216,7 +216,8 @@ pub(super) fn prescribed_values(model: &Model) -> Vec<(usize, Edge)> {
     given.chain(time).collect()
 }
 
-/// Returns whether a reference agrees with the three forms in numbers; `None` if there are no points to compare at.
+/// Returns whether the expressions of a reference (M, h, ∂V, f, T, V, D) have the values that the model has modulo p, and
+/// whether its three forms agree there; `None` if there are no points to compare at.
 ///
 /// The points are fresh points of X, or points of a prescribed motion if roots have values only there.
 pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {

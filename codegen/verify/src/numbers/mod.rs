@@ -42,7 +42,7 @@ pub struct Numbers {
     expressions: Expressions,
 }
 
-/// Quantities of a model at one point (x, ξ, ξ̇, u).
+/// Left sides of (30a), (30b), (30c) at one point (x, ξ, ξ̇, u), and the quantities in them, as numbers modulo p.
 pub struct Values {
     /// Left sides of (30a), (30b), (30c).
     pub left: [Vec<Fp>; 3],

@@ -160,7 +160,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a file for runs of this length.
+    /// Reads a CSV file of inputs over time. Whether its times cover a run of length `until` is checked by
+    /// [`from`](Self::from).
     pub fn read(
         path: &Path,
         entries: &[String],

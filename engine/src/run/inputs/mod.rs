@@ -237,7 +237,7 @@ pub fn constant(
     expressions::constant(expression, &generated.active, params)
 }
 
-/// The times of samples of a run from a state, from the column `t` of a file.
+/// Reads the column `t` of a file as times of samples, and returns them relative to the start of a run from `state`.
 pub fn times(
     path: &Path,
     until: f64,
