@@ -178,6 +178,7 @@ fn has_roots(graph: &Graph) -> bool {
 
 impl Generated {
     /// Sets the text of the description.
+    #[cfg(feature = "files")]
     fn described(self, text: &str) -> Self {
         Generated {
             text: text.into(),

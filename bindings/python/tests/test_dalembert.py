@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 import hamel
 from conftest import ROOT
 
-sys.path.insert(0, str(ROOT / "tests" / "dalembert"))
+sys.path.insert(0, str(ROOT / "lab" / "dalembert"))
 pytest.importorskip("mpmath")
 
 from dalembert import attack  # noqa: E402
