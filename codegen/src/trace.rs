@@ -1,6 +1,5 @@
 //! Every statement of the generated code with the quantity that it serves, the equation, and the place in the description.
 
-use crate::diagnostics::Diagnostic;
 use crate::emit::trace::{Trace, Traced, trace};
 use crate::generate::Generated;
 use crate::model::provenance::Origin;
@@ -55,9 +54,8 @@ impl Generated {
 }
 
 fn place(generated: &Generated, text: &str, origin: &Origin) -> Option<Place> {
-    let origins = &generated.model.origins;
-    let located = origins.located(Diagnostic::new(origin.span, ""));
-    if let Some((included, range)) = located.texts.find(located.span) {
+    let (span, included) = generated.model.origins.written_at(origin.span);
+    if let Some((included, range)) = included {
         let (line, column) = included.line(range.start);
         return Some(Place {
             file: Some(included.name.clone()),
@@ -65,7 +63,7 @@ fn place(generated: &Generated, text: &str, origin: &Origin) -> Option<Place> {
             column,
         });
     }
-    let before = text.get(..located.span.range()?.start)?;
+    let before = text.get(..span.range()?.start)?;
     if text.is_empty() {
         return None;
     }

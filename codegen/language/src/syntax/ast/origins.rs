@@ -220,6 +220,20 @@ impl Origins {
         span
     }
 
+    /// Returns the span in the text that a place was written in, and the included text with the bytes in it, unless that
+    /// is the description itself.
+    pub fn written_at(&self, span: Span) -> (Span, Option<(&Included, Range<usize>)>) {
+        let span = self.source(span);
+        let included = self.region(span).and_then(|region| match &region.origin {
+            Origin::Text(text) => {
+                let range = span.range()?;
+                Some((&**text, range.start - text.start..range.end - text.start))
+            }
+            Origin::Copy { .. } | Origin::Import { .. } => None,
+        });
+        (span, included)
+    }
+
     /// Moves an error to the place where it was written, with notes at the statements that led there.
     pub fn located(&self, mut error: Diagnostic) -> Diagnostic {
         if self.regions.is_empty() && self.written.is_empty() {
