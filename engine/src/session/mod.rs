@@ -508,15 +508,13 @@ impl Session {
 /// If the system has constraints, or forces that robots do not have.
 pub fn base_parameters(source: &Source) -> Result<BaseParameters, Error> {
     let model = source.model()?;
-    let derived = regressor(&model).and_then(|regressor| {
-        prove(&model, &regressor)?;
-        Ok(regressor)
-    });
-    let regressor = derived.map_err(|why| Error::NoRegressor {
+    let refused = |why: String| Error::NoRegressor {
         path: source.path.clone(),
         system: model.name.clone(),
-        why: why.to_string(),
-    })?;
+        why,
+    };
+    let regressor = regressor(&model).map_err(|why| refused(why.to_string()))?;
+    prove(&model, &regressor).map_err(|why| refused(why.to_string()))?;
     Ok(BaseParameters::new(&regressor))
 }
 

@@ -17,6 +17,7 @@ use hamel_language::model::{Coordinate, Model};
 use hamel_language::syntax::ast::CoordKind;
 use hamel_program::count::{Count, count};
 use rates::RateDraft;
+use std::fmt;
 
 /// Largest number of combinations that are tried.
 const MOST: usize = 24;
@@ -38,31 +39,64 @@ pub struct Choice {
     pub model: Model,
 }
 
+/// Reason why a model has no alternative velocities to compare.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AdviseError {
+    /// The description has constraints on its coordinates.
+    ConstrainedCoordinates,
+    /// The description has `time`.
+    Time,
+    /// Constraints act on the velocities.
+    ConstrainedVelocities,
+    /// There are fewer velocities than directions of the coordinates.
+    FewVelocities,
+    /// The columns of A are dependent.
+    DependentColumns,
+    /// The mass matrix is singular for every configuration.
+    SingularMass,
+}
+
+impl fmt::Display for AdviseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            AdviseError::ConstrainedCoordinates => {
+                "the coordinates satisfy constraints of the description: their rates have no other closed form"
+            }
+            AdviseError::Time => "the description has `time`, which keeps its velocity 1",
+            AdviseError::ConstrainedVelocities => {
+                "its velocities are constrained, by a loop, `nonholonomic`, `inactive` or `prescribe`: ξ̇ is counted before the constraints act"
+            }
+            AdviseError::FewVelocities => {
+                "there are fewer velocities than directions of the coordinates"
+            }
+            AdviseError::DependentColumns => {
+                "the rates of this description leave A without a left inverse"
+            }
+            AdviseError::SingularMass => "the mass matrix is singular for every configuration",
+        })
+    }
+}
+
+impl std::error::Error for AdviseError {}
+
 /// Returns the possible choices, cheapest first.
 ///
 /// # Errors
 ///
-/// Explains why the model has no alternative velocities, or that its mass matrix is singular for every
-/// configuration.
-pub fn advise(model: &Model) -> Result<Vec<Choice>, String> {
+/// The reason why the model has no alternative velocities.
+pub fn advise(model: &Model) -> Result<Vec<Choice>, AdviseError> {
     if !model.points.constraints.is_empty() {
-        return Err(
-            "the coordinates satisfy constraints of the description: their rates have no other closed form"
-                .into(),
-        );
+        return Err(AdviseError::ConstrainedCoordinates);
     }
     if model.clock.is_some() {
-        return Err("the description has `time`, which keeps its velocity 1".into());
+        return Err(AdviseError::Time);
     }
     if model.is_constrained() {
-        return Err(
-            "its velocities are constrained, by a loop, `nonholonomic`, `inactive` or `prescribe`: ξ̇ is counted before the constraints act"
-                .into(),
-        );
+        return Err(AdviseError::ConstrainedVelocities);
     }
     let dimension: usize = model.blocks.iter().map(|block| block.dimension()).sum();
     if dimension != model.n() {
-        return Err("there are fewer velocities than directions of the coordinates".into());
+        return Err(AdviseError::FewVelocities);
     }
     let mut choices = vec![written(model)?];
     for combination in combinations(&parts(model)) {
@@ -200,7 +234,7 @@ fn combinations(parts: &[Part]) -> Vec<Vec<(Move, Way)>> {
     all
 }
 
-fn written(model: &Model) -> Result<Choice, String> {
+fn written(model: &Model) -> Result<Choice, AdviseError> {
     Choice::counted("as written".into(), Vec::new(), true, model.clone())
 }
 
@@ -210,10 +244,8 @@ impl Choice {
         statements: Vec<String>,
         as_written: bool,
         model: Model,
-    ) -> Result<Self, String> {
-        let Some((chosen, _)) = accel(&model, &Care::default()) else {
-            return Err("the mass matrix is singular for every configuration".into());
-        };
+    ) -> Result<Self, AdviseError> {
+        let (chosen, _) = accel(&model, &Care::default()).ok_or(AdviseError::SingularMass)?;
         Ok(Choice {
             label,
             statements,
@@ -226,10 +258,9 @@ impl Choice {
 }
 
 /// Rewrites the model in other velocities and counts its operations.
-fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, String> {
+fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, AdviseError> {
     let mut own = model.clone();
-    let rows = kinematics::left_inverse(&mut own)
-        .ok_or("the rates of this description leave A without a left inverse")?;
+    let rows = kinematics::left_inverse(&mut own).ok_or(AdviseError::DependentColumns)?;
     let mut rates = RateDraft::new(model, &mut own.graph);
     for (moves, way) in combination {
         rates.take(moves, *way);

@@ -10,6 +10,7 @@
 //! | `samples` | Y at random states, modulo p, with one value for everything that is constant at run time |
 //! | `candidates` | relations between a link and its parent, with exact coefficients |
 //! | `relations` | elimination; remaining relations; the base parameters |
+//! | `error` | reasons why a model has no regressor |
 //!
 //! A link is everything that moves rigidly together; its parameters are given in the frame that its joint carries.
 //! They are ordered by link, from the root outwards: Θ, then m s, then m; armatures, dampers and springs come last.
@@ -26,11 +27,13 @@
 
 mod candidates;
 mod columns;
+mod error;
 mod parameters;
 mod relations;
 mod samples;
 mod wrenches;
 
+pub use error::RegressorError;
 pub use parameters::{DIAGONAL, ENTRIES, Kind, MOMENTS, Standard};
 
 use super::calculus::Calculus;
@@ -81,8 +84,8 @@ pub struct Regressor {
 ///
 /// # Errors
 ///
-/// Explains why the model has none, or why their relations could not be found.
-pub fn regressor(model: &Model) -> Result<Regressor, String> {
+/// The reason why the model has none, or why their relations could not be found.
+pub fn regressor(model: &Model) -> Result<Regressor, RegressorError> {
     refused(model)?;
     let described = about(model, false)?;
     let cost = |found: &Regressor| {
@@ -96,12 +99,11 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
 }
 
 /// Derives the base parameters about the origins of frames, or about origins that are moved along hinges.
-fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
+fn about(model: &Model, moved: bool) -> Result<Regressor, RegressorError> {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
-    let (tree, carriers) = Tree::with_frames(&mut model, &mut calculus, moved).ok_or(
-        "its inertia is not only that of bodies on frames and of armatures: describe it by `body` statements, without `kinetic` and `particle`",
-    )?;
+    let (tree, carriers) =
+        Tree::with_frames(&mut model, &mut calculus, moved).ok_or(RegressorError::OtherInertia)?;
     let links = parameters::links(&mut model, &tree, &carriers);
     let mut standard: Vec<Standard> = links
         .iter()
@@ -117,8 +119,7 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
         standard.push(parameter.clone());
         columns.push(column.clone());
     }
-    let samples = Samples::new(&model, &columns)
-        .ok_or("its expressions have no values modulo p at random states")?;
+    let samples = Samples::new(&model, &columns).ok_or(RegressorError::NoValues)?;
     let found = relations::find(&mut model, &samples, &tree, &links, standard.len())?;
     let kept: Vec<usize> = found.iter().map(|(kept, _)| *kept).collect();
     let mut moments = columns::cheapest(&mut derived, &tree, &links, &kept);
@@ -170,23 +171,18 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
 }
 
 /// Returns an error if the model is of a kind that has no regressor here.
-fn refused(model: &Model) -> Result<(), String> {
-    let no = |why: &str| Err(why.to_string());
+fn refused(model: &Model) -> Result<(), RegressorError> {
     if model.clock.is_some() || !model.prescribed.is_empty() || !model.accelerated.is_empty() {
-        return no(
-            "its motion is prescribed or depends on the time, but base parameters are those of a system that moves freely",
-        );
+        return Err(RegressorError::PrescribedMotion);
     }
     if !model.constraints.is_empty() {
-        return no(
-            "constraints act on its velocities, so inverse dynamics does not determine their forces: use the tree without loops and constraints",
-        );
+        return Err(RegressorError::ConstrainedVelocities);
     }
     if !model.points.constraints.is_empty() || !model.spans {
-        return no("its coordinates are tied by constraints: describe it by joints");
+        return Err(RegressorError::ConstrainedCoordinates);
     }
     if model.bodies.is_empty() && model.particles.is_empty() {
-        return no("it has no bodies, so it has no inertial parameters");
+        return Err(RegressorError::NoBodies);
     }
     Ok(())
 }

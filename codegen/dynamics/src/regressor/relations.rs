@@ -1,6 +1,7 @@
 //! Elimination with exact coefficients, and the resulting base parameters.
 
 use super::candidates::{Known, Relation, candidates, holds, joined};
+use super::error::RegressorError;
 use super::parameters::{Link, between_moments};
 use super::samples::Samples;
 use crate::tree::Tree;
@@ -29,7 +30,7 @@ pub fn find(
     tree: &Tree,
     links: &[Link],
     total: usize,
-) -> Result<Vec<Found>, String> {
+) -> Result<Vec<Found>, RegressorError> {
     let massless = |k: usize| links.get(k / 10).is_some_and(|link| !link.present);
     let present: Vec<usize> = (0..total).filter(|&k| !massless(k)).collect();
     let rank = Echelon::new(samples.of(&present)).rank();
@@ -51,9 +52,9 @@ pub fn find(
             .filter(|k| !dependent.contains(k))
             .collect();
         for values in samples.relations(&left) {
-            let exact = known.all(&mut model.graph, &values).ok_or(
-                "it has relations between parameters whose coefficients are neither simple fractions nor built from one or two entries of its poses: write lengths as numbers with few digits, or place frames on one another by joints",
-            )?;
+            let exact = known
+                .all(&mut model.graph, &values)
+                .ok_or(RegressorError::InexactRelations)?;
             relations.push(joined(&model.graph, &left, &exact));
         }
         solved = solve(&mut model.graph, &numbers, &relations, ordered, links.len());
@@ -64,10 +65,7 @@ pub fn find(
             .iter()
             .all(|(_, relation)| holds(graph, samples, relation))
     {
-        return Err(
-            "internal check failed: its relations do not agree with the rank of the regressor"
-                .into(),
-        );
+        return Err(RegressorError::WrongRank);
     }
     let graph = &mut model.graph;
     let relations: Vec<Relation> = relations
@@ -76,7 +74,7 @@ pub fn find(
         .collect();
     let solved = solve(graph, &numbers, &relations, ordered, links.len());
     if solved.len() + rank != present.len() {
-        return Err("internal check failed: its relations cannot be solved for moments".into());
+        return Err(RegressorError::UnsolvableRelations);
     }
     let kept = present
         .iter()
