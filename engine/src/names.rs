@@ -4,6 +4,7 @@ use hamel_codegen::model::layout::entry_names;
 use hamel_codegen::model::{Group, Model};
 use hamel_codegen::program::Shape;
 use hamel_codegen::syntax::ast::ShapeKind;
+use hamel_codegen::syntax::suggest::coordinates_of_rate;
 
 /// The name of the time.
 pub const TIME: &str = "t";
@@ -22,6 +23,24 @@ pub fn coordinates(model: &Model) -> Vec<String> {
 /// Names of the entries of ξ.
 pub fn velocities(model: &Model) -> Vec<String> {
     model.velocities.iter().flat_map(group).collect()
+}
+
+/// Returns the coordinates whose rate is a velocity, each with the name of that velocity.
+pub fn rates(model: &Model) -> Vec<(String, String)> {
+    let velocities = velocities(model);
+    let rates = coordinates(model).into_iter().zip(&model.rate);
+    let plain = rates.filter_map(|(coordinate, rate)| {
+        let place = model.xi.iter().position(|symbol| symbol == rate)?;
+        Some((coordinate, velocities.get(place)?.clone()))
+    });
+    plain.collect()
+}
+
+/// Returns advice on a name that seems to denote the rate of one of these coordinates, as `x_dot` does for `x`.
+pub fn advice_on_rate(rates: &[(String, String)], name: &str) -> Option<String> {
+    let find = |stem: &str| rates.iter().find(|(coordinate, _)| coordinate == stem);
+    let (coordinate, velocity) = coordinates_of_rate(name).find_map(find)?;
+    Some(format!("the rate of `{coordinate}` is `{velocity}`"))
 }
 
 /// Names of the entries of ξ, followed by those of the states of first order.

@@ -167,13 +167,18 @@ fn entries_of_coordinates_are_no_velocities() {
 #[test]
 fn what_cannot_be_used_is_said() {
     let path = |name: &str, content: &str| file(name, content).display().to_string();
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 16] = [
         (
             &["--input", "G = 2"],
             "no input is called `G`: the inputs are F, side[1], side[2]",
         ),
         (&["--input", "sides[1] = 2"], "did you mean `side[1]`?"),
         (&["--input", "F = qq"], "nothing is called `qq`"),
+        (
+            &["--input", "F = -2 * qdot"],
+            "nothing is called `qdot`; the rate of `q` is `q_dot`",
+        ),
+        (&["--input", "F = dq"], "the rate of `q` is `q_dot`"),
         (
             &["--input", "F = [1, 2]"],
             "`F` is a number, this is 2 numbers",

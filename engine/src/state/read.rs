@@ -4,6 +4,7 @@ use super::given::{Given, joints, velocities};
 use super::problem::StateProblem;
 use super::solved::solved;
 use super::values::State;
+use crate::names::{advice_on_rate, rates};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Group;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
@@ -22,6 +23,8 @@ pub struct Reader {
     given: Given,
     /// Velocities that are not part of states, with the reason.
     solved: Vec<(String, String)>,
+    /// Coordinates whose rate is a velocity, each with the name of that velocity.
+    rates: Vec<(String, String)>,
 }
 
 impl Reader {
@@ -31,6 +34,7 @@ impl Reader {
             errors: Vec::new(),
             given: Given::nothing(generated),
             solved: solved(generated, text),
+            rates: rates(&generated.model),
         }
     }
 
@@ -200,8 +204,11 @@ impl Reader {
             };
             let reason = self.solved.iter().find(|(solved, _)| solved == name);
             let reason = reason.filter(|_| matches!(at, "velocity" | "configuration" | "force"));
+            let rate = advice_on_rate(&self.rates, name);
+            let rate = rate.filter(|_| at == "velocity");
             let message = match (reason, closest(name, names.iter().copied()), names) {
                 (Some((_, why)), ..) => why.clone(),
+                _ if let Some(rate) = rate => format!("unknown name; {rate}"),
                 (None, Some(meant), _) => format!("unknown name; did you mean `{meant}`?"),
                 (None, None, []) => "unknown name; the description has none".into(),
                 (None, None, _) => format!("unknown name; known are {}", names.join(", ")),

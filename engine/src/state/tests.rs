@@ -124,6 +124,10 @@ fn velocities_that_follow_are_read_and_judged() {
             r#"{"velocity": {"z": 1}}"#,
             "velocity.z: unknown name; known are u, v, w, w_3",
         ),
+        (
+            r#"{"velocity": {"q_dot": 1}}"#,
+            "velocity.q_dot: unknown name; the rate of `q` is `w[3]`",
+        ),
     ] {
         assert_eq!(read(text).expect_err("a mistake"), [expected]);
     }

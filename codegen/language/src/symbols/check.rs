@@ -4,7 +4,7 @@ use super::table::{Kind, Symbol, Symbols};
 use super::words::{self, FUNCTIONS, reserved};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{Expr, ExprKind, Ident, ItemKind, Span, System};
-use crate::syntax::suggest::closest;
+use crate::syntax::suggest::{closest, coordinates_of_rate};
 use crate::syntax::written::written;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,9 +13,6 @@ const LISTED: usize = 12;
 
 /// Prefix of names that programs add to a description. They are never suggested.
 const GENERATED: &str = "hamel_";
-
-/// Suffixes that users often expect for the rates of coordinates.
-const ENDINGS: [&str; 3] = ["_dot", "dot", "_d"];
 
 /// Largest number of unknown names for which a close one is searched.
 const MOST_MISSPELT: usize = 50;
@@ -286,11 +283,7 @@ impl Checker<'_> {
     /// Returns the coordinate whose rate a name seems to denote, as `x_dot` does for `x`, with the velocity that equals
     /// this rate.
     fn rate_of(&self, name: &str, accept: &impl Fn(Kind) -> bool) -> Option<(&str, String)> {
-        let stripped = ENDINGS
-            .iter()
-            .filter_map(|ending| name.strip_suffix(ending));
-        let coordinates = stripped.chain(name.strip_prefix('d'));
-        let found = coordinates.filter_map(|name| self.rates.get_key_value(name));
+        let found = coordinates_of_rate(name).filter_map(|name| self.rates.get_key_value(name));
         let mut velocities = found.filter(|(_, velocity)| {
             let of = match &velocity.kind {
                 ExprKind::Index(base, _) => base.as_ref(),

@@ -29,6 +29,14 @@ pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, candidate)| candidate)
 }
 
+/// Returns the names of coordinates whose rate a name may stand for, as `x_dot`, `xdot`, `x_d` and `dx` do for `x`.
+pub fn coordinates_of_rate(name: &str) -> impl Iterator<Item = &str> {
+    const ENDINGS: [&str; 3] = ["_dot", "dot", "_d"];
+    let endings = ENDINGS.iter();
+    let stripped = endings.filter_map(move |ending| name.strip_suffix(ending));
+    stripped.chain(name.strip_prefix('d'))
+}
+
 /// Returns the optimal string alignment distance, using three rows of its table.
 fn distance(a: &[char], b: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();

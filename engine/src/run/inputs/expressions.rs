@@ -101,6 +101,7 @@ impl Expressions {
         let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
         let (known, timed) = known(model);
         let entries_of = entries_of(model, &known);
+        let rates = names::rates(model);
         let groups = model.velocities.iter().chain(&model.states);
         let moving: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
         let mut first = None;
@@ -136,7 +137,7 @@ impl Expressions {
                 interpreter,
                 count,
                 mentions,
-            } = compiled(&known, &shape, &renamed(expression, &entries_of))
+            } = compiled(&known, &shape, &renamed(expression, &entries_of), &rates)
                 .map_err(|problem| wrong(problem.about(name)))?;
             if mentions.iter().any(|one| moving.contains(&one.as_str())) {
                 first = first.or_else(|| Some(name.to_string()));
@@ -202,7 +203,7 @@ pub fn constant(
     }
     let Compiled {
         interpreter, count, ..
-    } = compiled(&known, "", expression)?;
+    } = compiled(&known, "", expression, &[])?;
     let given = match params {
         [] => &[0.0],
         params => params,
@@ -283,11 +284,13 @@ struct Compiled {
     mentions: Vec<String>,
 }
 
-/// Compiles an expression as the output of a description.
+/// Compiles an expression as the output of a description. Errors about names such as `x_dot` name the velocity that is
+/// meant, from the coordinates and velocities in `rates`.
 fn compiled(
     known: &[String],
     shape: &str,
     expression: &str,
+    rates: &[(String, String)],
 ) -> Result<Compiled, ExpressionProblem> {
     if expression.contains(';') {
         return Err(ExpressionProblem::NotOne);
@@ -305,7 +308,7 @@ fn compiled(
 }}",
         known.join(", ")
     );
-    let generated = from_text(&text).map_err(refused)?;
+    let generated = from_text(&text).map_err(|errors| refused(errors, &text, rates))?;
     let program = &generated.program;
     let function = program
         .functions
@@ -331,12 +334,16 @@ fn compiled(
     }
 }
 
-/// The first of all errors.
-fn refused(errors: Vec<Diagnostic>) -> ExpressionProblem {
-    match errors.into_iter().next() {
-        Some(error) => ExpressionProblem::Refused(Box::new(error)),
-        None => ExpressionProblem::NotOne,
+/// Returns the first of all errors of a text, with advice if its place is a name that seems to denote a rate.
+fn refused(errors: Vec<Diagnostic>, text: &str, rates: &[(String, String)]) -> ExpressionProblem {
+    let Some(mut error) = errors.into_iter().next() else {
+        return ExpressionProblem::NotOne;
+    };
+    let place = error.span.range().and_then(|range| text.get(range));
+    if let Some(advice) = place.and_then(|name| names::advice_on_rate(rates, name)) {
+        error.help = Some(advice);
     }
+    ExpressionProblem::Refused(Box::new(error))
 }
 
 impl ExpressionProblem {
