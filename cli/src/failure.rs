@@ -1,5 +1,7 @@
 //! What ends a command early, how it is shown, and the exit status that it ends with.
 
+#[cfg(feature = "command")]
+use crate::simulate::SeriesError;
 use hamel_codegen::render::{render, warnings};
 use hamel_codegen::urdf;
 use hamel_engine::{Error, Warning};
@@ -33,6 +35,13 @@ pub enum Failure {
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         Failure::Engine(error)
+    }
+}
+
+#[cfg(feature = "command")]
+impl From<SeriesError> for Failure {
+    fn from(error: SeriesError) -> Self {
+        Failure::usage(error.to_string())
     }
 }
 

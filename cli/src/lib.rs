@@ -67,4 +67,6 @@ pub use compare::Comparison;
 pub use failure::Failure;
 #[cfg(feature = "command")]
 pub use progress::Terminal;
+#[cfg(feature = "command")]
+pub use simulate::{SeriesError, read_series};
 pub use tables::Format;

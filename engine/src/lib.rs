@@ -50,7 +50,9 @@ pub use error::Error;
 pub use evaluate::Evaluation;
 pub use linearize::Linearization;
 pub use reporter::{Quiet, Reporter, Warning, WarningTexts};
-pub use run::{Drive, InputOptions, Law, Motion, Run, Samples, Simulation, Stepping, Stop};
+pub use run::{
+    Drive, InputOptions, Law, Motion, Run, Samples, Simulation, Stepping, Stop, TimeSeries,
+};
 pub use session::{Function, Grip, Names, Session};
 pub use source::{OpenOptions, Source};
 pub use state::State;

@@ -4,6 +4,7 @@ use crate::failure::{HamelError, raised};
 use crate::function::axes;
 use crate::law::{Raised, gauge, law, stop};
 use hamel::adaptive::Direction;
+use hamel_cli::read_series;
 use hamel_codegen::program::Shape;
 use hamel_engine::run::{Event, Every, Happened, Watched};
 use hamel_engine::{Drive, InputOptions, Motion, Samples, Session, Simulation, State, Stepping};
@@ -11,6 +12,7 @@ use numpy::ndarray::IxDyn;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
 
 /// An event from Python: name, expression or function, sign of the changes that count or zero for both, and whether the
 /// run ends there.
@@ -89,7 +91,13 @@ pub fn simulate<'py>(
     };
     let times: Option<Vec<f64>> = get("times")?.map(|times| times.extract()).transpose()?;
     let asked = InputOptions {
-        file: get("file")?.map(|path| path.extract()).transpose()?,
+        series: match get("file")? {
+            Some(path) => Some(
+                read_series(&path.extract::<PathBuf>()?)
+                    .map_err(|error| HamelError::new_err(error.to_string()))?,
+            ),
+            None => None,
+        },
         hold: get("hold")?.is_some(),
         expressions: match get("expressions")? {
             Some(all) => all.extract()?,

@@ -181,7 +181,7 @@ fn moments(
     times.dedup();
     let simulation = Simulation {
         samples: Samples::At(times),
-        drive: Drive::Options((&arguments.inputs).into()),
+        drive: Drive::Options(arguments.inputs.read()?),
         ..Simulation::new(Stepping::until(until))
     };
     let run = session.simulate(state, &simulation)?;

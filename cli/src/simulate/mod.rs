@@ -4,6 +4,7 @@ mod options;
 mod panels;
 mod picture;
 mod rotor;
+mod series;
 mod summary;
 mod write;
 
@@ -19,6 +20,7 @@ use hamel_engine::run::Every;
 use hamel_engine::{Drive, Samples, Session, Simulation, Stepping, method};
 pub use options::{InputArguments, SteppingArguments};
 use picture::picture;
+pub use series::{SeriesError, read_series};
 use std::path::PathBuf;
 use write::Format;
 
@@ -72,13 +74,10 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
-/// Runs the comparisons and prints the report.
+/// Simulates, writes the files that are asked for, and prints a summary.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let simulation = arguments.simulation();
-    simulation
-        .stepping
-        .check()
-        .map_err(hamel_engine::Error::from)?;
+    let stepping = Stepping::from(&arguments.stepping);
+    stepping.check().map_err(hamel_engine::Error::from)?;
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
     let (out, plot) = (arguments.out.as_deref(), arguments.plot.as_deref());
     outputs::svg("--plot", plot)?;
@@ -93,7 +92,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     let session = Session::complete(source::open(&arguments.file, &arguments.robot)?)?;
     let state = session.state_of(arguments.at.as_deref())?;
-    let run = session.simulate(&state, &simulation)?;
+    let step_is_chosen = stepping.step.is_none();
+    let run = session.simulate(&state, &arguments.simulation(stepping)?)?;
 
     let mut written = String::new();
     for (path, format) in [
@@ -117,7 +117,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.out.is_none() {
         print(&summary::table(&run))?;
     }
-    print(&summary::text(&run, simulation.stepping.step.is_none()))?;
+    print(&summary::text(&run, step_is_chosen))?;
     print(&written)?;
     match run.failure {
         Some(early) => Err(Failure::failed(early.to_string())),
@@ -126,17 +126,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
-    /// The run that is asked for.
-    fn simulation(&self) -> Simulation {
-        Simulation {
+    /// Reads the files of the run, and collects its options.
+    fn simulation(&self, stepping: Stepping) -> Result<Simulation, Failure> {
+        let drive = Drive::Options(self.inputs.read()?);
+        Ok(Simulation {
             samples: match (&self.times, self.every) {
-                (Some(path), _) => Samples::File(path.clone()),
+                (Some(path), _) => Samples::Of(read_series(path)?),
                 (None, Some(every)) => Samples::Every(every),
                 (None, None) => Samples::Usual,
             },
-            drive: Drive::Options((&self.inputs).into()),
-            ..Simulation::new(Stepping::from(&self.stepping))
-        }
+            drive,
+            ..Simulation::new(stepping)
+        })
     }
 }
 

@@ -1,5 +1,7 @@
 //! Options of runs.
 
+use super::series::read_series;
+use crate::failure::Failure;
 use crate::parse::{positive, rate};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -57,12 +59,13 @@ pub struct InputArguments {
     pub input: Vec<String>,
 }
 
-impl From<&InputArguments> for InputOptions {
-    fn from(arguments: &InputArguments) -> Self {
-        InputOptions {
-            file: arguments.inputs.clone(),
-            hold: arguments.hold,
-            expressions: arguments.input.clone(),
-        }
+impl InputArguments {
+    /// Reads the file of `--inputs`, if any, and collects the inputs of a run.
+    pub fn read(&self) -> Result<InputOptions, Failure> {
+        Ok(InputOptions {
+            series: self.inputs.as_deref().map(read_series).transpose()?,
+            hold: self.hold,
+            expressions: self.input.clone(),
+        })
     }
 }

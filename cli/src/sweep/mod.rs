@@ -302,13 +302,8 @@ fn prepare(
         both(text::refused(option.0, option.1, &[error]), &generated)
     })?;
     let (base, state, vary) = varied(&generated)?;
-    let given = Inputs::new(
-        &(&arguments.inputs).into(),
-        stepping.until,
-        &generated,
-        &state,
-    )
-    .map_err(Error::from)?;
+    let inputs = arguments.inputs.read()?;
+    let given = Inputs::new(&inputs, stepping.until, &generated, &state).map_err(Error::from)?;
     let both = vary.inputs(&generated);
     if let Some((_, name)) = both
         .iter()

@@ -20,7 +20,7 @@ pub use balance::Balance;
 pub use early::EarlyEnd;
 pub use events::{Event, Events, Gauge, Watched, first};
 pub use inputs::{
-    Control, ExpressionProblem, InputOptions, InputProblem, Inputs, Law, TableProblem,
+    Control, ExpressionProblem, InputOptions, InputProblem, Inputs, Law, SeriesProblem, TimeSeries,
     UnknownInput, constant,
 };
 pub use motion::{Happened, Motion};
@@ -37,7 +37,6 @@ use crate::reporter::Reporter;
 use crate::source::added;
 use crate::state::State;
 use hamel_codegen::generate::Generated;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A run that is asked for.
@@ -64,14 +63,14 @@ pub enum Samples {
     Every(Every),
     /// At these times from the start of the run on.
     At(Vec<f64>),
-    /// At the times in the column `t` of a CSV file, which are those of the description where that declares a time.
-    File(PathBuf),
+    /// At the times in the column `t` of a time series, which are those of the description if it declares a time.
+    Of(TimeSeries),
 }
 
 /// What sets the inputs of a run.
 #[derive(Clone, Debug)]
 pub enum Drive {
-    /// Files and expressions; without them all inputs keep the values of the state.
+    /// Time series and expressions; without them all inputs keep the values of the state.
     Options(InputOptions),
     /// A function of time and state.
     Law(Law),
@@ -121,8 +120,8 @@ impl Simulation {
         match &self.samples {
             // All requested samples are kept.
             Samples::At(times) => plan.spacing = Spacing::at(times.clone(), until)?,
-            Samples::File(path) => {
-                plan.spacing = Spacing::Times(inputs::times(path, until, generated, state)?);
+            Samples::Of(series) => {
+                plan.spacing = Spacing::Times(inputs::times(series, until, generated, state)?);
             }
             Samples::Usual | Samples::Every(_) => {}
         }

@@ -1,54 +1,54 @@
-//! Inputs of a run: columns of a file over time, and expressions in time and state.
+//! Inputs of a run: time series, expressions in time and state, and functions of other programs.
 
 mod expressions;
-mod file;
+mod series;
 
 use crate::names;
 use crate::state::State;
 pub use expressions::ExpressionProblem;
 use expressions::Expressions;
-use file::Table;
-pub use file::TableProblem;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::syntax::path::plain;
 use hamel_codegen::syntax::suggest::closest;
+use series::InputColumns;
+pub use series::{SeriesProblem, TimeSeries};
 use std::error;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The inputs that are asked for in a run; all others keep their values.
+/// Inputs that vary in a run; all others keep the values of the state.
 #[derive(Clone, Debug, Default)]
 pub struct InputOptions {
-    /// A CSV file of inputs over time: a column `t`, which is the time of the description where that declares one, and
-    /// columns with names of inputs, as in `t,F,tau[2]`; between two rows on a straight line.
-    pub file: Option<PathBuf>,
-    /// Whether values of the file hold until the next row, and after the last.
+    /// Inputs over time: a column `t`, which is the time of the description if it declares one, and columns with names
+    /// of inputs, as in `t`, `F`, `tau[2]`; linear between two rows.
+    pub series: Option<TimeSeries>,
+    /// Whether values of the series hold until the next row, and after the last.
     pub hold: bool,
     /// Inputs as expressions of `t`, parameters, coordinates, velocities and states: `NAME = EXPRESSION`.
     pub expressions: Vec<String>,
 }
 
-/// Why inputs cannot be what was asked for.
+/// Error in the inputs of a run.
 #[derive(Debug)]
 pub enum InputProblem {
-    /// A file of numbers over time is wrong.
-    File {
-        /// Its path.
+    /// A time series has an error.
+    Series {
+        /// Path of its file.
         path: PathBuf,
-        /// The reason.
-        problem: TableProblem,
+        /// The error.
+        problem: SeriesProblem,
     },
-    /// An expression of an input is wrong.
+    /// The expression of an input has an error.
     Expression {
         /// The text, with the name of the input.
         text: String,
-        /// The reason.
+        /// The error.
         problem: ExpressionProblem,
     },
-    /// An input has a column of a file and an expression.
+    /// An input has both a column of a time series and an expression.
     Twice {
-        /// Name.
+        /// Name of the input.
         name: String,
     },
 }
@@ -56,7 +56,7 @@ pub enum InputProblem {
 impl fmt::Display for InputProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            InputProblem::File { path, problem } => write!(f, "{}: {problem}", path.display()),
+            InputProblem::Series { path, problem } => write!(f, "{}: {problem}", path.display()),
             InputProblem::Expression { text, problem } => {
                 write!(f, "--input \"{text}\": {problem}")
             }
@@ -71,14 +71,14 @@ impl fmt::Display for InputProblem {
 impl error::Error for InputProblem {
     fn source(&self) -> Option<&(dyn error::Error + 'static)> {
         match self {
-            InputProblem::File { problem, .. } => Some(problem),
+            InputProblem::Series { problem, .. } => Some(problem),
             InputProblem::Expression { problem, .. } => Some(problem),
             InputProblem::Twice { .. } => None,
         }
     }
 }
 
-/// An input that a description does not have.
+/// Name that no input of a description has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownInput {
     /// The name that was given.
@@ -102,10 +102,10 @@ impl fmt::Display for UnknownInput {
 
 impl error::Error for UnknownInput {}
 
-/// u as a function of t, x and ξ.
+/// Inputs u as a function of t, x and ξ.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    table: Option<Table>,
+    columns: Option<InputColumns>,
     expressions: Option<Expressions>,
     law: Option<Law>,
     /// Index in x of the time that the description declares.
@@ -130,7 +130,7 @@ impl fmt::Debug for Law {
 impl From<Law> for Inputs {
     fn from(law: Law) -> Self {
         Inputs {
-            table: None,
+            columns: None,
             expressions: None,
             law: Some(law),
             clock: None,
@@ -140,7 +140,7 @@ impl From<Law> for Inputs {
 }
 
 impl Inputs {
-    /// Reads the requested inputs of a run of this length; `None` if all inputs are constant.
+    /// Checks the inputs of a run of length `until`, and prepares them; `None` if all inputs are constant.
     pub fn new(
         asked: &InputOptions,
         until: f64,
@@ -149,66 +149,69 @@ impl Inputs {
     ) -> Result<Option<Self>, InputProblem> {
         let model = &generated.active;
         let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
-        let of_file = |problem| InputProblem::File {
-            path: asked.file.clone().unwrap_or_default(),
+        let path = asked.series.as_ref().map(|series| series.path.clone());
+        let of_series = |problem| InputProblem::Series {
+            path: path.clone().unwrap_or_default(),
             problem,
         };
-        let table = asked.file.as_deref();
-        let table = table.map(|path| Table::read(path, &entries, asked.hold, until));
-        let table = table.transpose().map_err(of_file)?;
+        let columns = asked.series.as_ref();
+        let columns = columns.map(|series| InputColumns::new(series, &entries, asked.hold, until));
+        let columns = columns.transpose().map_err(of_series)?;
         let expressions = Expressions::new(&asked.expressions, model, &state.params)?;
-        if let (Some(table), Some(expressions)) = (&table, &expressions) {
-            let both = expressions.places().find(|place| table.has(*place));
+        if let (Some(columns), Some(expressions)) = (&columns, &expressions) {
+            let both = expressions.places().find(|place| columns.has(*place));
             if let Some(place) = both {
                 let name = entries[place].clone();
                 return Err(InputProblem::Twice { name });
             }
         }
-        if table.is_none() && expressions.is_none() {
+        if columns.is_none() && expressions.is_none() {
             return Ok(None);
         }
         let inputs = Inputs {
-            table,
+            columns,
             expressions,
             law: None,
             clock: model.clock.map(|clock| clock.x),
             begin: 0.0,
         };
-        inputs.started(state).map(Some).map_err(of_file)
+        inputs.started(state).map(Some).map_err(of_series)
     }
 
-    /// Times at which inputs jump.
+    /// Returns the times at which inputs jump.
     pub fn jumps(&self) -> &[f64] {
-        self.table.as_ref().map_or(&[], Table::jumps)
+        self.columns.as_ref().map_or(&[], InputColumns::jumps)
     }
 
-    /// The known reason why forces depend on velocities: an expression that mentions one.
+    /// Returns the known reason why forces depend on velocities: an expression that mentions one.
     pub fn moving(&self) -> Option<String> {
         let name = self.expressions.as_ref()?.moving()?;
         Some(format!("the input `{name}`"))
     }
 
-    /// Whether an external controller sets inputs, whose dependence is unknown.
+    /// Returns whether an external controller sets the inputs, so that it is not known what they depend on.
     pub fn is_law(&self) -> bool {
         self.law.is_some()
     }
 
-    /// The inputs for a run from another state; fails if they do not cover it.
-    pub fn started(mut self, state: &State) -> Result<Self, TableProblem> {
+    /// Prepares the inputs for a run from another state; fails if the time series does not cover it.
+    pub fn started(mut self, state: &State) -> Result<Self, SeriesProblem> {
         self.begin = begin(self.clock, state);
         if let Some(expressions) = &mut self.expressions {
             expressions.set_params(&state.params);
         }
-        if let Some(table) = self.table {
-            self.table = Some(table.from(self.begin)?);
+        if let Some(columns) = self.columns {
+            self.columns = Some(columns.from(self.begin)?);
         }
         Ok(self)
     }
 
-    /// Whether an entry of u has a column or an expression.
+    /// Returns whether an entry of u has a column or an expression.
     pub fn has(&self, place: usize) -> bool {
         let expressions = self.expressions.iter();
-        self.table.as_ref().is_some_and(|table| table.has(place))
+        self.columns
+            .as_ref()
+            .is_some_and(|columns| columns.has(place))
             || expressions
                 .flat_map(Expressions::places)
                 .any(|known| known == place)
@@ -216,8 +219,8 @@ impl Inputs {
 
     /// Sets the varying entries of u at time t of a run; the others keep their values.
     pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
-        if let Some(table) = &self.table {
-            table.set(t, u);
+        if let Some(columns) = &self.columns {
+            columns.set(t, u);
         }
         if let Some(expressions) = &self.expressions {
             expressions.set(self.begin + t, x, xi, u);
@@ -228,7 +231,7 @@ impl Inputs {
     }
 }
 
-/// The value of an expression in parameters alone.
+/// Evaluates an expression that depends on parameters alone.
 pub fn constant(
     expression: &str,
     generated: &Generated,
@@ -237,21 +240,22 @@ pub fn constant(
     expressions::constant(expression, &generated.active, params)
 }
 
-/// Reads the column `t` of a file as times of samples, and returns them relative to the start of a run from `state`.
+/// Returns the times of a time series relative to the start of a run of length `until` from `state`, for samples.
 pub fn times(
-    path: &Path,
+    series: &TimeSeries,
     until: f64,
     generated: &Generated,
     state: &State,
 ) -> Result<Vec<f64>, InputProblem> {
     let clock = generated.active.clock.map(|clock| clock.x);
-    file::times(path, begin(clock, state), until).map_err(|problem| InputProblem::File {
-        path: path.to_path_buf(),
+    let times = series.sample_times(begin(clock, state), until);
+    times.map_err(|problem| InputProblem::Series {
+        path: series.path.clone(),
         problem,
     })
 }
 
-/// The description's time at a state; 0 if it declares none.
+/// Returns the description's time at a state; 0 if it declares none.
 fn begin(clock: Option<usize>, state: &State) -> f64 {
     clock
         .and_then(|place| state.x.get(place))
@@ -259,7 +263,7 @@ fn begin(clock: Option<usize>, state: &State) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// The index of an input entry, by its written or plain name.
+/// Finds the index of an input entry by its written or plain name.
 fn place(name: &str, entries: &[String]) -> Result<usize, UnknownInput> {
     let found = |entry: &String| entry == name || plain(entry) == plain(name);
     entries.iter().position(found).ok_or_else(|| UnknownInput {
