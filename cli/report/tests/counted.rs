@@ -144,10 +144,11 @@ fn none(_: f64, _: &[f64; 2], _: &[f64; 1]) -> [f64; 0] {
 type Inputs = fn(f64, &[f64; 2], &[f64; 1]) -> [f64; 0];
 
 /// The pendulum up to t = 1, with the error |ξ − 7|.
-fn problem() -> Problem<'static, Pendulum, Inputs> {
+fn problem<'a>(system: &'a Counted<'a, Pendulum>) -> Problem<'a, Counted<'a, Pendulum>, Inputs> {
     let (x, xi) = PENDULUM.start();
     Problem {
-        system: Counted::new(&PENDULUM),
+        system,
+        evaluations: Box::new(|| system.evaluations()),
         x,
         xi,
         until: 1.0,
@@ -161,7 +162,8 @@ fn problem() -> Problem<'static, Pendulum, Inputs> {
 
 #[test]
 fn a_problem_gives_error_drift_and_count() {
-    let problem = problem();
+    let counted = Counted::new(&PENDULUM);
+    let problem = problem(&counted);
     let entry = problem.by("rkmk4", Kind::Method, General::Rkmk4);
     let (_, end) = problem.end(&Rkmk4, 50).expect("a run");
     let mut worst = Worst::default();
@@ -184,7 +186,8 @@ fn a_problem_gives_error_drift_and_count() {
 #[test]
 fn runs_by_error_control_count_what_they_evaluate_and_refuse() {
     const TOLERANCE: f64 = 1e-10;
-    let problem = problem();
+    let counted = Counted::new(&PENDULUM);
+    let problem = problem(&counted);
     let (order, controlled) = (8, problem.controlled("rkmk8", 8, Adaptive::rkmk8));
     let mut state = State::start(&PENDULUM);
     let alone = Adaptive::rkmk8(TOLERANCE)

@@ -21,7 +21,6 @@ use hamel_engine::State;
 use hamel_engine::mechanism::{Instance, Numbers};
 use hamel_engine::method::{self, Named, Role, Stepper, Unfit};
 use hamel_report::auto;
-use hamel_report::counted::Counted;
 use hamel_report::data::{Case, Choice, Kind, Machine, Missing, Report};
 use hamel_report::entry::Entry;
 use hamel_report::measure::{Plan, measure};
@@ -221,7 +220,8 @@ pub fn case(
         values.flat_map(|value| value.to_vec()).collect()
     };
     let mut problem = Problem {
-        system: Counted::new(&system),
+        system: &system,
+        evaluations: Box::new(|| system.evaluations()),
         x: state.x.as_slice().into(),
         xi: state.xi.as_slice().into(),
         until,

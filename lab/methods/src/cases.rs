@@ -63,9 +63,10 @@ pub const ALL: &[Job] = jobs! {
 fn problem<'a, Sys: System<Scalar = f64>>(
     runner: &mut Runner,
     case: &'a Case<Sys>,
+    system: &'a Counted<'a, Sys>,
     momenta: Quantities<'a>,
     conservative: bool,
-) -> Problem<'a, Sys, &'a Inputs<Sys>> {
+) -> Problem<'a, Counted<'a, Sys>, &'a Inputs<Sys>> {
     runner.case.until = case.until;
     runner.case.error = match case.measure {
         Measure::Attitude => "‖R − R*‖, Frobenius",
@@ -81,7 +82,8 @@ fn problem<'a, Sys: System<Scalar = f64>>(
         case.error(&state)
     };
     Problem {
-        system: Counted::new(&case.system),
+        system,
+        evaluations: Box::new(|| system.evaluations()),
         x: case.start.x.clone(),
         xi: case.start.xi.clone(),
         until: case.until,
@@ -113,7 +115,8 @@ where
 {
     let momentum = angular(case);
     let vertical = Box::new(move |x: &[f64], xi: &[f64]| vec![momentum(x, xi)[2]]);
-    let problem = problem(runner, case, vertical, true);
+    let system = Counted::new(&case.system);
+    let problem = problem(runner, case, &system, vertical, true);
     let mut entries = methods::general(&problem);
     entries.extend(methods::split(&problem));
     entries.extend(methods::canonical(&problem));
@@ -131,7 +134,8 @@ where
 {
     let momentum = angular(case);
     let all = Box::new(move |x: &[f64], xi: &[f64]| momentum(x, xi).to_vec());
-    let problem = problem(runner, case, all, true);
+    let system = Counted::new(&case.system);
+    let problem = problem(runner, case, &system, all, true);
     let mut entries = methods::general(&problem);
     entries.extend(methods::split(&problem));
     entries.extend(methods::canonical(&problem));
@@ -145,7 +149,14 @@ fn flight<Sys>(runner: &mut Runner, case: &Case<Sys>, conservative: bool) -> Res
 where
     Sys: Split<Scalar = f64> + Canonical + Energies,
 {
-    let problem = problem(runner, case, Box::new(|_, _| Vec::new()), conservative);
+    let system = Counted::new(&case.system);
+    let problem = problem(
+        runner,
+        case,
+        &system,
+        Box::new(|_, _| Vec::new()),
+        conservative,
+    );
     let mut entries = methods::general(&problem);
     entries.extend(methods::split(&problem));
     entries.extend(methods::canonical(&problem));
@@ -158,7 +169,8 @@ fn chain<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
     Sys: Canonical<Scalar = f64> + Energies,
 {
-    let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
+    let system = Counted::new(&case.system);
+    let problem = problem(runner, case, &system, Box::new(|_, _| Vec::new()), true);
     let mut entries = methods::general(&problem);
     entries.extend(methods::canonical(&problem));
     runner.entries(&entries, None);
@@ -170,7 +182,8 @@ fn rolling<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
     Sys: Energies<Scalar = f64>,
 {
-    let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
+    let system = Counted::new(&case.system);
+    let problem = problem(runner, case, &system, Box::new(|_, _| Vec::new()), true);
     runner.entries(&methods::general(&problem), None);
     Ok(())
 }

@@ -64,7 +64,7 @@ where
     Sys: Split<Scalar = f64> + Energies,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    let kicks = |scheme| Splitting::new(&problem.system, scheme);
+    let kicks = |scheme| Splitting::new(problem.system, scheme);
     let mut entries = table! { problem;
         "splitting2" Method kicks(Scheme::Strang);
         "splitting" Method kicks(Scheme::Nystrom4);
@@ -102,7 +102,7 @@ where
             let mut end = Ok(start.clone());
             for index in 1..=steps {
                 let t = until * (index as f64 / steps as f64);
-                end = free::at(&problem.system, &start, t);
+                end = free::at(problem.system, &start, t);
                 if let Ok(state) = &end {
                     watch(deviation(&state.x, &state.xi));
                 }
@@ -117,7 +117,7 @@ where
         move |steps, part| {
             let begin = Instant::now();
             let start = black_box(problem.start());
-            black_box(free::at(&problem.system, &start, problem.until).ok()?);
+            black_box(free::at(problem.system, &start, problem.until).ok()?);
             // A run takes one evaluation; the caller scales the time from a part of the steps to all.
             Some(begin.elapsed().as_secs_f64() * part as f64 / steps as f64)
         },

@@ -67,9 +67,9 @@ where
         Kind::Peer,
         Some(4),
         move |steps, until, watch: &mut dyn FnMut(Deviation)| {
-            problem.system.reset();
+            let before = (problem.evaluations)();
             let result = solve(problem, steps, until);
-            let evaluations = Some(problem.system.evaluations());
+            let evaluations = Some((problem.evaluations)() - before);
             let deviation = problem.deviation();
             let end = result
                 .as_ref()
