@@ -1,7 +1,7 @@
 //! Bodies found from identified base parameters require the same forces; refused inputs.
 
 use crate::common::{hamel, text};
-use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::program::interpret::Interpreter;
 use serde_json::Value;

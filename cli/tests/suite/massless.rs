@@ -3,7 +3,7 @@
 
 use crate::common::{hamel, text};
 use hamel_cli::reports;
-use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_engine::{OpenOptions, Quiet, Session, WarningTexts};
 use serde_json::Value;
 use std::sync::Arc;

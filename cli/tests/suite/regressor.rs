@@ -4,7 +4,7 @@
 use crate::common::{hamel, text};
 use crate::installed::installed;
 use crate::pinocchio::{control, coordinates, joint, list, velocities};
-use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::derive::regressor::{Regressor, regressor};

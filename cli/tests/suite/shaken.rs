@@ -8,7 +8,7 @@
 use crate::described::{Dynamics, Robot};
 use crate::installed::installed;
 use hamel_codegen::algebra::double::Double;
-use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::functions::{Asked, FunctionId};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::lower;

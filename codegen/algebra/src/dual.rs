@@ -10,8 +10,8 @@
 //!
 //! Numbers with slopes are numbers themselves, so second derivatives are slopes over [`Duals`].
 
-use super::fp::Fp;
 use super::numbers::{Form, Modular, Numbers, Step};
+use super::residue_pair::ResiduePair;
 use num_traits::Signed;
 
 /// Partial derivative ∂f/∂a of an operation.
@@ -220,7 +220,7 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
 }
 
 impl<C: Modular, S: Slopes<C>> Modular for Duals<C, S> {
-    fn residue(&mut self, value: Fp) -> Option<Self::Number> {
+    fn residue(&mut self, value: ResiduePair) -> Option<Self::Number> {
         let value = self.numbers.residue(value)?;
         self.with_slope(value, &[])
     }

@@ -13,10 +13,10 @@
 //! (`roots`).
 
 use super::external::Component;
-use super::fp::{Fp, Random};
 use super::function::Function;
 use super::numbers::{Form, Modular, Numbers, Step};
 use super::prime::Residue;
+use super::residue_pair::{Random, ResiduePair};
 use super::roots;
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -25,7 +25,7 @@ use rustc_hash::FxHashMap;
 
 /// Argument of a function with a group law as Σ coefficient · atom, with the values of the atoms. For a
 /// square root, the rational factor of its argument (`Graph::form`).
-pub type LinearForm = Form<Fp>;
+pub type LinearForm = Form<ResiduePair>;
 
 /// Number of parts into which the atom of an angle is divided. A part gets a random circle point, so that
 /// halves, thirds, quarters and sixths of the atom are whole multiples of it.
@@ -55,14 +55,14 @@ pub enum Roots {
 /// other.
 #[derive(Clone, Debug, Default)]
 pub struct FieldPoint {
-    symbols: Vec<Fp>,
+    symbols: Vec<ResiduePair>,
     /// Whether a square root of a non-square was requested, for each field; the point should be chosen anew
     /// there.
     missing_roots: [bool; 2],
     /// Which square roots have values.
     pub roots: Roots,
     /// Linear forms that symbols stand for, by the values of the symbols.
-    written: FxHashMap<Fp, LinearForm>,
+    written: FxHashMap<ResiduePair, LinearForm>,
 }
 
 impl FieldPoint {
@@ -80,12 +80,12 @@ impl FieldPoint {
     }
 
     /// Adds the next symbol.
-    pub fn push_symbol(&mut self, value: Fp) {
+    pub fn push_symbol(&mut self, value: ResiduePair) {
         self.symbols.push(value);
     }
 
     /// Gives a symbol another value; functions of it change accordingly.
-    pub fn set_symbol(&mut self, index: usize, value: Fp) {
+    pub fn set_symbol(&mut self, index: usize, value: ResiduePair) {
         if let Some(known) = self.symbols.get_mut(index) {
             *known = value;
         }
@@ -93,7 +93,7 @@ impl FieldPoint {
 
     /// From now on, functions read a symbol of this value as the linear form that another graph has in its
     /// place, so that sin(a + b) and sin(c) are equal where c = a + b.
-    pub fn set_linear_form(&mut self, value: Fp, form: LinearForm) {
+    pub fn set_linear_form(&mut self, value: ResiduePair, form: LinearForm) {
         self.written.insert(value, form);
     }
 
@@ -115,7 +115,7 @@ impl FieldPoint {
     }
 
     /// The value of a symbol.
-    pub fn symbol(&self, index: usize) -> Fp {
+    pub fn symbol(&self, index: usize) -> ResiduePair {
         self.symbols[index]
     }
 
@@ -130,7 +130,12 @@ impl FieldPoint {
     }
 
     /// Returns the value of a function of one argument; `form` is `Graph::form` of the argument.
-    pub fn function(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
+    pub fn function(
+        &mut self,
+        function: Function,
+        argument: ResiduePair,
+        form: &LinearForm,
+    ) -> ResiduePair {
         if !self.written.is_empty() && function.row().law.is_additive() {
             let form = self.substitute_forms(form);
             return self.value(function, argument, &form);
@@ -138,12 +143,17 @@ impl FieldPoint {
         self.value(function, argument, form)
     }
 
-    fn value(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
+    fn value(
+        &mut self,
+        function: Function,
+        argument: ResiduePair,
+        form: &LinearForm,
+    ) -> ResiduePair {
         match function {
-            Function::Sin => Fp(self.angle(form, &first).1, self.angle(form, &second).1),
-            Function::Cos => Fp(self.angle(form, &first).0, self.angle(form, &second).0),
-            Function::Exp => Fp(self.exp(form, &first), self.exp(form, &second)),
-            Function::Sinh | Function::Cosh | Function::Tanh => Fp(
+            Function::Sin => ResiduePair(self.angle(form, &first).1, self.angle(form, &second).1),
+            Function::Cos => ResiduePair(self.angle(form, &first).0, self.angle(form, &second).0),
+            Function::Exp => ResiduePair(self.exp(form, &first), self.exp(form, &second)),
+            Function::Sinh | Function::Cosh | Function::Tanh => ResiduePair(
                 hyperbolic(function, self.exp(form, &first)),
                 hyperbolic(function, self.exp(form, &second)),
             ),
@@ -154,23 +164,25 @@ impl FieldPoint {
                 );
                 self.missing_roots[0] |= roots.0.is_none();
                 self.missing_roots[1] |= roots.1.is_none();
-                let other = self.opaque(Function::Sqrt, argument, Fp::ZERO);
-                Fp(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
+                let other = self.opaque(Function::Sqrt, argument, ResiduePair::ZERO);
+                ResiduePair(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
             }
             Function::Abs => self.sign(argument) * argument,
             Function::Sign => self.sign(argument),
             // The function is odd.
             Function::Inverse => {
-                let of = |a| self.opaque(function, a, Fp::ZERO);
+                let of = |a| self.opaque(function, a, ResiduePair::ZERO);
                 of(argument) - of(-argument)
             }
             // The function is linear.
-            Function::Raised => argument * self.opaque(function, Fp::ONE, Fp::ZERO),
+            Function::Raised => {
+                argument * self.opaque(function, ResiduePair::ONE, ResiduePair::ZERO)
+            }
             Function::Log
             | Function::Atan2
             | Function::Select
             | Function::Listed
-            | Function::External => self.opaque(function, argument, Fp::ZERO),
+            | Function::External => self.opaque(function, argument, ResiduePair::ZERO),
         }
     }
 
@@ -196,23 +208,27 @@ impl FieldPoint {
     }
 
     /// Returns a pseudo-random value that obeys no law, except that equal arguments give equal values.
-    pub fn opaque(&self, function: Function, a: Fp, b: Fp) -> Fp {
+    pub fn opaque(&self, function: Function, a: ResiduePair, b: ResiduePair) -> ResiduePair {
         let tag = function as u64;
-        Fp(
+        ResiduePair(
             FieldPoint::draw(tag, a.0, b.0).residue(),
             FieldPoint::draw(tag, a.1, b.1).residue(),
         )
     }
 
     /// Returns the value that stands for a list; lists of the same numbers have the same value.
-    pub fn listed(&self, rest: Fp, last: Fp) -> Fp {
+    pub fn listed(&self, rest: ResiduePair, last: ResiduePair) -> ResiduePair {
         self.opaque(Function::Listed, rest, last)
     }
 
     /// Returns the value of a component of an external function, of which nothing is known except that it
     /// is a function.
-    pub fn external(&self, component: Component, list: Fp) -> Fp {
-        self.opaque(Function::External, list, Fp::from_i64(component.number()))
+    pub fn external(&self, component: Component, list: ResiduePair) -> ResiduePair {
+        self.opaque(
+            Function::External,
+            list,
+            ResiduePair::from_i64(component.number()),
+        )
     }
 
     /// Returns the value that stands for the condition a > 0. For a rational number a, it is 1 or 0; for
@@ -221,18 +237,22 @@ impl FieldPoint {
     /// Whatever holds for a random s holds for 1 and for 0, and so on both sides. Relations that hold on
     /// each of the sides only because s is 1 or 0 there, such as s² = s, are not found. The relation s(−a)
     /// = 1 − s(a) is false at a = 0, so the two are chosen independently.
-    pub fn positive(&self, a: Fp) -> Fp {
+    pub fn positive(&self, a: ResiduePair) -> ResiduePair {
         if let Some((n, _)) = a.to_small_rational(RATIONAL_BITS) {
-            return if n > 0 { Fp::ONE } else { Fp::ZERO };
+            return if n > 0 {
+                ResiduePair::ONE
+            } else {
+                ResiduePair::ZERO
+            };
         }
-        Fp(
+        ResiduePair(
             FieldPoint::draw(CONDITION_TAG, a.0, Residue::ONE).residue(),
             FieldPoint::draw(CONDITION_TAG, a.1, Residue::ONE).residue(),
         )
     }
 
     /// Sign of a, as the difference of the conditions a > 0 and −a > 0: 0 if a is 0.
-    fn sign(&self, a: Fp) -> Fp {
+    fn sign(&self, a: ResiduePair) -> ResiduePair {
         self.positive(a) - self.positive(-a)
     }
 
@@ -254,7 +274,7 @@ impl FieldPoint {
                 if base.is_zero() {
                     return total;
                 }
-                let pi = part(Fp::PI);
+                let pi = part(ResiduePair::PI);
                 let (point, count) = match parts {
                     1 if base == pi => (twelfth(), count),
                     1 if base == -pi => (twelfth(), -count),
@@ -289,16 +309,16 @@ impl FieldPoint {
 }
 
 impl Numbers for FieldPoint {
-    type Number = Fp;
+    type Number = ResiduePair;
 
     /// Missing square roots are noted (`has_missing_root`).
     #[inline]
-    fn make(&mut self, step: Step<Fp>) -> Option<Fp> {
+    fn make(&mut self, step: Step<ResiduePair>) -> Option<ResiduePair> {
         Some(match step {
-            Step::Whole(0) => Fp::ZERO,
-            Step::Whole(1) => Fp::ONE,
-            Step::Whole(value) => Fp::from_i64(value.into()),
-            Step::Constant(value) => Fp::from_rational(value)?,
+            Step::Whole(0) => ResiduePair::ZERO,
+            Step::Whole(1) => ResiduePair::ONE,
+            Step::Whole(value) => ResiduePair::from_i64(value.into()),
+            Step::Constant(value) => ResiduePair::from_rational(value)?,
             Step::Symbol(index) => self.symbols[index],
             Step::Neg(a) => -*a,
             Step::Add(a, b) => *a + *b,
@@ -313,12 +333,12 @@ impl Numbers for FieldPoint {
         })
     }
 
-    fn is_zero(&self, a: &Fp) -> bool {
+    fn is_zero(&self, a: &ResiduePair) -> bool {
         a.is_zero()
     }
 
     /// Needs only one inversion.
-    fn quotient(&mut self, a: &Fp, b: &Fp) -> Option<[Fp; 3]> {
+    fn quotient(&mut self, a: &ResiduePair, b: &ResiduePair) -> Option<[ResiduePair; 3]> {
         let inverse = b.inv()?;
         let quotient = *a * inverse;
         Some([quotient, inverse, -(quotient * inverse)])
@@ -326,13 +346,13 @@ impl Numbers for FieldPoint {
 }
 
 impl Modular for FieldPoint {
-    fn residue(&mut self, value: Fp) -> Option<Fp> {
+    fn residue(&mut self, value: ResiduePair) -> Option<ResiduePair> {
         Some(value)
     }
 }
 
 /// Adds a term to a form.
-fn collect(form: &mut LinearForm, atom: Fp, coefficient: BigRational) {
+fn collect(form: &mut LinearForm, atom: ResiduePair, coefficient: BigRational) {
     for (known, sum) in form.iter_mut() {
         if *known == atom {
             *sum += coefficient;
@@ -350,13 +370,13 @@ fn collect(form: &mut LinearForm, atom: Fp, coefficient: BigRational) {
 type Turn<const K: usize> = (Residue<K>, Residue<K>);
 
 /// Projection to one of the two fields.
-type Part<'a, const K: usize> = &'a dyn Fn(Fp) -> Residue<K>;
+type Part<'a, const K: usize> = &'a dyn Fn(ResiduePair) -> Residue<K>;
 
-fn first(value: Fp) -> Residue<0> {
+fn first(value: ResiduePair) -> Residue<0> {
     value.0
 }
 
-fn second(value: Fp) -> Residue<1> {
+fn second(value: ResiduePair) -> Residue<1> {
     value.1
 }
 
@@ -405,9 +425,9 @@ fn circle_residue<const K: usize>(random: &mut Random) -> Turn<K> {
 }
 
 /// Draws a random point of the unit circle in both fields.
-pub fn circle_point(random: &mut Random) -> (Fp, Fp) {
+pub fn circle_point(random: &mut Random) -> (ResiduePair, ResiduePair) {
     let (a, b) = (circle_residue(random), circle_residue(random));
-    (Fp(a.0, b.0), Fp(a.1, b.1))
+    (ResiduePair(a.0, b.0), ResiduePair(a.1, b.1))
 }
 
 /// Cosine and sine of π/12, (√3 ± 1) √2 / 4.

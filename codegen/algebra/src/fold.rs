@@ -1,10 +1,10 @@
 //! Simplifications by the constructor of nodes, in addition to merging equal values: run-time constants are
 //! grouped, and arguments of sin, cos and exp are read as linear forms.
 
-use super::fp::Fp;
 use super::function::Law;
 use super::graph::Graph;
 use super::node::{Edge, Function, Node, NodeId};
+use super::residue_pair::ResiduePair;
 use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -35,7 +35,7 @@ impl Graph {
 
     /// Chooses the value of √(e²) = |e|. Modulo p, roots of both signs are roots; the value is chosen such
     /// that |e| is neither e nor −e, unless e is itself a root or a number.
-    pub(super) fn distinguish_from_root(&self, square: Edge, root: Fp) -> Fp {
+    pub(super) fn distinguish_from_root(&self, square: Edge, root: ResiduePair) -> ResiduePair {
         match self.lookup(root).map(|known| self.node(known.node())) {
             None | Some(Node::Constant(_)) => root,
             Some(node) if node.is_root() => root,
@@ -113,7 +113,7 @@ impl Graph {
         argument: Edge,
         form: &[(NodeId, BigRational)],
     ) -> Option<Edge> {
-        let is_pi = |atom: NodeId| self.value(Edge::of(atom)) == Fp::PI;
+        let is_pi = |atom: NodeId| self.value(Edge::of(atom)) == ResiduePair::PI;
         let (pi, halves) = form
             .iter()
             .find(|(atom, _)| is_pi(*atom))

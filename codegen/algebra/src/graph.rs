@@ -19,12 +19,12 @@ pub(crate) use powers::Power;
 
 use super::external::External;
 use super::field_point::{FieldPoint, Roots};
-use super::fp::Fp;
 use super::function::{Law, Parity};
 pub use super::node::{Component, Edge, Function, Node, NodeId, Symbol};
 use super::prime::has_bad_prime;
 use super::real_enclosure::RealValues;
 use super::reals::Reals;
+use super::residue_pair::ResiduePair;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -36,9 +36,9 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
-    values: Vec<Fp>,
+    values: Vec<ResiduePair>,
     classes: Vec<u8>,
-    by_value: FxHashMap<Fp, Edge>,
+    by_value: FxHashMap<ResiduePair, Edge>,
     constants: Vec<BigRational>,
     symbols: Vec<Symbol>,
     point: FieldPoint,
@@ -47,7 +47,7 @@ pub struct Graph {
     contents: FxHashMap<NodeId, BigRational>,
     /// Value of the node of another graph, at the same points, that the next node is a copy of. That node
     /// is not a number, so a new node with this value is not a number either.
-    copied: Fp,
+    copied: ResiduePair,
     /// Whether some number has no faithful image, because a prime divides it.
     bad_prime: bool,
     /// External functions, which are defined elsewhere.
@@ -72,14 +72,14 @@ impl Graph {
             point: FieldPoint::new(),
             real_values: RealValues::default(),
             contents: FxHashMap::default(),
-            copied: Fp::ZERO,
+            copied: ResiduePair::ZERO,
             bad_prime: false,
             externals: Arc::default(),
             labels: Vec::new(),
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.
-        graph.push(Node::Constant(0), Fp::ZERO, 0);
+        graph.push(Node::Constant(0), ResiduePair::ZERO, 0);
         graph.constants.push(BigRational::zero());
         graph.rational(&BigRational::one());
         graph
@@ -191,7 +191,7 @@ impl Graph {
     }
 
     /// Value of an edge at the point.
-    pub fn value(&self, edge: Edge) -> Fp {
+    pub fn value(&self, edge: Edge) -> ResiduePair {
         let value = self.values[edge.node() as usize];
         if edge.is_negative() { -value } else { value }
     }
@@ -222,7 +222,7 @@ impl Graph {
     }
 
     /// Creates a symbol with its value at the point.
-    pub fn symbol(&mut self, name: &str, class: u8, value: Fp) -> Edge {
+    pub fn symbol(&mut self, name: &str, class: u8, value: ResiduePair) -> Edge {
         self.point.push_symbol(value);
         let index = self.symbols.len() as u32;
         let edge = self.push(Node::Symbol(index), value, class);
@@ -236,14 +236,14 @@ impl Graph {
 
     /// Returns the edge of an exact number.
     pub fn rational(&mut self, value: &BigRational) -> Edge {
-        match Fp::from_rational(value) {
+        match ResiduePair::from_rational(value) {
             Some(image) => self.number(value, image),
-            None => self.new_number(value, Fp::ZERO),
+            None => self.new_number(value, ResiduePair::ZERO),
         }
     }
 
     /// Returns the edge of a number with this image in the two fields.
-    pub(super) fn number(&mut self, value: &BigRational, image: Fp) -> Edge {
+    pub(super) fn number(&mut self, value: &BigRational, image: ResiduePair) -> Edge {
         if let Some(edge) = self.lookup(image)
             && self.is_number(edge)
             && self.as_rational(edge).as_ref() == Some(value)
@@ -253,7 +253,7 @@ impl Graph {
         self.new_number(value, image)
     }
 
-    fn new_number(&mut self, value: &BigRational, image: Fp) -> Edge {
+    fn new_number(&mut self, value: &BigRational, image: ResiduePair) -> Edge {
         self.bad_prime |= has_bad_prime(value);
         let index = self.constants.len() as u32;
         self.constants.push(value.clone());

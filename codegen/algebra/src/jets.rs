@@ -7,7 +7,7 @@
 
 use super::dual::{Duals, VectorForwardMode};
 use super::field_point::FieldPoint;
-use super::fp::Fp;
+use super::residue_pair::ResiduePair;
 use super::tangent::{Dual, duals};
 use super::tape::Tape;
 
@@ -15,35 +15,38 @@ use super::tape::Tape;
 #[derive(Clone, Debug, Default)]
 pub struct Seeds {
     /// x₁.
-    pub along: Vec<Fp>,
+    pub along: Vec<ResiduePair>,
     /// x₂ of every column.
-    pub across: Vec<Vec<Fp>>,
+    pub across: Vec<Vec<ResiduePair>>,
     /// x₁₂ of every column, 0 for columns beyond the end.
-    pub mixed: Vec<Vec<Fp>>,
+    pub mixed: Vec<Vec<ResiduePair>>,
 }
 
 /// Value and slopes of an expression: f, f₁, and f₂ and f₁₂ for every column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Jet {
     /// f.
-    pub value: Fp,
+    pub value: ResiduePair,
     /// f₁.
-    pub along: Fp,
+    pub along: ResiduePair,
     /// f₂ of every column; empty if f and f₁ are constant along all of them.
-    pub across: Vec<Fp>,
+    pub across: Vec<ResiduePair>,
     /// f₁₂ of every column; empty if f and f₁ are constant along all columns.
-    pub mixed: Vec<Fp>,
+    pub mixed: Vec<ResiduePair>,
 }
 
 impl Jet {
     /// f₂ of a column.
-    pub fn across(&self, column: usize) -> Fp {
-        self.across.get(column).copied().unwrap_or(Fp::ZERO)
+    pub fn across(&self, column: usize) -> ResiduePair {
+        self.across
+            .get(column)
+            .copied()
+            .unwrap_or(ResiduePair::ZERO)
     }
 
     /// f₁₂ of a column.
-    pub fn mixed(&self, column: usize) -> Fp {
-        self.mixed.get(column).copied().unwrap_or(Fp::ZERO)
+    pub fn mixed(&self, column: usize) -> ResiduePair {
+        self.mixed.get(column).copied().unwrap_or(ResiduePair::ZERO)
     }
 
     /// Whether the expression is constant along all directions.
@@ -57,10 +60,13 @@ impl Tape {
     pub fn jets(&self, point: &FieldPoint, seeds: &Seeds) -> Option<Vec<Jet>> {
         // Numbers are f and f₁ along s, with the slopes of both along all t.
         let of_symbol = |index: usize| -> Vec<Dual> {
-            let at = |row: Option<&Vec<Fp>>| row?.get(index).copied();
+            let at = |row: Option<&Vec<ResiduePair>>| row?.get(index).copied();
             let slope = |k: usize| {
                 let (across, mixed) = (at(seeds.across.get(k)), at(seeds.mixed.get(k)));
-                (across.unwrap_or(Fp::ZERO), mixed.unwrap_or(Fp::ZERO))
+                (
+                    across.unwrap_or(ResiduePair::ZERO),
+                    mixed.unwrap_or(ResiduePair::ZERO),
+                )
             };
             (0..seeds.across.len()).map(slope).collect()
         };

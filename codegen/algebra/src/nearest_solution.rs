@@ -3,7 +3,7 @@
 //! neighbours of the guess, and the nearest result counts.
 
 use super::dense::{backward, cholesky, dot, forward, gram, largest, least_norm};
-use super::fp::Random;
+use super::residue_pair::Random;
 
 /// Largest number of steps of Newton's method.
 const MAX_NEWTON_STEPS: usize = 100;

@@ -11,9 +11,9 @@
 //! | real samples, certified bounds | `real_enclosure` |
 
 use super::external::Component;
-use super::fp::Fp;
 use super::function::{Function, Slope};
 use super::node::{Edge, Node};
+use super::residue_pair::ResiduePair;
 use num_rational::BigRational;
 use std::borrow::Cow;
 
@@ -205,5 +205,5 @@ pub trait Numbers {
 /// Numbers that include the elements of the two fields.
 pub trait Modular: Numbers {
     /// Converts an element of the fields.
-    fn residue(&mut self, value: Fp) -> Option<Self::Number>;
+    fn residue(&mut self, value: ResiduePair) -> Option<Self::Number>;
 }

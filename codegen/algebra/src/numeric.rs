@@ -1,9 +1,9 @@
 //! Evaluation of expressions: in floating point, and exactly at new points modulo p.
 
 use super::field_point::FieldPoint;
-use super::fp::Fp;
 use super::graph::{Edge, Graph};
 use super::numbers::{Numbers, Step};
+use super::residue_pair::ResiduePair;
 use super::walk;
 use num_traits::ToPrimitive;
 
@@ -55,13 +55,20 @@ pub fn evaluate(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<f64> {
 
 /// Evaluates the expressions modulo p at another point, whose symbols have been pushed into `point`; `None`
 /// if a denominator vanishes or a square root has no value there.
-pub fn evaluate_at(graph: &Graph, roots: &[Edge], point: &mut FieldPoint) -> Option<Vec<Fp>> {
+pub fn evaluate_at(
+    graph: &Graph,
+    roots: &[Edge],
+    point: &mut FieldPoint,
+) -> Option<Vec<ResiduePair>> {
     let values = walk::evaluate(graph, roots, point)?;
     (!point.has_missing_root()).then_some(values)
 }
 
 /// Solves a square linear system over F_p; `None` if it is singular.
-pub fn solve(mut rows: Vec<Vec<Fp>>, mut right: Vec<Fp>) -> Option<Vec<Fp>> {
+pub fn solve(
+    mut rows: Vec<Vec<ResiduePair>>,
+    mut right: Vec<ResiduePair>,
+) -> Option<Vec<ResiduePair>> {
     let n = right.len();
     for k in 0..n {
         let pivot = (k..n).find(|&row| !rows[row][k].is_zero())?;
@@ -83,7 +90,7 @@ pub fn solve(mut rows: Vec<Vec<Fp>>, mut right: Vec<Fp>) -> Option<Vec<Fp>> {
 }
 
 /// Returns the rank of a matrix over F_p.
-pub fn rank(mut rows: Vec<Vec<Fp>>) -> usize {
+pub fn rank(mut rows: Vec<Vec<ResiduePair>>) -> usize {
     let columns = rows.first().map_or(0, Vec::len);
     let mut rank = 0;
     for column in 0..columns {

@@ -4,14 +4,18 @@
 
 use super::dual::{Duals, Record};
 use super::field_point::FieldPoint;
-use super::fp::Fp;
+use super::residue_pair::ResiduePair;
 use super::tangent::duals;
 use super::tape::Tape;
 
 impl Tape {
     /// Computes ∂(∂f/∂s)/∂xₖ for the symbols xₖ, where f is the first of the expressions and s is
     /// `direction`; one entry for each entry of `direction`. `None` if something has no value at the point.
-    pub fn second_derivative(&self, point: &FieldPoint, direction: &[Fp]) -> Option<Vec<Fp>> {
+    pub fn second_derivative(
+        &self,
+        point: &FieldPoint,
+        direction: &[ResiduePair],
+    ) -> Option<Vec<ResiduePair>> {
         let mut all = Duals {
             numbers: duals(point, direction),
             slopes: Record::default(),

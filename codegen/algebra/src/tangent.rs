@@ -3,21 +3,23 @@
 
 use super::dual::{Duals, ForwardMode};
 use super::field_point::FieldPoint;
-use super::fp::Fp;
 use super::graph::{Edge, Graph};
+use super::residue_pair::ResiduePair;
 use super::walk::evaluate;
 
 /// A value and its slope.
-pub type Dual = (Fp, Fp);
+pub type Dual = (ResiduePair, ResiduePair);
 
 /// Returns dual numbers modulo p along a direction, which has one entry for each symbol, 0 beyond its end.
 pub(super) fn duals(
     point: &FieldPoint,
-    direction: &[Fp],
-) -> Duals<FieldPoint, ForwardMode<impl Fn(usize) -> Fp>> {
+    direction: &[ResiduePair],
+) -> Duals<FieldPoint, ForwardMode<impl Fn(usize) -> ResiduePair>> {
     Duals {
         numbers: point.clone(),
-        slopes: ForwardMode(|index: usize| direction.get(index).copied().unwrap_or(Fp::ZERO)),
+        slopes: ForwardMode(|index: usize| {
+            direction.get(index).copied().unwrap_or(ResiduePair::ZERO)
+        }),
     }
 }
 
@@ -27,7 +29,7 @@ pub fn tangent_at(
     graph: &Graph,
     roots: &[Edge],
     point: &mut FieldPoint,
-    direction: &[Fp],
+    direction: &[ResiduePair],
 ) -> Option<Vec<Dual>> {
     let mut duals = duals(point, direction);
     let values = evaluate(graph, roots, &mut duals)?;

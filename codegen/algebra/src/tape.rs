@@ -4,9 +4,9 @@
 //! derivatives (`jets`, `second_derivative`) are wanted.
 
 use super::field_point::FieldPoint;
-use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
 use super::numbers::{Form, Modular};
+use super::residue_pair::ResiduePair;
 use num_rational::BigRational;
 
 /// A node whose children are earlier steps, and the linear form of its argument.
@@ -21,7 +21,7 @@ struct Step {
 pub struct Tape {
     /// Steps; those of the numbers 0 and 1 come first, as in a graph.
     steps: Vec<Step>,
-    constants: Vec<Fp>,
+    constants: Vec<ResiduePair>,
     roots: Vec<Edge>,
 }
 
@@ -41,7 +41,7 @@ impl Tape {
             let node = match graph.node(id) {
                 Node::Constant(index) => {
                     let value = graph.constant(index);
-                    tape.constants.push(Fp::from_rational(value)?);
+                    tape.constants.push(ResiduePair::from_rational(value)?);
                     Node::Constant(tape.constants.len() as u32 - 1)
                 }
                 Node::Apply(function, a) => {
@@ -84,7 +84,7 @@ impl Tape {
     }
 
     /// Evaluates the expressions at a point; `None` if something has no value there.
-    pub fn values(&self, point: &FieldPoint) -> Option<Vec<Fp>> {
+    pub fn values(&self, point: &FieldPoint) -> Option<Vec<ResiduePair>> {
         let mut point = point.clone();
         let values = self.run(&mut point)?;
         (!point.has_missing_root()).then_some(values)

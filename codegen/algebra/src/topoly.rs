@@ -5,11 +5,11 @@
 //! to linear forms of which a third or a higher power is taken, such as x − c in (x − c)³: near its zero
 //! the expanded terms would cancel, and all digits would be lost.
 
-use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
 use super::poly::field::Field;
 use super::poly::monomial::Var;
 use super::poly::polynomial::Poly;
+use super::residue_pair::ResiduePair;
 use num_rational::BigRational;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::borrow::Cow;
@@ -231,11 +231,11 @@ pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
 pub fn polynomial_at(
     graph: &Graph,
     edge: Edge,
-    values: &[Fp],
+    values: &[ResiduePair],
     unknown: &dyn Fn(usize) -> bool,
-) -> Option<Poly<Fp>> {
-    let mut memo: FxHashMap<NodeId, Poly<Fp>> = FxHashMap::default();
-    let read = |memo: &FxHashMap<NodeId, Poly<Fp>>, edge: Edge| {
+) -> Option<Poly<ResiduePair>> {
+    let mut memo: FxHashMap<NodeId, Poly<ResiduePair>> = FxHashMap::default();
+    let read = |memo: &FxHashMap<NodeId, Poly<ResiduePair>>, edge: Edge| {
         let polynomial = memo.get(&edge.node())?;
         Some(if edge.is_negative() {
             polynomial.neg()
@@ -245,7 +245,9 @@ pub fn polynomial_at(
     };
     for id in graph.reachable(&[edge]) {
         let polynomial = match graph.node(id) {
-            Node::Constant(index) => Poly::constant(Fp::from_rational(graph.constant(index))?),
+            Node::Constant(index) => {
+                Poly::constant(ResiduePair::from_rational(graph.constant(index))?)
+            }
             Node::Symbol(index) if unknown(index as usize) => Poly::var(index),
             Node::Symbol(index) => Poly::constant(*values.get(index as usize)?),
             Node::Add(a, b) => read(&memo, a)?.add(&read(&memo, b)?),

@@ -5,8 +5,8 @@
 //! of the rows from which they follow.
 
 use super::reduction::{independent, unit};
-use hamel_algebra::fp::Random;
 use hamel_algebra::numeric::evaluate;
+use hamel_algebra::residue_pair::Random;
 use hamel_language::model::Model;
 use hamel_language::model::loop_closure::{LoopClosure, normalise};
 

@@ -3,9 +3,9 @@
 use super::entries::{Cell, Group};
 use super::expression::Term;
 use super::polish::sorted;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph, NodeId};
 use hamel_algebra::poly::polynomial::Poly;
+use hamel_algebra::residue_pair::ResiduePair;
 use num_rational::BigRational;
 use num_traits::Signed;
 use rustc_hash::FxHashMap;
@@ -59,7 +59,7 @@ impl Row {
 /// Key by which entries are assigned to rows.
 #[derive(PartialEq, Eq, Hash)]
 enum Key {
-    Value(Fp),
+    Value(ResiduePair),
     Node(NodeId),
 }
 

@@ -2,9 +2,9 @@
 
 use hamel_algebra::blocks::{Failure, solve};
 use hamel_algebra::field_point::circle_point;
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::multiply;
+use hamel_algebra::residue_pair::Random;
 
 /// Returns a graph with (c, s) on the circle, a parameter l and a free coordinate x.
 fn graph() -> (Graph, [Edge; 4]) {

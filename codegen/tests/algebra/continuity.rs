@@ -1,7 +1,7 @@
 //! Jumps between branches: discontinuous expressions are found, and continuous ones are not.
 
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::{Edge, Function, Graph, NodeId};
+use hamel_algebra::residue_pair::Random;
 
 fn made() -> (Graph, [Edge; 4]) {
     let mut random = Random::new(17);

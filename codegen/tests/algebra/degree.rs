@@ -1,8 +1,8 @@
 //! Bounds of the degrees of expressions as rational functions.
 
 use hamel_algebra::degree::Degrees;
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::{Function, Graph};
+use hamel_algebra::residue_pair::Random;
 
 #[test]
 fn degrees_are_those_of_the_functions() {

@@ -4,7 +4,7 @@ use hamel_algebra::dense::{
     apply, backward, cholesky, cholesky_with, dot, forward, gram, largest, least_norm, product,
     solve,
 };
-use hamel_algebra::fp::Random;
+use hamel_algebra::residue_pair::Random;
 
 /// Generator of matrices with entries in ±1.
 struct Numbers(Random);

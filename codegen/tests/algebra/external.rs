@@ -4,11 +4,11 @@ use hamel_algebra::derivation::Derivation;
 use hamel_algebra::dual::{Duals, ForwardMode};
 use hamel_algebra::external::{Component, External};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::walk::evaluate;
 
-fn graph() -> (Graph, [Edge; 2], [Fp; 2]) {
+fn graph() -> (Graph, [Edge; 2], [ResiduePair; 2]) {
     let mut random = Random::new(9);
     let mut graph = Graph::new(1);
     graph.set_externals(vec![External {
@@ -67,7 +67,7 @@ fn slopes_go_by_the_chain_rule() {
     let slope = along.of(&mut graph, whole);
     let bend = along.of(&mut graph, slope);
     let mut point = at(values);
-    let seeds = [Fp::ONE, Fp::new(3)];
+    let seeds = [ResiduePair::ONE, ResiduePair::new(3)];
     let mut duals = Duals {
         numbers: point.clone(),
         slopes: ForwardMode(|index: usize| seeds[index]),
@@ -78,7 +78,7 @@ fn slopes_go_by_the_chain_rule() {
     assert_eq!(expected[0], graph.value(slope));
 }
 
-fn at(values: [Fp; 2]) -> FieldPoint {
+fn at(values: [ResiduePair; 2]) -> FieldPoint {
     let mut point = FieldPoint::new();
     values
         .into_iter()

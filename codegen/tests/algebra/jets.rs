@@ -3,10 +3,10 @@
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::jets::Seeds;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tape::Tape;
 
 /// The chain rule for symbols s, t, a(s, t) = s t + s, b(s, t) = s² − t, and functions of a and b.
@@ -37,7 +37,7 @@ fn mixed_derivatives_are_those_of_the_symbolic_derivative() {
         let mut point = FieldPoint::new();
         (0..4).for_each(|_| point.push_symbol(random.element()));
         let (s, t) = (point.symbol(0), point.symbol(1));
-        let (zero, one) = (Fp::ZERO, Fp::ONE);
+        let (zero, one) = (ResiduePair::ZERO, ResiduePair::ONE);
         let seeds = Seeds {
             along: vec![one, zero, t + one, s + s],
             across: vec![vec![zero, one, s, -one], vec![]],

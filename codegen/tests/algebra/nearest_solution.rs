@@ -32,7 +32,7 @@ impl Equations for Circle {
 /// Compares with the least distance of many points of the circle.
 #[test]
 fn the_nearest_point_of_a_circle_is_found() {
-    let mut random = hamel_algebra::fp::Random::new(11);
+    let mut random = hamel_algebra::residue_pair::Random::new(11);
     let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
     for _ in 0..50 {
         let circle = Circle {

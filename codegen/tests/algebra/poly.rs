@@ -12,10 +12,10 @@ mod polynomial;
 mod solve;
 mod univariate;
 
-use hamel_algebra::fp::Fp;
 use hamel_algebra::poly::monomial::Monomial;
 use hamel_algebra::poly::order::Order;
 use hamel_algebra::poly::polynomial::Poly;
+use hamel_algebra::residue_pair::ResiduePair;
 use proptest::prelude::*;
 use std::ops::Range;
 
@@ -24,11 +24,11 @@ fn polynomials(
     powers: impl Strategy<Value = Vec<(u32, u32)>>,
     coefficients: Range<i64>,
     terms: Range<usize>,
-) -> impl Strategy<Value = Poly<Fp>> {
+) -> impl Strategy<Value = Poly<ResiduePair>> {
     prop::collection::vec((powers, coefficients), terms).prop_map(|terms| {
         let terms = terms
             .into_iter()
-            .map(|(powers, c)| (Monomial::from_powers(powers), Fp::from_i64(c)));
+            .map(|(powers, c)| (Monomial::from_powers(powers), ResiduePair::from_i64(c)));
         Poly::from_terms(Order::Grevlex, terms.collect())
     })
 }

@@ -1,7 +1,7 @@
 //! The prime fields: their laws, their roots, and primes without special structure.
 
-use hamel_algebra::fp::Random;
 use hamel_algebra::prime::{PRIMES, Residue, has_bad_prime};
+use hamel_algebra::residue_pair::Random;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 

@@ -1,15 +1,15 @@
 //! Scales of equations: that of a circle is its radius.
 
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
 use hamel_algebra::residual_scale::{relative_residuals, residual_scales};
+use hamel_algebra::residue_pair::Random;
 
 /// x² + z² = r² has terms of size r², and slopes 2 x and 2 z.
 #[test]
 fn a_circle_is_as_large_as_its_radius() {
     let mut random = Random::new(5);
     let mut graph = Graph::new(1);
-    graph.symbol("pi", 0, hamel_algebra::fp::Fp::PI);
+    graph.symbol("pi", 0, hamel_algebra::residue_pair::ResiduePair::PI);
     let [r, x, z] = ["r", "x", "z"].map(|name| graph.symbol(name, 2, random.element()));
     let squares = [x, z, r].map(|a| graph.mul(a, a));
     let sum = graph.add(squares[0], squares[1]);

@@ -2,8 +2,8 @@
 
 mod sieve;
 
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::{Edge, Graph, Node};
+use hamel_algebra::residue_pair::Random;
 use hamel_algebra::resubstitute::resubstitute;
 
 /// Returns the number of operations at run time.

@@ -1,7 +1,7 @@
 //! Square roots modulo p: the root of a product is the product of the roots.
 
-use hamel_algebra::fp::Random;
 use hamel_algebra::prime::Residue;
+use hamel_algebra::residue_pair::Random;
 use hamel_algebra::roots::of_rational;
 use num_bigint::BigInt;
 use num_rational::BigRational;

@@ -9,8 +9,12 @@ use num_rational::BigRational;
 #[test]
 fn cancellation_is_seen() {
     let mut graph = Graph::new(1);
-    let pi = graph.symbol("pi", 0, hamel_algebra::fp::Fp::PI);
-    let x = graph.symbol("x", 2, hamel_algebra::fp::Random::new(3).element());
+    let pi = graph.symbol("pi", 0, hamel_algebra::residue_pair::ResiduePair::PI);
+    let x = graph.symbol(
+        "x",
+        2,
+        hamel_algebra::residue_pair::Random::new(3).element(),
+    );
     let small = graph.rational(&BigRational::new(
         BigInt::from(1),
         BigInt::from(7_000_000_000_i64),

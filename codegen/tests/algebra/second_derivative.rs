@@ -2,9 +2,9 @@
 
 use crate::common::functions;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Graph;
 use hamel_algebra::jets::Seeds;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tape::Tape;
 
 #[test]
@@ -23,9 +23,15 @@ fn rows_are_the_mixed_derivatives_of_jets() {
     let root = graph.mul(angle, sum);
     let tape = Tape::new(&graph, &[root]).expect("has a tape");
     let first = graph.symbols().len() - 3;
-    let unit = |k: usize| -> Vec<Fp> {
+    let unit = |k: usize| -> Vec<ResiduePair> {
         (0..first + 3)
-            .map(|i| if i == first + k { Fp::ONE } else { Fp::ZERO })
+            .map(|i| {
+                if i == first + k {
+                    ResiduePair::ONE
+                } else {
+                    ResiduePair::ZERO
+                }
+            })
             .collect()
     };
     let mut found = 0;

@@ -2,9 +2,9 @@
 
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
 use hamel_algebra::numeric::evaluate;
+use hamel_algebra::residue_pair::Random;
 use hamel_algebra::slopes::slopes;
 
 #[test]

@@ -3,9 +3,9 @@
 use crate::common::quotients;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::Random;
 use hamel_algebra::tangent::tangent_at;
 
 #[test]
@@ -24,7 +24,7 @@ fn slopes_are_those_of_the_symbolic_derivative() {
     let mut found = 0;
     for _ in 0..40 {
         let mut point = FieldPoint::new();
-        let direction = [1, 2].map(hamel_algebra::fp::Fp::new);
+        let direction = [1, 2].map(hamel_algebra::residue_pair::ResiduePair::new);
         (0..2).for_each(|_| point.push_symbol(random.element()));
         let Some(duals) = tangent_at(&graph, &roots, &mut point.clone(), &direction) else {
             continue;

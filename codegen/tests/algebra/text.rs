@@ -1,7 +1,7 @@
 //! Short expressions as text: parentheses only where necessary.
 
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
+use hamel_algebra::residue_pair::Random;
 use hamel_algebra::text::short;
 
 #[test]

@@ -1,7 +1,7 @@
 //! Polynomials of nodes: powers that are kept, and bounded expansion.
 
-use hamel_algebra::fp::Random;
 use hamel_algebra::graph::Graph;
+use hamel_algebra::residue_pair::Random;
 use hamel_algebra::topoly::Expander;
 
 /// 2 (x − a)³ y is 2 t³ y; and an earlier expansion is replaced.

@@ -1,7 +1,7 @@
 //! The displacement between two points of a coordinate: its slope is the documented factor, in both charts of
 //! rotations.
 
-use hamel_language::algebra::fp::Random;
+use hamel_language::algebra::residue_pair::Random;
 // The included file uses this name, too.
 use hamel_language::model::layout;
 use included::{chart_difference, chart_rate, turned};

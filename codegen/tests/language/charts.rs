@@ -1,7 +1,7 @@
 //! The tangents of every kind of coordinate.
 
-use hamel_language::algebra::fp::Random;
 use hamel_language::algebra::graph::{Edge, Graph};
+use hamel_language::algebra::residue_pair::Random;
 use hamel_language::model::charts::tangents;
 use hamel_language::model::layout::{Block, chart_rate, sample};
 

@@ -1,7 +1,7 @@
 //! The configuration nearest to a start, and the residual if there is none.
 
-use hamel_language::algebra::fp::Fp;
 use hamel_language::algebra::graph::Graph;
+use hamel_language::algebra::residue_pair::ResiduePair;
 use hamel_language::model::class;
 use hamel_language::model::layout::Block;
 use hamel_language::model::nearest::{Nearest, nearest};
@@ -11,10 +11,10 @@ use hamel_language::model::points::Points;
 fn largest(list: &[f64]) -> Nearest {
     let mut graph = Graph::new(1);
     let phi: Vec<_> = (list.iter().enumerate())
-        .map(|(k, _)| graph.symbol(&format!("c{k}"), class::PARAM, Fp::from_i64(3)))
+        .map(|(k, _)| graph.symbol(&format!("c{k}"), class::PARAM, ResiduePair::from_i64(3)))
         .map(|edge| (edge, "c".to_owned()))
         .collect();
-    graph.symbol("x", class::COORD, Fp::from_i64(5));
+    graph.symbol("x", class::COORD, ResiduePair::from_i64(5));
     let rows = phi.iter().map(|(edge, _)| *edge).collect();
     let points = Points::new(graph, rows, vec![Block::Flat(1)], list.len());
     let numbers: Vec<f64> = list.iter().copied().chain([0.0]).collect();

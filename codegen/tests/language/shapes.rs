@@ -1,7 +1,7 @@
 //! Shapes inferred from the text equal those of computed values, in all descriptions of the repository and in random
 //! expressions.
 
-use hamel_language::algebra::fp::Random;
+use hamel_language::algebra::residue_pair::Random;
 use hamel_language::lower::inspect::{CALLS as OF_JOINTS, Found, inspect};
 use hamel_language::model::value::Value;
 use hamel_language::syntax::ast::visit::{Visit, visit};

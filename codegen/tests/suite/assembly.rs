@@ -2,7 +2,7 @@
 //! closed form, and the distance from the guesses with that of all branches.
 
 use crate::common::size;
-use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::lower::build;
 use hamel_codegen::syntax::parse_text;
 use std::f64::consts::{PI, TAU};

@@ -6,9 +6,9 @@
 use super::frames::along_velocities;
 use super::kernel::multiply;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::centroidal::moves;
 use hamel_language::model::Model;
@@ -17,11 +17,11 @@ use hamel_program::{FunctionId, Program};
 /// Name of the centre of mass and centroidal momentum in messages.
 pub(super) const SUBJECT: &str = "the centre of mass, or the momentum about it";
 
-type V = [Fp; 3];
+type V = [ResiduePair; 3];
 
 /// Mass, centre of mass, its velocity, and angular momentum about it, of a body or particle.
 struct Part {
-    mass: Fp,
+    mass: ResiduePair,
     centre: V,
     velocity: V,
     moment: V,
@@ -38,7 +38,7 @@ pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Opt
     }
     let [_, x, xi, ..] = program.symbols();
     let rate = evaluate_at(&model.graph, &model.rate, &mut point.clone())?;
-    let mut along = vec![Fp::ZERO; xi];
+    let mut along = vec![ResiduePair::ZERO; xi];
     along[x..xi].copy_from_slice(&rate);
     let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut point.clone());
     let (centre, momentum) = sum_over_bodies(model, point, &along)?;
@@ -52,7 +52,7 @@ pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Opt
         return Some(holds);
     };
     holds &= value(emitted_momentum)? == momentum;
-    let slopes = |direction: &[Fp]| -> Option<Vec<Fp>> {
+    let slopes = |direction: &[ResiduePair]| -> Option<Vec<ResiduePair>> {
         let point = &mut point.clone();
         let duals = tangent_at(&program.graph, emitted_momentum, point, direction)?;
         Some(duals.into_iter().map(|dual| dual.1).collect())
@@ -68,7 +68,11 @@ pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Opt
 }
 
 /// Returns c, and (P, L) about it, by the sums over bodies and particles that move.
-fn sum_over_bodies(model: &Model, point: &FieldPoint, along: &[Fp]) -> Option<(Vec<Fp>, Vec<Fp>)> {
+fn sum_over_bodies(
+    model: &Model,
+    point: &FieldPoint,
+    along: &[ResiduePair],
+) -> Option<(Vec<ResiduePair>, Vec<ResiduePair>)> {
     let mut places = Vec::new();
     let mut fixed = Vec::new();
     for body in &model.bodies {
@@ -92,7 +96,9 @@ fn sum_over_bodies(model: &Model, point: &FieldPoint, along: &[Fp]) -> Option<(V
         let r = |i: usize, j: usize| pose[3 * i + j].0;
         let turned = |i: usize, j: usize| pose[3 * i + j].1;
         let com = |j: usize| constants[1 + j];
-        let sum = |term: &dyn Fn(usize) -> Fp| (0..3).fold(Fp::ZERO, |sum, k| sum + term(k));
+        let sum = |term: &dyn Fn(usize) -> ResiduePair| {
+            (0..3).fold(ResiduePair::ZERO, |sum, k| sum + term(k))
+        };
         let centre: V = [0, 1, 2].map(|i| pose[9 + i].0 + sum(&|k| r(i, k) * com(k)));
         let velocity: V = [0, 1, 2].map(|i| pose[9 + i].1 + sum(&|k| turned(i, k) * com(k)));
         // Angular velocity in body axes, ω̂ = Rᵀ Ṙ.
@@ -112,13 +118,16 @@ fn sum_over_bodies(model: &Model, point: &FieldPoint, along: &[Fp]) -> Option<(V
             mass,
             centre: [0, 1, 2].map(|i| point[i].0),
             velocity: [0, 1, 2].map(|i| point[i].1),
-            moment: [Fp::ZERO; 3],
+            moment: [ResiduePair::ZERO; 3],
         });
     }
     let moving = parts.iter().zip(moves(model)).filter(|(_, moves)| *moves);
     let moving: Vec<&Part> = moving.map(|(part, _)| part).collect();
-    let total =
-        |term: &dyn Fn(&Part) -> Fp| moving.iter().fold(Fp::ZERO, |sum, part| sum + term(part));
+    let total = |term: &dyn Fn(&Part) -> ResiduePair| {
+        moving
+            .iter()
+            .fold(ResiduePair::ZERO, |sum, part| sum + term(part))
+    };
     let inverse = total(&|part| part.mass).inv()?;
     let centre: V = [0, 1, 2].map(|i| total(&|part| part.mass * part.centre[i]) * inverse);
     let linear = [0, 1, 2].map(|i| total(&|part| part.mass * part.velocity[i]));

@@ -2,8 +2,8 @@
 //! not use to compute the rates.
 
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tape::Tape;
 use hamel_language::model::charts::all_tangents;
 use hamel_program::{FunctionId, Program};
@@ -35,13 +35,13 @@ impl Charts {
     }
 
     /// Returns whether K times the rates of the chart is the given ẋ at a point; `None` if they have no value there.
-    pub(super) fn hold(&self, rate: &[Fp], point: &FieldPoint) -> Option<bool> {
+    pub(super) fn hold(&self, rate: &[ResiduePair], point: &FieldPoint) -> Option<bool> {
         let Some(Tangents { tape, columns }) = &self.0 else {
             return Some(true);
         };
         let mut values = tape.values(point)?;
         let chart = values.split_off(columns * rate.len());
-        let mut moved = vec![Fp::ZERO; rate.len()];
+        let mut moved = vec![ResiduePair::ZERO; rate.len()];
         for (place, tangent) in values.iter().enumerate() {
             let (column, row) = (place / rate.len(), place % rate.len());
             moved[row] = moved[row] + *tangent * *chart.get(column)?;

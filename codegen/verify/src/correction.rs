@@ -3,9 +3,9 @@
 use super::kernel::multiply;
 use super::points::{Unequal, at_fresh_points};
 use super::verdict::{failure, nowhere};
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tangent::{Dual, tangent_at};
 use hamel_algebra::transplant::rebuild;
 use hamel_dynamics::kinematics::left_inverse;
@@ -38,14 +38,14 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             let values = evaluate_at(&on_x.graph, &roots, &mut point.clone())?;
             let (a, y) = values.split_at(nu * n);
             let mut random = Random::new(0x9e5 + number);
-            let step: Vec<Fp> = (0..nu).map(|_| random.element()).collect();
-            let mut direction = vec![Fp::ZERO; free.symbols().len()];
+            let step: Vec<ResiduePair> = (0..nu).map(|_| random.element()).collect();
+            let mut direction = vec![ResiduePair::ZERO; free.symbols().len()];
             direction[first..first + nu].copy_from_slice(&step);
             let seen = multiply(n, y, &step);
             let tangent = multiply(nu, a, &seen);
             let slopes = tangent.iter().zip(&step).map(|(&tangent, &h)| tangent - h);
             // The correction is 0 on X.
-            let expected: Vec<Dual> = slopes.map(|slope| (Fp::ZERO, slope)).collect();
+            let expected: Vec<Dual> = slopes.map(|slope| (ResiduePair::ZERO, slope)).collect();
             let found = tangent_at(&free, &emitted, &mut point.clone(), &direction)?;
             Some(if found == expected { Ok(()) } else { Err(()) })
         },

@@ -5,8 +5,8 @@
 
 use super::kernel::multiply;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tangent::tangent_at;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
@@ -35,15 +35,18 @@ pub(super) fn hold(
         seed = seed.rotate_left(7) ^ entry.bits();
     }
     let mut random = Random::new(seed);
-    let mut numbers = |count: usize| -> Vec<Fp> { (0..count).map(|_| random.element()).collect() };
+    let mut numbers =
+        |count: usize| -> Vec<ResiduePair> { (0..count).map(|_| random.element()).collect() };
     // (h, δξ), and A h.
     let motion = numbers(n + u - xi);
     let (h, changes) = motion.split_at(n);
     let moved = (0..full.nu()).map(|row| {
         let terms = displaced.iter().zip(h);
-        terms.fold(Fp::ZERO, |sum, (&i, &h)| sum + a[row * full.n() + i] * h)
+        terms.fold(ResiduePair::ZERO, |sum, (&i, &h)| {
+            sum + a[row * full.n() + i] * h
+        })
     });
-    let mut direction = vec![Fp::ZERO; program.graph.symbols().len()];
+    let mut direction = vec![ResiduePair::ZERO; program.graph.symbols().len()];
     for (place, value) in (x..xi).zip(moved) {
         direction[place] = value;
     }
@@ -56,7 +59,7 @@ pub(super) fn hold(
         return Some(false);
     }
     let motion = numbers(x - params);
-    direction.fill(Fp::ZERO);
+    direction.fill(ResiduePair::ZERO);
     direction[params..x].copy_from_slice(&motion);
     let rates = [FunctionId::ParameterSlopes, FunctionId::Accel];
     are_slopes(program, rates, (&motion, &direction), inner)
@@ -66,7 +69,7 @@ pub(super) fn hold(
 fn are_slopes(
     program: &Program,
     [slopes, of]: [FunctionId; 2],
-    (columns, direction): (&[Fp], &[Fp]),
+    (columns, direction): (&[ResiduePair], &[ResiduePair]),
     point: &FieldPoint,
 ) -> Option<bool> {
     let Some(slopes) = program.function(slopes) else {
@@ -77,6 +80,6 @@ fn are_slopes(
     };
     let table = evaluate_at(&program.graph, &slopes.outputs, &mut point.clone())?;
     let duals = tangent_at(&program.graph, &of.outputs, &mut point.clone(), direction)?;
-    let expected: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
+    let expected: Vec<ResiduePair> = duals.into_iter().map(|dual| dual.1).collect();
     Some(multiply(expected.len(), &table, columns) == expected)
 }

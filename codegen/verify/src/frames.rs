@@ -6,9 +6,9 @@
 
 use super::kernel::multiply;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tangent::tangent_at;
 use hamel_language::functions::{FrameFunction, Jacobian};
 use hamel_language::model::{Frame, Model};
@@ -54,28 +54,31 @@ fn frame_holds(
     let value = |edges: &[Edge]| evaluate_at(graph, edges, &mut point.clone());
     let [_, x, xi, ..] = program.symbols();
     let rate = evaluate_at(&model.graph, &model.rate, &mut point.clone())?;
-    let mut moving = vec![Fp::ZERO; xi];
+    let mut moving = vec![ResiduePair::ZERO; xi];
     moving[x..xi].copy_from_slice(&rate);
     // [R p] and its rate.
     let described: Vec<Edge> = (frame.rotation.iter().zip(frame.position))
         .flat_map(|(row, p)| [row[0], row[1], row[2], p])
         .collect();
     let placed = tangent_at(&model.graph, &described, &mut point.clone(), &moving)?;
-    let (placed, moved): (Vec<Fp>, Vec<Fp>) = placed.into_iter().unzip();
+    let (placed, moved): (Vec<ResiduePair>, Vec<ResiduePair>) = placed.into_iter().unzip();
     let r = |i: usize, j: usize| placed[4 * i + j];
-    let spin =
-        |i: usize, j: usize| (0..3).fold(Fp::ZERO, |sum, k| sum + moved[4 * i + k] * r(j, k));
+    let spin = |i: usize, j: usize| {
+        (0..3).fold(ResiduePair::ZERO, |sum, k| sum + moved[4 * i + k] * r(j, k))
+    };
     let speed = [moved[3], moved[7], moved[11]];
     let omega = [spin(2, 1), spin(0, 2), spin(1, 0)];
-    let axes = |v: [Fp; 3]| -> [Fp; 3] {
+    let axes = |v: [ResiduePair; 3]| -> [ResiduePair; 3] {
         match jacobian.own {
-            true => [0, 1, 2].map(|j| (0..3).fold(Fp::ZERO, |sum, i| sum + r(i, j) * v[i])),
+            true => {
+                [0, 1, 2].map(|j| (0..3).fold(ResiduePair::ZERO, |sum, i| sum + r(i, j) * v[i]))
+            }
             false => v,
         }
     };
     let expected = [axes(speed), axes(omega)].concat();
     let (eta, turned) = along_velocities(program, &expected);
-    let slopes = |direction: &[Fp]| -> Option<Vec<Fp>> {
+    let slopes = |direction: &[ResiduePair]| -> Option<Vec<ResiduePair>> {
         let duals = tangent_at(graph, twist, &mut point.clone(), direction)?;
         Some(duals.into_iter().map(|dual| dual.1).collect())
     };
@@ -88,13 +91,16 @@ fn frame_holds(
 }
 
 /// Returns a random η, and the direction in the symbols along which ξ changes by η.
-pub(super) fn along_velocities(program: &Program, seeds: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
+pub(super) fn along_velocities(
+    program: &Program,
+    seeds: &[ResiduePair],
+) -> (Vec<ResiduePair>, Vec<ResiduePair>) {
     let seed = seeds.iter().fold(program.n as u64, |seed, value| {
         seed.rotate_left(7) ^ value.bits()
     });
     let mut random = Random::new(seed);
-    let eta: Vec<Fp> = (0..program.n).map(|_| random.element()).collect();
-    let mut direction = vec![Fp::ZERO; program.symbols()[2]];
+    let eta: Vec<ResiduePair> = (0..program.n).map(|_| random.element()).collect();
+    let mut direction = vec![ResiduePair::ZERO; program.symbols()[2]];
     direction.extend(&eta);
     (eta, direction)
 }

@@ -1,9 +1,9 @@
 //! Points of systems with constraints on their velocities: ξ is changed so that B ξ + b = 0.
 
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_language::model::points::Moved;
 use hamel_language::model::{Model, class};
 
@@ -18,16 +18,16 @@ pub(super) fn at_rest(model: &Model, point: FieldPoint) -> Option<Moved> {
 pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut point: FieldPoint) -> Option<Moved> {
     let places = places(&model.graph, class::VELOCITY);
     let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
-    let mut xi: Vec<Fp> = places.iter().map(|&place| point.symbol(place)).collect();
+    let mut xi: Vec<ResiduePair> = places.iter().map(|&place| point.symbol(place)).collect();
     let time = model.clock.filter(|_| model.spans).map(|clock| clock.xi);
     if let Some(time) = time {
-        xi[time] = Fp::ONE;
+        xi[time] = ResiduePair::ONE;
     }
     let mut rows = evaluate_at(&model.graph, rows, &mut point)?;
     let mut shifts = evaluate_at(&model.graph, &shifts, &mut point)?;
     if let Some(time) = time {
         for (row, shift) in rows.chunks_mut(xi.len()).zip(&mut shifts) {
-            *shift = *shift + std::mem::replace(&mut row[time], Fp::ZERO);
+            *shift = *shift + std::mem::replace(&mut row[time], ResiduePair::ZERO);
         }
     }
     let moved = in_kernel(&rows, &shifts, &xi)?;
@@ -35,9 +35,13 @@ pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut point: FieldPoint) 
 }
 
 /// Changes the dependent entries of ξ by elimination, so that B ξ + b = 0; `None` if there is no solution.
-pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+pub(super) fn in_kernel(
+    rows: &[ResiduePair],
+    shifts: &[ResiduePair],
+    xi: &[ResiduePair],
+) -> Option<Vec<ResiduePair>> {
     let n = xi.len();
-    let mut rows: Vec<Vec<Fp>> = rows
+    let mut rows: Vec<Vec<ResiduePair>> = rows
         .chunks(n.max(1))
         .zip(shifts)
         .map(|(row, &shift)| [row, &[shift]].concat())
@@ -53,7 +57,7 @@ pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>
             return None;
         };
         let inverse = rows[i][pivot].inv()?;
-        let row: Vec<Fp> = rows[i].iter().map(|&entry| entry * inverse).collect();
+        let row: Vec<ResiduePair> = rows[i].iter().map(|&entry| entry * inverse).collect();
         for (k, other) in rows.iter_mut().enumerate() {
             if k != i {
                 let factor = other[pivot];
@@ -83,29 +87,45 @@ pub(super) fn places(graph: &Graph, class: u8) -> Vec<usize> {
 }
 
 /// Returns a random virtual velocity v: B v = 0 for the kept rows, and vⁱ = 0 for velocities whose rates are given.
-pub(super) fn virtual_velocity(model: &Model, kept: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+pub(super) fn virtual_velocity(
+    model: &Model,
+    kept: &[ResiduePair],
+    xi: &[ResiduePair],
+) -> Option<Vec<ResiduePair>> {
     let n = model.n();
     let mut rows = kept.to_vec();
     for (place, _) in &model.accelerated {
-        rows.extend((0..n).map(|j| if j == *place { Fp::ONE } else { Fp::ZERO }));
+        rows.extend((0..n).map(|j| {
+            if j == *place {
+                ResiduePair::ONE
+            } else {
+                ResiduePair::ZERO
+            }
+        }));
     }
     let seed = xi
         .iter()
         .fold(n as u64, |seed, xi| seed.rotate_left(7) ^ xi.bits());
     let mut random = Random::new(seed);
-    let random: Vec<Fp> = (0..n).map(|_| random.element()).collect();
-    in_kernel(&rows, &vec![Fp::ZERO; rows.len() / n.max(1)], &random)
+    let random: Vec<ResiduePair> = (0..n).map(|_| random.element()).collect();
+    in_kernel(
+        &rows,
+        &vec![ResiduePair::ZERO; rows.len() / n.max(1)],
+        &random,
+    )
 }
 
 /// Returns Σ aᵢ bᵢ.
-pub fn dot(a: &[Fp], b: &[Fp]) -> Fp {
-    a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
+pub fn dot(a: &[ResiduePair], b: &[ResiduePair]) -> ResiduePair {
+    a.iter()
+        .zip(b)
+        .fold(ResiduePair::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
 /// Returns a matrix, given by rows, times a vector; `count` zeros if the vector is empty.
-pub fn multiply(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
+pub fn multiply(count: usize, rows: &[ResiduePair], vector: &[ResiduePair]) -> Vec<ResiduePair> {
     match vector.len() {
-        0 => vec![Fp::ZERO; count],
+        0 => vec![ResiduePair::ZERO; count],
         n => rows.chunks(n).map(|row| dot(row, vector)).collect(),
     }
 }

@@ -3,8 +3,8 @@
 use super::kernel::multiply;
 use super::states::slopes_of;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::functions::SLOPES;
 use hamel_language::model::Model;
 use hamel_program::Program;
@@ -34,9 +34,9 @@ pub(super) fn values_hold(model: &Model, program: &Program, point: &FieldPoint) 
 pub(super) fn slopes_hold(
     model: &Model,
     program: &Program,
-    motion: (&[Fp], &[Fp]),
+    motion: (&[ResiduePair], &[ResiduePair]),
     point: &FieldPoint,
-    (direction, columns): (&[Fp], &[Fp]),
+    (direction, columns): (&[ResiduePair], &[ResiduePair]),
 ) -> Option<bool> {
     for (name, value) in &model.outputs {
         let Some(function) = program.function(format!("{name}{SLOPES}")) else {

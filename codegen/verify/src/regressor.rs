@@ -9,9 +9,9 @@ use super::numbers::Numbers;
 use super::points::{Unequal, at_fresh_points};
 use super::verdict::{failure, nowhere};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tape::Tape;
 use hamel_dynamics::regressor::{ENTRIES, Kind, Regressor};
 use hamel_language::diagnostics::Diagnostic;
@@ -73,11 +73,11 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
             let mut factors = factors.iter();
             let beta = regressor.base.iter().map(|base| {
                 let terms = base.terms.iter().zip(&mut factors);
-                terms.fold(Fp::ZERO, |beta, (&(k, _), &factor)| {
+                terms.fold(ResiduePair::ZERO, |beta, (&(k, _), &factor)| {
                     beta + factor * values[k]
                 })
             });
-            let beta: Vec<Fp> = beta.collect();
+            let beta: Vec<ResiduePair> = beta.collect();
             let same = emitted(FunctionId::Regressor)?.is_none_or(|found| Some(found) == of(&rows))
                 && emitted(FunctionId::BaseParameters)?.is_none_or(|found| found == beta);
             Some(if same { Ok(()) } else { Err(()) })
@@ -91,11 +91,11 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
 
 /// Returns the model with one more body on each link that has parameters, and the amounts by which this increases each
 /// of the standard parameters. In a description most of them are zero, so that their columns would not be tested.
-fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Vec<Fp>)> {
+fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Vec<ResiduePair>)> {
     let mut model = model.clone();
     let mut random = Random::new(0xb0d1e5);
     let mut number = || (random.bits() % 50) as i64 + 1;
-    let mut added = vec![Fp::ZERO; regressor.standard.len()];
+    let mut added = vec![ResiduePair::ZERO; regressor.standard.len()];
     for link in &regressor.links {
         let frame = model.frames.iter().position(|frame| frame.name == *link)?;
         let mass = number();
@@ -121,7 +121,7 @@ fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Ve
                     6..9 => mass * com[place - 6],
                     _ => mass,
                 };
-                *value = Fp::from_i64(number);
+                *value = ResiduePair::from_i64(number);
             }
         }
         let graph = &mut model.graph;
@@ -140,7 +140,7 @@ fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Ve
 /// Compares at a point; `None` if something has no value there.
 fn at(
     numbers: &Numbers,
-    (tape, added): (&Tape, &[Fp]),
+    (tape, added): (&Tape, &[ResiduePair]),
     regressor: &Regressor,
     point: &FieldPoint,
     seed: u64,
@@ -157,28 +157,30 @@ fn at(
     let (columns, values) = values.split_at_checked(given.len() * n)?;
     let (kept, rest) = values.split_at_checked(regressor.base.len() * n)?;
     let column = |k: usize| &columns[k * n..(k + 1) * n];
-    let whole = |pi: &[Fp]| -> Vec<Fp> {
-        let mut sum = vec![Fp::ZERO; n];
+    let whole = |pi: &[ResiduePair]| -> Vec<ResiduePair> {
+        let mut sum = vec![ResiduePair::ZERO; n];
         (0..pi.len()).for_each(|k| increase(&mut sum, column(k), pi[k]));
         sum
     };
-    let based = |pi: &[Fp]| -> Vec<Fp> {
-        let mut sum = vec![Fp::ZERO; n];
+    let based = |pi: &[ResiduePair]| -> Vec<ResiduePair> {
+        let mut sum = vec![ResiduePair::ZERO; n];
         let mut factors = factors.iter();
         for (place, base) in regressor.base.iter().enumerate() {
             let terms = base.terms.iter().zip(&mut factors);
-            let beta = terms.fold(Fp::ZERO, |beta, (&(k, _), &factor)| beta + factor * pi[k]);
+            let beta = terms.fold(ResiduePair::ZERO, |beta, (&(k, _), &factor)| {
+                beta + factor * pi[k]
+            });
             increase(&mut sum, &kept[place * n..(place + 1) * n], beta);
         }
         sum
     };
     let random = &mut Random::new(seed ^ 0x5bd1);
-    let anything: Vec<Fp> = given.iter().map(|_| random.element()).collect();
+    let anything: Vec<ResiduePair> = given.iter().map(|_| random.element()).collect();
     if whole(&anything) != based(&anything) {
         return Some(Err("base parameters do not determine all parameters".into()));
     }
     // (30b) contains no dampers, and the regressor contains no other potentials.
-    let all: Vec<Fp> = given
+    let all: Vec<ResiduePair> = given
         .iter()
         .zip(added)
         .map(|(&own, &more)| own + more)
@@ -189,7 +191,7 @@ fn at(
             increase(&mut force, column(k), -given[k]);
         }
     }
-    increase(&mut force, rest, Fp::ONE);
+    increase(&mut force, rest, ResiduePair::ONE);
     Some(match force == left[1] {
         true => Ok(()),
         false => Err("the regressor is not that of inverse dynamics, (30b)".into()),
@@ -197,7 +199,7 @@ fn at(
 }
 
 /// Adds k times a vector.
-fn increase(sum: &mut [Fp], by: &[Fp], k: Fp) {
+fn increase(sum: &mut [ResiduePair], by: &[ResiduePair], k: ResiduePair) {
     for (sum, &by) in sum.iter_mut().zip(by) {
         *sum = *sum + by * k;
     }

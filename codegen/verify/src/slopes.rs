@@ -10,10 +10,10 @@ use super::kernel::dot;
 use super::reference::Reference;
 use super::{centroidal, derivatives, frames, outputs, states};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::linear::matrix;
 use hamel_algebra::numeric::{evaluate_at, solve};
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::calculus::Calculus;
 use hamel_dynamics::{energy, quantity};
@@ -58,10 +58,10 @@ const EMITTED: [&str; 4] = [
 
 /// M, F = f − h − ∂V, A and A ξ at one point, or their derivatives.
 struct Numbers {
-    mass: Vec<Vec<Fp>>,
-    force: Vec<Fp>,
-    a: Vec<Vec<Fp>>,
-    rate: Vec<Fp>,
+    mass: Vec<Vec<ResiduePair>>,
+    force: Vec<ResiduePair>,
+    a: Vec<Vec<ResiduePair>>,
+    rate: Vec<ResiduePair>,
 }
 
 impl Numbers {
@@ -75,12 +75,12 @@ impl Numbers {
         roots
     }
 
-    fn new(reference: &Reference, values: &[Fp]) -> Self {
+    fn new(reference: &Reference, values: &[ResiduePair]) -> Self {
         let (n, nu) = (reference.model.n(), reference.model.nu());
         let (mass, rest) = values.split_at(n * n);
         let (forces, rest) = rest.split_at(3 * n);
         let (a, rate) = rest.split_at(nu * n);
-        let rows = |flat: &[Fp]| matrix(flat, n);
+        let rows = |flat: &[ResiduePair]| matrix(flat, n);
         Numbers {
             mass: rows(mass),
             force: (0..n)
@@ -167,7 +167,7 @@ impl Slopes {
         let mut xi_dot = value("accel")?;
         xi_dot.truncate(n);
         let mass = value("mass_matrix")?;
-        let mass: Vec<Vec<Fp>> = matrix(&mass, n);
+        let mass: Vec<Vec<ResiduePair>> = matrix(&mass, n);
         let roots: Vec<Edge> = model
             .a
             .concat()
@@ -177,7 +177,7 @@ impl Slopes {
         let here = evaluate_at(&model.graph, &roots, &mut point.clone())?;
         let displaced = Displaced::new(model, &here[nu * n..]);
         let moved = displaced.direction(model, &here[..nu * n]);
-        let kinematics = |moved: &[Fp]| -> Option<Vec<Fp>> {
+        let kinematics = |moved: &[ResiduePair]| -> Option<Vec<ResiduePair>> {
             let duals = tangent_at(&model.graph, &roots, &mut point.clone(), moved)?;
             Some(duals.into_iter().map(|dual| dual.1).collect())
         };
@@ -185,7 +185,7 @@ impl Slopes {
         let moving = kinematics(&displaced.moving)?;
         let linear = value("linearize")?;
         let found = displaced.emitted_rates(&linear);
-        let matrix = |flat: &[Fp]| -> Vec<Vec<Fp>> { matrix(flat, n) };
+        let matrix = |flat: &[ResiduePair]| -> Vec<Vec<ResiduePair>> { matrix(flat, n) };
         let left = difference(
             &changed[nu * n..],
             &product(&matrix(&moving[..nu * n]), &displaced.columns[..n]),
@@ -203,7 +203,7 @@ impl Slopes {
         {
             held.set_symbol(place, value);
         }
-        let slopes = |name: &str| -> Option<Vec<Fp>> {
+        let slopes = |name: &str| -> Option<Vec<ResiduePair>> {
             let duals = tangent_at(graph, outputs(name)?, &mut held.clone(), &moved)?;
             Some(duals.into_iter().map(|dual| dual.1).collect())
         };
@@ -246,16 +246,20 @@ pub(super) fn measured_at(
     let a = evaluate_at(&full.graph, &full.a.concat(), &mut point.clone())?;
     let time = full.clock.map(|clock| clock.xi);
     let moved = (0..a.len()).filter(|place| Some(place % full.n()) != time);
-    let moved: Vec<Fp> = moved.map(|place| a[place]).collect();
+    let moved: Vec<ResiduePair> = moved.map(|place| a[place]).collect();
     let (n, nu) = (moved.len() / full.nu(), full.nu());
     // The column of time comes last; Y maps it to 0, as the passing of time alone is no displacement.
     let columns = (0..full.n()).filter(|&j| Some(j) != time).chain(time);
     let identity = columns.enumerate().all(|(j, column)| {
         (0..n).all(|i| {
-            let sum = (0..nu).fold(Fp::ZERO, |sum, k| {
+            let sum = (0..nu).fold(ResiduePair::ZERO, |sum, k| {
                 sum + coframe[i * nu + k] * a[k * full.n() + column]
             });
-            sum == if i == j { Fp::ONE } else { Fp::ZERO }
+            sum == if i == j {
+                ResiduePair::ONE
+            } else {
+                ResiduePair::ZERO
+            }
         })
     });
     Some(frame == moved && identity)
@@ -268,15 +272,15 @@ const DYNAMIC: &str = "δξ̇ of the linearisation";
 
 /// Random (h, δξ, δz, δu), which test all columns of [A B] at once: a wrong entry goes unnoticed with probability 1/p.
 struct Displaced {
-    columns: Vec<Fp>,
+    columns: Vec<ResiduePair>,
     /// ẋ as a direction in the symbols.
-    moving: Vec<Fp>,
+    moving: Vec<ResiduePair>,
     x: Vec<usize>,
     others: Vec<usize>,
 }
 
 impl Displaced {
-    fn new(model: &Model, rate: &[Fp]) -> Self {
+    fn new(model: &Model, rate: &[ResiduePair]) -> Self {
         let x = model.graph.symbol_places(&model.x);
         let (u, z) = model.u.split_at(model.m());
         let others = [&model.xi, z, u]
@@ -286,7 +290,7 @@ impl Displaced {
         let mut random = Random::new(rate.iter().fold(columns as u64, |seed, rate| {
             seed.rotate_left(7) ^ rate.bits()
         }));
-        let mut moving = vec![Fp::ZERO; model.graph.symbols().len()];
+        let mut moving = vec![ResiduePair::ZERO; model.graph.symbols().len()];
         for (&place, &rate) in x.iter().zip(rate) {
             moving[place] = rate;
         }
@@ -299,11 +303,11 @@ impl Displaced {
     }
 
     /// Returns (A h, δξ, δz, δu) as a direction in the symbols.
-    fn direction(&self, model: &Model, a: &[Fp]) -> Vec<Fp> {
+    fn direction(&self, model: &Model, a: &[ResiduePair]) -> Vec<ResiduePair> {
         let n = model.n();
         let (h, rest) = self.columns.split_at(n);
-        let a: Vec<Vec<Fp>> = matrix(a, n);
-        let mut moved = vec![Fp::ZERO; model.graph.symbols().len()];
+        let a: Vec<Vec<ResiduePair>> = matrix(a, n);
+        let mut moved = vec![ResiduePair::ZERO; model.graph.symbols().len()];
         for (&place, value) in self.x.iter().zip(product(&a, h)) {
             moved[place] = value;
         }
@@ -314,7 +318,7 @@ impl Displaced {
     }
 
     /// Returns (ḣ, δξ̇, δż) by the emitted matrices.
-    fn emitted_rates(&self, linear: &[Fp]) -> Vec<Fp> {
+    fn emitted_rates(&self, linear: &[ResiduePair]) -> Vec<ResiduePair> {
         product(&matrix(linear, self.columns.len()), &self.columns)
     }
 }
@@ -330,9 +334,9 @@ fn derived_at(
     let roots = Numbers::roots(reference);
     let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut point.clone())?);
     // Derivatives of everything along a direction in the symbols.
-    let slope = |direction: &[Fp]| -> Option<Numbers> {
+    let slope = |direction: &[ResiduePair]| -> Option<Numbers> {
         let duals = tangent_at(graph, &roots, &mut point.clone(), direction)?;
-        let slopes: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
+        let slopes: Vec<ResiduePair> = duals.into_iter().map(|dual| dual.1).collect();
         Some(Numbers::new(reference, &slopes))
     };
     let xi_dot = solve(here.mass.clone(), here.force.clone())?;
@@ -363,10 +367,10 @@ fn derived_at(
     Some(Ok(()))
 }
 
-fn difference(a: &[Fp], b: &[Fp]) -> Vec<Fp> {
+fn difference(a: &[ResiduePair], b: &[ResiduePair]) -> Vec<ResiduePair> {
     a.iter().zip(b).map(|(&a, &b)| a - b).collect()
 }
 
-fn product(rows: &[Vec<Fp>], vector: &[Fp]) -> Vec<Fp> {
+fn product(rows: &[Vec<ResiduePair>], vector: &[ResiduePair]) -> Vec<ResiduePair> {
     rows.iter().map(|row| dot(row, vector)).collect()
 }

@@ -12,9 +12,9 @@
 
 use super::numbers::{Numbers, Values};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::{evaluate_at, solve};
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::kinematics::chart_rates;
 use hamel_dynamics::structure::rates::{Part, parts};
@@ -63,8 +63,8 @@ impl Proof {
             let function = program.function(name)?;
             evaluate_at(&program.graph, &function.outputs, &mut point.clone())
         };
-        let x: Vec<Fp> = self.x.iter().map(|&place| point.symbol(place)).collect();
-        let p: Vec<Fp> = self.p.iter().map(|&place| point.symbol(place)).collect();
+        let x: Vec<ResiduePair> = self.x.iter().map(|&place| point.symbol(place)).collect();
+        let p: Vec<ResiduePair> = self.p.iter().map(|&place| point.symbol(place)).collect();
         let xi = at("split_velocities", point)?;
         let mut moving = point.clone();
         set(&mut moving, &self.xi, &xi);
@@ -110,8 +110,8 @@ impl Proof {
             }
             let rotor = rotors.next()?;
             let (w, big_p) = (&spin[here.clone()], &p[here.clone()]);
-            let j: Vec<Fp> = inertia.by_ref().take(rotor.inertia.entries()).collect();
-            let jw: Vec<Fp> = match j.as_slice() {
+            let j: Vec<ResiduePair> = inertia.by_ref().take(rotor.inertia.entries()).collect();
+            let jw: Vec<ResiduePair> = match j.as_slice() {
                 [a, b, c] => vec![*a * w[0], *b * w[1], *c * w[2]],
                 j => j
                     .chunks(3)
@@ -138,7 +138,7 @@ impl Proof {
         numbers: &Numbers,
         program: &Program,
         moving: &FieldPoint,
-    ) -> Option<(Vec<Fp>, Vec<Fp>)> {
+    ) -> Option<(Vec<ResiduePair>, Vec<ResiduePair>)> {
         let model = &self.model;
         let Values {
             mass,
@@ -150,12 +150,12 @@ impl Proof {
         } = numbers.at(moving)?.ok()?;
         let right = (0..model.n()).map(|i| force[i] - bias[i] - slope[i]);
         let xi_dot = solve(mass, right.collect())?;
-        let mut direction = vec![Fp::ZERO; model.graph.symbols().len()];
+        let mut direction = vec![ResiduePair::ZERO; model.graph.symbols().len()];
         let moves = self.x.iter().zip(&rate).chain(self.xi.iter().zip(&xi_dot));
         for (&place, &by) in moves {
             *direction.get_mut(place)? = by;
         }
-        let slopes = |edges: &[Edge]| -> Option<Vec<Fp>> {
+        let slopes = |edges: &[Edge]| -> Option<Vec<ResiduePair>> {
             let duals = tangent_at(&program.graph, edges, &mut moving.clone(), &direction)?;
             Some(duals.into_iter().map(|dual| dual.1).collect())
         };
@@ -167,7 +167,7 @@ impl Proof {
     }
 }
 
-fn set(point: &mut FieldPoint, places: &[usize], values: &[Fp]) {
+fn set(point: &mut FieldPoint, places: &[usize], values: &[ResiduePair]) {
     for (&place, &value) in places.iter().zip(values) {
         point.set_symbol(place, value);
     }

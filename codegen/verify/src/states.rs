@@ -1,9 +1,9 @@
 //! Rates of states of first order at a point, from the description with ξ̇ inserted.
 
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Node};
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
 use hamel_algebra::transplant::{rebuild, substitute};
 use hamel_language::model::{Model, class};
@@ -47,7 +47,11 @@ pub(super) fn with_rates(model: &Model, program: &Program) -> Model {
 }
 
 /// Returns ż for given rates ξ̇ of the velocities; `point` assigns values to the model's symbols.
-pub(super) fn rates(model: &Model, xi_dot: &[Fp], point: &FieldPoint) -> Option<Vec<Fp>> {
+pub(super) fn rates(
+    model: &Model,
+    xi_dot: &[ResiduePair],
+    point: &FieldPoint,
+) -> Option<Vec<ResiduePair>> {
     let mut point = point.clone();
     for (symbol, &value) in model.xi_dot.iter().zip(xi_dot) {
         point.set_symbol(model.graph.as_symbol(*symbol)?, value);
@@ -58,10 +62,10 @@ pub(super) fn rates(model: &Model, xi_dot: &[Fp], point: &FieldPoint) -> Option<
 /// Returns δż along a direction in the symbols; `motion` is ξ̇, and the δξ̇ by which ξ̇ changes along it.
 pub(super) fn slopes(
     model: &Model,
-    motion: (&[Fp], &[Fp]),
+    motion: (&[ResiduePair], &[ResiduePair]),
     point: &FieldPoint,
-    direction: &[Fp],
-) -> Option<Vec<Fp>> {
+    direction: &[ResiduePair],
+) -> Option<Vec<ResiduePair>> {
     slopes_of(model, &model.state_rates, motion, point, direction)
 }
 
@@ -69,10 +73,10 @@ pub(super) fn slopes(
 pub(super) fn slopes_of(
     model: &Model,
     expressions: &[Edge],
-    (xi_dot, change): (&[Fp], &[Fp]),
+    (xi_dot, change): (&[ResiduePair], &[ResiduePair]),
     point: &FieldPoint,
-    direction: &[Fp],
-) -> Option<Vec<Fp>> {
+    direction: &[ResiduePair],
+) -> Option<Vec<ResiduePair>> {
     let mut point = point.clone();
     let mut direction = direction.to_vec();
     for ((symbol, &value), &slope) in model.xi_dot.iter().zip(xi_dot).zip(change) {

@@ -28,9 +28,9 @@ use super::splitting::Proof;
 use super::states;
 use super::verdict::{failure, nowhere};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tape::Tape;
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
@@ -142,7 +142,7 @@ impl Emitted {
     }
 
     /// Returns the values of all functions at a point, by name.
-    fn at(&self, point: &FieldPoint) -> Option<FxHashMap<&str, Vec<Fp>>> {
+    fn at(&self, point: &FieldPoint) -> Option<FxHashMap<&str, Vec<ResiduePair>>> {
         let values = self.tape.values(point)?;
         let mut rest = values.into_iter();
         Some(
@@ -161,25 +161,29 @@ fn compare(
     [model, with_rates]: [&Model; 2],
     program: &Program,
     values: &Values,
-    emitted: &FxHashMap<&str, Vec<Fp>>,
+    emitted: &FxHashMap<&str, Vec<ResiduePair>>,
     point: &FieldPoint,
 ) -> Option<Result<(), String>> {
     let broken = disagreements(&values.left);
     if !broken.is_empty() {
         return Some(Err(broken.join(", ")));
     }
-    let product = |vector: &[Fp]| -> Vec<Fp> {
+    let product = |vector: &[ResiduePair]| -> Vec<ResiduePair> {
         let rows = values.mass.iter();
         rows.map(|row| dot(row, vector)).collect()
     };
-    let sum = |lists: &[&[Fp]]| -> Vec<Fp> {
+    let sum = |lists: &[&[ResiduePair]]| -> Vec<ResiduePair> {
         (0..model.n())
-            .map(|i| lists.iter().fold(Fp::ZERO, |sum, list| sum + list[i]))
+            .map(|i| {
+                lists
+                    .iter()
+                    .fold(ResiduePair::ZERO, |sum, list| sum + list[i])
+            })
             .collect()
     };
     let energy = values.kinetic + values.potential;
     let resistance = sum(&[&values.bias, &values.slope]);
-    let table: [(&str, &[Fp], &str); 11] = [
+    let table: [(&str, &[ResiduePair], &str); 11] = [
         (
             "mass_matrix",
             &values.mass.concat(),
@@ -254,7 +258,7 @@ fn compare(
 }
 
 /// Names the pairs of forms that differ.
-fn disagreements([hamel, gibbs, levi_civita]: &[Vec<Fp>; 3]) -> Vec<&'static str> {
+fn disagreements([hamel, gibbs, levi_civita]: &[Vec<ResiduePair>; 3]) -> Vec<&'static str> {
     let pairs = [
         (hamel == gibbs, "(30a) = (30b)"),
         (hamel == levi_civita, "(30a) = (30c)"),

@@ -1,9 +1,9 @@
 //! The descriptions that the adviser proposes have the same motion as the given one.
 
 use hamel_codegen::algebra::field_point::FieldPoint;
-use hamel_codegen::algebra::fp::Fp;
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
 use hamel_codegen::algebra::numeric::{evaluate_at, solve};
+use hamel_codegen::algebra::residue_pair::ResiduePair;
 use hamel_codegen::algebra::tangent::tangent_at;
 use hamel_codegen::derive::accel::accel;
 use hamel_codegen::derive::adviser::advise;
@@ -30,7 +30,11 @@ fn symbols(graph: &Graph, edges: &[Edge]) -> Vec<usize> {
 }
 
 /// Returns ẋ and ẍ at a point with these values of ξ.
-fn motion(model: &Model, point: &FieldPoint, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
+fn motion(
+    model: &Model,
+    point: &FieldPoint,
+    xi: &[ResiduePair],
+) -> (Vec<ResiduePair>, Vec<ResiduePair>) {
     let (chosen, _) = accel(model, &Care::default()).expect("M is regular");
     let graph = &model.graph;
     let places = symbols(graph, &model.xi);
@@ -41,7 +45,7 @@ fn motion(model: &Model, point: &FieldPoint, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     }
     let rate = evaluate_at(graph, &model.rate, &mut moved.clone()).expect("a value");
     let xi_dot = evaluate_at(&chosen.graph, &chosen.xi_dot, &mut moved.clone()).expect("a value");
-    let mut direction = vec![Fp::ZERO; graph.symbols().len()];
+    let mut direction = vec![ResiduePair::ZERO; graph.symbols().len()];
     for (place, slope) in symbols(graph, &model.x).into_iter().zip(&rate) {
         direction[place] = *slope;
     }
@@ -72,7 +76,7 @@ fn every_choice_has_the_same_motion() {
         for choice in &choices {
             // Computes ξ' from ẋ = A' ξ' by the normal equations.
             let given = symbols(&model.graph, &model.xi);
-            let xi: Vec<Fp> = given.iter().map(|&place| point.symbol(place)).collect();
+            let xi: Vec<ResiduePair> = given.iter().map(|&place| point.symbol(place)).collect();
             let (rate, acceleration) = motion(&model, &point, &xi);
             let a = evaluate_at(
                 &choice.model.graph,
@@ -81,8 +85,12 @@ fn every_choice_has_the_same_motion() {
             )
             .expect("a value");
             let n = model.n();
-            let rows: Vec<&[Fp]> = a.chunks(n).collect();
-            let sum = |terms: Vec<Fp>| terms.into_iter().fold(Fp::ZERO, |sum, term| sum + term);
+            let rows: Vec<&[ResiduePair]> = a.chunks(n).collect();
+            let sum = |terms: Vec<ResiduePair>| {
+                terms
+                    .into_iter()
+                    .fold(ResiduePair::ZERO, |sum, term| sum + term)
+            };
             let gram = (0..n)
                 .map(|i| {
                     (0..n)

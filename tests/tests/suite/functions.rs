@@ -2,13 +2,13 @@
 //! expressions that must not be identified.
 
 use crate::size::size;
-use hamel_codegen::algebra::fp;
+use hamel_codegen::algebra::residue_pair;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::interpret::Interpreter;
 use rayon::prelude::*;
 
 /// Pseudo-random choices.
-struct Random(fp::Random);
+struct Random(residue_pair::Random);
 
 impl Random {
     fn below(&mut self, n: u64) -> usize {
@@ -194,7 +194,7 @@ fn random_expressions_have_their_values_and_slopes() {
 
 /// Returns the numbers of compared values and slopes of one system.
 fn attack(seed: u64) -> [usize; 2] {
-    let mut random = Random(fp::Random::new(seed));
+    let mut random = Random(residue_pair::Random::new(seed));
     let trees: Vec<Tree> = (0..5).map(|_| Tree::random(&mut random, 4)).collect();
     let text = system(&trees);
     let generated = from_text(&text).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"));

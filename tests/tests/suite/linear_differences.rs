@@ -3,7 +3,7 @@
 
 use crate::thinning::thin_out;
 use hamel::{Block, manifold};
-use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::layout;
 use hamel_codegen::program::count::count;

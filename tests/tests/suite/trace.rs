@@ -1,9 +1,9 @@
 //! The trace of emitted code says what the statements compute, and why.
 
 use crate::derived::models;
-use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::algebra::graph::{Edge, Function};
 use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::emit::names::Names;
 use hamel_codegen::emit::trace::Traced;
 use hamel_codegen::generate::{Generated, from_text};

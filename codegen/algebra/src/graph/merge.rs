@@ -1,14 +1,14 @@
 //! Merging of nodes: an expression gets an existing node or a new one.
 
 use super::{Edge, Function, Graph, Node, NodeId};
-use crate::fp::Fp;
 use crate::real_enclosure::RealValues;
+use crate::residue_pair::ResiduePair;
 
 impl Graph {
     /// Returns an existing node with this value, or the small rational that has it. An expression that is
     /// constant at run time is not replaced by one that is not, and no expression is replaced by one that
     /// is a different number according to the real samples.
-    pub(super) fn find_equal(&mut self, node: Node, value: Fp, class: u8) -> Option<Edge> {
+    pub(super) fn find_equal(&mut self, node: Node, value: ResiduePair, class: u8) -> Option<Edge> {
         let known = match self.lookup(value) {
             Some(edge) => {
                 let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
@@ -82,7 +82,7 @@ impl Graph {
             .fold(0, |class, child| class | self.class(child.node()));
         self.nodes.push(node);
         self.real_values.push(node);
-        self.values.push(Fp::ZERO);
+        self.values.push(ResiduePair::ZERO);
         self.classes.push(class);
         Edge::of(id)
     }
@@ -114,12 +114,12 @@ impl Graph {
         self.copied = from.values[id as usize];
     }
 
-    pub(crate) fn lookup(&self, value: Fp) -> Option<Edge> {
+    pub(crate) fn lookup(&self, value: ResiduePair) -> Option<Edge> {
         let (key, negative) = canonical(value);
         self.by_value.get(&key).map(|edge| edge.signed(negative))
     }
 
-    pub(super) fn push(&mut self, node: Node, value: Fp, class: u8) -> Edge {
+    pub(super) fn push(&mut self, node: Node, value: ResiduePair, class: u8) -> Edge {
         let id = self.nodes.len() as NodeId;
         self.nodes.push(node);
         self.real_values.push(node);
@@ -149,7 +149,7 @@ fn is_plain(n: i64, d: i64) -> bool {
 }
 
 /// Returns the representative of {v, −v}, and whether v is its negative.
-pub(crate) fn canonical(value: Fp) -> (Fp, bool) {
+pub(crate) fn canonical(value: ResiduePair) -> (ResiduePair, bool) {
     let negative = value.is_negative();
     (if negative { -value } else { value }, negative)
 }

@@ -3,8 +3,8 @@
 //! Q is used where a computation is a proof, F_p where speed matters, and the pair of the two prime fields
 //! where expressions are read.
 
-use crate::fp::Fp;
 use crate::prime::Residue;
+use crate::residue_pair::ResiduePair;
 use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
@@ -156,6 +156,6 @@ impl<const K: usize> Field for Residue<K> {
 }
 
 /// Not quite a field: an element that is 0 in only one part has no inverse, which happens only by chance.
-impl Field for Fp {
+impl Field for ResiduePair {
     modular!();
 }

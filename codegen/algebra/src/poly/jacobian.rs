@@ -7,8 +7,8 @@
 use super::monomial::Var;
 use super::polynomial::Poly;
 use crate::echelon::Echelon;
-use crate::fp::Random;
 use crate::prime::Residue;
+use crate::residue_pair::Random;
 
 /// Returns those of the given variables that are free one at a time, in the given order.
 pub fn free_variables<const K: usize>(

@@ -17,8 +17,8 @@ use super::normal_form::Basis;
 use super::order::Order;
 use super::polynomial::Poly;
 use super::univariate::roots;
-use crate::fp::Random;
 use crate::prime::Residue;
+use crate::residue_pair::Random;
 use std::collections::{BTreeMap, BTreeSet};
 use structure::{by_preference, dense, determined, parts};
 

@@ -4,8 +4,8 @@
 //! gcd(f, x^q − x) = Π (x − r) over the roots r in the field of q elements; it is split by gcd with
 //! (x + a)^{(q−1)/2} − 1 for random a, which has each root with probability ½.
 
-use crate::fp::Random;
 use crate::prime::Residue;
+use crate::residue_pair::Random;
 
 /// Returns the distinct roots of Σ f_k x^k, ascending; none for the zero polynomial.
 pub fn roots<const K: usize>(coefficients: &[Residue<K>], random: &mut Random) -> Vec<Residue<K>> {

@@ -8,11 +8,11 @@
 mod sieve;
 mod spread;
 
-use crate::fp::Fp;
 use crate::graph::{Graph, canonical};
 use crate::node::{Edge, Node, NodeId};
 use crate::prime::Residue;
 use crate::real_enclosure::RealValues;
+use crate::residue_pair::ResiduePair;
 use crate::transplant::{merge, read, rebuild};
 use rustc_hash::FxHashMap;
 use sieve::Sieve;
@@ -56,9 +56,9 @@ struct Network<'a> {
     /// Real samples, if square roots are involved.
     real_values: Option<RealValues>,
     /// 1 / value of every node whose value has an inverse.
-    inverses: Vec<Option<Fp>>,
+    inverses: Vec<Option<ResiduePair>>,
     /// Nodes by their values, up to sign.
-    by_value: FxHashMap<Fp, Vec<NodeId>>,
+    by_value: FxHashMap<ResiduePair, Vec<NodeId>>,
     sieve: Sieve,
     nodes: Vec<NodeId>,
     /// Pairs of nodes whose sum, difference or product each node is, computed on demand.
@@ -76,10 +76,13 @@ impl<'a> Network<'a> {
         }
         let value = |&id: &NodeId| graph.value(Edge::of(id));
         let mut inverses = vec![None; graph.len()];
-        for (&id, inverse) in nodes.iter().zip(Fp::inverses(nodes.iter().map(value))) {
+        for (&id, inverse) in nodes
+            .iter()
+            .zip(ResiduePair::inverses(nodes.iter().map(value)))
+        {
             inverses[id as usize] = inverse;
         }
-        let mut by_value: FxHashMap<Fp, Vec<NodeId>> = FxHashMap::default();
+        let mut by_value: FxHashMap<ResiduePair, Vec<NodeId>> = FxHashMap::default();
         for id in &nodes {
             by_value
                 .entry(canonical(value(id)).0)
@@ -110,7 +113,7 @@ impl<'a> Network<'a> {
                     continue;
                 };
                 let value = self.value(x);
-                let mut look = |part, whole: &dyn Fn() -> Fp| {
+                let mut look = |part, whole: &dyn Fn() -> ResiduePair| {
                     if self.sieve.passes(part)
                         && let Some(found) = self.by_value.get(&canonical(whole()).0)
                     {
@@ -271,7 +274,7 @@ impl<'a> Network<'a> {
             places[node as usize] = place + 1;
         }
         // The last usable node with a value.
-        let signed = |value: Fp| -> Option<Edge> {
+        let signed = |value: ResiduePair| -> Option<Edge> {
             let nodes = self.by_value.get(&canonical(value).0)?.iter();
             let last = nodes.max_by_key(|&&node| places[node as usize])?;
             let edge = Edge::of(*last).signed(self.value(*last) != value);
@@ -306,7 +309,7 @@ impl<'a> Network<'a> {
         })
     }
 
-    fn value(&self, id: NodeId) -> Fp {
+    fn value(&self, id: NodeId) -> ResiduePair {
         self.graph.value(Edge::of(id))
     }
 

@@ -1,7 +1,7 @@
 //! A sieve for values: most values that are looked up belong to no node, and one bit of a hash of their
 //! part modulo p rejects nearly all of these.
 
-use super::{Fp, Residue};
+use super::{Residue, ResiduePair};
 
 /// Number of bits of a hash: 2 KB of flags suffice for the values of some hundred nodes.
 const HASH_BITS: u32 = 14;
@@ -10,7 +10,7 @@ const HASH_BITS: u32 = 14;
 pub(super) struct Sieve(Vec<u64>);
 
 impl Sieve {
-    pub(super) fn new(values: impl Iterator<Item = Fp>) -> Self {
+    pub(super) fn new(values: impl Iterator<Item = ResiduePair>) -> Self {
         let mut words = vec![0; (1 << HASH_BITS) / 64];
         for value in values {
             let place = place(value.0);

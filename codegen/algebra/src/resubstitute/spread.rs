@@ -1,9 +1,9 @@
 //! Elimination of sums that are used only as factors: where x (a + b) + c is needed and x a + c is computed
 //! anyway, adding x b to the latter is as short, and a + b is not needed.
 
-use crate::fp::Fp;
 use crate::graph::{Graph, canonical};
 use crate::node::{Edge, Node, NodeId};
+use crate::residue_pair::ResiduePair;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A sum that is no longer needed once all these terms are computed without it.
@@ -43,7 +43,7 @@ struct Nodes<'a> {
     order: &'a [NodeId],
     roots: FxHashSet<NodeId>,
     users: FxHashMap<NodeId, Vec<NodeId>>,
-    by_value: FxHashMap<Fp, NodeId>,
+    by_value: FxHashMap<ResiduePair, NodeId>,
 }
 
 impl<'a> Nodes<'a> {

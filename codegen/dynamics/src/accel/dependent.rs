@@ -16,8 +16,8 @@
 //! leaves their rounding error, 1e-8 of the derivatives of ξ̇. With S⁺ nothing becomes that large.
 
 use super::saddle::solve_columns;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Function, Graph};
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::pfaffian::{Kind, Pfaffian};
 
 /// Number of factors 1 − T in S⁺.
@@ -77,27 +77,29 @@ pub(super) fn raise(
 
 /// Returns S⁺ r in numbers modulo p; `factor` is the factor of `Raised`, 1 if S is regular.
 pub(super) fn multipliers_at(
-    schur: &[Fp],
+    schur: &[ResiduePair],
     raising: &[Vec<usize>],
-    wanted: Vec<Fp>,
-    factor: Fp,
-) -> Option<Vec<Fp>> {
+    wanted: Vec<ResiduePair>,
+    factor: ResiduePair,
+) -> Option<Vec<ResiduePair>> {
     let m = wanted.len();
-    let share = Fp::from_i64(SHARE).inv()?;
+    let share = ResiduePair::from_i64(SHARE).inv()?;
     let raised = raising.iter().enumerate().map(|(i, rows)| {
-        let all = rows.iter().fold(Fp::ZERO, |sum, &j| sum + schur[j * m + j]);
+        let all = rows
+            .iter()
+            .fold(ResiduePair::ZERO, |sum, &j| sum + schur[j * m + j]);
         let size = match rows.len() {
             1 => schur[i * m + i],
             _ => schur[i * m + i] + all * share,
         };
         size * factor - size
     });
-    let raised: Vec<Fp> = raised.collect();
+    let raised: Vec<ResiduePair> = raised.collect();
     let mut matrix = schur.to_vec();
     (0..m).for_each(|i| matrix[i * m + i] = matrix[i * m + i] + raised[i]);
-    let divided = |v: Vec<Fp>| solve_columns(&matrix, m, &[v])?.pop();
+    let divided = |v: Vec<ResiduePair>| solve_columns(&matrix, m, &[v])?.pop();
     // Returns T v.
-    let kept = |v: Vec<Fp>| -> Option<Vec<Fp>> {
+    let kept = |v: Vec<ResiduePair>| -> Option<Vec<ResiduePair>> {
         let divided = divided(v)?;
         Some(raised.iter().zip(divided).map(|(&e, y)| e * y).collect())
     };
@@ -106,9 +108,9 @@ pub(super) fn multipliers_at(
         let kept = kept(left.clone())?;
         left.iter_mut().zip(kept).for_each(|(v, t)| *v = *v - t);
     }
-    let mut sum = vec![Fp::ZERO; m];
+    let mut sum = vec![ResiduePair::ZERO; m];
     for factor in SERIES {
-        let factor = Fp::from_i64(factor);
+        let factor = ResiduePair::from_i64(factor);
         let terms = sum.iter_mut().zip(&left);
         terms.for_each(|(sum, &v)| *sum = *sum + factor * v);
         left = kept(left)?;

@@ -8,10 +8,10 @@
 
 use super::Geometry;
 use hamel_algebra::echelon::solution;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Function, Graph, Node};
 use hamel_algebra::linear::matrix;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::layout::{Block, entry_names};
 use hamel_language::model::value::Value;
 use hamel_language::model::{Model, class};
@@ -57,8 +57,12 @@ pub fn potentials(geometry: &mut Geometry, wanted: &[usize]) -> Vec<Option<Strin
         .map(|&k| {
             let rows = samples.iter().flat_map(|sample| {
                 (0..n).map(move |i| {
-                    let mut row: Vec<Fp> = sample.iter().map(|slope| slope[i]).collect();
-                    row.push(if i == k { Fp::ONE } else { Fp::ZERO });
+                    let mut row: Vec<ResiduePair> = sample.iter().map(|slope| slope[i]).collect();
+                    row.push(if i == k {
+                        ResiduePair::ONE
+                    } else {
+                        ResiduePair::ZERO
+                    });
                     row
                 })
             });
@@ -75,7 +79,7 @@ pub fn potentials(geometry: &mut Geometry, wanted: &[usize]) -> Vec<Option<Strin
 }
 
 /// Evaluates all slopes at sufficiently many random points of X: `[point][a][i]`.
-fn samples(model: &Model, slopes: &[Vec<Edge>], n: usize) -> Vec<Vec<Vec<Fp>>> {
+fn samples(model: &Model, slopes: &[Vec<Edge>], n: usize) -> Vec<Vec<Vec<ResiduePair>>> {
     let points = slopes.len() / n.max(1) + 4;
     let roots = slopes.concat();
     let mut samples = Vec::new();

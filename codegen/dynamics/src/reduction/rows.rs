@@ -1,9 +1,9 @@
 //! Selection of the rows to keep among those that were not solved: all rows that add information.
 
 use super::redundant::{contradicting, redundant};
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::{evaluate, rank};
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 use hamel_language::model::pfaffian::Kind;
@@ -47,8 +47,9 @@ pub fn keep(
     let (loops, others): (Vec<usize>, Vec<usize>) =
         left.partition(|&i| model.constraints[i].kind == Kind::Loop);
     let value = |&entry: &Edge| model.graph.value(entry);
-    let at_point = |&i: &usize| -> Vec<Fp> { moving(&rows[i]).iter().map(value).collect() };
-    let (mut open, mut values): (Vec<usize>, Vec<Vec<Fp>>) = (Vec::new(), Vec::new());
+    let at_point =
+        |&i: &usize| -> Vec<ResiduePair> { moving(&rows[i]).iter().map(value).collect() };
+    let (mut open, mut values): (Vec<usize>, Vec<Vec<ResiduePair>>) = (Vec::new(), Vec::new());
     for &i in &others {
         values.push(at_point(&i));
         open.push(i);

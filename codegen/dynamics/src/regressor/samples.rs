@@ -3,9 +3,9 @@
 
 use hamel_algebra::echelon::Echelon;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tape::Tape;
 use hamel_language::model::{Model, class};
 
@@ -21,7 +21,7 @@ const FEWEST: usize = 40;
 /// Values of Y at random states, with the rows of all states.
 pub struct Samples {
     /// Rows, with an entry for every column of Y.
-    pub rows: Vec<Vec<Fp>>,
+    pub rows: Vec<Vec<ResiduePair>>,
     /// A sampled state, with the same values of everything that is constant at run time.
     lane: FieldPoint,
 }
@@ -59,27 +59,34 @@ impl Samples {
     }
 
     /// Returns the values of expressions that are constant at run time; `None` if one has no value.
-    pub fn constants(&self, graph: &Graph, edges: &[Edge]) -> Option<Vec<Fp>> {
+    pub fn constants(&self, graph: &Graph, edges: &[Edge]) -> Option<Vec<ResiduePair>> {
         evaluate_at(graph, edges, &mut self.lane.clone())
     }
 
     /// Returns the columns of these parameters alone, without rows of zeros.
-    pub fn of(&self, columns: &[usize]) -> Vec<Vec<Fp>> {
+    pub fn of(&self, columns: &[usize]) -> Vec<Vec<ResiduePair>> {
         let rows = self.rows.iter();
-        let rows = rows.map(|row| columns.iter().map(|&k| row[k]).collect::<Vec<Fp>>());
+        let rows = rows.map(|row| {
+            columns
+                .iter()
+                .map(|&k| row[k])
+                .collect::<Vec<ResiduePair>>()
+        });
         rows.filter(|row| row.iter().any(|entry| !entry.is_zero()))
             .collect()
     }
 
     /// Returns a basis of the relations Σ v_k Y_k = 0 between these columns, in which the last columns lead.
-    pub fn relations(&self, columns: &[usize]) -> Vec<Vec<Fp>> {
+    pub fn relations(&self, columns: &[usize]) -> Vec<Vec<ResiduePair>> {
         Echelon::new(self.of(columns)).null_space(columns.len())
     }
 
     /// Returns whether Σ v_k Y_k = 0 at all states.
-    pub fn vanishes(&self, terms: &[(usize, Fp)]) -> bool {
+    pub fn vanishes(&self, terms: &[(usize, ResiduePair)]) -> bool {
         self.rows.iter().all(|row| {
-            let sum = terms.iter().fold(Fp::ZERO, |sum, &(k, v)| sum + v * row[k]);
+            let sum = terms
+                .iter()
+                .fold(ResiduePair::ZERO, |sum, &(k, v)| sum + v * row[k]);
             sum.is_zero()
         })
     }
@@ -91,7 +98,7 @@ fn lane(model: &Model, seed: u64, state: u64) -> Option<FieldPoint> {
     let mut values = model.points.choose(random)?;
     let frozen = &mut Random::new(seed ^ 0x3c6e_f372);
     for (value, symbol) in values.iter_mut().zip(model.graph.symbols()) {
-        if symbol.class == class::PARAM && *value != Fp::PI {
+        if symbol.class == class::PARAM && *value != ResiduePair::PI {
             *value = frozen.element();
         }
     }

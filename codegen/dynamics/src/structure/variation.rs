@@ -5,9 +5,9 @@
 //! probability as node identity.
 
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tape::Tape;
 use hamel_language::model::Model;
 
@@ -59,7 +59,7 @@ pub struct Dependence<'a> {
     variation: &'a Variation<'a>,
     graph: &'a Graph,
     tape: Tape,
-    values: Vec<Fp>,
+    values: Vec<ResiduePair>,
 }
 
 impl Dependence<'_> {

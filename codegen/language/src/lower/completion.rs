@@ -8,10 +8,10 @@ use super::declare::{Declared, size};
 use super::definitions::Row;
 use super::rate::advised;
 use crate::algebra::blocks::{Failure, StartValues, solve};
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::transpose;
 use crate::algebra::numeric::rank;
+use crate::algebra::residue_pair::ResiduePair;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::charts::all_tangents;
 use crate::model::completion::Completion;
@@ -152,12 +152,16 @@ fn dependent(
     m: &[Vec<Edge>],
     given: &Given,
 ) -> Option<(usize, Span)> {
-    let values = |row: &Vec<Edge>| row.iter().map(|&e| graph.value(e)).collect::<Vec<Fp>>();
+    let values = |row: &Vec<Edge>| {
+        row.iter()
+            .map(|&e| graph.value(e))
+            .collect::<Vec<ResiduePair>>()
+    };
     let with = |velocity: bool| {
         let rows = equations.iter().zip(m);
         rows.filter(move |(equation, _)| equation.velocity.is_some() == velocity)
     };
-    let mut rows: Vec<Vec<Fp>> = with(false).map(|(_, row)| values(row)).collect();
+    let mut rows: Vec<Vec<ResiduePair>> = with(false).map(|(_, row)| values(row)).collect();
     for (equation, row) in with(true) {
         let before = rank(rows.clone());
         rows.push(values(row));

@@ -7,9 +7,9 @@
 //! ceases to hold gradually on the way from there; at a crossing of components it ceases at once. The generated code
 //! contains the constraints as they were written.
 
-use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::newton::Newton;
+use crate::algebra::residue_pair::Random;
 use crate::model::class;
 use crate::model::points::Points;
 use num_bigint::BigInt;

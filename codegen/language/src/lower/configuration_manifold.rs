@@ -3,9 +3,9 @@
 use super::declare::{Declared, size};
 use super::static_scope::{Constraint, StaticScope};
 use super::{branch, component, start};
-use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::residual_scale::relative_residuals;
+use crate::algebra::residue_pair::{Random, ResiduePair};
 use crate::algebra::topoly::is_polynomial;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
@@ -173,7 +173,7 @@ impl ConfigurationManifold {
 
     /// Returns a point of X. If there is none, reports the statement to blame and drops the user's constraints, so
     /// that the rest can still be read.
-    pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Fp> {
+    pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<ResiduePair> {
         self.seed = seed;
         let mut random = Random::new(seed ^ 0x5eed);
         let mut point = |points: &Points| points.choose(&mut random);
@@ -210,7 +210,7 @@ impl ConfigurationManifold {
         self.phi.truncate(user);
         self.origins.truncate(user);
         self.points.constraints.clear();
-        point(&self.points).unwrap_or_else(|| vec![Fp::ONE; self.points.symbols])
+        point(&self.points).unwrap_or_else(|| vec![ResiduePair::ONE; self.points.symbols])
     }
 
     /// Reports errors in constraints in the graph with points on X, and why a constraint has a value there but not

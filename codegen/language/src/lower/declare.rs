@@ -3,8 +3,8 @@
 use super::expression::Evaluator;
 use super::scope::Scope;
 use super::{curves, externals, time};
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::residue_pair::ResiduePair;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::layout::{blocks, entry_names};
 use crate::model::value::Value;
@@ -14,7 +14,7 @@ use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, Span, Syst
 
 /// Function that returns the value of the next symbol: drawn at random for free points, read from the point for those
 /// on X.
-pub type NextValue<'a> = dyn FnMut(&mut Graph) -> Fp + 'a;
+pub type NextValue<'a> = dyn FnMut(&mut Graph) -> ResiduePair + 'a;
 
 /// All declared symbols.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,7 @@ pub fn declare(
 ) -> Declared {
     let mut declared = Declared::default();
     next(graph);
-    graph.symbol("pi", 0, Fp::PI);
+    graph.symbol("pi", 0, ResiduePair::PI);
     graph.set_reals(samples::pi());
     for item in &system.items {
         if let ItemKind::Const(list) = &item.kind {

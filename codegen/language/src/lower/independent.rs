@@ -1,9 +1,9 @@
 //! Chooses Φ: rows of ∂φ/∂x that are independent on X and at the start, KR18 (4). φ may be redundant, as RᵀR = I with
 //! det R = 1 is; all its rows stay in φ.
 
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::rank;
+use crate::algebra::residue_pair::ResiduePair;
 
 /// Relative size of the new part of a row below which the row counts as dependent at the start.
 const SMALL: f64 = 1e-7;
@@ -35,14 +35,14 @@ pub fn choose(graph: &Graph, jacobian: &[Vec<Edge>], numbers: Option<&[Vec<f64>]
         }
         is_new
     };
-    let value = |row: &usize| -> Vec<Fp> {
+    let value = |row: &usize| -> Vec<ResiduePair> {
         jacobian[*row]
             .iter()
             .map(|&edge| graph.value(edge))
             .collect()
     };
     let adds = |rows: &[usize], row: usize| {
-        let mut matrix: Vec<Vec<Fp>> = rows.iter().map(value).collect();
+        let mut matrix: Vec<Vec<ResiduePair>> = rows.iter().map(value).collect();
         matrix.push(value(&row));
         rank(matrix) > rows.len()
     };

@@ -1,8 +1,8 @@
 //! Decides whether an energy is quadratic in the velocities.
 
 use crate::algebra::derivation::Derivation;
-use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Graph, NodeId};
+use crate::algebra::residue_pair::Random;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 

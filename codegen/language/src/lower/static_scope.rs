@@ -11,8 +11,8 @@ use super::defaults;
 use super::expression::Evaluator;
 use super::names::Names;
 use super::scope::Scope;
-use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Graph;
+use crate::algebra::residue_pair::{Random, ResiduePair};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
 use crate::model::{class, samples};
@@ -64,14 +64,14 @@ impl<'a> StaticScope<'a> {
     /// Reads the description at a point of X.
     pub fn on(
         manifold: &ConfigurationManifold,
-        point: &[Fp],
+        point: &[ResiduePair],
         system: &'a System,
         names: &'a Resolved<'a>,
         seed: u64,
         report: &mut Report,
     ) -> Self {
         let mut point = point.iter();
-        let mut next = |_: &mut Graph| point.next().copied().unwrap_or(Fp::ONE);
+        let mut next = |_: &mut Graph| point.next().copied().unwrap_or(ResiduePair::ONE);
         let reals = |graph: &mut Graph| {
             let near = manifold.near.as_deref();
             graph.set_reals(samples::sample(&manifold.points, &manifold.phi, seed, near));

@@ -5,9 +5,9 @@ use super::configuration_manifold::{ConfigurationManifold, Origin};
 use super::declare::Declared;
 use super::rate::{Rate, advised};
 use super::time;
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::rank;
+use crate::algebra::residue_pair::ResiduePair;
 use crate::algebra::text::short;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
@@ -95,7 +95,7 @@ pub struct Checker<'a> {
 
 impl Checker<'_> {
     /// Returns ∂φ/∂x at the first point.
-    fn slopes(&self) -> Vec<Vec<Fp>> {
+    fn slopes(&self) -> Vec<Vec<ResiduePair>> {
         let value = |&edge: &Edge| self.graph.value(edge);
         let rows = self.jacobian.iter();
         rows.map(|row| row.iter().map(value).collect()).collect()
@@ -149,7 +149,7 @@ impl Checker<'_> {
     /// Returns whether a motion along ξⁱ changes a row of φ.
     fn leaves(&self, a: &[Vec<Edge>], row: usize, i: usize) -> bool {
         let terms = a.iter().zip(&self.jacobian[row]);
-        let change = terms.fold(Fp::ZERO, |sum, (entries, &slope)| {
+        let change = terms.fold(ResiduePair::ZERO, |sum, (entries, &slope)| {
             sum + self.graph.value(slope) * self.graph.value(entries[i])
         });
         !change.is_zero()
@@ -265,7 +265,7 @@ impl Checker<'_> {
     pub fn independent(&mut self, a: &[Vec<Edge>]) -> bool {
         let n = self.declared.xi.len();
         let value = |edge: &Edge| self.graph.value(*edge);
-        let values: Vec<Vec<Fp>> = a
+        let values: Vec<Vec<ResiduePair>> = a
             .iter()
             .map(|row| row.iter().map(value).collect())
             .collect();

@@ -1,9 +1,9 @@
 //! Layout of the coordinates in x, with their constraints and canonical quasi-velocities.
 
 use crate::algebra::field_point::circle_point;
-use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{multiply3, transpose3};
+use crate::algebra::residue_pair::{Random, ResiduePair};
 use crate::syntax::ast::CoordKind;
 use std::ops::{Add, Mul, Sub};
 
@@ -92,7 +92,7 @@ pub fn entry_names(name: &str, kind: CoordKind) -> Vec<String> {
 }
 
 /// Returns a random point of a block over F_p, from rational parametrisations of the circle, the sphere S³ and SO(3).
-pub fn sample(block: Block, random: &mut Random) -> Vec<Fp> {
+pub fn sample(block: Block, random: &mut Random) -> Vec<ResiduePair> {
     match block {
         Block::Flat(n) => (0..n).map(|_| random.element()).collect(),
         Block::Circle => {
@@ -101,19 +101,21 @@ pub fn sample(block: Block, random: &mut Random) -> Vec<Fp> {
         }
         Block::Quaternion => loop {
             // Stereographic projection: ((1 − |t|²), 2 t)/(1 + |t|²).
-            let t: [Fp; 3] = std::array::from_fn(|_| random.element());
+            let t: [ResiduePair; 3] = std::array::from_fn(|_| random.element());
             let square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
-            if let Some(scale) = (Fp::ONE + square).inv() {
-                let mut q = vec![(Fp::ONE - square) * scale];
+            if let Some(scale) = (ResiduePair::ONE + square).inv() {
+                let mut q = vec![(ResiduePair::ONE - square) * scale];
                 q.extend(t.iter().map(|&x| (x + x) * scale));
                 return q;
             }
         },
         Block::Rotation => loop {
-            let q: [Fp; 4] = std::array::from_fn(|_| random.element());
-            let square = q.iter().fold(Fp::ZERO, |sum, &entry| sum + entry * entry);
+            let q: [ResiduePair; 4] = std::array::from_fn(|_| random.element());
+            let square = q
+                .iter()
+                .fold(ResiduePair::ZERO, |sum, &entry| sum + entry * entry);
             if let Some(scale) = square.inv() {
-                let entries = rotation(q, Fp::new(2)).into_iter();
+                let entries = rotation(q, ResiduePair::new(2)).into_iter();
                 return entries.map(|entry| entry * scale).collect();
             }
         },

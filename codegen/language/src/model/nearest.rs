@@ -1,8 +1,8 @@
 //! Finds the configuration nearest to a start that violates φ, for error messages.
 
 use super::points::Points;
-use crate::algebra::fp::Random;
 use crate::algebra::graph::Edge;
+use crate::algebra::residue_pair::Random;
 
 /// Largest number of steps from one initial guess.
 const STEPS: usize = 200;

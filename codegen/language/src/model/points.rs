@@ -3,7 +3,6 @@
 use super::class;
 use super::layout::{Block, sample};
 use crate::algebra::field_point::{FieldPoint, Roots};
-use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::newton::Newton;
 use crate::algebra::numeric::evaluate_at;
@@ -11,6 +10,7 @@ use crate::algebra::poly;
 use crate::algebra::poly::monomial::Var;
 use crate::algebra::poly::polynomial::Poly;
 use crate::algebra::prime::Residue;
+use crate::algebra::residue_pair::{Random, ResiduePair};
 use crate::algebra::transplant::copy;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
@@ -80,11 +80,11 @@ impl Points {
     }
 
     /// Returns values of all symbols at a random point of X; `None` if no point was found.
-    pub fn choose(&self, random: &mut Random) -> Option<Vec<Fp>> {
+    pub fn choose(&self, random: &mut Random) -> Option<Vec<ResiduePair>> {
         self.choose_where(
             random,
             TRIES,
-            &[&(|_: &mut Vec<Fp>| Some(())) as &Change<'_>; 2],
+            &[&(|_: &mut Vec<ResiduePair>| Some(())) as &Change<'_>; 2],
         )
     }
 
@@ -95,10 +95,10 @@ impl Points {
         random: &mut Random,
         tries: usize,
         [before, after]: &[&Change<'_>; 2],
-    ) -> Option<Vec<Fp>> {
+    ) -> Option<Vec<ResiduePair>> {
         let mut failures = 0;
         // The values in the two fields are searched for separately: each root halves the chance in both.
-        let mut found: [Option<Vec<Fp>>; 2] = [None, None];
+        let mut found: [Option<Vec<ResiduePair>>; 2] = [None, None];
         for _ in 0..tries {
             let mut values = self.unconstrained(random);
             if before(&mut values).is_none() {
@@ -130,18 +130,23 @@ impl Points {
                 }
             }
             if let [Some(one), Some(other)] = &found {
-                return Some(one.iter().zip(other).map(|(a, b)| Fp(a.0, b.1)).collect());
+                return Some(
+                    one.iter()
+                        .zip(other)
+                        .map(|(a, b)| ResiduePair(a.0, b.1))
+                        .collect(),
+                );
             }
         }
         None
     }
 
     /// Returns a random point of the blocks of x, with random values of all other symbols.
-    fn unconstrained(&self, random: &mut Random) -> Vec<Fp> {
-        let mut values: Vec<Fp> = (0..self.symbols).map(|_| random.element()).collect();
+    fn unconstrained(&self, random: &mut Random) -> Vec<ResiduePair> {
+        let mut values: Vec<ResiduePair> = (0..self.symbols).map(|_| random.element()).collect();
         // π is the first symbol, and the same everywhere.
         if let Some(first) = values.first_mut() {
-            *first = Fp::PI;
+            *first = ResiduePair::PI;
         }
         let mut place = self.first;
         for &block in &self.blocks {
@@ -154,7 +159,7 @@ impl Points {
     }
 
     /// Returns in which of the two fields a square root has no value.
-    fn stuck(&self, values: &[Fp]) -> [bool; 2] {
+    fn stuck(&self, values: &[ResiduePair]) -> [bool; 2] {
         if self.radicals.is_empty() {
             return [false; 2];
         }
@@ -191,7 +196,7 @@ impl Points {
             }
             self.roots = roots;
             let mut found = || {
-                let anything = |_: &mut Vec<Fp>| Some(());
+                let anything = |_: &mut Vec<ResiduePair>| Some(());
                 let anything = [&anything as &Change<'_>; 2];
                 self.choose_where(&mut random, STRICT_TRIES, &anything)
                     .is_some()
@@ -208,7 +213,7 @@ impl Points {
     fn keeps(&self, fixed: &[Edge]) -> bool {
         let values = self.unconstrained(&mut Random::new(0));
         let mut lane = self.lane_of(&values);
-        let inside = |value: &Fp| value.0.is_prime() && value.1.is_prime();
+        let inside = |value: &ResiduePair| value.0.is_prime() && value.1.is_prime();
         let found = evaluate_at(&self.free, fixed, &mut lane);
         found.is_some_and(|found| self.roots != Roots::BaseField || found.iter().all(inside))
     }
@@ -231,7 +236,7 @@ impl Points {
     }
 
     /// Returns the user's constraints as polynomials in the coordinates.
-    fn system(&self, values: &[Fp]) -> Option<Vec<Poly<Fp>>> {
+    fn system(&self, values: &[ResiduePair]) -> Option<Vec<Poly<ResiduePair>>> {
         let constraints = self.constraints.iter();
         constraints
             .map(|&constraint| self.polynomial(constraint, values))
@@ -239,11 +244,19 @@ impl Points {
     }
 
     /// Finds coordinates that satisfy the user's constraints, in both fields.
-    fn solve(&self, generators: &[Poly<Fp>], random: &mut Random) -> Option<Vec<(Var, Fp)>> {
+    fn solve(
+        &self,
+        generators: &[Poly<ResiduePair>],
+        random: &mut Random,
+    ) -> Option<Vec<(Var, ResiduePair)>> {
         let one = self.solve_in(part(generators, |c| c.0), random)?;
         let other = self.solve_in(part(generators, |c| c.1), random)?;
         let pairs = one.into_iter().zip(other);
-        Some(pairs.map(|((var, a), (_, b))| (var, Fp(a, b))).collect())
+        Some(
+            pairs
+                .map(|((var, a), (_, b))| (var, ResiduePair(a, b)))
+                .collect(),
+        )
     }
 
     /// Finds such coordinates in one field, by elimination.
@@ -281,7 +294,7 @@ impl Points {
 
     /// Returns a constraint as a polynomial in the coordinates, all other symbols having values; subexpressions
     /// without coordinates are evaluated, including functions of parameters.
-    fn polynomial(&self, edge: Edge, values: &[Fp]) -> Option<Poly<Fp>> {
+    fn polynomial(&self, edge: Edge, values: &[ResiduePair]) -> Option<Poly<ResiduePair>> {
         let graph = &self.free;
         let nodes = graph.reachable(&[edge]);
         let moves = |id: u32| graph.class(id) & class::COORD != 0;
@@ -295,7 +308,7 @@ impl Points {
             .iter()
             .zip(numbers)
             .map(|(edge, n)| (edge.node(), Poly::constant(n)));
-        let mut memo: FxHashMap<u32, Poly<Fp>> = constants.collect();
+        let mut memo: FxHashMap<u32, Poly<ResiduePair>> = constants.collect();
         for id in nodes.into_iter().filter(|&id| moves(id)) {
             let read = |edge: Edge| {
                 let polynomial = memo.get(&edge.node())?;
@@ -342,17 +355,17 @@ impl Points {
         set: &[(usize, Edge)],
         moved: &dyn Fn(FieldPoint) -> Option<Moved>,
     ) -> Option<FieldPoint> {
-        let move_in = |values: &mut Vec<Fp>, moved: Moved| {
+        let move_in = |values: &mut Vec<ResiduePair>, moved: Moved| {
             for (symbol, value) in moved {
                 *values.get_mut(symbol)? = value;
             }
             Some(())
         };
-        let before = |values: &mut Vec<Fp>| {
+        let before = |values: &mut Vec<ResiduePair>| {
             let imposed = imposed(self.lane_of(values), graph, set)?;
             move_in(values, imposed)
         };
-        let after = |values: &mut Vec<Fp>| {
+        let after = |values: &mut Vec<ResiduePair>| {
             let moved = moved(self.lane_of(values))?;
             move_in(values, moved)
         };
@@ -367,10 +380,10 @@ impl Points {
         Some(self.lane_of(&values))
     }
 
-    fn lane_of(&self, values: &[Fp]) -> FieldPoint {
+    fn lane_of(&self, values: &[ResiduePair]) -> FieldPoint {
         let mut lane = FieldPoint::new();
         // Values derived from others may lie outside F_p; then sums with them are not squares of F_p.
-        let outside = |value: &Fp| !(value.0.is_prime() && value.1.is_prime());
+        let outside = |value: &ResiduePair| !(value.0.is_prime() && value.1.is_prime());
         lane.roots = match self.roots {
             Roots::BaseField if values.iter().any(outside) => Roots::ExtensionField,
             roots => roots,
@@ -383,10 +396,10 @@ impl Points {
 }
 
 /// A function that changes the values of symbols; `None` rejects them.
-type Change<'a> = dyn Fn(&mut Vec<Fp>) -> Option<()> + 'a;
+type Change<'a> = dyn Fn(&mut Vec<ResiduePair>) -> Option<()> + 'a;
 
 /// Symbols, by index, with their new values.
-pub type Moved = Vec<(usize, Fp)>;
+pub type Moved = Vec<(usize, ResiduePair)>;
 
 /// Evaluates expressions to the values of the symbols that they are assigned to.
 pub fn imposed(mut lane: FieldPoint, graph: &Graph, set: &[(usize, Edge)]) -> Option<Moved> {
@@ -398,10 +411,10 @@ pub fn imposed(mut lane: FieldPoint, graph: &Graph, set: &[(usize, Edge)]) -> Op
 
 /// Returns the polynomials with coefficients in one of the fields.
 fn part<const K: usize>(
-    polynomials: &[Poly<Fp>],
-    of: fn(Fp) -> Residue<K>,
+    polynomials: &[Poly<ResiduePair>],
+    of: fn(ResiduePair) -> Residue<K>,
 ) -> Vec<Poly<Residue<K>>> {
-    let one = |polynomial: &Poly<Fp>| {
+    let one = |polynomial: &Poly<ResiduePair>| {
         let terms = polynomial.terms().iter().map(|(m, c)| (m.clone(), of(*c)));
         Poly::from_terms(polynomial.order(), terms.collect())
     };

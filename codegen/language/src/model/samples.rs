@@ -2,9 +2,9 @@
 
 use super::layout::Block;
 use super::points::Points;
-use crate::algebra::fp::Random;
 use crate::algebra::graph::Edge;
 use crate::algebra::reals::{Real, Reals, SAMPLES};
+use crate::algebra::residue_pair::Random;
 
 /// Error of coordinates that solve the user's constraints numerically.
 const SOLVED: f64 = 1e-9;

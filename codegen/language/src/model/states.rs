@@ -3,7 +3,7 @@
 
 use super::Model;
 use super::layout::Block;
-use crate::algebra::fp::Random;
+use crate::algebra::residue_pair::Random;
 
 /// Number of random states.
 const RANDOM: usize = 2;

@@ -1,13 +1,13 @@
 //! Minimal polynomials distinguish algebraic and free variables.
 
-use hamel_algebra::fp::Fp;
 use hamel_algebra::poly::buchberger::{Limits, groebner};
 use hamel_algebra::poly::elimination::minimal_polynomial;
 use hamel_algebra::poly::order::Order;
 use hamel_algebra::poly::polynomial::Poly;
+use hamel_algebra::residue_pair::ResiduePair;
 
-fn n(value: i64) -> Poly<Fp> {
-    Poly::constant(Fp::from_i64(value))
+fn n(value: i64) -> Poly<ResiduePair> {
+    Poly::constant(ResiduePair::from_i64(value))
 }
 
 #[test]
@@ -19,7 +19,14 @@ fn algebraic_and_free_variables_are_told_apart() {
         panic!("limits");
     };
     let minimal = minimal_polynomial(&basis, 2, 10);
-    assert_eq!(minimal, Some(vec![Fp::from_i64(-2), Fp::ZERO, Fp::ONE]));
+    assert_eq!(
+        minimal,
+        Some(vec![
+            ResiduePair::from_i64(-2),
+            ResiduePair::ZERO,
+            ResiduePair::ONE
+        ])
+    );
     assert_eq!(minimal_polynomial(&basis, 0, 10), None);
     // (z − 1)(z − 2)(z − 3) and w = z² have the values 1, 4, 9.
     let cubic = (1..4).fold(n(1), |product, k| product.mul(&z.sub(&n(k))));
@@ -27,6 +34,6 @@ fn algebraic_and_free_variables_are_told_apart() {
     let Ok(basis) = groebner(&generators, Order::Grevlex, Limits::default()) else {
         panic!("limits");
     };
-    let expected = [-36, 49, -14, 1].map(Fp::from_i64);
+    let expected = [-36, 49, -14, 1].map(ResiduePair::from_i64);
     assert_eq!(minimal_polynomial(&basis, 3, 10), Some(expected.to_vec()));
 }

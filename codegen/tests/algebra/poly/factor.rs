@@ -1,8 +1,8 @@
 //! Operation counts of typical equations, and the values of random ones.
 
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::poly::factor::{Coefficient, Operand, Step, Term, Value, factor};
 use hamel_algebra::poly::monomial::{Monomial, Var};
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use proptest::prelude::*;
 
 /// Returns terms ±id x_v x_w …; a negative id means a negated coefficient.
@@ -25,9 +25,9 @@ fn checked(polynomials: &[Vec<Term>], seed: u64) -> usize {
     let coefficient = |id: u32| value(2 * u64::from(id));
     let variable = |v: Var| value(2 * u64::from(v) + 1);
     let direct = polynomials.iter().map(|terms| {
-        terms.iter().fold(Fp::ZERO, |sum, term| {
+        terms.iter().fold(ResiduePair::ZERO, |sum, term| {
             let constant = match term.coefficient.id {
-                0 => Fp::ONE,
+                0 => ResiduePair::ONE,
                 id => coefficient(id),
             };
             let powers = term.monomial.powers().iter();
@@ -41,7 +41,7 @@ fn checked(polynomials: &[Vec<Term>], seed: u64) -> usize {
             }
         })
     });
-    let direct: Vec<Fp> = direct.collect();
+    let direct: Vec<ResiduePair> = direct.collect();
     assert_eq!(program.evaluate(&coefficient, &variable), direct);
     let earlier = |index: usize, o: Operand| !matches!(o.value, Value::Step(k) if k >= index);
     for (index, step) in program.steps.iter().enumerate() {

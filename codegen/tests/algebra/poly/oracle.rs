@@ -2,7 +2,6 @@
 
 use super::polynomials;
 use groebner as independent;
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::poly::buchberger::{LimitExceeded, Limits, groebner};
 use hamel_algebra::poly::field::Field;
 use hamel_algebra::poly::ideals::{circle, quaternion, rotation};
@@ -10,6 +9,7 @@ use hamel_algebra::poly::monomial::Var;
 use hamel_algebra::poly::normal_form::Basis;
 use hamel_algebra::poly::order::Order;
 use hamel_algebra::poly::polynomial::Poly;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use independent::PolynomialExt;
 use num_rational::BigRational as Q;
 use proptest::prelude::*;
@@ -194,12 +194,12 @@ fn limits_stop_the_search() {
 }
 
 /// Returns a random point of SO(3), from a quaternion of any length.
-fn rotation_point(random: &mut Random) -> Vec<Fp> {
+fn rotation_point(random: &mut Random) -> Vec<ResiduePair> {
     loop {
-        let q: Vec<Fp> = (0..4).map(|_| random.element()).collect();
-        let norm = q.iter().fold(Fp::ZERO, |sum, &a| sum + a * a);
+        let q: Vec<ResiduePair> = (0..4).map(|_| random.element()).collect();
+        let norm = q.iter().fold(ResiduePair::ZERO, |sum, &a| sum + a * a);
         let Some(inverse) = norm.inv() else { continue };
-        let two = Fp::from_i64(2);
+        let two = ResiduePair::from_i64(2);
         let entry = |i: usize, j: usize| {
             let v = |k: usize| q[k % 3 + 1];
             let mixed = match (j + 3 - i) % 3 {
@@ -213,7 +213,7 @@ fn rotation_point(random: &mut Random) -> Vec<Fp> {
     }
 }
 
-fn polynomial() -> impl Strategy<Value = Poly<Fp>> {
+fn polynomial() -> impl Strategy<Value = Poly<ResiduePair>> {
     let powers = prop::collection::vec((0u32..9, 1u32..3), 0..4);
     polynomials(powers, -9..10, 1..6)
 }
@@ -224,7 +224,7 @@ proptest! {
         f in polynomial(), g in polynomial(), which in 0usize..21, seed: u64,
     ) {
         for order in [Order::Grevlex, Order::Lex, Order::Block(4)] {
-            let so3 = basis(&rotation::<Fp>(R), order);
+            let so3 = basis(&rotation::<ResiduePair>(R), order);
             let normal = so3.normal_form(&f);
             prop_assert_eq!(&so3.normal_form(&normal), &normal);
             prop_assert!(so3.contains(&g.mul(&rotation(R)[which])));
@@ -238,7 +238,7 @@ proptest! {
 
     #[test]
     fn normal_forms_agree_with_the_independent_implementation(f in polynomial()) {
-        let small = |c: &Fp| c.to_small_rational(8).map(|(n, _)| Q::integer(n));
+        let small = |c: &ResiduePair| c.to_small_rational(8).map(|(n, _)| Q::integer(n));
         let f = f.map(small).expect("small integers");
         let so3 = basis::<Q>(&rotation(R), Order::Grevlex);
         let list: Vec<Poly<Q>> = so3.polynomials().cloned().collect();

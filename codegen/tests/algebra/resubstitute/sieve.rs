@@ -1,7 +1,7 @@
 //! The sieve of values passes all present values, and few others.
 
-use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::prime::Residue;
+use hamel_algebra::residue_pair::{Random, ResiduePair};
 use included::Sieve;
 
 // Included, since false positives only affect the duration of resubstitution.
@@ -11,10 +11,10 @@ mod included;
 #[test]
 fn what_is_there_passes_with_either_sign_and_little_else_does() {
     let mut random = Random::new(3);
-    let there: Vec<Fp> = (0..400).map(|_| random.element()).collect();
-    let i = Fp(Residue::I, Residue::I);
+    let there: Vec<ResiduePair> = (0..400).map(|_| random.element()).collect();
+    let i = ResiduePair(Residue::I, Residue::I);
     let all = there.iter().flat_map(|&value| [value, value * i]);
-    let sieve = Sieve::new(all.clone().chain([Fp::ZERO]));
+    let sieve = Sieve::new(all.clone().chain([ResiduePair::ZERO]));
     assert!(
         all.clone()
             .all(|value| sieve.passes(value.0) && sieve.passes((-value).0))

@@ -1,7 +1,7 @@
 //! Evaluates generated systems at random states.
 #![allow(dead_code, unused_imports)] // each test file uses a part
 
-use hamel_codegen::algebra::fp;
+use hamel_codegen::algebra::residue_pair;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::program::interpret::Interpreter;
@@ -9,12 +9,12 @@ use hamel_codegen::render::render;
 
 /// A random generator with the same numbers on every machine.
 #[derive(Clone)]
-pub struct Random(fp::Random);
+pub struct Random(residue_pair::Random);
 
 impl Random {
     /// Creates the generator for a seed.
     pub fn new(seed: u64) -> Self {
-        Random(fp::Random::new(seed))
+        Random(residue_pair::Random::new(seed))
     }
 
     /// Returns the next 64 bits.

@@ -1,7 +1,7 @@
 //! Programs without functions, which tests add.
 
-use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::algebra::graph::{Edge, Graph};
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::model::layout::{blocks, entry_names};
 use hamel_codegen::model::provenance::Provenance;
 use hamel_codegen::model::value::Value;

@@ -7,9 +7,9 @@ use crate::charts::Charts;
 use crate::kernel::{dot, virtual_velocity};
 use crate::{centroidal, derivatives, frames, outputs, states};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_dynamics::accel::saddle::{self, Solved};
 use hamel_dynamics::reduction::Reduction;
 use hamel_program::{FunctionId, Program};
@@ -23,19 +23,19 @@ pub(super) struct PointComparison<'a> {
     at: ConstrainedPoint<'a>,
     values: Values,
     /// B of the full frame, by rows.
-    rows: Vec<Fp>,
+    rows: Vec<ResiduePair>,
     /// Kept rows in terms of ξₐ, and the B ξ̇ₐ that they demand.
-    kept: Vec<Fp>,
-    right: Vec<Fp>,
+    kept: Vec<ResiduePair>,
+    right: Vec<ResiduePair>,
     /// Active velocities whose rates are given, with these rates.
-    driven: Vec<(usize, Fp)>,
+    driven: Vec<(usize, ResiduePair)>,
     /// Cᵀ M C.
-    mass: Vec<Fp>,
+    mass: Vec<ResiduePair>,
     /// Γ ξ ξ + M (Ċ ξₐ + ċ), in the full frame.
-    bias: Vec<Fp>,
+    bias: Vec<ResiduePair>,
     /// Emitted ξ̇ₐ, and the emitted rates of states.
-    xi_dot: Option<Vec<Fp>>,
-    state_rates: Vec<Fp>,
+    xi_dot: Option<Vec<ResiduePair>>,
+    state_rates: Vec<ResiduePair>,
 }
 
 impl<'a> PointComparison<'a> {
@@ -58,9 +58,9 @@ impl<'a> PointComparison<'a> {
         let given: Vec<Edge> = reduced.accelerated.iter().map(|(_, rate)| *rate).collect();
         let places = reduced.accelerated.iter().map(|(place, _)| *place);
         let driven = places.zip(inner(&given)?).collect();
-        let column = |j: usize| -> Vec<Fp> { (0..n).map(|i| at.c[i * na + j]).collect() };
-        let columns: Vec<Vec<Fp>> = (0..na).map(column).collect();
-        let product = |v: &[Fp]| -> Vec<Fp> {
+        let column = |j: usize| -> Vec<ResiduePair> { (0..n).map(|i| at.c[i * na + j]).collect() };
+        let columns: Vec<Vec<ResiduePair>> = (0..na).map(column).collect();
+        let product = |v: &[ResiduePair]| -> Vec<ResiduePair> {
             let rows = values.mass.chunks(n.max(1));
             rows.map(|row| dot(row, v)).collect()
         };
@@ -112,7 +112,7 @@ impl<'a> PointComparison<'a> {
             Claim::Balance => self.balances()?,
             Claim::Constraint => self.is_kept()?,
             Claim::Mass => {
-                let momentum: Vec<Fp> = (self.values.mass.chunks(self.n().max(1)))
+                let momentum: Vec<ResiduePair> = (self.values.mass.chunks(self.n().max(1)))
                     .map(|row| dot(row, &self.values.xi))
                     .collect();
                 self.equal("mass_matrix", &self.mass)?
@@ -144,17 +144,19 @@ impl<'a> PointComparison<'a> {
     }
 
     /// Returns Cᵀ v.
-    fn project(&self, v: &[Fp]) -> Vec<Fp> {
+    fn project(&self, v: &[ResiduePair]) -> Vec<ResiduePair> {
         let na = self.reduction.active.len();
         let entry = |j: usize| {
             let rows = v.iter().enumerate();
-            rows.fold(Fp::ZERO, |sum, (i, &v)| sum + self.at.c[i * na + j] * v)
+            rows.fold(ResiduePair::ZERO, |sum, (i, &v)| {
+                sum + self.at.c[i * na + j] * v
+            })
         };
         (0..na).map(entry).collect()
     }
 
     /// Returns the values of an emitted function; `Some(None)` if it is not emitted, `None` if it has no value.
-    fn emitted_values(&self, name: &str) -> Option<Option<Vec<Fp>>> {
+    fn emitted_values(&self, name: &str) -> Option<Option<Vec<ResiduePair>>> {
         match self.program.function(name) {
             None => Some(None),
             Some(f) => {
@@ -165,7 +167,7 @@ impl<'a> PointComparison<'a> {
         }
     }
 
-    fn equal(&self, name: &str, expected: &[Fp]) -> Option<bool> {
+    fn equal(&self, name: &str, expected: &[ResiduePair]) -> Option<bool> {
         Some(
             self.emitted_values(name)?
                 .is_none_or(|found| found == expected),
@@ -183,7 +185,7 @@ impl<'a> PointComparison<'a> {
                 .chunks(self.reduction.active.len().max(1))
                 .zip(row))
             .fold(
-                vec![Fp::ZERO; self.reduction.active.len()],
+                vec![ResiduePair::ZERO; self.reduction.active.len()],
                 |sum, (c, &b)| sum.iter().zip(c).map(|(&sum, &c)| sum + b * c).collect(),
             );
             moves.iter().all(|entry| entry.is_zero()) && dot(row, &self.at.shift).is_zero()
@@ -194,11 +196,11 @@ impl<'a> PointComparison<'a> {
     /// `None`.
     fn solution(
         &self,
-        force: Option<&[Fp]>,
-        right: &[Fp],
-        driven: &[(usize, Fp)],
+        force: Option<&[ResiduePair]>,
+        right: &[ResiduePair],
+        driven: &[(usize, ResiduePair)],
     ) -> Option<Solved> {
-        let none = vec![Fp::ZERO; self.reduction.active.len()];
+        let none = vec![ResiduePair::ZERO; self.reduction.active.len()];
         let parts = [&self.mass[..], force.unwrap_or(&none), &self.kept, right];
         saddle::solve_at(
             &self.full.reduced,
@@ -213,12 +215,12 @@ impl<'a> PointComparison<'a> {
     fn solve_implied(&self) -> Option<Solved> {
         let Values { force, slope, .. } = &self.values;
         let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
-        let rest: Vec<Fp> = rest.collect();
+        let rest: Vec<ResiduePair> = rest.collect();
         self.solution(Some(&self.project(&rest)), &self.right, &self.driven)
     }
 
     /// Returns M ξ̇ + h + ∂V of the full frame for rates of the active velocities.
-    fn required_force(&self, xi_dot: &[Fp]) -> Vec<Fp> {
+    fn required_force(&self, xi_dot: &[ResiduePair]) -> Vec<ResiduePair> {
         self.values
             .required_force(&self.values.lift(&self.at.c, xi_dot))
     }
@@ -261,7 +263,7 @@ impl<'a> PointComparison<'a> {
 
     /// Returns whether the rows of the full frame balance with the multipliers of all constraints and the forces of
     /// drives; `None` if some have no value.
-    fn bonds_balance(&self, xi_dot: &[Fp], lambda: &[Fp]) -> Option<bool> {
+    fn bonds_balance(&self, xi_dot: &[ResiduePair], lambda: &[ResiduePair]) -> Option<bool> {
         let model = &self.full.reference.model;
         let (n, force) = (self.n(), &self.values.force);
         let needed = self.required_force(xi_dot);
@@ -270,12 +272,14 @@ impl<'a> PointComparison<'a> {
         let compared = (0..n).filter(|&i| Some(i) != time && !self.contradicts(i));
         let mut balanced = compared.map(|i| {
             let bonds = lambda.iter().zip(self.rows.chunks(n));
-            let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
+            let bond = bonds.fold(ResiduePair::ZERO, |sum, (&lambda, row)| {
+                sum + row[i] * lambda
+            });
             // The multipliers of constraint rows are followed by the forces of drives whose rates are given.
             let drives = model.accelerated.iter();
             let drives = drives.zip(lambda.get(self.rows.len() / n..)?);
             let drive = drives.filter(|((velocity, _), _)| *velocity == i);
-            let drive = drive.fold(Fp::ZERO, |sum, (_, &force)| sum + force);
+            let drive = drive.fold(ResiduePair::ZERO, |sum, (_, &force)| sum + force);
             Some(needed[i] == force[i] + bond + drive)
         });
         balanced.try_fold(true, |all, row| Some(all & row?))
@@ -301,7 +305,7 @@ impl<'a> PointComparison<'a> {
 
     /// Returns whether the multipliers of kept rows are those of the elimination in numbers, if [`Self::has_dependent_rows`], so
     /// that some rows of the balance are not compared. The compared rows determine all other multipliers.
-    fn dependent_multipliers_hold(&self, lambda: &[Fp]) -> Option<bool> {
+    fn dependent_multipliers_hold(&self, lambda: &[ResiduePair]) -> Option<bool> {
         if !self.has_dependent_rows() {
             return Some(true);
         }
@@ -355,9 +359,13 @@ impl<'a> PointComparison<'a> {
         let residuals = inner(&residuals)?;
         let shifts: Vec<Edge> = constraints.iter().map(|c| c.shift).collect();
         let xi = inner(&reduced.xi)?;
-        let held: Vec<(usize, Fp)> = self.driven.iter().map(|&(i, _)| (i, Fp::ZERO)).collect();
-        let back = |left: &[Fp]| {
-            let right: Vec<Fp> = left.iter().map(|&left| -left).collect();
+        let held: Vec<(usize, ResiduePair)> = self
+            .driven
+            .iter()
+            .map(|&(i, _)| (i, ResiduePair::ZERO))
+            .collect();
+        let back = |left: &[ResiduePair]| {
+            let right: Vec<ResiduePair> = left.iter().map(|&left| -left).collect();
             let solution = self.solution(None, &right, &held)?;
             Some(solution.xi_dot)
         };
@@ -368,7 +376,7 @@ impl<'a> PointComparison<'a> {
         }
         if let Some(found) = self.emitted_values("project_velocity")? {
             let rows = self.kept.chunks(na.max(1)).zip(inner(&shifts)?);
-            let speeds: Vec<Fp> = rows.map(|(row, shift)| dot(row, &xi) + shift).collect();
+            let speeds: Vec<ResiduePair> = rows.map(|(row, shift)| dot(row, &xi) + shift).collect();
             let step = back(&speeds)?;
             let mut moved = xi.iter().zip(&step).map(|(&xi, &step)| xi + step);
             let states = inner(reduced.z())?;
@@ -382,7 +390,7 @@ impl<'a> PointComparison<'a> {
         let zero = reduced.graph.zero();
         let loops = constraints.iter().zip(residuals);
         let loops = loops.filter(|(constraint, _)| constraint.residual != zero);
-        let loops: Vec<Fp> = loops.map(|(_, residual)| residual).collect();
+        let loops: Vec<ResiduePair> = loops.map(|(_, residual)| residual).collect();
         let emitted = self.emitted_values("constraint")?;
         Some(emitted.is_none_or(|found| found.ends_with(&loops)))
     }

@@ -10,9 +10,9 @@ use crate::points::{Unequal, at_fresh_points};
 use crate::reference::Reference;
 use crate::states;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::transplant::{substitute, substitute_under_roots};
 use hamel_dynamics::accel::saddle;
 use hamel_dynamics::calculus::Calculus;
@@ -114,14 +114,14 @@ impl Full {
     }
 
     /// Extends multipliers to all rows, with 0 for redundant rows, followed by the forces of drives.
-    pub(super) fn of_all_rows(&self, lambda: Vec<Fp>) -> Vec<Fp> {
+    pub(super) fn of_all_rows(&self, lambda: Vec<ResiduePair>) -> Vec<ResiduePair> {
         let mut next = lambda.into_iter();
         let constraints = self.reference.model.constraints.iter();
         let rows = constraints.map(|row| match row.redundant {
-            true => Fp::ZERO,
-            false => next.next().unwrap_or(Fp::ZERO),
+            true => ResiduePair::ZERO,
+            false => next.next().unwrap_or(ResiduePair::ZERO),
         });
-        let mut all: Vec<Fp> = rows.collect();
+        let mut all: Vec<ResiduePair> = rows.collect();
         all.extend(next);
         all
     }
@@ -237,7 +237,7 @@ pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         let Ok(values) = numbers.at(point)? else {
             return Some(Err(()));
         };
-        let mut expected: Vec<Fp> = values.mass.concat();
+        let mut expected: Vec<ResiduePair> = values.mass.concat();
         for list in [&values.bias, &values.slope, &values.force] {
             expected.extend(list);
         }

@@ -6,9 +6,9 @@ use crate::kernel::{dot, places};
 use crate::outputs::slopes_hold;
 use crate::slopes::measured_at;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::reduction::Reduction;
 use hamel_language::model::class;
@@ -19,9 +19,9 @@ pub(super) struct ConstrainedPoint<'a> {
     full: &'a Full,
     program: &'a Program,
     /// C, by rows.
-    pub(super) c: Vec<Fp>,
+    pub(super) c: Vec<ResiduePair>,
     /// c.
-    pub(super) shift: Vec<Fp>,
+    pub(super) shift: Vec<ResiduePair>,
     /// Values of the symbols of the full model.
     pub(super) point: FieldPoint,
     /// Values of the symbols of the reduced model.
@@ -30,21 +30,21 @@ pub(super) struct ConstrainedPoint<'a> {
 
 /// Numbers of the full frame at a point.
 pub(super) struct Values {
-    pub(super) mass: Vec<Fp>,
-    pub(super) bias: Vec<Fp>,
-    pub(super) slope: Vec<Fp>,
-    pub(super) force: Vec<Fp>,
-    pub(super) drift: Vec<Fp>,
-    pub(super) in_energy: Fp,
-    pub(super) potential: Fp,
-    pub(super) dissipation: Fp,
-    pub(super) change: Fp,
-    pub(super) xi: Vec<Fp>,
+    pub(super) mass: Vec<ResiduePair>,
+    pub(super) bias: Vec<ResiduePair>,
+    pub(super) slope: Vec<ResiduePair>,
+    pub(super) force: Vec<ResiduePair>,
+    pub(super) drift: Vec<ResiduePair>,
+    pub(super) in_energy: ResiduePair,
+    pub(super) potential: ResiduePair,
+    pub(super) dissipation: ResiduePair,
+    pub(super) change: ResiduePair,
+    pub(super) xi: Vec<ResiduePair>,
 }
 
 impl Values {
     /// Returns ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ.
-    pub(super) fn lift(&self, c: &[Fp], xi_dot: &[Fp]) -> Vec<Fp> {
+    pub(super) fn lift(&self, c: &[ResiduePair], xi_dot: &[ResiduePair]) -> Vec<ResiduePair> {
         let na = xi_dot.len();
         let rows = self.drift.iter().enumerate();
         rows.map(|(i, &drift)| dot(&c[i * na..][..na], xi_dot) + drift)
@@ -52,7 +52,7 @@ impl Values {
     }
 
     /// Returns M ξ̇ + h + ∂V, the force that a motion of the full frame needs.
-    pub(super) fn required_force(&self, xi_dot: &[Fp]) -> Vec<Fp> {
+    pub(super) fn required_force(&self, xi_dot: &[ResiduePair]) -> Vec<ResiduePair> {
         let rows = self
             .mass
             .chunks(xi_dot.len())
@@ -76,7 +76,7 @@ impl<'a> ConstrainedPoint<'a> {
         let shift = c.split_off(full.reference.model.n() * reduction.active.len());
         let velocities = places(graph, class::VELOCITY);
         let active = reduction.active.iter();
-        let active: Vec<Fp> = active.map(|&i| point.symbol(velocities[i])).collect();
+        let active: Vec<ResiduePair> = active.map(|&i| point.symbol(velocities[i])).collect();
         let others = [class::ACCEL, class::MOMENTUM].map(|class| places(graph, class));
         let mut point = point.clone();
         let na = active.len();
@@ -111,7 +111,7 @@ impl<'a> ConstrainedPoint<'a> {
     }
 
     /// Returns ẋ = A ξ of the full frame.
-    pub(super) fn rate(&self) -> Option<Vec<Fp>> {
+    pub(super) fn rate(&self) -> Option<Vec<ResiduePair>> {
         let model = &self.full.reference.model;
         let a = evaluate_at(&model.graph, &model.a.concat(), &mut self.point.clone())?;
         let xi = evaluate_at(&model.graph, &model.xi, &mut self.point.clone())?;
@@ -174,7 +174,7 @@ impl<'a> ConstrainedPoint<'a> {
         let xi_dot = evaluate_at(&self.program.graph, xi_dot, &mut self.inner.clone())?;
         let xi_dot = values.lift(&self.c, &xi_dot);
         let n = xi_dot.len();
-        let momentum: Vec<Fp> = (0..n)
+        let momentum: Vec<ResiduePair> = (0..n)
             .map(|i| dot(&values.mass[i * n..][..n], &values.xi))
             .collect();
         let full = &self.full.reference.model;
@@ -242,18 +242,18 @@ impl<'a> ConstrainedPoint<'a> {
         others.extend(given);
         let size = reduced.graph.symbols().len();
         // Rates of the columns of A along the motion.
-        let mut moving = vec![Fp::ZERO; full.graph.symbols().len()];
+        let mut moving = vec![ResiduePair::ZERO; full.graph.symbols().len()];
         moving[x.clone()].copy_from_slice(&rate);
         let swept = tangent_at(&full.graph, &a_edges, &mut self.point.clone(), &moving)?;
         let given = |alpha: usize| full.prescribed.iter().any(|(place, _)| *place == alpha);
         for column in 0..width {
-            let mut direction = vec![Fp::ZERO; size];
+            let mut direction = vec![ResiduePair::ZERO; size];
             if column < n {
                 for (alpha, place) in x.clone().enumerate() {
                     direction[place] = a[alpha * all + displaced[column]];
                 }
             } else {
-                direction[others[column - n]] = Fp::ONE;
+                direction[others[column - n]] = ResiduePair::ONE;
             }
             let graph = &self.program.graph;
             let slopes = tangent_at(graph, &accel.outputs, &mut self.inner.clone(), &direction)?;
@@ -265,16 +265,16 @@ impl<'a> ConstrainedPoint<'a> {
             )?;
             let bent = (0..na + n_z).any(|row| entry(n + row, column) != slopes[row].1);
             let left = (0..nu).map(|alpha| {
-                let sum = (0..n).fold(Fp::ZERO, |sum, k| {
+                let sum = (0..n).fold(ResiduePair::ZERO, |sum, k| {
                     sum + a[alpha * all + displaced[k]] * entry(k, column)
                 });
                 let swept = match column < n {
                     true => swept[alpha * all + displaced[column]].1,
-                    false => Fp::ZERO,
+                    false => ResiduePair::ZERO,
                 };
                 sum + swept - ahead[alpha].1
             });
-            let left: Vec<Fp> = left.collect();
+            let left: Vec<ResiduePair> = left.collect();
             // Prescribed coordinates are not read by the functions, so that their ẋ stays the same when they are
             // displaced; on a circle it is then no longer tangent. Their rows are only compared along the columns of A,
             // where ḣ determines them.
@@ -282,12 +282,14 @@ impl<'a> ConstrainedPoint<'a> {
                 && displaced.iter().all(|&j| {
                     let along = (0..nu).filter(|&alpha| given(alpha));
                     let along = along.map(|alpha| a[alpha * all + j] * left[alpha]);
-                    along.fold(Fp::ZERO, |sum, part| sum + part).is_zero()
+                    along
+                        .fold(ResiduePair::ZERO, |sum, part| sum + part)
+                        .is_zero()
                 });
-            let rates: Vec<Fp> = slopes[..na].iter().map(|slope| slope.0).collect();
-            let changes: Vec<Fp> = slopes[..na].iter().map(|slope| slope.1).collect();
-            let mut unit = vec![Fp::ZERO; width];
-            unit[column] = Fp::ONE;
+            let rates: Vec<ResiduePair> = slopes[..na].iter().map(|slope| slope.0).collect();
+            let changes: Vec<ResiduePair> = slopes[..na].iter().map(|slope| slope.1).collect();
+            let mut unit = vec![ResiduePair::ZERO; width];
+            unit[column] = ResiduePair::ONE;
             let along = (&direction[..], &unit[..]);
             let observed = slopes_hold(
                 reduced,

@@ -6,9 +6,9 @@ use crate::kernel::at_rest;
 use crate::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use crate::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::calculus::Calculus;
 use hamel_dynamics::{energy, inertia, quantity};
@@ -123,7 +123,7 @@ fn slopes(
     program: &Program,
     entries: &[Edge],
     point: &FieldPoint,
-) -> Option<Vec<Fp>> {
+) -> Option<Vec<ResiduePair>> {
     let graph = &model.graph;
     let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut point.clone())?;
     let rate = evaluate_at(graph, &model.rate, &mut point.clone())?;

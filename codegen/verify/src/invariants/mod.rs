@@ -20,10 +20,10 @@ use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::matrix;
 use hamel_algebra::numeric::{evaluate_at, solve};
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::calculus::Calculus;
 use hamel_dynamics::quantity;
@@ -215,7 +215,12 @@ impl Equations {
     }
 
     /// Returns d/dt of the entries at a point.
-    fn slopes(&self, entries: &[Edge], force: &[Edge], point: &FieldPoint) -> Option<Vec<Fp>> {
+    fn slopes(
+        &self,
+        entries: &[Edge],
+        force: &[Edge],
+        point: &FieldPoint,
+    ) -> Option<Vec<ResiduePair>> {
         let model = &self.reference.model;
         let graph = &model.graph;
         let n = model.n();
@@ -268,8 +273,12 @@ impl Equations {
 }
 
 /// Returns the direction of the motion in all symbols, from ẋ and ξ̇.
-pub(super) fn direction(model: &Model, rate: &[Fp], xi_dot: &[Fp]) -> Vec<Fp> {
-    let mut direction = vec![Fp::ZERO; model.graph.symbols().len()];
+pub(super) fn direction(
+    model: &Model,
+    rate: &[ResiduePair],
+    xi_dot: &[ResiduePair],
+) -> Vec<ResiduePair> {
+    let mut direction = vec![ResiduePair::ZERO; model.graph.symbols().len()];
     let moving = model.x.iter().zip(rate).chain(model.xi.iter().zip(xi_dot));
     for (symbol, &slope) in moving {
         if let Node::Symbol(index) = model.graph.node(symbol.node()) {

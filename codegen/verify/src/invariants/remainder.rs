@@ -80,16 +80,16 @@ fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::expression;
-    use hamel_algebra::fp::Fp;
     use hamel_algebra::function::Function;
     use hamel_algebra::graph::Graph;
+    use hamel_algebra::residue_pair::ResiduePair;
 
     /// The sign of a node belongs to the graph: either form is right, as long as it has the value of the expression.
     #[test]
     fn sums_behind_a_sign_have_parentheses() {
         let mut graph = Graph::new(7);
         let [a, b, c] = [("a", 1 << 50), ("b", 3 << 45), ("c", 5 << 41)]
-            .map(|(name, value)| graph.symbol(name, 1, Fp::from_i64(value)));
+            .map(|(name, value)| graph.symbol(name, 1, ResiduePair::from_i64(value)));
         let sum = graph.add(b, c);
         for operand in [sum, -sum] {
             let difference = graph.add(a, operand);

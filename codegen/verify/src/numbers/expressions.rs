@@ -2,7 +2,7 @@
 
 use super::motion::entries;
 use super::space::{Mat3, Vec3};
-use hamel_algebra::fp::Fp;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tape::Tape;
 use hamel_dynamics::{energy, kinematics};
 use hamel_language::model::Model;
@@ -102,8 +102,8 @@ impl Expressions {
         self.model.kinetic != self.model.graph.zero()
     }
 
-    fn seed(&self, sets: [(&[usize], &[Fp]); 2]) -> Vec<Fp> {
-        let mut seed = vec![Fp::ZERO; self.symbols];
+    fn seed(&self, sets: [(&[usize], &[ResiduePair]); 2]) -> Vec<ResiduePair> {
+        let mut seed = vec![ResiduePair::ZERO; self.symbols];
         for (places, values) in sets {
             for (&place, &value) in places.iter().zip(values) {
                 if let Some(entry) = seed.get_mut(place) {
@@ -115,42 +115,42 @@ impl Expressions {
     }
 
     /// Returns a direction in x as a direction in all symbols.
-    pub fn of_x(&self, x: &[Fp]) -> Vec<Fp> {
+    pub fn of_x(&self, x: &[ResiduePair]) -> Vec<ResiduePair> {
         self.seed([(&self.x, x), (&[], &[])])
     }
 
     /// Returns a direction in ξ as a direction in all symbols.
-    pub fn of_xi(&self, xi: &[Fp]) -> Vec<Fp> {
+    pub fn of_xi(&self, xi: &[ResiduePair]) -> Vec<ResiduePair> {
         self.seed([(&self.xi, xi), (&[], &[])])
     }
 
     /// Returns the entries of ξ in a list with one entry for each symbol.
-    pub fn xi_of(&self, symbols: &[Fp]) -> Vec<Fp> {
-        let entry = |&place: &usize| symbols.get(place).copied().unwrap_or(Fp::ZERO);
+    pub fn xi_of(&self, symbols: &[ResiduePair]) -> Vec<ResiduePair> {
+        let entry = |&place: &usize| symbols.get(place).copied().unwrap_or(ResiduePair::ZERO);
         self.xi.iter().map(entry).collect()
     }
 
     /// Returns a direction in x and ξ as a direction in all symbols.
-    pub fn of_x_and_xi(&self, x: &[Fp], xi: &[Fp]) -> Vec<Fp> {
+    pub fn of_x_and_xi(&self, x: &[ResiduePair], xi: &[ResiduePair]) -> Vec<ResiduePair> {
         self.seed([(&self.x, x), (&self.xi, xi)])
     }
 }
 
 /// Reads values in the order in which their expressions were listed.
 pub struct Reader<'a> {
-    rest: std::slice::Iter<'a, Fp>,
+    rest: std::slice::Iter<'a, ResiduePair>,
 }
 
 impl<'a> Reader<'a> {
     /// Starts at the first value.
-    pub fn new(values: &'a [Fp]) -> Self {
+    pub fn new(values: &'a [ResiduePair]) -> Self {
         Reader {
             rest: values.iter(),
         }
     }
 
     /// Reads a number.
-    pub fn one(&mut self) -> Option<Fp> {
+    pub fn one(&mut self) -> Option<ResiduePair> {
         self.rest.next().copied()
     }
 
@@ -165,7 +165,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a list of `count` numbers.
-    pub fn list(&mut self, count: usize) -> Option<Vec<Fp>> {
+    pub fn list(&mut self, count: usize) -> Option<Vec<ResiduePair>> {
         (0..count).map(|_| self.one()).collect()
     }
 }

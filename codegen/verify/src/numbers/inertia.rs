@@ -3,12 +3,12 @@
 use super::motion::{Moving, MovingFrame};
 use super::space::{Mat3, Vec3, add, apply, apply_transposed, cross, scale};
 use crate::kernel::dot;
-use hamel_algebra::fp::Fp;
+use hamel_algebra::residue_pair::ResiduePair;
 
 /// Mass properties of a body in numbers.
 pub struct BodyNumbers {
     /// Mass.
-    pub mass: Fp,
+    pub mass: ResiduePair,
     /// Centre of mass, in frame axes.
     pub com: Vec3,
     /// Inertia about the centre of mass.
@@ -20,44 +20,44 @@ pub struct BodyNumbers {
 /// Sums over bodies and particles, and over a kinetic energy that the user wrote.
 pub struct Sums {
     /// ∂S/∂ξ̇ⁱ by accelerations, (30b).
-    pub gibbs: Vec<Fp>,
+    pub gibbs: Vec<ResiduePair>,
     /// Generalised weights Σ m ⟨g, ∂ᵢr⟩.
-    pub weight: Vec<Fp>,
+    pub weight: Vec<ResiduePair>,
     /// Generalised momenta ∂T/∂ξⁱ, from velocities.
-    pub momentum: Vec<Fp>,
+    pub momentum: Vec<ResiduePair>,
     /// d/dt ∂T/∂ξⁱ.
-    pub momentum_rate: Vec<Fp>,
+    pub momentum_rate: Vec<ResiduePair>,
     /// ∂ᵢT.
-    pub slope: Vec<Fp>,
+    pub slope: Vec<ResiduePair>,
     /// Kinetic energy T.
-    pub kinetic: Fp,
+    pub kinetic: ResiduePair,
     /// Mass matrix M, KR18 (20).
-    pub mass: Vec<Vec<Fp>>,
+    pub mass: Vec<Vec<ResiduePair>>,
     /// Ṁ_ij ξʲ.
-    pub mass_rate: Vec<Fp>,
+    pub mass_rate: Vec<ResiduePair>,
     /// ½ ∂ᵢM_jk ξʲ ξᵏ.
-    pub centrifugal: Vec<Fp>,
+    pub centrifugal: Vec<ResiduePair>,
 }
 
-fn half() -> Fp {
-    Fp::new(2).inv().unwrap_or(Fp::ONE)
+fn half() -> ResiduePair {
+    ResiduePair::new(2).inv().unwrap_or(ResiduePair::ONE)
 }
 
-fn increase(sum: &mut Fp, by: Fp) {
+fn increase(sum: &mut ResiduePair, by: ResiduePair) {
     *sum = *sum + by;
 }
 
 impl Sums {
     /// Creates sums without any terms.
     pub fn new(n: usize) -> Self {
-        let zero = || vec![Fp::ZERO; n];
+        let zero = || vec![ResiduePair::ZERO; n];
         Sums {
             gibbs: zero(),
             weight: zero(),
             momentum: zero(),
             momentum_rate: zero(),
             slope: zero(),
-            kinetic: Fp::ZERO,
+            kinetic: ResiduePair::ZERO,
             mass: vec![zero(); n],
             mass_rate: zero(),
             centrifugal: zero(),
@@ -65,7 +65,7 @@ impl Sums {
     }
 
     /// Adds a point mass to the terms of (30a) and (30b), and its weight.
-    fn point(&mut self, mass: Fp, gravity: Vec3, point: &Moving<Vec3>) {
+    fn point(&mut self, mass: ResiduePair, gravity: Vec3, point: &Moving<Vec3>) {
         let (velocity, acceleration) = (scale(mass, point.rate), scale(mass, point.second));
         let weight = scale(mass, gravity);
         for i in 0..self.gibbs.len() {
@@ -84,10 +84,15 @@ impl Sums {
 
     /// Adds to M and its derivatives, given the velocity t = tᵢ ξⁱ with tᵢ, d/dt tᵢ and ∂ᵢt, and the inertia that acts
     /// on it.
-    fn metric(&mut self, twists: &Twists, xi: &[Fp], inertia: impl Fn(&[Fp]) -> Vec<Fp>) {
+    fn metric(
+        &mut self,
+        twists: &Twists,
+        xi: &[ResiduePair],
+        inertia: impl Fn(&[ResiduePair]) -> Vec<ResiduePair>,
+    ) {
         let n = xi.len();
         let momentum = inertia(&twists.total);
-        let mut drift = vec![Fp::ZERO; twists.total.len()];
+        let mut drift = vec![ResiduePair::ZERO; twists.total.len()];
         for (rate, &speed) in twists.rate_by.iter().zip(xi) {
             for (sum, &entry) in drift.iter_mut().zip(rate) {
                 increase(sum, entry * speed);
@@ -116,7 +121,13 @@ impl Sums {
     }
 
     /// Adds a particle.
-    pub fn particle(&mut self, mass: Fp, gravity: Vec3, point: &Moving<Vec3>, xi: &[Fp]) {
+    pub fn particle(
+        &mut self,
+        mass: ResiduePair,
+        gravity: Vec3,
+        point: &Moving<Vec3>,
+        xi: &[ResiduePair],
+    ) {
         self.point(mass, gravity, point);
         let all = |list: &[Vec3]| list.iter().map(|entry| entry.to_vec()).collect();
         let twists = Twists {
@@ -131,7 +142,13 @@ impl Sums {
     }
 
     /// Adds a body: (30a) and (30b) from its centre of mass, M from the twist of its frame's origin.
-    pub fn body(&mut self, body: &BodyNumbers, gravity: Vec3, frame: &MovingFrame, xi: &[Fp]) {
+    pub fn body(
+        &mut self,
+        body: &BodyNumbers,
+        gravity: Vec3,
+        frame: &MovingFrame,
+        xi: &[ResiduePair],
+    ) {
         let n = xi.len();
         self.point(body.mass, gravity, &frame.point(body.com));
         let spin = frame.spin();
@@ -150,7 +167,7 @@ impl Sums {
         let (r, p) = (&frame.rotation, &frame.position);
         let twist = |v: Vec3, w: Vec3| [v, w].concat();
         let into = apply_transposed;
-        let each = |f: &dyn Fn(usize) -> Vec<Fp>| (0..n).map(f).collect::<Vec<_>>();
+        let each = |f: &dyn Fn(usize) -> Vec<ResiduePair>| (0..n).map(f).collect::<Vec<_>>();
         let twists = Twists {
             total: twist(into(&r.value, p.rate), spin.omega),
             by: each(&|i| twist(into(&r.value, p.by[i]), spin.by[i])),
@@ -179,11 +196,11 @@ impl Sums {
 /// Velocity t, linear in ξ, whose kinetic energy M describes: that of a particle, or the twist of a body in body axes.
 struct Twists {
     /// t.
-    total: Vec<Fp>,
+    total: Vec<ResiduePair>,
     /// tᵢ = ∂t/∂ξⁱ.
-    by: Vec<Vec<Fp>>,
+    by: Vec<Vec<ResiduePair>>,
     /// d/dt tᵢ.
-    rate_by: Vec<Vec<Fp>>,
+    rate_by: Vec<Vec<ResiduePair>>,
     /// ∂ᵢt.
-    by_total: Vec<Vec<Fp>>,
+    by_total: Vec<Vec<ResiduePair>>,
 }

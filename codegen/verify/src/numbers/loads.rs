@@ -4,18 +4,18 @@
 use super::motion::{Moving, MovingFrame};
 use super::space::{Vec3, add, apply, column, cross, scale, sub};
 use crate::kernel::dot;
-use hamel_algebra::fp::Fp;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::syntax::ast::Axes;
 
 /// Sum of forces on points, as generalised forces.
 pub struct Forces {
     /// Generalised forces fᵢ.
-    pub sum: Vec<Fp>,
+    pub sum: Vec<ResiduePair>,
 }
 
 impl Forces {
     /// Adds generalised forces as they are given.
-    pub fn add(&mut self, forces: impl IntoIterator<Item = Fp>) {
+    pub fn add(&mut self, forces: impl IntoIterator<Item = ResiduePair>) {
         for (sum, force) in self.sum.iter_mut().zip(forces) {
             *sum = *sum + force;
         }
@@ -43,7 +43,7 @@ impl Forces {
         };
         let point = frame.position.by.iter().zip(&frame.rotation.by);
         self.at(world(force), point.map(|(&p, r)| add(p, apply(r, at))));
-        let half = Fp::new(2).inv().unwrap_or(Fp::ONE);
+        let half = ResiduePair::new(2).inv().unwrap_or(ResiduePair::ONE);
         let torque = scale(half, world(torque));
         for k in 0..3 {
             let couple = cross(torque, column(&frame.rotation.value, k));
@@ -54,7 +54,7 @@ impl Forces {
     /// Adds a damper along a line, as a force −c (d·ḋ)/(d·d) d on its second point and the opposite one on its first.
     pub fn damper(
         &mut self,
-        coefficient: Fp,
+        coefficient: ResiduePair,
         from: &Moving<Vec3>,
         to: &Moving<Vec3>,
     ) -> Option<()> {

@@ -27,8 +27,8 @@ mod space;
 use crate::kernel::dot;
 use expressions::{Expressions, Reader};
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::jets::{Jet, Seeds};
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
 use inertia::{BodyNumbers, Sums};
@@ -45,27 +45,27 @@ pub struct Numbers {
 /// Left sides of (30a), (30b), (30c) at one point (x, ξ, ξ̇, u), and the quantities in them, as numbers modulo p.
 pub struct Values {
     /// Left sides of (30a), (30b), (30c).
-    pub left: [Vec<Fp>; 3],
+    pub left: [Vec<ResiduePair>; 3],
     /// Mass matrix M.
-    pub mass: Vec<Vec<Fp>>,
+    pub mass: Vec<Vec<ResiduePair>>,
     /// Bias forces h = Γ ξ ξ.
-    pub bias: Vec<Fp>,
+    pub bias: Vec<ResiduePair>,
     /// Derivatives ∂ᵢV of the potential energy.
-    pub slope: Vec<Fp>,
+    pub slope: Vec<ResiduePair>,
     /// Generalised forces f.
-    pub force: Vec<Fp>,
+    pub force: Vec<ResiduePair>,
     /// Generalised momenta p = ∂T/∂ξ.
-    pub momentum: Vec<Fp>,
+    pub momentum: Vec<ResiduePair>,
     /// Ṁ ξ.
-    pub mass_rate: Vec<Fp>,
+    pub mass_rate: Vec<ResiduePair>,
     /// Rates of the coordinates, ẋ.
-    pub rate: Vec<Fp>,
+    pub rate: Vec<ResiduePair>,
     /// Kinetic energy T.
-    pub kinetic: Fp,
+    pub kinetic: ResiduePair,
     /// Potential energy V.
-    pub potential: Fp,
+    pub potential: ResiduePair,
     /// Dissipation D.
-    pub dissipation: Fp,
+    pub dissipation: ResiduePair,
 }
 
 /// A, Y and ẋ with their derivatives at one point.
@@ -78,7 +78,7 @@ struct Kinematics {
 }
 
 impl Kinematics {
-    fn column(&self, i: usize, of: impl Fn(&Jet) -> Fp) -> Vec<Fp> {
+    fn column(&self, i: usize, of: impl Fn(&Jet) -> ResiduePair) -> Vec<ResiduePair> {
         self.a
             .iter()
             .skip(i)
@@ -88,7 +88,7 @@ impl Kinematics {
     }
 
     /// Returns ∂ᵢẋ at constant ξ.
-    fn drift(&self, i: usize) -> Vec<Fp> {
+    fn drift(&self, i: usize) -> Vec<ResiduePair> {
         self.rate.iter().map(|jet| jet.across(i)).collect()
     }
 
@@ -99,7 +99,7 @@ impl Kinematics {
     /// Returns whether Y A = I.
     fn inverse(&self) -> bool {
         self.rows().enumerate().all(|(k, row)| {
-            let mut product = vec![Fp::ZERO; self.n];
+            let mut product = vec![ResiduePair::ZERO; self.n];
             for (y, of_a) in row.iter().zip(self.a.chunks(self.n.max(1))) {
                 if y.value.is_zero() {
                     continue;
@@ -109,12 +109,19 @@ impl Kinematics {
                 }
             }
             let mut entries = product.into_iter().enumerate();
-            entries.all(|(i, entry)| entry == if i == k { Fp::ONE } else { Fp::ZERO })
+            entries.all(|(i, entry)| {
+                entry
+                    == if i == k {
+                        ResiduePair::ONE
+                    } else {
+                        ResiduePair::ZERO
+                    }
+            })
         })
     }
 
     /// Returns γᵢⱼᵏ ξʲ p_k by (12), (∂ᵢẋ − Ȧᵢ) Y p.
-    fn turn(&self, p: &[Fp]) -> Vec<Fp> {
+    fn turn(&self, p: &[ResiduePair]) -> Vec<ResiduePair> {
         let weighted = self.transposed_product(p, |jet| jet.value);
         let turn = |i: usize| {
             let moved = self.column(i, |jet| jet.along);
@@ -124,11 +131,11 @@ impl Kinematics {
     }
 
     /// Returns γᵢⱼᵏ ξʲ p_k by (13), (Ẏ Aᵢ − ∂ᵢY ẋ) p.
-    fn turn_of_rows(&self, p: &[Fp]) -> Vec<Fp> {
-        let rate: Vec<Fp> = self.rate.iter().map(|jet| jet.value).collect();
+    fn turn_of_rows(&self, p: &[ResiduePair]) -> Vec<ResiduePair> {
+        let rate: Vec<ResiduePair> = self.rate.iter().map(|jet| jet.value).collect();
         let moved = self.transposed_product(p, |jet| jet.along);
         // Entries Y_α^k that are not constant, weighted by p_k ẋ^α; in large frames there are few of them.
-        let mut moving: Vec<(&Jet, Fp)> = Vec::new();
+        let mut moving: Vec<(&Jet, ResiduePair)> = Vec::new();
         for (row, &p) in self.rows().zip(p) {
             let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_constant());
             moving.extend(entries.map(|(jet, &rate)| (jet, p * rate)));
@@ -137,15 +144,21 @@ impl Kinematics {
             let own = self.column(i, |jet| jet.value);
             let changes = moving
                 .iter()
-                .fold(Fp::ZERO, |sum, &(jet, weight)| sum + jet.across(i) * weight);
+                .fold(ResiduePair::ZERO, |sum, &(jet, weight)| {
+                    sum + jet.across(i) * weight
+                });
             dot(&moved, &own) - changes
         };
         (0..self.n).map(turn).collect()
     }
 
     /// Returns Y_α^k p_k, or the same with derivatives of Y.
-    fn transposed_product(&self, p: &[Fp], of: impl Fn(&Jet) -> Fp) -> Vec<Fp> {
-        let mut sum = vec![Fp::ZERO; self.nu];
+    fn transposed_product(
+        &self,
+        p: &[ResiduePair],
+        of: impl Fn(&Jet) -> ResiduePair,
+    ) -> Vec<ResiduePair> {
+        let mut sum = vec![ResiduePair::ZERO; self.nu];
         for (row, &p) in self.rows().zip(p) {
             for (sum, jet) in sum.iter_mut().zip(row) {
                 *sum = *sum + of(jet) * p;
@@ -177,7 +190,7 @@ impl Numbers {
         let start = all.kinematics.values(field_point)?;
         let (a, rest) = start.split_at_checked(n * nu)?;
         let rate = rest.get(..nu)?;
-        let columns: Vec<Vec<Fp>> = (0..n)
+        let columns: Vec<Vec<ResiduePair>> = (0..n)
             .map(|i| {
                 all.of_x(
                     &a.iter()
@@ -208,7 +221,7 @@ impl Numbers {
             return Some(Err("(6), Y A = I".into()));
         }
         // Columns (x₂ with x₁₂): Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
-        let second: Vec<Fp> = kinematics.rate.iter().map(|jet| jet.along).collect();
+        let second: Vec<ResiduePair> = kinematics.rate.iter().map(|jet| jet.along).collect();
         let following = (0..n).map(|i| all.of_x(&kinematics.column(i, |jet| jet.along)));
         let drifting = (0..n).map(|i| all.of_x(&kinematics.drift(i)));
         let seeds = Seeds {
@@ -250,12 +263,12 @@ impl Numbers {
         for _ in &model.particles {
             sums.particle(read.one()?, gravity, &points.next()?, &xi);
         }
-        let along = |jet: &Jet| (0..n).map(|i| jet.across(i)).collect::<Vec<Fp>>();
+        let along = |jet: &Jet| (0..n).map(|i| jet.across(i)).collect::<Vec<ResiduePair>>();
         let [potential, beside, written] = potentials else {
             return None;
         };
         let slope = along(potential);
-        let mut left_of_written = vec![Fp::ZERO; n];
+        let mut left_of_written = vec![ResiduePair::ZERO; n];
         if all.writes_kinetic() {
             left_of_written = self.add_written_kinetic(
                 field_point,
@@ -269,9 +282,9 @@ impl Numbers {
         let hamel = (0..n).map(|i| sums.momentum_rate[i] - sums.slope[i] + turn[i] + slope[i]);
         let beside = along(beside);
         let gibbs = (0..n).map(|i| sums.gibbs[i] - sums.weight[i] + beside[i] + left_of_written[i]);
-        let momentum: Vec<Fp> = sums.mass.iter().map(|row| dot(row, &xi)).collect();
+        let momentum: Vec<ResiduePair> = sums.mass.iter().map(|row| dot(row, &xi)).collect();
         let turn = kinematics.turn_of_rows(&momentum);
-        let bias: Vec<Fp> = (0..n)
+        let bias: Vec<ResiduePair> = (0..n)
             .map(|i| sums.mass_rate[i] - sums.centrifugal[i] + turn[i])
             .collect();
         let levi_civita = (0..n).map(|i| dot(&sums.mass[i], &xi_dot) + bias[i] + slope[i]);
@@ -299,13 +312,13 @@ impl Numbers {
         field_point: &FieldPoint,
         kinematics: &Kinematics,
         sums: &mut Sums,
-        (rate, xi, xi_dot): (&[Fp], &[Fp], &[Fp]),
+        (rate, xi, xi_dot): (&[ResiduePair], &[ResiduePair], &[ResiduePair]),
         written: &Jet,
-    ) -> Option<Vec<Fp>> {
+    ) -> Option<Vec<ResiduePair>> {
         let all = &self.expressions;
         let n = xi.len();
-        let by_velocity: Vec<Vec<Fp>> = (0..n).map(|i| all.of_xi(&unit(n, i))).collect();
-        let by = |along: Vec<Fp>| -> Option<Jet> {
+        let by_velocity: Vec<Vec<ResiduePair>> = (0..n).map(|i| all.of_xi(&unit(n, i))).collect();
+        let by = |along: Vec<ResiduePair>| -> Option<Jet> {
             let seeds = Seeds {
                 along,
                 across: by_velocity.clone(),
@@ -315,7 +328,7 @@ impl Numbers {
         };
         let driven = by(all.of_x_and_xi(rate, xi_dot))?;
         let coasting = by(all.of_x(rate))?;
-        let momentum: Vec<Fp> = (0..n).map(|i| driven.across(i)).collect();
+        let momentum: Vec<ResiduePair> = (0..n).map(|i| driven.across(i)).collect();
         let turn = kinematics.turn_of_rows(&momentum);
         let mut left = Vec::with_capacity(n);
         sums.kinetic = sums.kinetic + written.value;
@@ -349,13 +362,13 @@ impl Numbers {
         read: &mut Reader,
         frames: &FxHashMap<usize, MovingFrame>,
         points: &mut dyn Iterator<Item = Moving<Vec3>>,
-        xi: &[Fp],
-    ) -> Option<(Vec<Fp>, Fp)> {
+        xi: &[ResiduePair],
+    ) -> Option<(Vec<ResiduePair>, ResiduePair)> {
         let all = &self.expressions;
         let elements = &all.model.elements;
         let n = xi.len();
         let none = || Forces {
-            sum: vec![Fp::ZERO; n],
+            sum: vec![ResiduePair::ZERO; n],
         };
         let mut applied = none();
         applied.add(read.list(n)?);
@@ -402,13 +415,19 @@ impl Numbers {
         resisting.add((0..n).map(|i| -dissipation.mixed(i)));
         let power = dot(&resisting.sum, xi);
         applied.add(resisting.sum);
-        Some((applied.sum, -(power * Fp::new(2).inv()?)))
+        Some((applied.sum, -(power * ResiduePair::new(2).inv()?)))
     }
 }
 
 /// Returns the i-th of n unit vectors.
-fn unit(n: usize, i: usize) -> Vec<Fp> {
+fn unit(n: usize, i: usize) -> Vec<ResiduePair> {
     (0..n)
-        .map(|j| if i == j { Fp::ONE } else { Fp::ZERO })
+        .map(|j| {
+            if i == j {
+                ResiduePair::ONE
+            } else {
+                ResiduePair::ZERO
+            }
+        })
         .collect()
 }

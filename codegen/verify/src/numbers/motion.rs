@@ -4,9 +4,9 @@
 //! Aᵢ changes with x, in ∂ᵢṙ it is ẋ that changes; the difference of the two is what the coefficients γ express.
 
 use super::space::{Mat3, Vec3, add, apply, spin};
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::jets::Jet;
+use hamel_algebra::residue_pair::ResiduePair;
 
 /// A quantity q and its derivatives.
 #[derive(Clone, Debug)]
@@ -27,9 +27,10 @@ pub struct Moving<T> {
 
 impl<T: Copy> Moving<T> {
     /// Collects derivatives from jets with the columns Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
-    fn assemble(n: usize, entry: impl Fn(&dyn Fn(&Jet) -> Fp) -> T) -> Self {
-        let across = |i: usize| entry(&|jet| jet.across.get(i).copied().unwrap_or(Fp::ZERO));
-        let mixed = |i: usize| entry(&|jet| jet.mixed.get(i).copied().unwrap_or(Fp::ZERO));
+    fn assemble(n: usize, entry: impl Fn(&dyn Fn(&Jet) -> ResiduePair) -> T) -> Self {
+        let across =
+            |i: usize| entry(&|jet| jet.across.get(i).copied().unwrap_or(ResiduePair::ZERO));
+        let mixed = |i: usize| entry(&|jet| jet.mixed.get(i).copied().unwrap_or(ResiduePair::ZERO));
         Moving {
             value: entry(&|jet| jet.value),
             rate: entry(&|jet| jet.along),

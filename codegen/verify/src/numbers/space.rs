@@ -1,10 +1,10 @@
 //! Vectors and matrices of numbers modulo p, and the angular velocity of a frame from the rates of its axes.
 
 use crate::kernel::dot;
-use hamel_algebra::fp::Fp;
+use hamel_algebra::residue_pair::ResiduePair;
 
 /// Vector of three numbers.
-pub type Vec3 = [Fp; 3];
+pub type Vec3 = [ResiduePair; 3];
 /// Matrix of three rows.
 pub type Mat3 = [Vec3; 3];
 
@@ -19,7 +19,7 @@ pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
 }
 
 /// Returns c a.
-pub fn scale(c: Fp, a: Vec3) -> Vec3 {
+pub fn scale(c: ResiduePair, a: Vec3) -> Vec3 {
     a.map(|entry| c * entry)
 }
 

@@ -1,6 +1,6 @@
 //! Mutations of descriptions, token by token and statement by statement.
 
-use hamel_codegen::algebra::fp;
+use hamel_codegen::algebra::residue_pair;
 use std::path::Path;
 
 /// Words, numbers and signs that fixtures may lack.
@@ -147,11 +147,13 @@ const WORDS: &[&str] = &[
 ];
 
 /// Pseudo-random choices.
-pub struct Random(fp::Random);
+pub struct Random(residue_pair::Random);
 
 impl Random {
     pub fn new(seed: u64) -> Self {
-        Random(fp::Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
+        Random(residue_pair::Random::new(
+            seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
+        ))
     }
 
     /// Returns a number below a nonzero bound.

@@ -13,8 +13,8 @@ use super::regressor::Regressor;
 use super::tree::Placement;
 use super::{momentum, quantity};
 use Argument::{Coordinates, Inputs, Velocities};
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::transplant::graft;
 use hamel_language::functions::SLOPES;
 use hamel_language::model::invariants::Quantity;
@@ -322,7 +322,7 @@ impl Builder<'_> {
                         let found = quantity::of_total(&mut graph, (*linear, *angular), quantity);
                         // The result has to agree with the definition at the graph's point, in two
                         // finite fields.
-                        let values = |graph: &Graph, entries: &[Edge]| -> Vec<Fp> {
+                        let values = |graph: &Graph, entries: &[Edge]| -> Vec<ResiduePair> {
                             entries.iter().map(|&entry| graph.value(entry)).collect()
                         };
                         let defined = values(&model.graph, &value.entries());

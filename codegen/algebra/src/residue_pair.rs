@@ -12,37 +12,37 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A pair of elements of F_p(i) and F_q(i).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord, Default)]
-pub struct Fp(pub Residue<0>, pub Residue<1>);
+pub struct ResiduePair(pub Residue<0>, pub Residue<1>);
 
-impl Fp {
+impl ResiduePair {
     /// Zero of the ring: 0 in both fields.
-    pub const ZERO: Fp = Fp(Residue::ZERO, Residue::ZERO);
+    pub const ZERO: ResiduePair = ResiduePair(Residue::ZERO, Residue::ZERO);
     /// 1.
-    pub const ONE: Fp = Fp(Residue::ONE, Residue::ONE);
+    pub const ONE: ResiduePair = ResiduePair(Residue::ONE, Residue::ONE);
     /// Value that stands for π, the same at every point. The sines and cosines of its twelfths are known.
-    pub const PI: Fp = Fp(
+    pub const PI: ResiduePair = ResiduePair(
         Residue::new(0x0a3f_51c7_9e26_d80b),
         Residue::new(0x1c5d_09b2_64fa_8e37),
     );
 
     /// Returns the residue class of a non-negative integer.
     pub fn new(value: u64) -> Self {
-        Fp(Residue::new(value), Residue::new(value))
+        ResiduePair(Residue::new(value), Residue::new(value))
     }
 
     /// Returns the residue class of an integer.
     pub fn from_i64(value: i64) -> Self {
-        Fp(Residue::from_i64(value), Residue::from_i64(value))
+        ResiduePair(Residue::from_i64(value), Residue::from_i64(value))
     }
 
     /// Returns the residue class of an integer of any size.
     pub fn from_integer(value: &BigInt) -> Self {
-        Fp(Residue::from_integer(value), Residue::from_integer(value))
+        ResiduePair(Residue::from_integer(value), Residue::from_integer(value))
     }
 
     /// Returns the residue class of a rational; `None` if a prime divides the denominator.
     pub fn from_rational(value: &BigRational) -> Option<Self> {
-        Some(Fp(
+        Some(ResiduePair(
             Residue::from_rational(value)?,
             Residue::from_rational(value)?,
         ))
@@ -69,16 +69,16 @@ impl Fp {
 
     /// The inverse; `None` where a part is 0.
     pub fn inv(self) -> Option<Self> {
-        Some(Fp(self.0.inv()?, self.1.inv()?))
+        Some(ResiduePair(self.0.inv()?, self.1.inv()?))
     }
 
     /// Inverts many values at the cost of one inversion, and of three products for each value (Montgomery's
     /// trick).
-    pub fn inverses(values: impl Iterator<Item = Fp>) -> Vec<Option<Self>> {
-        let has_inverse = |value: Fp| !value.0.is_zero() && !value.1.is_zero();
-        let mut product = Fp::ONE;
+    pub fn inverses(values: impl Iterator<Item = ResiduePair>) -> Vec<Option<Self>> {
+        let has_inverse = |value: ResiduePair| !value.0.is_zero() && !value.1.is_zero();
+        let mut product = ResiduePair::ONE;
         // Each value with the product of the invertible ones before it.
-        let before: Vec<(Fp, Fp)> = values
+        let before: Vec<(ResiduePair, ResiduePair)> = values
             .map(|value| {
                 let before = product;
                 product = if has_inverse(value) {
@@ -89,7 +89,7 @@ impl Fp {
                 (value, before)
             })
             .collect();
-        let mut rest = product.inv().unwrap_or(Fp::ONE);
+        let mut rest = product.inv().unwrap_or(ResiduePair::ONE);
         let mut inverses = vec![None; before.len()];
         for (inverse, (value, before)) in inverses.iter_mut().zip(before).rev() {
             if has_inverse(value) {
@@ -102,12 +102,12 @@ impl Fp {
 
     /// Square root, of either sign in each field; `None` if a part has none.
     pub fn sqrt(self) -> Option<Self> {
-        Some(Fp(self.0.sqrt()?, self.1.sqrt()?))
+        Some(ResiduePair(self.0.sqrt()?, self.1.sqrt()?))
     }
 
     /// Returns (a, −b) for (a, b): of the four square roots of a square, one that is not ± this one.
     pub fn flipped(self) -> Self {
-        Fp(self.0, -self.1)
+        ResiduePair(self.0, -self.1)
     }
 
     /// Returns the rational n/d with |n|, d < 2^bits (bits ≤ 29) whose residue class this is, if there is
@@ -118,31 +118,31 @@ impl Fp {
     }
 }
 
-impl Add for Fp {
-    type Output = Fp;
-    fn add(self, other: Fp) -> Fp {
-        Fp(self.0 + other.0, self.1 + other.1)
+impl Add for ResiduePair {
+    type Output = ResiduePair;
+    fn add(self, other: ResiduePair) -> ResiduePair {
+        ResiduePair(self.0 + other.0, self.1 + other.1)
     }
 }
 
-impl Neg for Fp {
-    type Output = Fp;
-    fn neg(self) -> Fp {
-        Fp(-self.0, -self.1)
+impl Neg for ResiduePair {
+    type Output = ResiduePair;
+    fn neg(self) -> ResiduePair {
+        ResiduePair(-self.0, -self.1)
     }
 }
 
-impl Sub for Fp {
-    type Output = Fp;
-    fn sub(self, other: Fp) -> Fp {
-        Fp(self.0 - other.0, self.1 - other.1)
+impl Sub for ResiduePair {
+    type Output = ResiduePair;
+    fn sub(self, other: ResiduePair) -> ResiduePair {
+        ResiduePair(self.0 - other.0, self.1 - other.1)
     }
 }
 
-impl Mul for Fp {
-    type Output = Fp;
-    fn mul(self, other: Fp) -> Fp {
-        Fp(self.0 * other.0, self.1 * other.1)
+impl Mul for ResiduePair {
+    type Output = ResiduePair;
+    fn mul(self, other: ResiduePair) -> ResiduePair {
+        ResiduePair(self.0 * other.0, self.1 * other.1)
     }
 }
 
@@ -176,7 +176,7 @@ impl Random {
     }
 
     /// Returns the next pair of elements of the prime fields, neither of them 0.
-    pub fn element(&mut self) -> Fp {
-        Fp(self.residue(), self.residue())
+    pub fn element(&mut self) -> ResiduePair {
+        ResiduePair(self.residue(), self.residue())
     }
 }

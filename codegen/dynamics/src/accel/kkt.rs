@@ -5,8 +5,8 @@ use super::dependent::{CLEARED, SERIES, multipliers_at, raise, raising};
 use super::parts::Parts;
 use crate::calculus::Calculus;
 use hamel_algebra::field_point::FieldPoint;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Function, Graph};
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::Model;
 
 /// Solution of the constrained equations of motion.
@@ -298,9 +298,9 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
 /// Solution ξ̇ and λ in numbers modulo p.
 pub struct Solved {
     /// Accelerations ξ̇.
-    pub xi_dot: Vec<Fp>,
+    pub xi_dot: Vec<ResiduePair>,
     /// Multipliers λ of the constraints, then of velocities whose rates are given.
-    pub multipliers: Vec<Fp>,
+    pub multipliers: Vec<ResiduePair>,
 }
 
 /// Solves for ξ̇ and λ in numbers modulo p by plain elimination; the emitted code must agree with the result.
@@ -311,8 +311,8 @@ pub struct Solved {
 /// constraints, which have no forces.
 pub fn solve_at(
     model: &Model,
-    [mass, force, rows, right]: [&[Fp]; 4],
-    given: &[(usize, Fp)],
+    [mass, force, rows, right]: [&[ResiduePair]; 4],
+    given: &[(usize, ResiduePair)],
     balance: bool,
     lane: &FieldPoint,
 ) -> Option<Solved> {
@@ -320,18 +320,24 @@ pub fn solve_at(
     let (mut mass, mut force) = (mass.to_vec(), force.to_vec());
     let (mut rows, mut right) = (rows.to_vec(), right.to_vec());
     for &(place, rate) in given {
-        rows.extend((0..n).map(|j| if j == place { Fp::ONE } else { Fp::ZERO }));
+        rows.extend((0..n).map(|j| {
+            if j == place {
+                ResiduePair::ONE
+            } else {
+                ResiduePair::ZERO
+            }
+        }));
         right.push(rate);
     }
     let m = right.len();
     let raising = raising(&model.constraints, given.len());
-    let mut weight = Fp::ZERO;
+    let mut weight = ResiduePair::ZERO;
     if model.augmented {
-        let mut trace = (0..n).fold(Fp::ZERO, |sum, i| sum + mass[i * n + i]);
+        let mut trace = (0..n).fold(ResiduePair::ZERO, |sum, i| sum + mass[i * n + i]);
         if trace.is_zero() {
-            trace = Fp::ONE;
+            trace = ResiduePair::ONE;
         }
-        let squares = rows.iter().fold(Fp::ZERO, |sum, &b| sum + b * b);
+        let squares = rows.iter().fold(ResiduePair::ZERO, |sum, &b| sum + b * b);
         weight = trace * squares.inv()?;
         for (row, &right) in rows.chunks(n).zip(&right) {
             for (i, &b) in row.iter().enumerate() {
@@ -342,28 +348,32 @@ pub fn solve_at(
             }
         }
     }
-    let mut columns: Vec<Vec<Fp>> = vec![force];
-    columns.extend(rows.chunks(n.max(1)).map(<[Fp]>::to_vec));
+    let mut columns: Vec<Vec<ResiduePair>> = vec![force];
+    columns.extend(rows.chunks(n.max(1)).map(<[ResiduePair]>::to_vec));
     let solved = solve_columns(&mass, n, &columns)?;
     let (free, bonds) = solved.split_first()?;
-    let dot = |a: &[Fp], b: &[Fp]| a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y);
+    let dot = |a: &[ResiduePair], b: &[ResiduePair]| {
+        a.iter()
+            .zip(b)
+            .fold(ResiduePair::ZERO, |sum, (&x, &y)| sum + x * y)
+    };
     let row = |i: usize| &rows[i * n..(i + 1) * n];
-    let schur: Vec<Fp> = (0..m)
+    let schur: Vec<ResiduePair> = (0..m)
         .flat_map(|i| bonds.iter().map(move |bond| dot(row(i), bond)))
         .collect();
     let factor = match model.overconstrained {
         true => lane
             .clone()
-            .function(Function::Raised, Fp::ONE, &Vec::new()),
-        false => Fp::ONE,
+            .function(Function::Raised, ResiduePair::ONE, &Vec::new()),
+        false => ResiduePair::ONE,
     };
-    let wanted: Vec<Fp> = (0..m).map(|i| right[i] - dot(row(i), free)).collect();
+    let wanted: Vec<ResiduePair> = (0..m).map(|i| right[i] - dot(row(i), free)).collect();
     let mut multipliers = multipliers_at(&schur, &raising, wanted, factor)?;
     let moved = (0..n).map(|k| {
-        let column: Vec<Fp> = bonds.iter().map(|bond| bond[k]).collect();
+        let column: Vec<ResiduePair> = bonds.iter().map(|bond| bond[k]).collect();
         free[k] + dot(&column, &multipliers)
     });
-    let mut xi_dot: Vec<Fp> = moved.collect();
+    let mut xi_dot: Vec<ResiduePair> = moved.collect();
     // As in `plain`.
     for (i, multiplier) in multipliers.iter_mut().enumerate() {
         *multiplier = *multiplier - weight * (dot(row(i), &xi_dot) - right[i]);
@@ -378,8 +388,12 @@ pub fn solve_at(
 }
 
 /// Returns A⁻¹ b for several b; `None` if A is singular.
-pub(super) fn solve_columns(a: &[Fp], n: usize, columns: &[Vec<Fp>]) -> Option<Vec<Vec<Fp>>> {
-    let mut rows: Vec<Vec<Fp>> = (0..n)
+pub(super) fn solve_columns(
+    a: &[ResiduePair],
+    n: usize,
+    columns: &[Vec<ResiduePair>],
+) -> Option<Vec<Vec<ResiduePair>>> {
+    let mut rows: Vec<Vec<ResiduePair>> = (0..n)
         .map(|i| {
             let right = columns.iter().map(|column| column[i]);
             a[i * n..(i + 1) * n].iter().copied().chain(right).collect()
@@ -389,7 +403,7 @@ pub(super) fn solve_columns(a: &[Fp], n: usize, columns: &[Vec<Fp>]) -> Option<V
         let pivot = (c..n).find(|&r| !rows[r][c].is_zero())?;
         rows.swap(c, pivot);
         let inverse = rows[c][c].inv()?;
-        let scaled: Vec<Fp> = rows[c].iter().map(|&entry| entry * inverse).collect();
+        let scaled: Vec<ResiduePair> = rows[c].iter().map(|&entry| entry * inverse).collect();
         for (r, row) in rows.iter_mut().enumerate() {
             let factor = row[c];
             if r != c {

@@ -12,12 +12,12 @@ use crate::tree::mass::Mass;
 use crate::tree::turn::Turn;
 use crate::tree::{Link as TreeLink, Tree};
 use hamel_algebra::echelon::Echelon;
-use hamel_algebra::fp::Fp;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, multiply3, scale3, sub3, transpose3, zero3,
 };
 use hamel_algebra::numeric::evaluate;
+use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::transplant::substitute;
 use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
@@ -31,7 +31,7 @@ pub type Relation = Vec<(usize, Edge)>;
 
 /// Exact constants, by their values modulo p.
 pub struct Known {
-    by_value: FxHashMap<Fp, Edge>,
+    by_value: FxHashMap<ResiduePair, Edge>,
 }
 
 impl Known {
@@ -75,7 +75,7 @@ impl Known {
 
     /// Returns the exact constant with a given value: a small fraction or a known constant; `None` if it is
     /// neither.
-    pub fn exact(&self, graph: &mut Graph, value: Fp) -> Option<Edge> {
+    pub fn exact(&self, graph: &mut Graph, value: ResiduePair) -> Option<Edge> {
         match value.to_small_rational(BITS) {
             Some((n, d)) => Some(graph.ratio(n, d)),
             None => self.by_value.get(&value).copied(),
@@ -83,7 +83,7 @@ impl Known {
     }
 
     /// Returns the exact constants of all entries of a vector; `None` if one of them has none.
-    pub fn all(&self, graph: &mut Graph, values: &[Fp]) -> Option<Vec<Edge>> {
+    pub fn all(&self, graph: &mut Graph, values: &[ResiduePair]) -> Option<Vec<Edge>> {
         values
             .iter()
             .map(|&value| self.exact(graph, value))
