@@ -4,8 +4,8 @@ use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
 use crate::source;
 use clap::Args;
-use hamel_codegen::derive::care::{HELP, MANY, losses};
 use hamel_codegen::derive::geometry::Inspection;
+use hamel_codegen::derive::numerical_loss::{ADVICE, DOCUMENTED_LOSS, losses};
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
@@ -181,8 +181,8 @@ fn rounding_report(generated: &Generated) -> String {
     let width = lossy.iter().map(|(f, _)| f.name.len()).max().unwrap_or(0);
     let lines = lossy.iter().map(|(function, digits)| {
         let digits = *digits;
-        let help = if digits >= MANY {
-            format!(". {HELP}")
+        let help = if digits >= DOCUMENTED_LOSS {
+            format!(". {ADVICE}")
         } else {
             String::new()
         };

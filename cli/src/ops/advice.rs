@@ -3,7 +3,7 @@
 use crate::columns;
 use crate::failure::Failure;
 use crate::json::Json;
-use hamel_codegen::derive::adviser::{Choice, advise};
+use hamel_codegen::derive::adviser::{VelocityChoice, advise};
 use hamel_codegen::model::Model;
 use hamel_codegen::program::count::Count;
 use hamel_engine::Source;
@@ -22,9 +22,9 @@ pub fn write(source: &Source, model: &Model, as_json: bool) -> Result<String, Fa
     })
 }
 
-fn text(choices: &[Choice]) -> String {
-    let numbers = |choice: &Choice| {
-        let Choice { accel, rate, .. } = choice;
+fn text(choices: &[VelocityChoice]) -> String {
+    let numbers = |choice: &VelocityChoice| {
+        let VelocityChoice { accel, rate, .. } = choice;
         let counts = [
             accel.flops(),
             accel.mul,
@@ -58,7 +58,7 @@ fn text(choices: &[Choice]) -> String {
     text
 }
 
-fn json(model: &Model, choices: &[Choice]) -> Json {
+fn json(model: &Model, choices: &[VelocityChoice]) -> Json {
     let counts = |count: &Count| {
         Json::object(
             [
@@ -94,7 +94,7 @@ fn json(model: &Model, choices: &[Choice]) -> Json {
 #[cfg(test)]
 mod tests {
     use super::text;
-    use hamel_codegen::derive::adviser::Choice;
+    use hamel_codegen::derive::adviser::VelocityChoice;
     use hamel_codegen::generate::from_text;
     use hamel_codegen::program::count::Count;
 
@@ -106,7 +106,7 @@ mod tests {
             mul: 1_074_233_000,
             ..Count::default()
         };
-        let choice = Choice {
+        let choice = VelocityChoice {
             label: "angles".into(),
             statements: vec!["rate q = w;".into()],
             as_written: false,

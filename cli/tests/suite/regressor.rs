@@ -4,9 +4,9 @@
 use crate::common::{hamel, text};
 use crate::installed::installed;
 use crate::pinocchio::{control, coordinates, joint, list, velocities};
-use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::derive::regressor::{Regressor, regressor};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::lower::build;
@@ -112,7 +112,7 @@ fn beta(found: &Regressor, numbers: &[f64]) -> Vec<f64> {
     let graph = &found.model.graph;
     let values: Vec<Edge> = found.standard.iter().map(|one| one.value).collect();
     let values = evaluate(graph, &values, numbers);
-    let of = |base: &hamel_codegen::derive::regressor::Base| {
+    let of = |base: &hamel_codegen::derive::regressor::BaseParameter| {
         let terms = base.terms.iter();
         terms
             .map(|&(k, factor)| evaluate(graph, &[factor], numbers)[0] * values[k])

@@ -1,16 +1,16 @@
 //! Assembly of the program of a model, with every function that is emitted; it is validated before
 //! it is returned.
 
-use super::accel::cheapest::Computation;
-use super::accel::{Acceleration, accel, forces};
+use super::accel::cheapest::MassAndForces;
+use super::accel::{Acceleration, forward_dynamics, mass_and_forces};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::care::{self, Care};
 use super::multipliers::with_accelerations;
-use super::program::{Builder, MOST_LITERAL, shape_of};
+use super::numerical_loss::{self, NumericalLoss};
+use super::program::{MAX_LITERAL_VELOCITIES, ProgramBuilder, shape_of};
 use super::reduction::Reduction;
 use super::regressor::Regressor;
-use super::structure::{self, Found, Functions};
+use super::structure::{self, SplitFunctions, StructureAnalysis};
 use super::{correction, energy, inertia, kinematics};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 use hamel_algebra::graph::{Edge, Graph, Node, NodeId};
@@ -24,7 +24,7 @@ use hamel_program::{Argument, Cause, Function, FunctionId, Program};
 use rustc_hash::FxHashSet;
 
 /// Size of the model's graph from which on T is not also computed from the velocities of bodies.
-const MOST_TRACED: usize = 3000;
+const MAX_TRACED_NODES: usize = 3000;
 
 /// Derives the requested functions of a model.
 ///
@@ -42,57 +42,67 @@ pub fn assemble(
     linearized: bool,
 ) -> Result<Program, Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
-    let (mut program, mass) =
-        put_together(full, reduction, regressor, linearized, &Care::default())?;
+    let (mut program, mass) = build_program(
+        full,
+        reduction,
+        regressor,
+        linearized,
+        &NumericalLoss::default(),
+    )?;
     // Dependent rows amplify the deviation of the start from loop closure, whatever program is
     // emitted.
     if !model.overconstrained {
-        let mut losses = care::losses(model, &program);
-        let excess = care::excess(model, &program, &mass, &losses);
+        let mut losses = numerical_loss::losses(model, &program);
+        let excess = numerical_loss::excess(model, &program, &mass, &losses);
         if excess > 0.0 {
-            let (careful, mass) =
-                put_together(full, reduction, regressor, linearized, &Care::of(model))?;
-            let kept = care::losses(model, &careful);
-            if care::excess(model, &careful, &mass, &kept) < excess {
+            let (careful, mass) = build_program(
+                full,
+                reduction,
+                regressor,
+                linearized,
+                &NumericalLoss::at_states_of(model),
+            )?;
+            let kept = numerical_loss::losses(model, &careful);
+            if numerical_loss::excess(model, &careful, &mass, &kept) < excess {
                 (program, losses) = (careful, kept);
             }
         }
-        care::note(&mut program, &losses);
+        numerical_loss::note(&mut program, &losses);
     }
     Ok(program)
 }
 
 /// Returns the program before validation, and M in its graph.
-fn put_together(
+fn build_program(
     full: &Model,
     reduction: Option<&Reduction>,
     regressor: Option<&Regressor>,
     linearized: bool,
-    care: &Care,
+    numerical_loss: &NumericalLoss,
 ) -> Result<(Program, Vec<Vec<Edge>>), Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
     let inverts = model.asked.needs() == Needs::Inverse;
-    if model.n() <= MOST_LITERAL && inverts {
+    if model.n() <= MAX_LITERAL_VELOCITIES && inverts {
         let mut calculus = Calculus::new(&reference);
         let mass = inertia::mass_matrix(&mut reference, &mut calculus);
-        inertia::positive_definite(model, &reference.graph, &mass)?;
+        inertia::check_positive_definite(model, &reference.graph, &mass)?;
     }
     let alone = (!inverts)
-        .then(|| forces(model, care))
+        .then(|| mass_and_forces(model, numerical_loss))
         .flatten()
         .map(|computed| (Acceleration::none(model.graph.clone()), computed));
-    let Some((chosen, computed)) = alone.or_else(|| accel(model, care)) else {
+    let Some((chosen, computed)) = alone.or_else(|| forward_dynamics(model, numerical_loss)) else {
         // Elimination at the start configuration shows which velocity is the first without inertia.
-        let (graph, mass) = match forces(model, care) {
-            Some(Computation { graph, parts }) => (graph, parts.mass),
+        let (graph, mass) = match mass_and_forces(model, numerical_loss) {
+            Some(MassAndForces { graph, parts }) => (graph, parts.mass),
             None => {
                 let mut calculus = Calculus::new(&reference);
                 let mass = inertia::mass_matrix(&mut reference, &mut calculus);
                 (reference.graph, mass)
             }
         };
-        inertia::positive_definite(model, &graph, &mass)?;
+        inertia::check_positive_definite(model, &graph, &mass)?;
         return Err(Diagnostic::new(
             model.span,
             "the mass matrix is singular for every configuration",
@@ -100,11 +110,11 @@ fn put_together(
         .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and similar selections do not need its inverse")
         .lacking(Needs::Inverse));
     };
-    if model.n() > MOST_LITERAL && inverts {
-        inertia::positive_definite(model, &computed.graph, &computed.parts.mass)?;
+    if model.n() > MAX_LITERAL_VELOCITIES && inverts {
+        inertia::check_positive_definite(model, &computed.graph, &computed.parts.mass)?;
     }
     let potential = energy::potential(&mut reference);
-    let mut builder = Builder::new(model, chosen, computed, care);
+    let mut builder = ProgramBuilder::new(model, chosen, computed, numerical_loss);
     builder.kinematics();
     builder.dynamics(&reference.graph, potential);
     builder.momentum();
@@ -116,8 +126,8 @@ fn put_together(
     builder.outputs();
     builder.frames();
     builder.centroidal(full)?;
-    builder.inverse_slopes(full, reduction);
-    builder.parameter_slopes(full)?;
+    builder.inverse_dynamics_derivatives(full, reduction);
+    builder.parameter_derivatives(full)?;
     if let Some(regressor) = regressor {
         builder.regressor(regressor);
     }
@@ -126,13 +136,13 @@ fn put_together(
         builder.constraint_force(full, reduction);
         builder.projections();
     }
-    let Computation { graph, parts } = &builder.shared;
+    let MassAndForces { graph, parts } = &builder.shared;
     let found = structure::analyse(full, model, graph, parts);
     let mut others = Vec::new();
-    if found.functions.is_some() && model.n() <= MOST_LITERAL {
+    if found.functions.is_some() && model.n() <= MAX_LITERAL_VELOCITIES {
         // In a graph without the computation of ξ̇.
         let mut apart = model.graph.clone();
-        let parts = builder.parts.shared(&builder.graph, &mut apart);
+        let parts = builder.parts.rebuild_in(&builder.graph, &mut apart);
         others.extend(structure::analyse(full, model, &apart, &parts).functions);
     }
     let structure = builder.splitting(found, &others)?;
@@ -140,7 +150,7 @@ fn put_together(
     Ok((builder.finish(structure), mass))
 }
 
-impl Builder<'_> {
+impl ProgramBuilder<'_> {
     fn kinematics(&mut self) {
         let model = self.model;
         let rate = rebuild(&model.graph, &mut self.graph, &model.rate);
@@ -201,7 +211,7 @@ impl Builder<'_> {
     /// T is computed as ½ ξ · p or from the velocities of points and bodies, whichever is cheaper.
     /// `potential` is V in the graph `reference`.
     fn energies(&mut self, momentum: &[Edge], reference: &Graph, potential: Edge) -> [Edge; 2] {
-        let [mut kinetic, mut energy] = [(); 2].map(|()| Candidates::with(&self.care));
+        let [mut kinetic, mut energy] = [(); 2].map(|()| Candidates::new(&self.numerical_loss));
         let mut offer = |graph: Graph, t: Edge| {
             let mut around = graph.clone();
             let v = rebuild(reference, &mut around, &[potential])[0];
@@ -213,11 +223,11 @@ impl Builder<'_> {
         let by_momentum = self.parts.kinetic_of(&mut graph, self.model, momentum);
         let value = graph.value(by_momentum);
         offer(graph, by_momentum);
-        if self.model.graph.len() < MOST_TRACED {
+        if self.model.graph.len() < MAX_TRACED_NODES {
             let mut model = self.model.clone();
             let mut calculus = Calculus::new(&model);
-            let traced = energy::traced(&mut model, &mut calculus);
-            let traced = energy::part_of_energy(&mut model, traced);
+            let traced = energy::kinetic_of_bodies(&mut model, &mut calculus);
+            let traced = energy::kinetic_in_energy(&mut model, traced);
             // Only p includes armatures and an M given in the description.
             if model.graph.value(traced) == value {
                 offer(model.graph, traced);
@@ -297,7 +307,11 @@ impl Builder<'_> {
     ///
     /// # Errors
     /// Returns a diagnostic if they are requested although the system does not split.
-    fn splitting(&mut self, found: Found, others: &[Functions]) -> Result<Structure, Diagnostic> {
+    fn splitting(
+        &mut self,
+        found: StructureAnalysis,
+        others: &[SplitFunctions],
+    ) -> Result<Structure, Diagnostic> {
         let model = self.model;
         if let (Err(reasons), true) = (
             &found.structure.split,
@@ -327,7 +341,7 @@ impl Builder<'_> {
 
     fn finish(mut self, structure: Structure) -> Program {
         let model = self.model;
-        let names = names(model, &mut self.graph);
+        let names = let_names(model, &mut self.graph);
         self.functions.retain(|function| match function.id {
             Some(id) => model.asked.wants(id),
             None => model.asked.wants_output(&function.name),
@@ -401,7 +415,7 @@ impl Builder<'_> {
 
 /// Returns names of temporaries from the user's `let`s: `p`, and `p_1` … for the entries of a
 /// vector.
-fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
+fn let_names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
     let mut names = Vec::new();
     for (name, value) in &model.lets {
         let entries = rebuild(&model.graph, graph, &value.entries());

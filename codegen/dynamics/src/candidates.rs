@@ -1,6 +1,6 @@
 //! Selection of the cheapest of several equivalent computations.
 
-use super::care::Care;
+use super::numerical_loss::NumericalLoss;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::resubstitute::resubstitute;
 use hamel_algebra::transplant::{graft, rebuild};
@@ -16,7 +16,7 @@ const LARGE: usize = 3000;
 /// ones of other functions.
 #[derive(Default)]
 pub struct Candidates<'a> {
-    care: Care,
+    numerical_loss: NumericalLoss,
     best: Option<Computed<'a>>,
 }
 
@@ -29,15 +29,15 @@ struct Computed<'a> {
 
 impl<'a> Candidates<'a> {
     /// Starts without any candidate.
-    pub fn with(care: &Care) -> Self {
+    pub fn new(numerical_loss: &NumericalLoss) -> Self {
         Candidates {
-            care: care.clone(),
+            numerical_loss: numerical_loss.clone(),
             best: None,
         }
     }
 
     fn cost(&self, graph: &Graph, roots: &[Edge]) -> (usize, usize) {
-        let loss = self.care.loss(graph, roots, &[]);
+        let loss = self.numerical_loss.loss(graph, roots, &[]);
         (loss, count(graph, roots).weight())
     }
 

@@ -9,12 +9,12 @@
 //! routes are these sums and, for trees, the recursion L = L₀ − c × P with the momentum about the
 //! origin; the columns of A_G are derivatives of h by ξ, or the momenta of composite bodies.
 
-use super::accel::recursive::Recursion;
-use super::accel::setting::Setting;
+use super::accel::context::DerivationContext;
+use super::accel::recursive::TreeRecursion;
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::frames::{Twist, by_rows, by_velocities, change, flat};
-use super::program::Builder;
+use super::frames::{Twist, by_velocities, matrix_by_rows, twist_entries, twist_rate};
+use super::program::ProgramBuilder;
 use super::quantity::{MovingMass, motions};
 use super::tree::Placement;
 use super::tree::draft::has_more_inertia;
@@ -27,7 +27,7 @@ use hamel_language::model::{Model, class};
 use hamel_program::{FunctionId, Shape};
 use num_traits::Signed;
 
-impl Builder<'_> {
+impl ProgramBuilder<'_> {
     /// Adds the requested centroidal functions.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl Builder<'_> {
             Err(Diagnostic::new(model.span, message).help(help))
         };
         let mut bodies = model.clone();
-        let found = moving(&mut bodies, &mut Calculus::new(model));
+        let found = moving_masses(&mut bodies, &mut Calculus::new(model));
         let mass = mass(&mut bodies.graph, &found);
         let number = bodies.graph.as_rational(mass);
         if number.as_ref().is_some_and(|mass| !mass.is_positive()) {
@@ -64,12 +64,16 @@ impl Builder<'_> {
             let mass = rebuild(&bodies.graph, &mut self.graph, &[mass]);
             self.constant_guards.extend(mass);
         }
-        let recursion = Recursion::of(&Setting::given(model), Placement::Described, &self.care);
+        let recursion = TreeRecursion::of(
+            &DerivationContext::in_given_velocities(model),
+            Placement::Described,
+            &self.numerical_loss,
+        );
         for id in FunctionId::CENTROIDAL {
             if !model.asked.wants(id) {
                 continue;
             }
-            let mut candidates = Candidates::with(&self.care);
+            let mut candidates = Candidates::new(&self.numerical_loss);
             let mut offer = |graph: Graph, roots: Vec<Edge>| {
                 candidates.offer_polished(graph, roots, &model.graph);
             };
@@ -97,16 +101,16 @@ impl Builder<'_> {
 }
 
 /// Returns the masses that depend on the configuration.
-fn moving(model: &mut Model, calculus: &mut Calculus) -> Vec<MovingMass> {
+fn moving_masses(model: &mut Model, calculus: &mut Calculus) -> Vec<MovingMass> {
     let all = motions(model, calculus, None);
-    let moves = moves(model);
+    let moves = which_move(model);
     let kept = all.into_iter().zip(moves).filter(|(_, moves)| *moves);
     kept.map(|(motion, _)| motion).collect()
 }
 
 /// Returns for each body and then for each particle whether it depends on the configuration, rather
 /// than being fixed in the world.
-pub fn moves(model: &Model) -> Vec<bool> {
+pub fn which_move(model: &Model) -> Vec<bool> {
     let depends = |edges: &[Edge]| {
         let class = |class, edge: &Edge| class | model.graph.class(edge.node());
         edges.iter().fold(0, class) & class::CONFIGURATION != 0
@@ -147,7 +151,7 @@ fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Gra
         own.graph = graph;
         total
     });
-    let moving = moving(&mut own, &mut calculus);
+    let moving = moving_masses(&mut own, &mut calculus);
     let mut graph = own.graph;
     let centre = centre(&mut graph, &moving);
     if id == FunctionId::CentreOfMass {
@@ -175,10 +179,12 @@ fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Gra
     let momentum = momenta[0];
     let roots = match id {
         FunctionId::CentroidalMap => {
-            by_rows(by_velocities(model, &mut graph, momentum).into_iter())
+            matrix_by_rows(by_velocities(model, &mut graph, momentum).into_iter())
         }
-        FunctionId::CentroidalBias => flat(change(&mut graph, &mut calculus, momentum)),
-        _ => flat(momentum),
+        FunctionId::CentroidalBias => {
+            twist_entries(twist_rate(&mut graph, &mut calculus, momentum))
+        }
+        _ => twist_entries(momentum),
     };
     (graph, roots)
 }
@@ -189,7 +195,7 @@ fn about_centre(model: &Model, graph: Graph, columns: Vec<Twist>) -> (Graph, Vec
         graph,
         ..model.clone()
     };
-    let moving = moving(&mut own, &mut Calculus::new(model));
+    let moving = moving_masses(&mut own, &mut Calculus::new(model));
     let mut graph = own.graph;
     let centre = centre(&mut graph, &moving);
     let columns = columns.into_iter().map(|(linear, angular)| {
@@ -198,7 +204,7 @@ fn about_centre(model: &Model, graph: Graph, columns: Vec<Twist>) -> (Graph, Vec
     });
     let columns: Vec<Twist> = columns.collect();
     let (graph, columns) = anywhere(model, graph, columns);
-    (graph, by_rows(columns.into_iter()))
+    (graph, matrix_by_rows(columns.into_iter()))
 }
 
 /// Returns the momenta with L rewritten without the coordinates and velocities on which it does not

@@ -1,12 +1,12 @@
 //! Derivatives of the dynamics that `linearize` does not provide: of the inverse-dynamics force by
 //! displacements and velocities, and of ξ̇ by parameters.
 
-use super::accel::branches::Branches;
+use super::accel::branches::BranchFactors;
+use super::accel::context::DerivationContext;
 use super::accel::recursions;
-use super::accel::setting::Setting;
 use super::candidates::Candidates;
 use super::linearize::Displacements;
-use super::program::{Builder, MOST_LITERAL};
+use super::program::{MAX_LITERAL_VELOCITIES, ProgramBuilder};
 use super::reduction::Reduction;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
@@ -14,9 +14,13 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::{Model, class};
 use hamel_program::FunctionId;
 
-impl Builder<'_> {
+impl ProgramBuilder<'_> {
     /// Adds the n rows of `[∂f/∂h ∂f/∂ξ]` for the force f that ξ̇ requires, with ξ̇ held fixed.
-    pub(super) fn inverse_slopes(&mut self, full: &Model, reduction: Option<&Reduction>) {
+    pub(super) fn inverse_dynamics_derivatives(
+        &mut self,
+        full: &Model,
+        reduction: Option<&Reduction>,
+    ) {
         let id = FunctionId::InverseDynamicsSlopes;
         let model = self.model;
         let mut functions = self.functions.iter();
@@ -27,19 +31,22 @@ impl Builder<'_> {
         if !model.asked.wants(id) {
             return;
         }
-        let mut candidates = Candidates::with(&self.care);
+        let mut candidates = Candidates::new(&self.numerical_loss);
         let mut columns = 0;
         let mut recursive = false;
         if reduction.is_none() {
-            for recursion in recursions(&Setting::given(model), &self.care) {
-                if let Some((graph, rows)) = recursion.inverse_slopes() {
+            for recursion in recursions(
+                &DerivationContext::in_given_velocities(model),
+                &self.numerical_loss,
+            ) {
+                if let Some((graph, rows)) = recursion.inverse_dynamics_derivatives() {
                     columns = rows.first().map_or(0, Vec::len);
                     candidates.offer_polished(graph, rows.concat(), &model.graph);
                     recursive = true;
                 }
             }
         }
-        if !recursive || model.n() <= MOST_LITERAL {
+        if !recursive || model.n() <= MAX_LITERAL_VELOCITIES {
             let mut graph = self.graph.clone();
             let Some(displacements) = Displacements::new(full, reduction, &mut graph) else {
                 return;
@@ -60,7 +67,7 @@ impl Builder<'_> {
         }
         let entries = candidates.cheapest(&mut self.graph);
         self.push(id, entries);
-        self.shaped(columns);
+        self.set_columns(columns);
     }
 
     /// Adds ∂ξ̇/∂p, followed by ∂ż/∂p, for all run-time parameters p, with a column for each
@@ -69,7 +76,7 @@ impl Builder<'_> {
     /// # Errors
     /// Returns a diagnostic if the manifold itself depends on parameters: a state then leaves it
     /// when they change. Also if no parameter can change at run time.
-    pub(super) fn parameter_slopes(&mut self, full: &Model) -> Result<(), Diagnostic> {
+    pub(super) fn parameter_derivatives(&mut self, full: &Model) -> Result<(), Diagnostic> {
         let id = FunctionId::ParameterSlopes;
         let model = self.model;
         if !model.asked.wants(id) {
@@ -109,7 +116,7 @@ impl Builder<'_> {
                 "declare the values of interest with `param`",
             );
         }
-        let mut candidates = Candidates::with(&self.care);
+        let mut candidates = Candidates::new(&self.numerical_loss);
         let mut graph = self.chosen.graph.clone();
         let entries = by_columns(&mut graph, &self.chosen.xi_dot, &symbols);
         candidates.offer_polished(graph, entries, &model.graph);
@@ -124,7 +131,7 @@ impl Builder<'_> {
         }
         let guards = self.guards();
         self.push_guarded(id, entries, guards);
-        self.shaped(symbols.len());
+        self.set_columns(symbols.len());
         if let Some(function) = self.functions.last_mut() {
             let names = model.params.iter().map(|group| match group.len {
                 1 => format!("`{}`", group.name),
@@ -150,7 +157,7 @@ impl Builder<'_> {
         let (mut graph, parts) = (self.shared.graph.clone(), &self.shared.parts);
         let right = parts.right(&mut graph);
         let mut along = derivations(&graph, symbols);
-        let branches = Branches::of(&mut graph, &parts.mass, &[])?;
+        let branches = BranchFactors::of(&mut graph, &parts.mass, &[])?;
         let columns: Vec<Vec<Edge>> = (along.iter_mut())
             .map(|along| {
                 let changes = parts.mass.iter().zip(&right).map(|(row, &force)| {

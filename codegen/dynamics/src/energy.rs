@@ -43,7 +43,7 @@ pub fn kinetic(model: &mut Model, mass: &[Vec<Edge>]) -> Edge {
 /// given as `kinetic`.
 ///
 /// This is T₂ + T₁ + T₀ if ẋ has terms without ξ.
-pub fn traced(model: &mut Model, calculus: &mut Calculus) -> Edge {
+pub fn kinetic_of_bodies(model: &mut Model, calculus: &mut Calculus) -> Edge {
     let graph = &mut model.graph;
     let mut twice = Vec::new();
     for body in &model.bodies {
@@ -73,7 +73,7 @@ pub fn traced(model: &mut Model, calculus: &mut Calculus) -> Edge {
 /// Of the energy given as `kinetic` this is T₂ − T₀, as its terms that are linear in the velocities
 /// do no work, and those without velocities act as a potential. Of moving points and bodies it is
 /// their kinetic energy in space.
-pub fn part_of_energy(model: &mut Model, kinetic: Edge) -> Edge {
+pub fn kinetic_in_energy(model: &mut Model, kinetic: Edge) -> Edge {
     model.graph.sub(kinetic, model.gyroscopic)
 }
 

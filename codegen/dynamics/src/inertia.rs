@@ -2,7 +2,7 @@
 
 use super::accel::hybrid;
 use super::calculus::{Calculus, into_frame};
-use super::idle;
+use super::inertialess_motion;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{apply3, cross};
@@ -14,13 +14,13 @@ use hamel_language::model::twists::Moving;
 use hamel_language::model::{Body, Model, Particle};
 
 /// Relative size, with respect to the diagonal, up to which a pivot is a rounded zero.
-const ROUNDING: f64 = 1e-13;
+const ZERO_PIVOT: f64 = 1e-13;
 /// Largest number of velocities for which the rank of M is also determined exactly.
-const MOST_EXACT: usize = 8;
+const MAX_EXACT_VELOCITIES: usize = 8;
 /// Relative size up to which a pivot may be a rounded zero if it was computed in another way.
-const DOUBTFUL: f64 = 1e-11;
+const DOUBTFUL_PIVOT: f64 = 1e-11;
 /// Relative size above which a pivot is not zero even if nothing is exact.
-const CERTAIN: f64 = 1e-9;
+const NONZERO_PIVOT: f64 = 1e-9;
 
 /// Returns M, computed in the axes and about the origins of the bodies' frames.
 ///
@@ -129,10 +129,10 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
 /// That is the case if M is singular on all of X, or so close to singular at the start, with the
 /// default parameters, that rounding may decide.
 pub fn is_singular(model: &Model) -> bool {
-    if model.n() <= MOST_EXACT && has_idle_directions(model) {
+    if model.n() <= MAX_EXACT_VELOCITIES && is_rank_deficient(model) {
         return true;
     }
-    let numbers = numbers(model, &model.start_x);
+    let numbers = start_values(model, &model.start_x);
     let first = 1 + model.defaults.len();
     let moving = Moving {
         graph: &model.graph,
@@ -151,11 +151,11 @@ pub fn is_singular(model: &Model) -> bool {
             .zip(more)
             .for_each(|(sum, more)| *sum += more);
     }
-    failing_pivot(&mass, model.n(), DOUBTFUL).is_some()
+    failing_pivot(&mass, model.n(), DOUBTFUL_PIVOT).is_some()
 }
 
 /// Returns whether M is rank-deficient at a random point of X and of the parameters.
-fn has_idle_directions(model: &Model) -> bool {
+fn is_rank_deficient(model: &Model) -> bool {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
     let terms = model.kinetic_terms.take();
@@ -172,7 +172,7 @@ fn has_idle_directions(model: &Model) -> bool {
 }
 
 /// Returns the numbers of the start, with the given x.
-fn numbers(model: &Model, x: &[f64]) -> Vec<f64> {
+fn start_values(model: &Model, x: &[f64]) -> Vec<f64> {
     let (m, n) = (model.u.len(), model.n());
     model.numbers(
         &model.defaults,
@@ -185,17 +185,17 @@ fn numbers(model: &Model, x: &[f64]) -> Vec<f64> {
 
 /// Returns a configuration near the start at which no angle is special; `None` if there are
 /// constraints between coordinates that charts alone do not satisfy.
-fn beside_the_start(model: &Model) -> Option<Vec<f64>> {
+fn generic_configuration(model: &Model) -> Option<Vec<f64>> {
     let displaced = model.start_x.iter().zip(1..);
     let displaced =
         displaced.map(|(entry, place)| entry + 0.1 + 0.2 * (1.7 * f64::from(place)).sin());
     let mut x: Vec<f64> = displaced.collect();
     normalise(&model.blocks, &mut x);
     let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
-    let residuals = evaluate(&model.points.free, &rows, &numbers(model, &x));
+    let residuals = evaluate(&model.points.free, &rows, &start_values(model, &x));
     residuals
         .iter()
-        .all(|residual| residual.abs() < CERTAIN)
+        .all(|residual| residual.abs() < NONZERO_PIVOT)
         .then_some(x)
 }
 
@@ -203,14 +203,14 @@ fn beside_the_start(model: &Model) -> Option<Vec<f64>> {
 ///
 /// Using this matrix, and adding this force to f, changes neither ξ̇ nor λ, and provides pivots for
 /// velocities that only constraints determine.
-pub fn augmented(
+pub fn augment(
     graph: &mut Graph,
     mass: &[Vec<Edge>],
     rows: &[Vec<Edge>],
     right: &[Edge],
 ) -> Option<(Vec<Vec<Edge>>, Vec<Edge>)> {
     let n = mass.len();
-    let weight = weight(graph, mass, rows)?;
+    let weight = augmentation_weight(graph, mass, rows)?;
     let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
     let weighed: Vec<Vec<Edge>> = (0..n)
         .map(|i| {
@@ -229,7 +229,11 @@ pub fn augmented(
 /// Returns w = tr M / tr BᵀB, which makes M and w BᵀB comparable in size.
 ///
 /// If M is 0, so that constraints alone determine the motion, it is 1 / tr BᵀB.
-pub fn weight(graph: &mut Graph, mass: &[Vec<Edge>], rows: &[Vec<Edge>]) -> Option<Edge> {
+pub fn augmentation_weight(
+    graph: &mut Graph,
+    mass: &[Vec<Edge>],
+    rows: &[Vec<Edge>],
+) -> Option<Edge> {
     let diagonal: Vec<Edge> = (0..mass.len()).map(|i| mass[i][i]).collect();
     let (entries, mut trace) = (rows.concat(), graph.sum(&diagonal));
     if trace == graph.zero() {
@@ -247,7 +251,7 @@ pub fn weight(graph: &mut Graph, mass: &[Vec<Edge>], rows: &[Vec<Edge>]) -> Opti
 ///
 /// # Errors
 /// Returns a diagnostic that names the first velocity whose pivot is not positive.
-pub fn positive_definite(
+pub fn check_positive_definite(
     model: &Model,
     graph: &Graph,
     mass: &[Vec<Edge>],
@@ -255,14 +259,14 @@ pub fn positive_definite(
     let n = model.n();
     let (mut graph, mut mass) = (graph.clone(), mass.to_vec());
     if model.augmented {
-        let rows = hybrid::rows(model);
+        let rows = hybrid::constraint_rows(model);
         let right = vec![graph.zero(); rows.len()];
-        if let Some((sum, _)) = augmented(&mut graph, &mass, &rows, &right) {
+        if let Some((sum, _)) = augment(&mut graph, &mass, &rows, &right) {
             mass = sum;
         }
     }
     let mass_at = |x: &[f64]| {
-        let mut values = evaluate(&graph, &mass.concat(), &numbers(model, x));
+        let mut values = evaluate(&graph, &mass.concat(), &start_values(model, x));
         // A velocity whose rate is prescribed, and on which no constraint acts, is not solved for.
         for &(place, _) in model
             .accelerated
@@ -277,11 +281,11 @@ pub fn positive_definite(
         values
     };
     let pivot_at = |x: &[f64], least: f64| failing_pivot(&mass_at(x), n, least);
-    let Some(pivot) = pivot_at(&model.start_x, ROUNDING) else {
+    let Some(pivot) = pivot_at(&model.start_x, ZERO_PIVOT) else {
         return Ok(());
     };
-    let elsewhere = beside_the_start(model).filter(|_| model.starts_anywhere);
-    if elsewhere.is_some_and(|x| pivot_at(&x, CERTAIN).is_none()) {
+    let elsewhere = generic_configuration(model).filter(|_| model.starts_anywhere);
+    if elsewhere.is_some_and(|x| pivot_at(&x, NONZERO_PIVOT).is_none()) {
         return Ok(());
     }
     let name = model
@@ -290,7 +294,7 @@ pub fn positive_definite(
         .iter()
         .find(|s| s.node == model.xi[pivot].node())
         .map_or("", |s| s.name.as_str());
-    let help = idle::advice(model, &mass_at(&model.start_x), pivot);
+    let help = inertialess_motion::advice(model, &mass_at(&model.start_x), pivot);
     let help = help.unwrap_or_else(|| {
         "every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and similar selections do not need its inverse".into()
     });
@@ -308,16 +312,16 @@ pub fn positive_definite(
 /// The order of elimination determines how far rounding hides that a pivot is 0: with the largest
 /// first, the remainder for the last one is a few units of the diagonal.
 fn failing_pivot(m: &[f64], n: usize, least: f64) -> Option<usize> {
-    let idle = without_pivots(m, n, least);
+    let idle = velocities_without_pivots(m, n, least);
     if idle.is_empty() {
         return None;
     }
-    first_failing(m, n, least).or(idle.first().copied())
+    first_failing_pivot(m, n, least).or(idle.first().copied())
 }
 
 /// Eliminates velocities, the one with the largest pivot relative to the diagonal first, and
 /// returns those that remain, in ascending order, when no relative pivot is larger than `least`.
-fn without_pivots(m: &[f64], n: usize, least: f64) -> Vec<usize> {
+fn velocities_without_pivots(m: &[f64], n: usize, least: f64) -> Vec<usize> {
     let mut rest = m.to_vec();
     let mut left: Vec<usize> = (0..n).collect();
     let ratio = |rest: &[f64], i: usize| rest[i * n + i] / m[i * n + i].abs();
@@ -338,7 +342,7 @@ fn without_pivots(m: &[f64], n: usize, least: f64) -> Vec<usize> {
 
 /// Returns the first pivot, in the order of the velocities, that is at most `least`, relative to
 /// the diagonal.
-fn first_failing(m: &[f64], n: usize, least: f64) -> Option<usize> {
+fn first_failing_pivot(m: &[f64], n: usize, least: f64) -> Option<usize> {
     let mut l = vec![0.0; n * n];
     for i in 0..n {
         for j in 0..=i {

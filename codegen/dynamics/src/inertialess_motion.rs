@@ -1,4 +1,4 @@
-//! Advice on models with a singular M: finds the motion of a joint that nothing resists, such as
+//! Advice on models with a singular M: finds the motion of a joint that has no inertia, such as
 //! the spin of a slender rod between two ball joints about its own axis.
 
 use hamel_language::model::Model;
@@ -6,7 +6,7 @@ use hamel_language::model::joints::Joint;
 use hamel_language::syntax::ast::JointKind;
 
 /// Relative size below which an entry of a direction v, or of M v, counts as 0.
-const SMALL: f64 = 1e-6;
+const NEGLIGIBLE_ENTRY: f64 = 1e-6;
 
 /// Suggests how to change a description whose mass matrix M is singular because a single joint can move without resistance.
 ///
@@ -17,7 +17,7 @@ pub fn advice(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
     let moving = |place: &usize| direction[*place] != 0.0;
     let moved: Vec<usize> = (0..direction.len()).filter(moving).collect();
     let (joint, places) = model.joints.iter().find_map(|joint| {
-        let places = places(model, joint);
+        let places = velocities_of_joint(model, joint);
         let alone = moved.iter().all(|place| places.contains(place));
         alone.then_some((joint, places))
     })?;
@@ -28,9 +28,9 @@ pub fn advice(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
             let (spin, across) = axes([x, y, z]);
             format!(
                 "nothing resists the spin of `{frame}` about its axis {}, which `{name}` allows: write `joint {name}: universal {}, {}` in place of `spherical`, to leave this spin out, or give `{frame}` inertia about that axis",
-                shown(spin),
-                shown(across[0]),
-                shown(across[1])
+                format_axis(spin),
+                format_axis(across[0]),
+                format_axis(across[1])
             )
         }
         _ => format!(
@@ -41,7 +41,7 @@ pub fn advice(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
 
 /// Returns the indices of the velocities of a joint; empty if constraints have removed some of
 /// them.
-fn places(model: &Model, joint: &Joint) -> Vec<usize> {
+fn velocities_of_joint(model: &Model, joint: &Joint) -> Vec<usize> {
     let mut places = Vec::new();
     for name in &joint.velocities {
         match model.velocities.iter().find(|group| group.name == *name) {
@@ -84,7 +84,7 @@ fn kernel(mass: &[f64], n: usize, pivot: usize) -> Option<Vec<f64>> {
     let largest = v.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
     for entry in &mut v {
         *entry /= largest;
-        if entry.abs() < SMALL {
+        if entry.abs() < NEGLIGIBLE_ENTRY {
             *entry = 0.0;
         }
     }
@@ -93,7 +93,7 @@ fn kernel(mass: &[f64], n: usize, pivot: usize) -> Option<Vec<f64>> {
         .fold(0.0_f64, |most, entry| most.max(entry.abs()));
     let rests = mass.chunks(n).all(|row| {
         let sum: f64 = row.iter().zip(&v).map(|(a, b)| a * b).sum();
-        sum.abs() <= SMALL * scale
+        sum.abs() <= NEGLIGIBLE_ENTRY * scale
     });
     rests.then_some(v)
 }
@@ -128,7 +128,7 @@ fn axes(direction: [f64; 3]) -> ([f64; 3], [[f64; 3]; 2]) {
 }
 
 /// Formats an axis with four digits.
-fn shown(axis: [f64; 3]) -> String {
+fn format_axis(axis: [f64; 3]) -> String {
     let entries = axis.map(|entry| {
         let rounded = (entry * 1e4).round() / 1e4;
         // No −0.

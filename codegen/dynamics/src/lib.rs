@@ -10,7 +10,7 @@
 //! | `correction` | the stabilising term −Ψ φ | (8) |
 //! | `commutation` | Hamel coefficients γ | (12), (13) |
 //! | `inertia` | mass matrix M | (20) |
-//! | `idle` | advice on motions without inertia, for a singular M | |
+//! | `inertialess_motion` | advice on motions without inertia, for a singular M | |
 //! | `connection` | connection coefficients Γ | (23) |
 //! | `loads` | potential, gravity, applied forces | (28) |
 //! | `energy` | T, V, momentum | |
@@ -25,7 +25,7 @@
 //! | `program`, `assemble` | the program of all generated functions | |
 //! | `multipliers`, `undetermined` | multipliers λ of constraints, and those that are not determined | |
 //! | `quantity` | momenta and energies that are claimed to be constant | |
-//! | `further` | momenta, the linearisation and invariants as functions | |
+//! | `secondary_functions` | momenta, the linearisation and invariants as functions | |
 //! | `structure` | whether a system splits into free motion and kicks; choice of the method | |
 //! | `geometry` | integrability, Lie algebras, patterns, symmetries | 2.5 |
 
@@ -34,7 +34,6 @@ pub mod adviser;
 pub mod assemble;
 pub mod calculus;
 mod candidates;
-pub mod care;
 pub mod centroidal;
 pub mod commutation;
 pub mod complement;
@@ -43,10 +42,9 @@ pub mod correction;
 mod derivatives;
 pub mod energy;
 mod frames;
-mod further;
 pub mod geometry;
-mod idle;
 pub mod inertia;
+mod inertialess_motion;
 pub mod kinematics;
 pub mod linearize;
 pub mod loads;
@@ -54,11 +52,13 @@ pub mod momentum;
 pub mod multipliers;
 pub mod normal;
 mod norms;
+pub mod numerical_loss;
 mod program;
 pub mod quantity;
 mod reactions;
 pub mod reduction;
 pub mod regressor;
+mod secondary_functions;
 pub mod structure;
 pub mod tables;
 // Public for tests, which compare the recursions with derivations that do not use trees.

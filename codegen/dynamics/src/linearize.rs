@@ -6,13 +6,13 @@
 //! and the matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ. States of first order
 //! add rows and columns.
 
-use super::accel::best::NEAR;
+use super::accel::best::MAX_POLISHED_COST_RATIO;
+use super::accel::context::DerivationContext;
 use super::accel::recursions;
-use super::accel::recursive::{RatesAndSlopes, Recursion};
-use super::accel::setting::Setting;
+use super::accel::recursive::{AccelerationDerivatives, TreeRecursion};
 use super::calculus::Calculus;
-use super::care::Care;
 use super::multipliers::with_accelerations;
+use super::numerical_loss::NumericalLoss;
 use super::reduction::Reduction;
 use super::{commutation, kinematics};
 use crate::normal::{NormalForms, build};
@@ -26,16 +26,16 @@ use hamel_program::Cause;
 use hamel_program::count::count;
 
 /// Largest number of velocities for which entries are expanded.
-const MOST_EXPANDED: usize = 8;
+const MAX_EXPANDED_VELOCITIES: usize = 8;
 /// Largest number of terms of an expanded entry.
-const MOST_TERMS: usize = 40;
+const MAX_TERMS: usize = 40;
 /// Largest number of terms of an intermediate polynomial in an expansion.
 ///
 /// Cancellation modulo φ leaves at least a tenth of them.
-const MOST_INTERMEDIATE_TERMS: usize = 400;
+const MAX_INTERMEDIATE_TERMS: usize = 400;
 /// Number of products and sums of terms after which the expansion is given up, in favour of the
 /// traced entries.
-const MOST_WORK: usize = 200_000;
+const MAX_TERM_OPERATIONS: usize = 200_000;
 
 /// Forward dynamics ξ̇ = F, as edges of a graph that extends the model's.
 pub struct ForwardDynamics<'a> {
@@ -52,7 +52,7 @@ pub struct ForwardDynamics<'a> {
 }
 
 /// Linearisation `[A B]`: n + nₐ rows, and n + nₐ + m columns for (h, δξ, δu).
-pub struct Linear {
+pub struct Linearization {
     /// Graph of its entries.
     pub graph: Graph,
     /// Rows of `[A B]`.
@@ -63,10 +63,10 @@ pub struct Linear {
     pub rates: Vec<Edge>,
 }
 
-impl Linear {
+impl Linearization {
     /// Creates a linearisation whose rows are derived from F as it is.
     fn of(motion: &ForwardDynamics, graph: Graph, rows: Vec<Vec<Edge>>) -> Self {
-        Linear {
+        Linearization {
             graph,
             rows,
             guards: motion.guards.to_vec(),
@@ -91,8 +91,8 @@ impl Linear {
         [self.results(), self.rates.clone()].concat()
     }
 
-    /// Splits edges of another graph that correspond to [`Linear::roots`] into rows, guards and F.
-    pub fn apart(&self, mut roots: Vec<Edge>) -> Apart {
+    /// Splits edges of another graph that correspond to [`Linearization::roots`] into rows, guards and F.
+    pub fn separate_roots(&self, mut roots: Vec<Edge>) -> SeparatedRoots {
         let columns = self.rows.first().map_or(1, |row| row.len().max(1));
         let rates = roots.split_off(roots.len() - self.rates.len());
         let guards = roots.split_off(roots.len() - self.guards.len());
@@ -103,7 +103,7 @@ impl Linear {
 }
 
 /// Rows, guards and F of a linearisation.
-type Apart = (Vec<Vec<Edge>>, Vec<(Edge, Cause)>, Vec<Edge>);
+type SeparatedRoots = (Vec<Vec<Edge>>, Vec<(Edge, Cause)>, Vec<Edge>);
 
 /// Frame in which displacements are measured, as edges of the graph of F.
 pub struct Displacements {
@@ -223,55 +223,73 @@ pub fn slopes(
 /// - F itself differentiated;
 /// - M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all columns;
 /// - the entries expanded, with their coefficients computed when parameters are set.
-pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear {
-    let upper = upper(model, motion);
-    let recursions = recursions(&Setting::given(model), care);
+pub fn linearize(
+    model: &Model,
+    motion: &ForwardDynamics,
+    numerical_loss: &NumericalLoss,
+) -> Linearization {
+    let upper = displacement_rows(model, motion);
+    let recursions = recursions(
+        &DerivationContext::in_given_velocities(model),
+        numerical_loss,
+    );
     // For more than a few links the recursion is certainly the cheapest.
-    let long = recursions.first().is_some_and(Recursion::is_long);
+    let long = recursions.first().is_some_and(TreeRecursion::is_long);
     let plain = motion.displacements.n() == model.n() && motion.implicit.is_some();
     let traced = recursions.iter().filter(|_| plain);
-    let mut candidates: Vec<Linear> = traced
-        .filter_map(|recursion| recursive(recursion, &upper))
+    let mut candidates: Vec<Linearization> = traced
+        .filter_map(|recursion| linearize_tree(recursion, &upper))
         .collect();
-    if candidates.is_empty() || !(long || model.n() > MOST_EXPANDED) {
-        let explicit = explicit(model, motion, &upper);
-        if model.n() <= MOST_EXPANDED && !care.is_taken() {
-            candidates.extend(expanded(model, &explicit, motion));
+    if candidates.is_empty() || !(long || model.n() > MAX_EXPANDED_VELOCITIES) {
+        let explicit = differentiate(model, motion, &upper);
+        if model.n() <= MAX_EXPANDED_VELOCITIES && !numerical_loss.comes_first() {
+            candidates.extend(expand_entries(model, &explicit, motion));
         }
-        candidates.extend(implicit(model, motion, &upper));
+        candidates.extend(differentiate_implicitly(model, motion, &upper));
         candidates.push(explicit);
     }
-    let cost = |linear: &Linear| {
-        let loss = care.loss(&linear.graph, &linear.rows.concat(), &[]);
+    let cost = |linear: &Linearization| {
+        let loss = numerical_loss.loss(&linear.graph, &linear.rows.concat(), &[]);
         let (weight, number) = linear.cost();
         (loss, weight, number)
     };
     let costs: Vec<_> = candidates.iter().map(cost).collect();
     let (loss, weight, _) = costs.iter().min().copied().unwrap_or_default();
     // Candidates that are far more expensive before polishing remain so afterwards.
-    let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
+    let most = (
+        loss,
+        weight * MAX_POLISHED_COST_RATIO.0 / MAX_POLISHED_COST_RATIO.1,
+        usize::MAX,
+    );
     let near = candidates.into_iter().zip(costs);
     let near = near.filter(|(_, cost)| *cost <= most);
-    let polished = near.map(|(linear, before)| match polished(&linear, model, motion) {
+    let polished = near.map(|(linear, before)| match polish(&linear, model, motion) {
         Some(linear) if cost(&linear) < before => (cost(&linear), linear),
         _ => (before, linear),
     });
     // The first of equal ones; there is always at least one.
     let best = polished.min_by_key(|(cost, _)| *cost);
-    best.map_or_else(|| explicit(model, motion, &upper), |(_, linear)| linear)
+    best.map_or_else(
+        || differentiate(model, motion, &upper),
+        |(_, linear)| linear,
+    )
 }
 
 /// Returns the linearisation after resubstitution, if that finds anything.
 ///
 /// The base is the graph of F, or the model's graph if F is obtained along with the derivatives.
-fn polished(linear: &Linear, model: &Model, motion: &ForwardDynamics) -> Option<Linear> {
+fn polish(
+    linear: &Linearization,
+    model: &Model,
+    motion: &ForwardDynamics,
+) -> Option<Linearization> {
     let base = match linear.rates.is_empty() {
         true => motion.graph,
         false => &model.graph,
     };
     let (graph, roots) = resubstitute(&linear.graph, &linear.roots(), base)?;
-    let (rows, guards, rates) = linear.apart(roots);
-    Some(Linear {
+    let (rows, guards, rates) = linear.separate_roots(roots);
+    Some(Linearization {
         graph,
         rows,
         guards,
@@ -280,10 +298,10 @@ fn polished(linear: &Linear, model: &Model, motion: &ForwardDynamics) -> Option<
 }
 
 /// Returns the rows of ḣ.
-fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
+fn displacement_rows(model: &Model, motion: &ForwardDynamics) -> Linearization {
     let mut graph = motion.graph.clone();
     let displacements = &motion.displacements;
-    let mut columns = columns(model, &mut graph, displacements);
+    let mut columns = derivations_of_columns(model, &mut graph, displacements);
     let rows = (displacements.places.iter())
         .map(|&k| {
             let mut row: Vec<Edge> = columns
@@ -299,11 +317,15 @@ fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
             row
         })
         .collect();
-    Linear::of(motion, graph, rows)
+    Linearization::of(motion, graph, rows)
 }
 
 /// Returns the derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
-fn columns(model: &Model, graph: &mut Graph, displacements: &Displacements) -> Vec<Derivation> {
+fn derivations_of_columns(
+    model: &Model,
+    graph: &mut Graph,
+    displacements: &Displacements,
+) -> Vec<Derivation> {
     let one = graph.one();
     let along = |j: usize| {
         let seeds = model.x.iter().zip(&displacements.a);
@@ -318,22 +340,26 @@ fn columns(model: &Model, graph: &mut Graph, displacements: &Displacements) -> V
 }
 
 /// Differentiates F as it is.
-fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
+fn differentiate(model: &Model, motion: &ForwardDynamics, upper: &Linearization) -> Linearization {
     let mut graph = motion.graph.clone();
-    let mut columns = columns(model, &mut graph, &motion.displacements);
-    let mut rows = rebuilt(upper, &mut graph);
+    let mut columns = derivations_of_columns(model, &mut graph, &motion.displacements);
+    let mut rows = copy_rows(upper, &mut graph);
     rows.extend(motion.xi_dot.iter().map(|&rate| {
         let entries = columns.iter_mut().map(|column| column.of(&mut graph, rate));
         entries.collect::<Vec<Edge>>()
     }));
-    Linear::of(motion, graph, rows)
+    Linearization::of(motion, graph, rows)
 }
 
 /// Solves M δξ̇ = ∂(M F) − (∂M) F for all columns with one factorisation.
-fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<Linear> {
+fn differentiate_implicitly(
+    model: &Model,
+    motion: &ForwardDynamics,
+    upper: &Linearization,
+) -> Option<Linearization> {
     let (mass, right) = motion.implicit?;
     let mut graph = motion.graph.clone();
-    let mut columns = columns(model, &mut graph, &motion.displacements);
+    let mut columns = derivations_of_columns(model, &mut graph, &motion.displacements);
     let changes: Vec<Vec<Edge>> = mass
         .iter()
         .zip(right)
@@ -350,24 +376,24 @@ fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<L
         })
         .collect();
     let solved = solve_symmetric(&mut graph, mass, &changes)?;
-    let mut rows = rebuilt(upper, &mut graph);
+    let mut rows = copy_rows(upper, &mut graph);
     rows.extend(solved);
-    Some(Linear::of(motion, graph, rows))
+    Some(Linearization::of(motion, graph, rows))
 }
 
 /// Linearises a tree of links by recursion, with M factored from the leaves to the root.
-fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
-    let RatesAndSlopes {
+fn linearize_tree(recursion: &TreeRecursion, upper: &Linearization) -> Option<Linearization> {
+    let AccelerationDerivatives {
         mut graph,
         xi_dot,
         pivots,
         rows: below,
-    } = recursion.rates_and_slopes()?;
-    let mut rows = rebuilt(upper, &mut graph);
+    } = recursion.acceleration_derivatives()?;
+    let mut rows = copy_rows(upper, &mut graph);
     rows.extend(below);
     let guards = pivots.into_iter().enumerate();
     let guards = guards.filter(|(_, pivot)| !graph.is_free(pivot.node()));
-    Some(Linear {
+    Some(Linearization {
         guards: guards
             .map(|(i, pivot)| (pivot, Cause::Velocity(i)))
             .collect(),
@@ -379,9 +405,13 @@ fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
 
 /// Writes every entry as a sum of monomials whose coefficients depend on parameters alone; `None`
 /// if one of them is long.
-fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
-    let mut forms = NormalForms::within(&model.points, MOST_WORK)
-        .of_terms(MOST_INTERMEDIATE_TERMS)
+fn expand_entries(
+    model: &Model,
+    explicit: &Linearization,
+    motion: &ForwardDynamics,
+) -> Option<Linearization> {
+    let mut forms = NormalForms::with_budget(&model.points, MAX_TERM_OPERATIONS)
+        .with_max_terms(MAX_INTERMEDIATE_TERMS)
         .keeping_powers();
     let mut source = explicit.graph.clone();
     let mut polynomials = Vec::new();
@@ -393,7 +423,7 @@ fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Optio
         } else {
             polynomial
         };
-        if shorter.terms().len() > MOST_TERMS {
+        if shorter.terms().len() > MAX_TERMS {
             return None;
         }
         polynomials.push(shorter);
@@ -406,11 +436,11 @@ fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Optio
     let entries = rebuild(&source, &mut graph, &built);
     let columns = explicit.rows.first().map_or(1, |row| row.len().max(1));
     let rows = entries.chunks(columns).map(<[Edge]>::to_vec).collect();
-    Some(Linear::of(motion, graph, rows))
+    Some(Linearization::of(motion, graph, rows))
 }
 
 /// Copies the rows of ḣ to another graph.
-fn rebuilt(upper: &Linear, graph: &mut Graph) -> Vec<Vec<Edge>> {
+fn copy_rows(upper: &Linearization, graph: &mut Graph) -> Vec<Vec<Edge>> {
     let rows = upper.rows.iter();
     rows.map(|row| rebuild(&upper.graph, graph, row)).collect()
 }

@@ -1,7 +1,7 @@
 //! Hamiltonian form: p = M ξ, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ (KR18 (30a)), and ξ = M⁻¹ p.
 
 use super::accel::all_plans;
-use super::accel::parts::Parts;
+use super::accel::parts::EquationTerms;
 use super::accel::solve::{Solution, solve};
 use super::calculus::Calculus;
 use super::{commutation, energy, inertia, kinematics};
@@ -15,16 +15,16 @@ use hamel_program::count::count;
 ///
 /// In larger models the n² entries of M and n³ of γ are long and never the cheapest, so that ṗ is
 /// computed from the quantities traced for ξ̇.
-pub const MOST_WRITTEN_OUT: usize = 8;
+pub const MAX_EXPLICIT_VELOCITIES: usize = 8;
 
 /// Returns ṗ in the graph of `parts`.
 ///
 /// The cheapest of these is chosen: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with the terms
 /// that ξ̇ needs anyway and M either written out or as traced. −∂V and the applied forces are then
 /// added.
-pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
-    if model.n() > MOST_WRITTEN_OUT {
-        return traced_rate(model, graph, parts);
+pub fn momentum_rate(model: &Model, graph: &mut Graph, parts: &EquationTerms) -> Vec<Edge> {
+    if model.n() > MAX_EXPLICIT_VELOCITIES {
+        return momentum_rate_of_traced(model, graph, parts);
     }
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
@@ -77,14 +77,14 @@ pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
         .iter()
         .map(|candidate| with_forces(graph, candidate))
         .collect();
-    sums.push(traced_rate(model, graph, parts));
+    sums.push(momentum_rate_of_traced(model, graph, parts));
     let cost = |sum: &Vec<Edge>| count(graph, sum).weight();
     sums.into_iter().min_by_key(cost).unwrap_or_default()
 }
 
 /// Returns d/dt (M ξ) at ξ̇ = 0, differentiated from M as traced, minus Γ ξ ξ and ∂V, plus the
 /// applied forces.
-fn traced_rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
+fn momentum_rate_of_traced(model: &Model, graph: &mut Graph, parts: &EquationTerms) -> Vec<Edge> {
     let rates = rebuild(&model.graph, graph, &model.rate);
     let moving = model.x.iter().map(|x| x.node()).zip(rates);
     let mut motion = Derivation::new(moving);
@@ -105,14 +105,18 @@ fn traced_rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
 
 /// Computes M⁻¹ p with the cheapest elimination; returns its cost, its graph and the solution, or
 /// `None` if M is singular everywhere.
-pub fn velocity(graph: &Graph, parts: &Parts, p: &[Edge]) -> Option<(usize, Graph, Solution)> {
-    let parts = Parts {
+pub fn velocity_from_momentum(
+    graph: &Graph,
+    parts: &EquationTerms,
+    p: &[Edge],
+) -> Option<(usize, Graph, Solution)> {
+    let parts = EquationTerms {
         mass: parts.mass.clone(),
         groups: vec![p.to_vec()],
         inertia: Vec::new(),
         conservative: Vec::new(),
         applied: Vec::new(),
-        ..Parts::default()
+        ..EquationTerms::default()
     };
     let mut best: Option<(usize, Graph, Solution)> = None;
     for plan in all_plans(graph, &parts) {

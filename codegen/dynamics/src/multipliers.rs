@@ -4,7 +4,7 @@
 //! equations of motion of the velocities that were solved for, by the pivots of the reduction.
 
 use super::accel::Acceleration;
-use super::accel::parts::{Reference, Variant, parts};
+use super::accel::parts::{ReferencePoint, TracingVariant, trace_terms};
 use super::calculus::Calculus;
 use super::reduction::Reduction;
 use hamel_algebra::graph::{Edge, Graph};
@@ -20,12 +20,12 @@ pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (
     let mut model = full.clone();
     model.graph = reduction.graph.clone();
     let mut calculus = Calculus::new(&model);
-    let variant = Variant {
+    let variant = TracingVariant {
         axes: Axes::Body,
-        reference: Reference::Com,
+        reference: ReferencePoint::Com,
         shift: None,
     };
-    let parts = parts(&mut model, &mut calculus, variant);
+    let parts = trace_terms(&mut model, &mut calculus, variant);
     let residuals: Vec<Edge> = velocities
         .iter()
         .map(|&velocity| {

@@ -35,14 +35,14 @@ const MAX_NORMAL_FORM_TERMS: usize = 200;
 impl NormalForms {
     /// Computes the Gröbner bases of φ; constraints whose basis is too large are left out.
     pub fn new(points: &Points) -> Self {
-        NormalForms::within(points, usize::MAX)
+        NormalForms::with_budget(points, usize::MAX)
     }
 
     /// As [`NormalForms::new`], with a budget of `work` products and sums of terms for all
     /// expansions together.
     ///
     /// Expressions that are not expanded within the budget count as too large.
-    pub fn within(points: &Points, work: usize) -> Self {
+    pub fn with_budget(points: &Points, work: usize) -> Self {
         let mut expander = Expander::default();
         let mut generators: Vec<Vec<Poly<BigRational>>> = Vec::new();
         let mut place = points.first as Var;
@@ -107,7 +107,7 @@ impl NormalForms {
     }
 
     /// Limits the number of terms of intermediate polynomials; larger expressions are given up.
-    pub fn of_terms(mut self, most: usize) -> Self {
+    pub fn with_max_terms(mut self, most: usize) -> Self {
         self.expander = self.expander.with_term_limit(most);
         self
     }

@@ -4,12 +4,12 @@
 mod tests;
 
 /// Returns the largest absolute row sum.
-pub fn norm(rows: &[Vec<f64>]) -> f64 {
-    greatest(rows.iter().map(|row| row.iter().map(|e| e.abs()).sum()))
+pub fn row_sum_norm(rows: &[Vec<f64>]) -> f64 {
+    max_or_infinite(rows.iter().map(|row| row.iter().map(|e| e.abs()).sum()))
 }
 
 /// Returns the largest of some non-negative numbers; infinite if one of them is NaN.
-pub fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
+pub fn max_or_infinite(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(0.0, |most, number| match number.is_nan() {
         true => f64::INFINITY,
         false => most.max(number),

@@ -1,11 +1,11 @@
-//! Comparison of candidates: by cost, or first by the digits that they lose to rounding.
+//! Numerical loss: the digits that a computation loses to rounding, and the choice between candidates by it.
 //!
-//! A program is first assembled by cost alone and then measured. If it loses more digits than it
-//! should, it is assembled again with care: the description's own frames become candidates, too,
-//! long expansions do not, and of two candidates the one that keeps more digits is preferred to the
-//! cheaper one.
+//! A program is first assembled by its number of operations alone and then measured. If it loses more digits than
+//! it should, it is assembled again with losses compared first: the description's own frames become candidates,
+//! too, long expansions do not, and of two candidates the one that keeps more digits is preferred to the cheaper
+//! one.
 
-use super::norms::{greatest, inverse, norm};
+use super::norms::{inverse, max_or_infinite, row_sum_norm};
 use super::tree::Placement;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::matrix;
@@ -16,42 +16,44 @@ use hamel_language::model::states::states;
 use hamel_program::Program;
 use hamel_program::rounding::{Measured, digits_lost};
 
-/// Number of lost digits from which on the documentation of a function mentions them.
-pub const MANY: f64 = 6.0;
-/// Advice to users if all candidates lose digits.
-pub const HELP: &str =
+/// Smallest number of lost digits that the documentation of an emitted function mentions.
+pub const DOCUMENTED_LOSS: f64 = 6.0;
+/// Advice to users whose functions lose digits by every candidate.
+pub const ADVICE: &str =
     "Frames close to their bodies and no differences of large terms lose fewer digits.";
-/// Number of digits that a function may lose before candidates are compared by them.
-const ENOUGH: f64 = 2.5;
-/// Number of digits that a candidate may lose without being penalised.
-const LITTLE: f64 = 1.5;
-/// Loss of a candidate that has no value: more digits than there are.
-const ALL: f64 = 99.0;
-/// Step in digits by which losses are compared.
-const STEP: f64 = 0.5;
+/// Largest number of digits that a function may lose without a new choice of candidates by their losses.
+const ACCEPTED_LOSS: f64 = 2.5;
+/// Number of lost digits up to which candidates count as equally good.
+const UNPENALISED_LOSS: f64 = 1.5;
+/// Loss, in digits, of a candidate that has no value: more than any number has.
+const LOSS_WITHOUT_VALUE: f64 = 99.0;
+/// Unit, in digits, in which losses are compared.
+const LOSS_STEP: f64 = 0.5;
 
-/// States at which candidates are measured; empty if cost alone decides.
+/// Measure of the digits that candidates lose to rounding, at states of a model.
+///
+/// Without states, losses do not count, and the number of operations decides alone.
 #[derive(Clone, Debug, Default)]
-pub struct Care {
+pub struct NumericalLoss {
     states: Vec<Vec<f64>>,
 }
 
-impl Care {
-    /// Compares by digits first, at states of a model.
-    pub fn of(model: &Model) -> Self {
-        Care {
+impl NumericalLoss {
+    /// Measures losses at states of a model, and compares by them before operations.
+    pub fn at_states_of(model: &Model) -> Self {
+        NumericalLoss {
             states: states(model),
         }
     }
 
-    /// Returns whether digits come first.
-    pub fn is_taken(&self) -> bool {
+    /// Returns whether losses are compared before operations.
+    pub fn comes_first(&self) -> bool {
         !self.states.is_empty()
     }
 
     /// Returns the placements of link frames to try.
     pub fn placements(&self) -> &'static [Placement] {
-        match self.is_taken() {
+        match self.comes_first() {
             true => &[Placement::Chosen, Placement::Parallel, Placement::Described],
             false => &[Placement::Chosen, Placement::Parallel],
         }
@@ -62,20 +64,20 @@ impl Care {
     /// This is 0 if cost alone decides, and counts all digits if the candidate has no value at any
     /// state.
     pub fn loss(&self, graph: &Graph, outputs: &[Edge], guards: &[Edge]) -> usize {
-        if !self.is_taken() {
+        if !self.comes_first() {
             return 0;
         }
         let measured = Measured { outputs, guards };
         let digits = match digits_lost(graph, &[measured], &self.states)[..] {
-            [Some(digits)] => digits.min(ALL),
-            _ => ALL,
+            [Some(digits)] => digits.min(LOSS_WITHOUT_VALUE),
+            _ => LOSS_WITHOUT_VALUE,
         };
-        ((digits - LITTLE).max(0.0) / STEP).ceil() as usize
+        ((digits - UNPENALISED_LOSS).max(0.0) / LOSS_STEP).ceil() as usize
     }
 }
 
-/// Functions that are 0 on X, where their digits mean nothing.
-const ZERO: [&str; 3] = ["constraint", "correction", "project_position"];
+/// Names of functions that are 0 on X, where their digits mean nothing.
+const FUNCTIONS_THAT_VANISH: [&str; 3] = ["constraint", "correction", "project_position"];
 
 /// Returns the number of digits that each function of a program loses to rounding, in order; `None`
 /// for functions that are 0.
@@ -84,7 +86,7 @@ pub fn losses(model: &Model, program: &Program) -> Vec<Option<f64>> {
         .functions
         .iter()
         .map(|function| Measured {
-            outputs: match ZERO.contains(&function.name.as_str()) {
+            outputs: match FUNCTIONS_THAT_VANISH.contains(&function.name.as_str()) {
                 true => &[],
                 false => &function.outputs,
             },
@@ -102,7 +104,7 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Op
     let mut condition = None;
     let mut worst = 0.0_f64;
     for (function, digits) in program.functions.iter().zip(losses) {
-        let mut beyond = digits.unwrap_or(0.0) - ENOUGH;
+        let mut beyond = digits.unwrap_or(0.0) - ACCEPTED_LOSS;
         if beyond > 0.0
             && function
                 .id
@@ -118,11 +120,11 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Op
 /// Adds a remark to the documentation of functions that lose many digits, with advice.
 pub fn note(program: &mut Program, losses: &[Option<f64>]) {
     for (function, digits) in program.functions.iter_mut().zip(losses) {
-        if let Some(digits) = digits.filter(|&digits| digits >= MANY) {
+        if let Some(digits) = digits.filter(|&digits| digits >= DOCUMENTED_LOSS) {
             let digits = digits.min(16.0);
             function.docs.extend([
                 String::new(),
-                format!("Rounding loses about {digits:.0} of its 16 digits at the start or near it. {HELP}"),
+                format!("Rounding loses about {digits:.0} of its 16 digits at the start or near it. {ADVICE}"),
             ]);
         }
     }
@@ -135,8 +137,8 @@ fn condition_digits(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64
         let values = evaluate_rounded(&program.graph, &mass.concat(), &state);
         let entries: Vec<f64> = values.iter().map(|entry| entry.exact.to_f64()).collect();
         let rows = matrix(&entries, mass.len());
-        let of = [most, norm(&rows) * norm(&inverse(rows))];
-        most = greatest(of.into_iter());
+        let of = [most, row_sum_norm(&rows) * row_sum_norm(&inverse(rows))];
+        most = max_or_infinite(of.into_iter());
     }
     most.log10()
 }

@@ -1,9 +1,9 @@
 //! Builder of the functions of a program.
 
 use super::accel::Acceleration;
-use super::accel::cheapest::Computation;
-use super::accel::parts::Parts;
-use super::care::Care;
+use super::accel::cheapest::MassAndForces;
+use super::accel::parts::EquationTerms;
+use super::numerical_loss::NumericalLoss;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
@@ -15,10 +15,10 @@ use hamel_program::{Cause, Function, FunctionId, Shape};
 ///
 /// In larger models M is used as it is traced: computing the n² literal entries of all bodies would
 /// take longer than everything else.
-pub(super) const MOST_LITERAL: usize = 8;
+pub(super) const MAX_LITERAL_VELOCITIES: usize = 8;
 
 /// Functions that have been added so far, and the quantities they are made from.
-pub(super) struct Builder<'a> {
+pub(super) struct ProgramBuilder<'a> {
     /// Model of the program.
     pub(super) model: &'a Model,
     /// Graph of all functions.
@@ -26,14 +26,14 @@ pub(super) struct Builder<'a> {
     /// Computation of ξ̇.
     pub(super) chosen: Acceleration,
     /// M and the forces.
-    pub(super) parts: Parts,
+    pub(super) parts: EquationTerms,
     /// M and the forces in a graph in which only ξ̇ is computed, sharing as much as possible with
     /// it.
-    pub(super) shared: Computation,
+    pub(super) shared: MassAndForces,
     /// Functions added so far.
     pub(super) functions: Vec<Function>,
     /// Criterion by which candidates are compared.
-    pub(super) care: Care,
+    pub(super) numerical_loss: NumericalLoss,
     /// Pivots of [Y; Φ].
     pub(super) kinematic_guards: Vec<Edge>,
     /// Meaning of each guard, should it not be positive.
@@ -45,23 +45,23 @@ pub(super) struct Builder<'a> {
     pub(super) constant_guards: Vec<Edge>,
 }
 
-impl<'a> Builder<'a> {
+impl<'a> ProgramBuilder<'a> {
     pub(super) fn new(
         model: &'a Model,
         chosen: Acceleration,
-        computed: Computation,
-        care: &Care,
+        computed: MassAndForces,
+        numerical_loss: &NumericalLoss,
     ) -> Self {
-        let Computation { mut graph, parts } = computed;
+        let MassAndForces { mut graph, parts } = computed;
         let mut around = chosen.graph.clone();
-        let shared = Computation {
-            parts: parts.shared(&graph, &mut around),
+        let shared = MassAndForces {
+            parts: parts.rebuild_in(&graph, &mut around),
             graph: around,
         };
         let kinematic_guards = rebuild(&model.graph, &mut graph, &model.completion.pivots);
         let numbered = kinematic_guards.iter().copied().enumerate();
         let causes = numbered.map(|(number, pivot)| (pivot, Cause::Kinematics(number)));
-        let mut builder = Builder {
+        let mut builder = ProgramBuilder {
             model,
             graph,
             causes: causes.collect(),
@@ -69,7 +69,7 @@ impl<'a> Builder<'a> {
             parts,
             shared,
             functions: Vec::new(),
-            care: care.clone(),
+            numerical_loss: numerical_loss.clone(),
             kinematic_guards,
             constant_guards: Vec::new(),
         };
@@ -134,7 +134,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Sets the number of columns of the function that was added last.
-    pub(super) fn shaped(&mut self, columns: usize) {
+    pub(super) fn set_columns(&mut self, columns: usize) {
         if let Some(function) = self.functions.last_mut() {
             let rows = function.outputs.len() / columns.max(1);
             function.shape = Shape::Matrix(rows, columns);

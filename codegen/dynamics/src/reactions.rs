@@ -1,12 +1,12 @@
 //! Functions of systems with constraints: the multipliers, and projections onto the constraints.
 
+use super::accel::context::DerivationContext;
 use super::accel::recursions;
-use super::accel::setting::Setting;
 use super::candidates::Candidates;
 use super::multipliers::{multipliers, residuals};
-use super::program::Builder;
+use super::program::ProgramBuilder;
 use super::reduction::Reduction;
-use super::undetermined::undetermined;
+use super::undetermined::undetermined_multipliers;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::rebuild;
 use hamel_language::functions::Needs;
@@ -14,9 +14,9 @@ use hamel_language::model::{Model, entry};
 use hamel_program::FunctionId;
 
 /// Largest number of characters shown of a constraint as it was written.
-const SHOWN: usize = 72;
+const MAX_SHOWN_CHARACTERS: usize = 72;
 
-impl Builder<'_> {
+impl ProgramBuilder<'_> {
     /// Returns φ of the loops that are kept closed by multipliers.
     pub(super) fn loops(&mut self) -> Vec<Edge> {
         let zero = self.model.graph.zero();
@@ -45,14 +45,14 @@ impl Builder<'_> {
         let whole = self.model.full_frame.is_some() || full.constraints.is_empty();
         let mut traced: Vec<(Graph, Vec<Edge>)> = Vec::new();
         if whole {
-            let given = Setting::given(self.model);
-            let recursions = recursions(&given, &self.care);
+            let given = DerivationContext::in_given_velocities(self.model);
+            let recursions = recursions(&given, &self.numerical_loss);
             traced.extend(recursions.iter().map(|of| of.residuals(&velocities)));
         }
         if traced.is_empty() {
             traced.push(residuals(full, reduction, &velocities));
         }
-        let mut candidates = Candidates::with(&self.care);
+        let mut candidates = Candidates::new(&self.numerical_loss);
         let contexts = [self.shared.graph.clone(), self.graph.clone()];
         let contexts = contexts.into_iter().chain([self.chosen.graph.clone()]);
         let contexts = contexts.flat_map(|graph| traced.iter().map(move |of| (graph.clone(), of)));
@@ -78,10 +78,10 @@ impl Builder<'_> {
             let name = entry(&full.velocities, velocity);
             (format!("rate({name})"), String::new())
         });
-        let unique = undetermined(full).into_iter().map(|free| !free);
+        let unique = undetermined_multipliers(full).into_iter().map(|free| !free);
         let all = rows.chain(drives).zip(unique.clone()).enumerate();
         let docs = all.map(|(row, ((text, entry), unique))| {
-            let shown: String = text.chars().take(SHOWN).collect();
+            let shown: String = text.chars().take(MAX_SHOWN_CHARACTERS).collect();
             let more = if shown.len() < text.len() { " …" } else { "" };
             let entry = match entry.as_str() {
                 "" => String::new(),

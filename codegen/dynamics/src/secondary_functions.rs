@@ -1,13 +1,15 @@
 //! Functions in addition to the equations of motion: momenta, the linearisation, invariants.
 
-use super::accel::cheapest::Computation;
-use super::accel::recursive::Recursion;
-use super::accel::setting::Setting;
+use super::accel::cheapest::MassAndForces;
+use super::accel::context::DerivationContext;
+use super::accel::recursive::TreeRecursion;
 use super::accel::{Acceleration, recursions};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::linearize::{Displacements, ForwardDynamics, Linear, linearize, slopes, with_states};
-use super::program::{Builder, MOST_LITERAL, shape_of};
+use super::linearize::{
+    Displacements, ForwardDynamics, Linearization, linearize, slopes, with_states,
+};
+use super::program::{MAX_LITERAL_VELOCITIES, ProgramBuilder, shape_of};
 use super::reduction::Reduction;
 use super::regressor::Regressor;
 use super::tree::Placement;
@@ -21,14 +23,14 @@ use hamel_language::model::invariants::Quantity;
 use hamel_language::model::{Model, class};
 use hamel_program::{Argument, Cause, Function, FunctionId, Shape};
 
-impl Builder<'_> {
+impl ProgramBuilder<'_> {
     /// Adds ṗ as a function of (x, ξ, u), and ξ as a function of (x, p).
     pub(super) fn momentum(&mut self) {
         if !self.model.spans {
             return;
         }
-        let given = Setting::given(self.model);
-        let recursions = recursions(&given, &self.care);
+        let given = DerivationContext::in_given_velocities(self.model);
+        let recursions = recursions(&given, &self.numerical_loss);
         if self.model.asked.wants(FunctionId::MomentumRate) {
             self.momentum_rate(&recursions);
         }
@@ -37,24 +39,24 @@ impl Builder<'_> {
         }
     }
 
-    fn momentum_rate(&mut self, recursions: &[Recursion]) {
+    fn momentum_rate(&mut self, recursions: &[TreeRecursion]) {
         let n = self.model.n();
-        let mut candidates = Candidates::with(&self.care);
-        let traced = recursions.iter().filter_map(Recursion::momentum_rate);
+        let mut candidates = Candidates::new(&self.numerical_loss);
+        let traced = recursions.iter().filter_map(TreeRecursion::momentum_rate);
         let mut recursive = false;
         for (graph, rate) in traced {
             candidates.offer_own(graph, rate);
             recursive = true;
         }
         // For longer trees the recursion is certainly the cheapest.
-        if !recursive || n <= momentum::MOST_WRITTEN_OUT {
+        if !recursive || n <= momentum::MAX_EXPLICIT_VELOCITIES {
             let contexts = [
                 (&self.shared.graph, &self.shared.parts),
                 (&self.graph, &self.parts),
             ];
             for (graph, parts) in contexts {
                 let mut graph = graph.clone();
-                let rate = momentum::rate(self.model, &mut graph, parts);
+                let rate = momentum::momentum_rate(self.model, &mut graph, parts);
                 candidates.offer_own(graph, rate);
             }
         }
@@ -62,22 +64,23 @@ impl Builder<'_> {
         self.push(FunctionId::MomentumRate, rate);
     }
 
-    fn velocity_from_momentum(&mut self, recursions: &[Recursion]) {
+    fn velocity_from_momentum(&mut self, recursions: &[TreeRecursion]) {
         let n = self.model.n();
         let p = &self.model.momenta;
-        let mut candidates = Candidates::with(&self.care);
+        let mut candidates = Candidates::new(&self.numerical_loss);
         let mut recursive = false;
         for (graph, solution) in recursions
             .iter()
-            .filter_map(Recursion::velocity_from_momentum)
+            .filter_map(TreeRecursion::velocity_from_momentum)
         {
             candidates.offer_own(graph, [solution.xi_dot, solution.pivots].concat());
             recursive = true;
         }
-        if !recursive || n <= momentum::MOST_WRITTEN_OUT {
+        if !recursive || n <= momentum::MAX_EXPLICIT_VELOCITIES {
             let shared = &self.shared;
             let contexts = [(&self.graph, &self.parts), (&shared.graph, &shared.parts)];
-            let found = contexts.map(|(graph, parts)| momentum::velocity(graph, parts, p));
+            let found =
+                contexts.map(|(graph, parts)| momentum::velocity_from_momentum(graph, parts, p));
             let cheapest = found.into_iter().flatten().min_by_key(|(cost, ..)| *cost);
             if let Some((_, graph, solution)) = cheapest {
                 let roots = [solution.xi_dot, solution.pivots].concat();
@@ -105,17 +108,17 @@ impl Builder<'_> {
         let shared = &self.shared;
         let apart = |motion: &Acceleration| {
             let mut graph = motion.graph.clone();
-            let parts = shared.parts.shared(&shared.graph, &mut graph);
-            Computation { graph, parts }
+            let parts = shared.parts.rebuild_in(&shared.graph, &mut graph);
+            MassAndForces { graph, parts }
         };
         let chosen = &self.chosen;
         let mut motions = vec![(chosen, shared.clone())];
-        if self.model.n() <= MOST_LITERAL {
+        if self.model.n() <= MAX_LITERAL_VELOCITIES {
             motions.push((chosen, apart(chosen)));
         }
         motions.extend(chosen.other.as_deref().map(|other| (other, apart(other))));
-        let mut best: Option<((usize, usize), Linear)> = None;
-        for (motion, Computation { mut graph, parts }) in motions {
+        let mut best: Option<((usize, usize), Linearization)> = None;
+        for (motion, MassAndForces { mut graph, parts }) in motions {
             let Some(displacements) = Displacements::new(full, reduction, &mut graph) else {
                 return;
             };
@@ -133,7 +136,7 @@ impl Builder<'_> {
                 implicit: (self.model.constraints.is_empty() && self.model.accelerated.is_empty())
                     .then_some((&parts.mass, &right)),
             };
-            let linear = linearize(self.model, &displacements, &self.care);
+            let linear = linearize(self.model, &displacements, &self.numerical_loss);
             let cost = linear.cost();
             if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
                 best = Some((cost, linear));
@@ -143,7 +146,7 @@ impl Builder<'_> {
             return;
         };
         let roots = graft(&linear.graph, &mut self.graph, &linear.roots());
-        let (mut rows, guards, mut rates) = linear.apart(roots);
+        let (mut rows, guards, mut rates) = linear.separate_roots(roots);
         let columns = rows.first().map_or(1, Vec::len);
         self.causes.extend(guards.iter().copied());
         let guards = guards.into_iter().map(|(guard, _)| guard).collect();
@@ -204,7 +207,7 @@ impl Builder<'_> {
             );
             let columns = rows.first().map_or(0, Vec::len);
             let shape = Shape::Matrix(rows.len(), columns);
-            let mut candidates = Candidates::with(&self.care);
+            let mut candidates = Candidates::new(&self.numerical_loss);
             candidates.offer_own(graph, rows.concat());
             let outputs = candidates.cheapest(&mut self.graph);
             let guards = if follows { self.guards() } else { Vec::new() };
@@ -298,9 +301,9 @@ impl Builder<'_> {
     pub(super) fn invariants(&mut self) {
         let mut model = self.model.clone();
         let mut calculus = Calculus::new(&model);
-        let given = Setting::given(self.model);
+        let given = DerivationContext::in_given_velocities(self.model);
         let total = (!self.model.invariants.is_empty())
-            .then(|| Recursion::of(&given, Placement::Described, &self.care))
+            .then(|| TreeRecursion::of(&given, Placement::Described, &self.numerical_loss))
             .flatten()
             .map(|recursion| recursion.total_momentum());
         for claim in &self.model.invariants {
@@ -315,7 +318,7 @@ impl Builder<'_> {
                 (quantity, _) => {
                     let zero = model.graph.zero();
                     let value = quantity::value(&mut model, &mut calculus, (zero, zero), quantity);
-                    let mut candidates = Candidates::with(&self.care);
+                    let mut candidates = Candidates::new(&self.numerical_loss);
                     candidates.offer_both(model.graph.clone(), value.entries(), &self.graph);
                     if let Some((graph, linear, angular)) = &total {
                         let mut graph = graph.clone();

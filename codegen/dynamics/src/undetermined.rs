@@ -4,7 +4,7 @@
 //! independent of all others. Rows that were dropped as redundant count, too: they share the force
 //! of the rows from which they follow.
 
-use super::reduction::{independent, unit};
+use super::reduction::{independent_rows, normalize};
 use hamel_algebra::numeric::evaluate;
 use hamel_algebra::residue_pair::Random;
 use hamel_language::model::Model;
@@ -12,29 +12,29 @@ use hamel_language::model::loop_closure::{LoopClosure, normalise};
 
 /// Distance from the start, in the units of the coordinates, at which rows are examined as well,
 /// since a start may be singular.
-const ASIDE: f64 = 0.1;
+const EXAMINED_DISTANCE: f64 = 0.1;
 /// Number of such configurations.
-const PLACES: u64 = 3;
+const EXAMINED_CONFIGURATIONS: u64 = 3;
 
 /// Returns whether the force is not determined where the loops are closed, singular positions
 /// excepted, for each non-redundant constraint of the full frame and then for each drive with a
 /// prescribed rate.
-pub fn undetermined(full: &Model) -> Vec<bool> {
+pub fn undetermined_multipliers(full: &Model) -> Vec<bool> {
     let shown = || {
         let constraints = full.constraints.iter().map(|row| !row.redundant);
         constraints.chain(full.accelerated.iter().map(|_| true))
     };
     let mut best: Option<(usize, Vec<bool>)> = None;
-    for x in places(full) {
-        let rows = rows(full, &x);
-        let rank = independent(rows.clone()).len();
+    for x in examined_configurations(full) {
+        let rows = normalized_rows(full, &x);
+        let rank = independent_rows(rows.clone()).len();
         if best.as_ref().is_some_and(|(most, _)| *most >= rank) {
             continue;
         }
         let depends = (0..rows.len()).map(|i| {
             let mut others = rows.clone();
             others.remove(i);
-            independent(others).len() == rank
+            independent_rows(others).len() == rank
         });
         best = Some((rank, depends.collect()));
     }
@@ -44,16 +44,16 @@ pub fn undetermined(full: &Model) -> Vec<bool> {
 }
 
 /// Returns configurations that close the loops: some near the start, then the start itself.
-fn places(full: &Model) -> Vec<Vec<f64>> {
+fn examined_configurations(full: &Model) -> Vec<Vec<f64>> {
     let closure = LoopClosure::of(full, &full.defaults);
     let time = full.clock.map(|clock| clock.x);
-    let beside = (0..PLACES).filter_map(|place| {
+    let beside = (0..EXAMINED_CONFIGURATIONS).filter_map(|place| {
         let mut random = Random::new(0x57a7 + place);
         let mut x = full.start_x.clone();
         for (alpha, entry) in x.iter_mut().enumerate() {
             let number = (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
             if Some(alpha) != time {
-                *entry += ASIDE * number;
+                *entry += EXAMINED_DISTANCE * number;
             }
         }
         normalise(&full.blocks, &mut x);
@@ -67,7 +67,7 @@ fn places(full: &Model) -> Vec<Vec<f64>> {
 }
 
 /// Returns the rows of B and those of drives, normalised, without the column of the time.
-fn rows(full: &Model, x: &[f64]) -> Vec<Vec<f64>> {
+fn normalized_rows(full: &Model, x: &[f64]) -> Vec<Vec<f64>> {
     let n = full.n();
     let numbers = full.numbers(
         &full.defaults,
@@ -91,7 +91,7 @@ fn rows(full: &Model, x: &[f64]) -> Vec<Vec<f64>> {
         if let Some(time) = time {
             row[time] = 0.0;
         }
-        unit(&row)
+        normalize(&row)
     })
     .collect()
 }

@@ -10,7 +10,9 @@ use super::style::Style;
 use super::write::Writer;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::numeric::evaluate;
-use hamel_dynamics::regressor::{DIAGONAL, Kind, MOMENTS, Regressor, Standard};
+use hamel_dynamics::regressor::{
+    DIAGONAL_PARAMETERS, Kind, Regressor, SECOND_MOMENT_NAMES, StandardParameter,
+};
 use hamel_program::count::count;
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -48,23 +50,27 @@ struct Row {
 #[derive(Clone, Copy)]
 enum Shown {
     /// A standard parameter, by its index.
-    Standard(usize),
+    StandardParameter(usize),
     /// Σ_xx, Σ_yy or Σ_zz of a link: index of the link's first standard parameter, and axis.
     Moment(usize, usize),
 }
 
 /// Returns a sum of standard parameters as it is shown.
-fn shown(graph: &mut Graph, standard: &[Standard], terms: &[(usize, Edge)]) -> Vec<(Shown, Edge)> {
+fn shown(
+    graph: &mut Graph,
+    standard: &[StandardParameter],
+    terms: &[(usize, Edge)],
+) -> Vec<(Shown, Edge)> {
     let zero = graph.zero();
     let first = |k: usize| match standard[k].kind {
-        Kind::Inertia(place) if DIAGONAL.contains(&place) => Some(k - place),
+        Kind::Inertia(place) if DIAGONAL_PARAMETERS.contains(&place) => Some(k - place),
         _ => None,
     };
     let mut all = Vec::new();
     let mut done = Vec::new();
     for &(k, factor) in terms {
         let Some(link) = first(k) else {
-            all.push((Shown::Standard(k), factor));
+            all.push((Shown::StandardParameter(k), factor));
             continue;
         };
         if done.contains(&link) {
@@ -72,16 +78,17 @@ fn shown(graph: &mut Graph, standard: &[Standard], terms: &[(usize, Edge)]) -> V
         }
         done.push(link);
         let of = |place: usize| terms.iter().find(|(k, _)| *k == link + place);
-        let inertia = DIAGONAL.map(|place| of(place).map_or(zero, |&(_, factor)| factor));
+        let inertia =
+            DIAGONAL_PARAMETERS.map(|place| of(place).map_or(zero, |&(_, factor)| factor));
         // Θ_xx = Σ_yy + Σ_zz, and so on.
         let moments: [Edge; 3] =
             std::array::from_fn(|i| graph.add(inertia[(i + 1) % 3], inertia[(i + 2) % 3]));
         let count = |factors: &[Edge; 3]| factors.iter().filter(|&&factor| factor != zero).count();
         let fewer = count(&moments) < count(&inertia);
-        for (axis, place) in DIAGONAL.into_iter().enumerate() {
+        for (axis, place) in DIAGONAL_PARAMETERS.into_iter().enumerate() {
             all.push(match fewer {
                 true => (Shown::Moment(link, axis), moments[axis]),
-                false => (Shown::Standard(link + place), inertia[axis]),
+                false => (Shown::StandardParameter(link + place), inertia[axis]),
             });
         }
     }
@@ -94,7 +101,7 @@ pub struct BaseParameters {
     system: String,
     velocities: usize,
     links: Vec<String>,
-    standard: Vec<Standard>,
+    standard: Vec<StandardParameter>,
     values: Vec<f64>,
     rows: Vec<Row>,
     idle: Vec<usize>,
@@ -162,7 +169,7 @@ impl BaseParameters {
     }
 
     /// The standard parameters: ten for each link, followed by those of joints.
-    pub fn standard(&self) -> &[Standard] {
+    pub fn standard(&self) -> &[StandardParameter] {
         &self.standard
     }
 
@@ -257,10 +264,10 @@ impl BaseParameters {
                 text.push_str(&format!(" {sign} "));
             }
             let name = match (*what, notation) {
-                (Shown::Standard(k), Notation::Text) => self.standard[k].name(),
-                (Shown::Standard(k), Notation::Latex) => symbol(&self.standard[k]),
+                (Shown::StandardParameter(k), Notation::Text) => self.standard[k].name(),
+                (Shown::StandardParameter(k), Notation::Latex) => symbol(&self.standard[k]),
                 (Shown::Moment(k, axis), Notation::Text) => {
-                    format!("{}.{}", self.standard[k].of, MOMENTS[axis])
+                    format!("{}.{}", self.standard[k].of, SECOND_MOMENT_NAMES[axis])
                 }
                 (Shown::Moment(k, axis), Notation::Latex) => {
                     let of = self.standard[k].of.replace('_', r"\_");
@@ -398,7 +405,7 @@ pub fn latex(all: &BaseParameters) -> String {
 }
 
 /// Returns the LaTeX symbol of a standard parameter, such as Θ_{xx}^{\text{link}} for Θ_xx of a link.
-fn symbol(standard: &Standard) -> String {
+fn symbol(standard: &StandardParameter) -> String {
     let of = standard.of.replace('_', r"\_");
     let own = match standard.kind {
         Kind::Inertia(9) => "m".to_string(),

@@ -2,10 +2,10 @@
 
 use hamel_codegen::algebra::derivation::Derivation;
 use hamel_codegen::algebra::graph::{Edge, Graph};
-use hamel_codegen::derive::accel::branches::Branches;
-use hamel_codegen::derive::accel::parts::{Reference, Variant, parts};
+use hamel_codegen::derive::accel::branches::BranchFactors;
+use hamel_codegen::derive::accel::parts::{ReferencePoint, TracingVariant, trace_terms};
 use hamel_codegen::derive::calculus::Calculus;
-use hamel_codegen::derive::tree::inverse::{inverse, wrenches};
+use hamel_codegen::derive::tree::inverse::{inverse_dynamics, wrenches};
 use hamel_codegen::derive::tree::{Placement, Tree, articulated, composite, slopes};
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::Axes;
@@ -92,18 +92,18 @@ fn agree(model: Model, steady: bool) {
 
 fn agree_placed(mut model: Model, placement: Placement, steady: bool) {
     let mut calculus = Calculus::new(&model);
-    let variant = Variant {
+    let variant = TracingVariant {
         axes: Axes::Body,
-        reference: Reference::Com,
+        reference: ReferencePoint::Com,
         shift: None,
     };
     let mut plain = model.clone();
-    let parts = parts(&mut plain, &mut calculus.clone(), variant);
+    let parts = trace_terms(&mut plain, &mut calculus.clone(), variant);
     let tree = Tree::of(&mut model, &mut calculus, placement).expect("is a tree");
     let n = model.n();
     let zero = model.graph.zero();
     let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
-    let id = inverse(&mut model.graph, &tree, &xi, &xi_dot, gravity);
+    let id = inverse_dynamics(&mut model.graph, &tree, &xi, &xi_dot, gravity);
     let expected = parts.inverse_dynamics_of(&mut plain.graph, &model);
     for i in 0..n {
         assert_eq!(
@@ -125,7 +125,7 @@ fn agree_placed(mut model: Model, placement: Placement, steady: bool) {
     if tree.is_plain(&graph, n, &[]) {
         let still = vec![zero; n];
         let forces = wrenches(&mut graph, &tree, &xi, &still, gravity);
-        let bias = inverse(&mut graph, &tree, &xi, &still, gravity);
+        let bias = inverse_dynamics(&mut graph, &tree, &xi, &still, gravity);
         let found = articulated::forward(&mut graph, &tree, &[], &forces, &still).expect("solves");
         for i in 0..n {
             let inertial = graph.dot(&mass[i], &found.xi_dot);
@@ -202,7 +202,7 @@ fn branches_answer_as_the_mass_matrix_does() {
             let graph = &mut model.graph;
             let (zero, still) = (graph.zero(), vec![graph.zero(); n]);
             let mass = composite::mass_matrix(graph, &tree, n);
-            let twins = tree.twins(graph);
+            let twins = tree.equivalent_motions(graph);
             assert_eq!(twins.len(), expected, "twins");
             for twin in &twins {
                 let terms = twin.by.iter();
@@ -215,7 +215,7 @@ fn branches_answer_as_the_mass_matrix_does() {
                     twin.of
                 );
             }
-            let branches = Branches::of(graph, &mass, &twins).expect("M is regular");
+            let branches = BranchFactors::of(graph, &mass, &twins).expect("M is regular");
             let unit = |graph: &Graph, i: usize| -> Vec<Edge> {
                 let entry = |j| if i == j { graph.one() } else { zero };
                 (0..n).map(entry).collect()
@@ -230,13 +230,13 @@ fn branches_answer_as_the_mass_matrix_does() {
                     assert_eq!(graph.dot(row, &solved), column[i], "row {i}");
                 }
             }
-            let bias = inverse(graph, &tree, &xi, &still, gravity);
-            let Some(uniform) = tree.uniform(graph, &xi, gravity) else {
+            let bias = inverse_dynamics(graph, &tree, &xi, &still, gravity);
+            let Some(uniform) = tree.common_motion(graph, &xi, gravity) else {
                 assert_eq!(text, MIXED, "all roots of the other are free");
                 continue;
             };
             let none = [zero; 3];
-            let proper = inverse(graph, &tree, &uniform.xi, &still, none);
+            let proper = inverse_dynamics(graph, &tree, &uniform.xi, &still, none);
             for (i, row) in mass.iter().enumerate() {
                 let common = graph.dot(row, &uniform.rates);
                 let force = graph.add(bias[i], common);

@@ -3,7 +3,7 @@
 
 use crate::common::{Random, attack, difference, generated, value};
 use hamel_codegen::derive::reduction::reduce;
-use hamel_codegen::derive::undetermined::undetermined;
+use hamel_codegen::derive::undetermined::undetermined_multipliers;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::Program;
 use hamel_codegen::proof::prove;
@@ -104,7 +104,10 @@ fn the_force_of_a_pin_is_given_beside_rows_without_one() {
             "entries [2, 1], [2, 2] of this loop follow from the other rows, and are left out",
         ]
     );
-    assert_eq!(undetermined(&of.model), [false, false, true, true]);
+    assert_eq!(
+        undetermined_multipliers(&of.model),
+        [false, false, true, true]
+    );
     let function = of
         .program
         .function("constraint_force")
@@ -125,7 +128,7 @@ fn the_force_of_a_pin_is_given_beside_rows_without_one() {
         "loop position(P)[1] = position(Q)[1], position(P)[2] = position(Q)[2], dot(P.R * [1, 0, 0], Q.R * [0, 1, 0]) = 0;",
     ));
     assert!(messages(&fewer).is_empty());
-    assert_eq!(undetermined(&fewer.model), [false; 3]);
+    assert_eq!(undetermined_multipliers(&fewer.model), [false; 3]);
     let unique = at_start(&fewer, "constraint_force", &[]);
     assert!(difference(&forces[..2], &unique[..2]) < 1e-8);
     assert!(difference(&unique, &least_squares(&fewer)) < 1e-8);
@@ -208,8 +211,8 @@ fn whatever_follows_is_dropped_with_a_warning() {
     );
     assert!(difference(&accel(&one), &accel(&both)) < 1e-12);
     // The dropped rows might carry a part of any force.
-    assert_eq!(undetermined(&one.model), [false; 3]);
-    assert_eq!(undetermined(&both.model), [true; 3]);
+    assert_eq!(undetermined_multipliers(&one.model), [false; 3]);
+    assert_eq!(undetermined_multipliers(&both.model), [true; 3]);
     assert_eq!(at_start(&both, "constraint_force", &[]).len(), 3);
 }
 
@@ -346,9 +349,9 @@ fn faults(seed: u64) -> Vec<String> {
         judge("force", (along - unique[axis]).abs() / scale, 1e-6);
     }
     // For a plane along the axes, the forces are unique.
-    let free = undetermined(&many.model);
+    let free = undetermined_multipliers(&many.model);
     if seed.is_multiple_of(3) && free[..2] != [false, false]
-        || undetermined(&few.model).contains(&true)
+        || undetermined_multipliers(&few.model).contains(&true)
     {
         faults.push(format!("{seed}: determined {free:?}"));
     }
@@ -535,7 +538,7 @@ fn unique_forces_are_given_beside_prescribed_rates() {
             }
         }
         let free: Vec<bool> = expected.iter().map(Option::is_none).collect();
-        assert_eq!(undetermined(&of.model), free, "{name}");
+        assert_eq!(undetermined_multipliers(&of.model), free, "{name}");
         let loops = free.iter().rev().skip(1).filter(|free| !**free).count();
         assert_eq!((loops, free.last()), (unique, Some(&false)), "{name}");
         for (i, right) in right.iter().enumerate() {

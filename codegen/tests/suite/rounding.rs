@@ -5,7 +5,7 @@ use crate::arm::{Angle, Arm, Decimal, Joint};
 use crate::common::{Random, generated, size, value};
 use hamel_codegen::algebra::double::Double;
 use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::derive::care::losses;
+use hamel_codegen::derive::numerical_loss::losses;
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;

@@ -10,7 +10,7 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
-use hamel_dynamics::centroidal::moves;
+use hamel_dynamics::centroidal::which_move;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
@@ -121,7 +121,10 @@ fn sum_over_bodies(
             moment: [ResiduePair::ZERO; 3],
         });
     }
-    let moving = parts.iter().zip(moves(model)).filter(|(_, moves)| *moves);
+    let moving = parts
+        .iter()
+        .zip(which_move(model))
+        .filter(|(_, moves)| *moves);
     let moving: Vec<&Part> = moving.map(|(part, _)| part).collect();
     let total = |term: &dyn Fn(&Part) -> ResiduePair| {
         moving

@@ -13,7 +13,7 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tape::Tape;
-use hamel_dynamics::regressor::{ENTRIES, Kind, Regressor};
+use hamel_dynamics::regressor::{INERTIA_ENTRIES, Kind, Regressor};
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::{Body, Model};
 use hamel_program::{FunctionId, Program};
@@ -101,7 +101,7 @@ fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Ve
         let mass = number();
         let com: [i64; 3] = std::array::from_fn(|_| number());
         let mut about_com = [[0; 3]; 3];
-        for (i, j) in ENTRIES {
+        for (i, j) in INERTIA_ENTRIES {
             about_com[i][j] = number();
             about_com[j][i] = about_com[i][j];
         }
@@ -117,7 +117,7 @@ fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Ve
                 && one.of == *link
             {
                 let number = match place {
-                    0..6 => about_origin[ENTRIES[place].0][ENTRIES[place].1],
+                    0..6 => about_origin[INERTIA_ENTRIES[place].0][INERTIA_ENTRIES[place].1],
                     6..9 => mass * com[place - 6],
                     _ => mass,
                 };

@@ -17,14 +17,14 @@ use hamel_algebra::numeric::{evaluate_at, solve};
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
 use hamel_dynamics::kinematics::chart_rates;
-use hamel_dynamics::structure::rates::{Part, parts};
+use hamel_dynamics::structure::rates::{CoordinateBlock, coordinate_blocks};
 use hamel_language::model::Model;
 use hamel_program::structure::Structure;
 use hamel_program::{FunctionId, Program};
 
 /// Quantities with which the functions of a splitting are compared.
 pub struct Proof {
-    parts: Vec<Part>,
+    parts: Vec<CoordinateBlock>,
     /// The model; its graph contains the rates of the coordinates.
     model: Model,
     /// Rates of the coordinates in their charts.
@@ -42,7 +42,7 @@ impl Proof {
         let mut model = model.clone();
         let rates = chart_rates(&mut model.graph, &model.blocks, &model.x, &model.rate);
         Some(Proof {
-            parts: parts(&model),
+            parts: coordinate_blocks(&model),
             rates,
             x: model.graph.symbol_places(&model.x),
             xi: model.graph.symbol_places(&model.xi),

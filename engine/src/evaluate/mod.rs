@@ -14,7 +14,7 @@ use crate::names;
 use crate::state::{State, joints, rows};
 use geometry::Geometry;
 use hamel::{Energies, System};
-use hamel_codegen::derive::undetermined::undetermined;
+use hamel_codegen::derive::undetermined::undetermined_multipliers;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
 use serde::Serialize;
@@ -191,7 +191,9 @@ fn multipliers(
     let driven = model.accelerated.iter();
     let driven = driven.filter_map(|&(velocity, _)| names.get(velocity).cloned());
     let constraints: Vec<String> = rows.chain(driven).collect();
-    let free = undetermined(model).into_iter().zip(&constraints);
+    let free = undetermined_multipliers(model)
+        .into_iter()
+        .zip(&constraints);
     let free = free.filter(|(free, _)| *free).map(|(_, row)| row.clone());
     Ok(Some(Multipliers {
         undetermined: free.collect(),

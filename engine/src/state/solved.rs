@@ -1,7 +1,7 @@
 //! Velocities determined by constraints, which are not part of states.
 
 use crate::names;
-use hamel_codegen::derive::undetermined::undetermined;
+use hamel_codegen::derive::undetermined::undetermined_multipliers;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 
@@ -58,7 +58,7 @@ pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
             },
         );
     }
-    let free = undetermined(full);
+    let free = undetermined_multipliers(full);
     let said = full.constraints.iter().filter(|row| !row.redundant);
     let free = said.zip(free).filter(|(_, free)| *free);
     let free: Vec<(String, _)> = free

@@ -5,9 +5,9 @@ use hamel_codegen::algebra::graph::{Edge, Graph, Node};
 use hamel_codegen::algebra::numeric::{evaluate_at, solve};
 use hamel_codegen::algebra::residue_pair::ResiduePair;
 use hamel_codegen::algebra::tangent::tangent_at;
-use hamel_codegen::derive::accel::accel;
+use hamel_codegen::derive::accel::forward_dynamics;
 use hamel_codegen::derive::adviser::advise;
-use hamel_codegen::derive::care::Care;
+use hamel_codegen::derive::numerical_loss::NumericalLoss;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::Model;
 use std::path::Path;
@@ -35,7 +35,7 @@ fn motion(
     point: &FieldPoint,
     xi: &[ResiduePair],
 ) -> (Vec<ResiduePair>, Vec<ResiduePair>) {
-    let (chosen, _) = accel(model, &Care::default()).expect("M is regular");
+    let (chosen, _) = forward_dynamics(model, &NumericalLoss::default()).expect("M is regular");
     let graph = &model.graph;
     let places = symbols(graph, &model.xi);
     let mut moved = FieldPoint::new();
@@ -128,6 +128,7 @@ fn statements_give_what_was_counted() {
         .collect::<Vec<_>>()
         .join("\n");
     let generated = from_text(&kept).unwrap_or_else(|errors| panic!("{errors:?}\n{kept}"));
-    let (chosen, _) = accel(&generated.model, &Care::default()).expect("M is regular");
+    let (chosen, _) =
+        forward_dynamics(&generated.model, &NumericalLoss::default()).expect("M is regular");
     assert_eq!(chosen.count, other.accel);
 }

@@ -1,14 +1,14 @@
 //! Comparison of candidates for ξ̇; the best of each family is polished before the final comparison.
 
-use super::saddle::Projections;
-use crate::care::Care;
+use super::kkt::Projections;
+use crate::numerical_loss::NumericalLoss;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::resubstitute::resubstitute;
 use hamel_language::model::Model;
 use hamel_language::syntax::ast::Axes;
 use hamel_program::count::{Count, count};
 
-/// A computation of ξ̇.
+/// Candidate for ξ̇: its expressions in a graph of its own, their pivots and their cost.
 #[derive(Clone, Debug)]
 pub struct Acceleration {
     /// Graph of the expressions: the model's graph with the nodes of the route added.
@@ -40,7 +40,7 @@ pub struct Acceleration {
 
 impl Acceleration {
     /// Creates a candidate and counts its operations.
-    pub(super) fn counted(
+    pub(super) fn with_counts(
         graph: Graph,
         xi_dot: Vec<Edge>,
         pivots: Vec<Edge>,
@@ -89,11 +89,11 @@ impl Acceleration {
 
 /// Largest ratio of operations to the cheapest family's at which a family that loses no more digits is still
 /// polished.
-pub(crate) const NEAR: (usize, usize) = (4, 3);
+pub(crate) const MAX_POLISHED_COST_RATIO: (usize, usize) = (4, 3);
 
 /// Families of similar candidates; the best of each is polished before they are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Family {
+pub(super) enum CandidateFamily {
     /// Recursions over links.
     Links,
     /// Bodies traced in these axes, in the model's velocities or in the twist of its only body.
@@ -103,24 +103,24 @@ pub(super) enum Family {
 }
 
 /// Best candidates so far, one for each family.
-pub(super) struct Best<'a> {
-    care: &'a Care,
-    families: Vec<(Family, Acceleration)>,
+pub(super) struct BestCandidates<'a> {
+    numerical_loss: &'a NumericalLoss,
+    families: Vec<(CandidateFamily, Acceleration)>,
 }
 
-impl<'a> Best<'a> {
-    pub(super) fn new(care: &'a Care) -> Self {
-        Best {
-            care,
+impl<'a> BestCandidates<'a> {
+    pub(super) fn new(numerical_loss: &'a NumericalLoss) -> Self {
+        BestCandidates {
+            numerical_loss,
             families: Vec::new(),
         }
     }
 
     /// Keeps a candidate if it is better than the best of its family.
-    pub(super) fn keep(&mut self, family: Family, mut candidate: Acceleration) {
-        candidate.loss = self
-            .care
-            .loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
+    pub(super) fn keep(&mut self, family: CandidateFamily, mut candidate: Acceleration) {
+        candidate.loss =
+            self.numerical_loss
+                .loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
         match self.families.iter_mut().find(|(known, _)| *known == family) {
             Some((_, best)) if candidate.cost() < best.cost() => *best = candidate,
             Some(_) => {}
@@ -129,7 +129,7 @@ impl<'a> Best<'a> {
     }
 
     /// Returns the smallest operation count.
-    pub(super) fn least(&self) -> usize {
+    pub(super) fn min_operations(&self) -> usize {
         let weights = self.families.iter().map(|(_, best)| best.count.weight());
         weights.min().unwrap_or(usize::MAX)
     }
@@ -141,17 +141,23 @@ impl<'a> Best<'a> {
     }
 
     /// Returns the best candidate after resubstitution.
-    pub(super) fn polished(self, model: &Model) -> Option<Acceleration> {
-        let care = self.care;
+    pub(super) fn into_polished(self, model: &Model) -> Option<Acceleration> {
+        let numerical_loss = self.numerical_loss;
         let costs = self.families.iter().map(|(_, best)| best.cost());
         let (loss, weight, depth) = costs.min()?;
         // A family that is far behind stays behind after polishing; digits take precedence over operations.
-        let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
+        let most = (
+            loss,
+            weight * MAX_POLISHED_COST_RATIO.0 / MAX_POLISHED_COST_RATIO.1,
+            usize::MAX,
+        );
         let all = self.families.into_iter().map(|(_, best)| best);
         let near: Vec<Acceleration> = all.filter(|best| best.cost() <= most).collect();
         let mut places = near.iter().map(Acceleration::cost);
         let plain = places.position(|cost| cost == (loss, weight, depth))?;
-        let all = near.into_iter().map(|best| polished(best, model, care));
+        let all = near
+            .into_iter()
+            .map(|best| polish(best, model, numerical_loss));
         let mut all: Vec<Acceleration> = all.collect();
         let (first, _) = all.iter().enumerate().min_by_key(|(_, best)| best.cost())?;
         let other = (first != plain).then(|| Box::new(all[plain].clone()));
@@ -162,7 +168,7 @@ impl<'a> Best<'a> {
 }
 
 /// Returns a candidate after resubstitution, or unchanged if that does not make it cheaper.
-fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
+fn polish(chosen: Acceleration, model: &Model, numerical_loss: &NumericalLoss) -> Acceleration {
     let roots: Vec<Edge> = chosen
         .xi_dot
         .iter()
@@ -179,7 +185,7 @@ fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
         .filter(|edge| !graph.is_free(edge.node()))
         .collect::<Vec<_>>();
     let polished = Acceleration {
-        loss: care.loss(&graph, xi_dot, pivots),
+        loss: numerical_loss.loss(&graph, xi_dot, pivots),
         count: count(&graph, &varying),
         depth: graph.depth(&varying),
         route: chosen.route.clone(),

@@ -9,12 +9,12 @@
 //! If a joint has a twin, a direction s of the velocities before it that moves the branch as the joint itself does,
 //! then M s = M e on the branch, so that G s = e: one column of G follows from the others.
 
-use super::solve::absorb;
-use crate::tree::twin::Twin;
+use super::solve::absorb_factor;
+use crate::tree::equivalent_motion::EquivalentMotion;
 use hamel_algebra::graph::{Edge, Graph};
 
-/// Factors of M = U D Uᵀ.
-pub struct Branches {
+/// Factors of M = U D Uᵀ, branch by branch of a tree.
+pub struct BranchFactors {
     /// Entries of U above the diagonal.
     upper: Vec<Vec<Edge>>,
     /// Pivots, the diagonal of D.
@@ -36,20 +36,24 @@ struct Branch {
     /// Matrix G; rows by `own`, columns by `before`.
     answers: Vec<Vec<Edge>>,
     /// Column of G that a twin makes known.
-    known: Option<Known>,
+    known: Option<KnownColumn>,
 }
 
 /// A known column of G: e − Σ sᵢ Gᵢ with e = (1, 0, …).
-struct Known {
+struct KnownColumn {
     /// Its place in `before`.
     at: usize,
     /// The other places of s, with their entries.
     by: Vec<(usize, Edge)>,
 }
 
-impl Branches {
+impl BranchFactors {
     /// Factors M; `None` if a pivot vanishes identically.
-    pub fn of(graph: &mut Graph, mass: &[Vec<Edge>], twins: &[Twin]) -> Option<Self> {
+    pub fn of(
+        graph: &mut Graph,
+        mass: &[Vec<Edge>],
+        equivalent: &[EquivalentMotion],
+    ) -> Option<Self> {
         let n = mass.len();
         let zero = graph.zero();
         let mut a = mass.to_vec();
@@ -58,7 +62,7 @@ impl Branches {
         for c in (0..n).rev() {
             inverses[c] = graph.div(graph.one(), a[c][c])?;
             for r in 0..c {
-                upper[r][c] = absorb(graph, a[r][c], inverses[c]);
+                upper[r][c] = absorb_factor(graph, a[r][c], inverses[c]);
             }
             for r in 0..c {
                 for s in 0..=r {
@@ -69,8 +73,8 @@ impl Branches {
             }
         }
         let pivots = (0..n).map(|c| a[c][c]).collect();
-        let branches = branches(graph, &upper, twins);
-        let mut factors = Branches {
+        let branches = branches(graph, &upper, equivalent);
+        let mut factors = BranchFactors {
             upper,
             pivots,
             inverses,
@@ -95,7 +99,7 @@ impl Branches {
     pub fn solve(&self, graph: &mut Graph, b: &[Edge]) -> Vec<Edge> {
         let zero = graph.zero();
         let mut b = b.to_vec();
-        let mut pushed: Vec<(&Known, Edge)> = Vec::new();
+        let mut pushed: Vec<(&KnownColumn, Edge)> = Vec::new();
         let mut others = 0;
         for branch in self.branches.iter().rev() {
             if branch.own.iter().all(|&i| b[i] == zero) {
@@ -145,7 +149,7 @@ impl Branches {
 
     /// Solves for the first branch, with the velocities before it at rest, if b at the known place equals
     /// `rest` − Σ sᵢ bᵢ.
-    fn free_known(&self, graph: &mut Graph, known: &Known, rest: Edge, b: &mut [Edge]) {
+    fn free_known(&self, graph: &mut Graph, known: &KnownColumn, rest: Edge, b: &mut [Edge]) {
         let own = &self.branches[0].own;
         let places: Vec<usize> = (0..own.len()).filter(|&j| j != known.at).collect();
         let moved: Vec<Edge> = (0..own.len())
@@ -188,7 +192,7 @@ impl Branch {
     }
 
     /// Does the same as `push` for a branch with a known column: there b becomes `rest` − Σ sᵢ bᵢ. Returns `rest`.
-    fn push_known(&self, graph: &mut Graph, known: &Known, b: &mut [Edge]) -> Edge {
+    fn push_known(&self, graph: &mut Graph, known: &KnownColumn, b: &mut [Edge]) -> Edge {
         let at = self.before[known.at];
         let along = |graph: &mut Graph, b: &[Edge]| {
             let terms = known.by.iter();
@@ -212,12 +216,12 @@ impl Branch {
     fn follow(&self, graph: &mut Graph, b: &mut [Edge]) {
         let mut moved: Vec<Edge> = self.before.iter().map(|&i| b[i]).collect();
         if let Some(known) = &self.known {
-            let twin = std::mem::replace(&mut moved[known.at], graph.zero());
+            let equivalent = std::mem::replace(&mut moved[known.at], graph.zero());
             for &(place, s) in &known.by {
-                let part = graph.mul(s, twin);
+                let part = graph.mul(s, equivalent);
                 moved[place] = graph.sub(moved[place], part);
             }
-            b[self.own[0]] = graph.sub(b[self.own[0]], twin);
+            b[self.own[0]] = graph.sub(b[self.own[0]], equivalent);
         }
         for (&c, row) in self.own.iter().zip(&self.answers) {
             let answer = graph.dot(row, &moved);
@@ -227,7 +231,11 @@ impl Branch {
 }
 
 /// Splits the velocities into branches and computes G of each.
-fn branches(graph: &mut Graph, upper: &[Vec<Edge>], twins: &[Twin]) -> Vec<Branch> {
+fn branches(
+    graph: &mut Graph,
+    upper: &[Vec<Edge>],
+    equivalent: &[EquivalentMotion],
+) -> Vec<Branch> {
     let zero = graph.zero();
     let n = upper.len();
     let before = |c: usize| -> Vec<usize> { (0..c).filter(|&r| upper[r][c] != zero).collect() };
@@ -266,8 +274,10 @@ fn branches(graph: &mut Graph, upper: &[Vec<Edge>], twins: &[Twin]) -> Vec<Branc
     let first = found.first().map(|branch| branch.own.clone());
     for branch in &mut found {
         let hangs = first.as_ref() == Some(&branch.before);
-        let twin = twins.iter().find(|twin| hangs && twin.of == branch.own[0]);
-        branch.known = twin.and_then(|twin| known(graph, &branch.before, twin));
+        let equivalent = equivalent
+            .iter()
+            .find(|equivalent| hangs && equivalent.of == branch.own[0]);
+        branch.known = equivalent.and_then(|equivalent| known(graph, &branch.before, equivalent));
         for (place, &c) in branch.own.iter().enumerate() {
             let mut row: Vec<Edge> = branch.before.iter().map(|&a| upper[a][c]).collect();
             for (&k, other) in branch.own[..place].iter().zip(&branch.answers) {
@@ -283,11 +293,15 @@ fn branches(graph: &mut Graph, upper: &[Vec<Edge>], twins: &[Twin]) -> Vec<Branc
 }
 
 /// Returns the column of G that a twin makes known.
-fn known(graph: &Graph, before: &[usize], twin: &Twin) -> Option<Known> {
-    let (at, _) = twin.by.iter().rev().find(|(_, s)| *s == graph.one())?;
+fn known(graph: &Graph, before: &[usize], equivalent: &EquivalentMotion) -> Option<KnownColumn> {
+    let (at, _) = equivalent
+        .by
+        .iter()
+        .rev()
+        .find(|(_, s)| *s == graph.one())?;
     let place = |i: usize| before.iter().position(|&other| other == i);
-    let others = twin.by.iter().filter(|(i, _)| i != at);
-    Some(Known {
+    let others = equivalent.by.iter().filter(|(i, _)| i != at);
+    Some(KnownColumn {
         at: place(*at)?,
         by: others
             .map(|&(i, s)| Some((place(i)?, s)))

@@ -1,21 +1,21 @@
 //! Selection of the cheapest of several computations, separately for each function.
 
 use super::LARGE;
-use super::parts::Parts;
+use super::parts::EquationTerms;
 use crate::candidates::Candidates;
-use crate::care::Care;
+use crate::numerical_loss::NumericalLoss;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::matrix;
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 
-/// One computation of M and the forces, in its own graph.
+/// Expressions of M and the generalised forces, in a graph of their own.
 #[derive(Clone, Debug)]
-pub struct Computation {
+pub struct MassAndForces {
     /// Graph of the expressions.
     pub graph: Graph,
     /// M and the forces.
-    pub parts: Parts,
+    pub parts: EquationTerms,
 }
 
 /// Entries of the functions M, −Γ ξ ξ, −∂V, ∂T/∂ξ and M ξ̇ + Γ ξ ξ + ∂V.
@@ -28,27 +28,27 @@ type Functions = [Vec<Edge>; 5];
 /// functions. The result is in a copy of `chosen`. The loads are those of the first computation; returns `None` if
 /// there is none.
 pub fn cheapest(
-    mut computations: Vec<Computation>,
+    mut computations: Vec<MassAndForces>,
     chosen: &Graph,
     model: &Model,
-    care: &Care,
-) -> Option<Computation> {
+    numerical_loss: &NumericalLoss,
+) -> Option<MassAndForces> {
     let functions: Vec<Functions> = computations
         .iter_mut()
-        .map(|Computation { graph, parts }| functions(parts, graph, model))
+        .map(|MassAndForces { graph, parts }| functions(parts, graph, model))
         .collect();
     let merged: Vec<(Graph, Functions)> = computations
         .iter()
         .zip(&functions)
         .filter(|_| chosen.len() < LARGE)
-        .map(|(Computation { graph, .. }, functions)| {
+        .map(|(MassAndForces { graph, .. }, functions)| {
             let mut merged = chosen.clone();
             let functions = functions.each_ref();
             let functions = functions.map(|roots| rebuild(graph, &mut merged, roots));
             (merged, functions)
         })
         .collect();
-    let mut all: [Candidates; 5] = std::array::from_fn(|_| Candidates::with(care));
+    let mut all: [Candidates; 5] = std::array::from_fn(|_| Candidates::new(numerical_loss));
     let traced = computations.iter().map(|computation| &computation.graph);
     let computed = traced
         .zip(&functions)
@@ -61,11 +61,11 @@ pub fn cheapest(
     let rows = |entries: Vec<Edge>| matrix(&entries, model.n());
     let [mass, inertia, conservative, mut momentum, mut inverse] = all;
     let mut graph = model.graph.clone();
-    let composed = Parts {
+    let composed = EquationTerms {
         mass: rows(mass.cheapest(&mut graph)),
         inertia: inertia.cheapest(&mut graph),
         conservative: conservative.cheapest(&mut graph),
-        ..Parts::default()
+        ..EquationTerms::default()
     };
     let products = composed.momentum_of(&mut graph, model);
     let sums = composed.inverse_dynamics_of(&mut graph, model);
@@ -76,21 +76,21 @@ pub fn cheapest(
     let mut around = chosen.clone();
     let into = &mut around;
     let first = computations.first()?;
-    let parts = Parts {
+    let parts = EquationTerms {
         mass: rows(mass.cheapest(into)),
         inertia: inertia.cheapest(into),
         conservative: conservative.cheapest(into),
         momentum: Some(momentum.cheapest(into)),
         inverse_dynamics: Some(inverse.cheapest(into)),
-        ..first.parts.grafted(&first.graph, into)
+        ..first.parts.copy_into(&first.graph, into)
     };
-    Some(Computation {
+    Some(MassAndForces {
         graph: around,
         parts,
     })
 }
 
-fn functions(parts: &Parts, graph: &mut Graph, model: &Model) -> Functions {
+fn functions(parts: &EquationTerms, graph: &mut Graph, model: &Model) -> Functions {
     [
         parts.mass.concat(),
         parts.inertia.clone(),

@@ -9,41 +9,41 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::linear::{multiply, transpose};
 use hamel_language::model::Model;
 
-/// A model together with the velocity coordinates used internally.
+/// Model in the velocity coordinates in which ξ̇ is derived, with the derivatives along them.
 #[derive(Clone, Debug)]
-pub struct Setting {
+pub struct DerivationContext {
     /// The model; its A and generalised forces belong to the internal velocities.
     pub model: Model,
     /// Derivatives ∂ᵢ along the internal frame, and d/dt at constant internal velocities.
     pub calculus: Calculus,
     /// Transformation back to ξ̇, if the internal velocities differ from ξ.
-    pub back: Option<Back>,
+    pub back: Option<VelocityTransform>,
 }
 
-/// Transformation ξ̇ = Bᵀ η̇ + drift from internal accelerations η̇.
+/// Transformation ξ̇ = Bᵀ η̇ + drift from accelerations η̇ of internal velocities to those of the description.
 #[derive(Clone, Debug)]
-pub struct Back {
+pub struct VelocityTransform {
     /// Orthogonal matrix B, n rows of n entries.
     pub b: Vec<Vec<Edge>>,
     /// Drift term (dBᵀ/dt) η.
     pub drift: Vec<Edge>,
 }
 
-impl Setting {
-    /// Uses the user's velocities.
-    pub fn given(model: &Model) -> Self {
-        Setting {
+impl DerivationContext {
+    /// Creates the context in the velocities of the description.
+    pub fn in_given_velocities(model: &Model) -> Self {
+        DerivationContext {
             model: model.clone(),
             calculus: Calculus::new(model),
             back: None,
         }
     }
 
-    /// Uses the twist of the only body, in the body's axes.
+    /// Creates the context in the twist of the only body, in the body's axes.
     ///
     /// Returns `None` unless the whole kinetic energy is that of a single body and B is square, orthogonal and not
     /// the identity.
-    pub fn twist(model: &Model) -> Option<Self> {
+    pub fn in_body_twist(model: &Model) -> Option<Self> {
         let [body] = model.bodies.as_slice() else {
             return None;
         };
@@ -102,15 +102,19 @@ impl Setting {
             .map(|row| graph.dot(row, &model.generalized))
             .collect();
         let calculus = Calculus::with_drift(&model, &drift);
-        Some(Setting {
+        Some(DerivationContext {
             model,
             calculus,
-            back: Some(Back { b, drift }),
+            back: Some(VelocityTransform { b, drift }),
         })
     }
 
     /// Transforms η̇ back to ξ̇.
-    pub fn leave(&self, graph: &mut hamel_algebra::graph::Graph, eta_dot: Vec<Edge>) -> Vec<Edge> {
+    pub fn to_given_velocities(
+        &self,
+        graph: &mut hamel_algebra::graph::Graph,
+        eta_dot: Vec<Edge>,
+    ) -> Vec<Edge> {
         let Some(back) = &self.back else {
             return eta_dot;
         };

@@ -15,7 +15,7 @@
 //! loops: with refinement, the derivatives of λ are as large as 1/E along directions that Bᵀ maps to 0, and Bᵀ
 //! leaves their rounding error, 1e-8 of the derivatives of ξ̇. With S⁺ nothing becomes that large.
 
-use super::saddle::solve_columns;
+use super::kkt::solve_columns;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::pfaffian::{Kind, Pfaffian};
@@ -24,20 +24,20 @@ use hamel_language::model::pfaffian::{Kind, Pfaffian};
 ///
 /// In floating point, one factor leaves a part of a contradiction as large as rounding relative to E; the part left
 /// by two factors is below rounding even after the division by E.
-pub(super) const CLEARED: usize = 2;
+pub(super) const CLEARING_POWER: usize = 2;
 
-/// First coefficients of the power series of (1 − T) to the power −1 − `CLEARED`.
-pub(super) const SERIES: [i64; 3] = [1, 3, 6];
+/// First coefficients of the power series of (1 − T) to the power −1 − `CLEARING_POWER`.
+pub(super) const SERIES_COEFFICIENTS: [i64; 3] = [1, 3, 6];
 
 /// Denominator of the share of the sum over all rows that is added to a row's own diagonal entry before it is
 /// raised, since a single row may vanish along the motion.
-const SHARE: i64 = 1024;
+const SHARE_DENOMINATOR: i64 = 1024;
 
 /// Returns for each row the rows whose diagonal entries of S raise its own: all constraints for a row of a loop,
 /// and only the row itself otherwise.
 ///
 /// `more` rows of given rates follow the constraints.
-pub fn raising(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
+pub fn regularization_rows(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
     let is_loop = |i: usize| constraints.get(i).is_some_and(|c| c.kind == Kind::Loop);
     let rows = 0..constraints.len() + more;
     rows.map(|i| match is_loop(i) {
@@ -48,7 +48,7 @@ pub fn raising(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
 }
 
 /// Turns S into R = S + E in place, and returns the diagonal of E.
-pub(super) fn raise(
+pub(super) fn regularize(
     graph: &mut Graph,
     schur: &mut [Vec<Edge>],
     raising: &[Vec<usize>],
@@ -61,7 +61,7 @@ pub(super) fn raise(
             1 => own,
             _ => {
                 let all: Vec<Edge> = rows.iter().map(|&j| diagonal[j]).collect();
-                let share = graph.ratio(1, SHARE);
+                let share = graph.ratio(1, SHARE_DENOMINATOR);
                 let all = graph.sum(&all);
                 let all = graph.mul(share, all);
                 graph.add(own, all)
@@ -83,7 +83,7 @@ pub(super) fn multipliers_at(
     factor: ResiduePair,
 ) -> Option<Vec<ResiduePair>> {
     let m = wanted.len();
-    let share = ResiduePair::from_i64(SHARE).inv()?;
+    let share = ResiduePair::from_i64(SHARE_DENOMINATOR).inv()?;
     let raised = raising.iter().enumerate().map(|(i, rows)| {
         let all = rows
             .iter()
@@ -104,12 +104,12 @@ pub(super) fn multipliers_at(
         Some(raised.iter().zip(divided).map(|(&e, y)| e * y).collect())
     };
     let mut left = wanted;
-    for _ in 0..CLEARED {
+    for _ in 0..CLEARING_POWER {
         let kept = kept(left.clone())?;
         left.iter_mut().zip(kept).for_each(|(v, t)| *v = *v - t);
     }
     let mut sum = vec![ResiduePair::ZERO; m];
-    for factor in SERIES {
+    for factor in SERIES_COEFFICIENTS {
         let factor = ResiduePair::from_i64(factor);
         let terms = sum.iter_mut().zip(&left);
         terms.for_each(|(sum, &v)| *sum = *sum + factor * v);

@@ -2,7 +2,7 @@
 //! rows of the given ones yield the forces of their drives (Featherstone, *Rigid Body Dynamics Algorithms*, 2008,
 //! 9.2).
 
-use super::parts::Parts;
+use super::parts::EquationTerms;
 use hamel_algebra::graph::Edge;
 use hamel_language::model::Model;
 
@@ -14,7 +14,7 @@ pub fn free_places(model: &Model) -> Vec<usize> {
 
 /// Restricts M and the right-hand sides to the free velocities, in the traced model's graph; returns them unchanged
 /// if no rate is given.
-pub fn free(mut traced: Model, parts: &Parts) -> (Model, Parts) {
+pub fn restrict_to_free(mut traced: Model, parts: &EquationTerms) -> (Model, EquationTerms) {
     if traced.accelerated.is_empty() {
         return (traced, parts.clone());
     }
@@ -32,10 +32,10 @@ pub fn free(mut traced: Model, parts: &Parts) -> (Model, Parts) {
         .collect();
     let mut groups: Vec<Vec<Edge>> = parts.groups.iter().map(|group| of(group)).collect();
     groups.push(driven);
-    let free = Parts {
+    let free = EquationTerms {
         mass: places.iter().map(|&i| of(&parts.mass[i])).collect(),
         groups,
-        ..Parts::default()
+        ..EquationTerms::default()
     };
     (traced, free)
 }
@@ -54,7 +54,7 @@ pub fn all_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
 
 /// Returns the pivots of all velocities from those of the free ones; 1 for a velocity whose rate is given, which
 /// requires no inertia.
-pub fn pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
+pub fn all_pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     let mut all = vec![model.graph.one(); model.n()];
     for (place, pivot) in free_places(model).into_iter().zip(free) {
         all[place] = pivot;
@@ -63,7 +63,7 @@ pub fn pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
 }
 
 /// Returns the rows of B in B ξ̇ = b: those of the constraints, then one for each given rate.
-pub fn rows(model: &Model) -> Vec<Vec<Edge>> {
+pub fn constraint_rows(model: &Model) -> Vec<Vec<Edge>> {
     let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
     let constraints = model.constraints.iter().map(|c| c.row.clone());
     let given = model.accelerated.iter().map(move |(place, _)| {
@@ -75,7 +75,7 @@ pub fn rows(model: &Model) -> Vec<Vec<Edge>> {
 }
 
 /// Replaces the given rates in ξ̇ by their exact expressions.
-pub fn exact(model: &Model, mut xi_dot: Vec<Edge>) -> Vec<Edge> {
+pub fn insert_given_rates(model: &Model, mut xi_dot: Vec<Edge>) -> Vec<Edge> {
     for &(place, rate) in &model.accelerated {
         xi_dot[place] = rate;
     }

@@ -1,17 +1,19 @@
-//! Solution ξ̇ and multipliers λ of M ξ̇ = f − h + Bᵀ λ, B ξ̇ = b, by M = L D Lᵀ and the Schur complement
+//! The KKT system of constrained motion: ξ̇ and multipliers λ of M ξ̇ = f − h + Bᵀ λ, B ξ̇ = b, by M = L D Lᵀ and the Schur complement
 //! S = B M⁻¹ Bᵀ, both unrolled.
 
-use super::dependent::{CLEARED, SERIES, multipliers_at, raise, raising};
-use super::parts::Parts;
+use super::dependent::{
+    CLEARING_POWER, SERIES_COEFFICIENTS, multipliers_at, regularization_rows, regularize,
+};
+use super::parts::EquationTerms;
 use crate::calculus::Calculus;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::Model;
 
-/// Solution of the constrained equations of motion.
+/// Solution ξ̇, λ of the constrained equations of motion, as expressions.
 #[derive(Clone, Debug)]
-pub struct Saddle {
+pub struct KktSolution {
     /// Accelerations ξ̇.
     pub xi_dot: Vec<Edge>,
     /// Multipliers λ, one for each row of B.
@@ -22,7 +24,7 @@ pub struct Saddle {
 ///
 /// It is −Ḃ ξ − ḃ, plus the terms of a stabilised constraint that make a violation decay like exp(−λ t): −λ s, or
 /// −2 λ s − λ² φ if s is the rate of an equation φ = 0 between coordinates.
-pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+pub fn constraint_accelerations(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     let constraints = model.constraints.clone();
     constraints
         .iter()
@@ -44,9 +46,9 @@ pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
         .collect()
 }
 
-/// Factors of M and of S = B M⁻¹ Bᵀ.
+/// Factors L D Lᵀ of M and of S = B M⁻¹ Bᵀ, with which the KKT system is solved.
 #[derive(Clone, Debug)]
-pub struct Factored {
+pub struct KktFactors {
     order: Vec<usize>,
     mass: Factors,
     /// Columns of L⁻¹ Bᵀ, and (in `scaled`) the same divided by D.
@@ -58,13 +60,13 @@ pub struct Factored {
 }
 
 /// Factors M, in a given elimination order, and S; `None` if a pivot vanishes identically.
-pub fn factored(
+pub fn factorize(
     graph: &mut Graph,
-    parts: &Parts,
+    parts: &EquationTerms,
     rows: &[Vec<Edge>],
     order: &[usize],
     raising: Option<&[Vec<usize>]>,
-) -> Option<Factored> {
+) -> Option<KktFactors> {
     let m = rows.len();
     let ordered = |row: &[Edge]| order.iter().map(|&i| row[i]).collect::<Vec<_>>();
     let mut matrix: Vec<Vec<Edge>> = order.iter().map(|&i| ordered(&parts.mass[i])).collect();
@@ -88,8 +90,8 @@ pub fn factored(
         }
     }
     let mut matrix = schur;
-    let raised = raising.map_or(Vec::new(), |rows| raise(graph, &mut matrix, rows));
-    Some(Factored {
+    let raised = raising.map_or(Vec::new(), |rows| regularize(graph, &mut matrix, rows));
+    Some(KktFactors {
         order: order.to_vec(),
         inner: factor(graph, &mut matrix)?,
         mass,
@@ -99,7 +101,7 @@ pub fn factored(
     })
 }
 
-impl Factored {
+impl KktFactors {
     /// Returns the pivots of M in the order of velocities, then those of S in the order of rows.
     ///
     /// A pivot of S vanishes where the rows of B become dependent, at a singular configuration.
@@ -113,7 +115,7 @@ impl Factored {
     }
 
     /// Solves M ξ̇ = f + Bᵀ λ, B ξ̇ = right for ξ̇ and λ.
-    pub fn solve(&self, graph: &mut Graph, force: &[Edge], right: &[Edge]) -> Saddle {
+    pub fn solve(&self, graph: &mut Graph, force: &[Edge], right: &[Edge]) -> KktSolution {
         let mut force: Vec<Edge> = self.order.iter().map(|&i| force[i]).collect();
         forward(graph, &self.mass, &mut force);
         let wanted: Vec<Edge> = right
@@ -138,7 +140,7 @@ impl Factored {
         for (&i, value) in self.order.iter().zip(solution) {
             xi_dot[i] = value;
         }
-        Saddle {
+        KktSolution {
             xi_dot,
             multipliers,
         }
@@ -150,7 +152,7 @@ impl Factored {
             return self.divided(graph, wanted);
         }
         let mut left = wanted;
-        for _ in 0..CLEARED {
+        for _ in 0..CLEARING_POWER {
             let step = self.divided(graph, left.clone());
             for ((left, &raised), step) in left.iter_mut().zip(&self.raised).zip(step) {
                 let kept = graph.mul(raised, step);
@@ -158,7 +160,7 @@ impl Factored {
             }
         }
         let mut solution = vec![graph.zero(); left.len()];
-        for factor in SERIES {
+        for factor in SERIES_COEFFICIENTS {
             let factor = graph.ratio(factor, 1);
             let step = self.divided(graph, left.clone());
             for (place, &step) in step.iter().enumerate() {
@@ -185,11 +187,11 @@ impl Factored {
 ///
 /// With the multipliers λ' of that solution, λ = λ' − w (B ξ̇ − b). The correction vanishes if the rows do not
 /// contradict one another.
-pub fn plain(
+pub fn unaugmented_multipliers(
     graph: &mut Graph,
     weight: Edge,
     (rows, right): (&[Vec<Edge>], &[Edge]),
-    solution: &Saddle,
+    solution: &KktSolution,
 ) -> Vec<Edge> {
     let rows = rows.iter().zip(right).zip(&solution.multipliers);
     rows.map(|((row, &right), &multiplier)| {
@@ -212,7 +214,7 @@ pub struct Projections {
 }
 
 /// Returns the projections of a model onto the constraints that it keeps.
-pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Projections {
+pub fn projections(graph: &mut Graph, model: &Model, factored: &KktFactors) -> Projections {
     let rest = vec![graph.zero(); model.n()];
     let held = vec![graph.zero(); model.accelerated.len()];
     let residuals = model.constraints.iter().map(|c| -c.residual);
@@ -295,8 +297,8 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     }
 }
 
-/// Solution ξ̇ and λ in numbers modulo p.
-pub struct Solved {
+/// Solution ξ̇, λ of the constrained equations of motion, in numbers modulo p.
+pub struct KktValues {
     /// Accelerations ξ̇.
     pub xi_dot: Vec<ResiduePair>,
     /// Multipliers λ of the constraints, then of velocities whose rates are given.
@@ -315,7 +317,7 @@ pub fn solve_at(
     given: &[(usize, ResiduePair)],
     balance: bool,
     lane: &FieldPoint,
-) -> Option<Solved> {
+) -> Option<KktValues> {
     let n = force.len();
     let (mut mass, mut force) = (mass.to_vec(), force.to_vec());
     let (mut rows, mut right) = (rows.to_vec(), right.to_vec());
@@ -330,7 +332,7 @@ pub fn solve_at(
         right.push(rate);
     }
     let m = right.len();
-    let raising = raising(&model.constraints, given.len());
+    let raising = regularization_rows(&model.constraints, given.len());
     let mut weight = ResiduePair::ZERO;
     if model.augmented {
         let mut trace = (0..n).fold(ResiduePair::ZERO, |sum, i| sum + mass[i * n + i]);
@@ -381,7 +383,7 @@ pub fn solve_at(
     for &(place, rate) in given {
         xi_dot[place] = rate;
     }
-    Some(Solved {
+    Some(KktValues {
         xi_dot,
         multipliers,
     })

@@ -7,74 +7,77 @@
 pub(super) mod best;
 pub mod branches;
 pub mod cheapest;
+pub mod context;
 mod dependent;
 pub(super) mod hybrid;
+pub mod kkt;
 pub mod parts;
 pub mod polynomial;
 pub mod recursive;
-pub mod saddle;
-pub mod setting;
 pub mod solve;
 
-use crate::care::Care;
 use crate::inertia;
+use crate::numerical_loss::NumericalLoss;
 pub use best::Acceleration;
-use best::{Best, Family};
-use cheapest::{Computation, cheapest};
+use best::{BestCandidates, CandidateFamily};
+use cheapest::{MassAndForces, cheapest};
+use context::DerivationContext;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_language::functions::Needs;
 use hamel_language::model::Model;
 use hamel_language::syntax::ast::Axes;
 use hamel_program::count::count;
-use parts::{Parts, Reference, Variant, parts};
-use recursive::Recursion;
-use setting::Setting;
-use solve::{Plan, solve};
+use parts::{EquationTerms, ReferencePoint, TracingVariant, trace_terms};
+use recursive::TreeRecursion;
+use solve::{EliminationPlan, solve};
 
 /// Largest number of velocities for which all routes and elimination orders are tried.
-const SMALL: usize = 8;
+const MAX_SEARCHED_VELOCITIES: usize = 8;
 
 /// Number of operations of the traced M and Γ ξ ξ below which all routes are tried, however long the tree is.
-const FEW: usize = 1000;
+const MAX_TRACED_OPERATIONS: usize = 1000;
 
 /// Largest number of graph nodes for which more than two plans (the two elimination orders) are tried.
 const LARGE: usize = 3000;
 
 /// Returns the cheapest computation of ξ̇, and the cheapest computations of M and of the forces, which share the
 /// graph of ξ̇.
-pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> {
-    let mut best = Best::new(care);
-    let given = Setting::given(model);
+pub fn forward_dynamics(
+    model: &Model,
+    numerical_loss: &NumericalLoss,
+) -> Option<(Acceleration, MassAndForces)> {
+    let mut best = BestCandidates::new(numerical_loss);
+    let given = DerivationContext::in_given_velocities(model);
     if !model.constraints.is_empty() {
-        return constrained(&given, care);
+        return constrained(&given, numerical_loss);
     }
-    let recursions = recursions(&given, care);
+    let recursions = recursions(&given, numerical_loss);
     for recursion in &recursions {
         recursion.search(&mut best);
     }
-    let traced = || recursions.iter().map(Recursion::parts);
+    let traced = || recursions.iter().map(TreeRecursion::mass_and_forces);
     if is_long(&given, &recursions) {
         let best = best.cheapest()?;
-        let computed = cheapest(traced().collect(), &best.graph, model, care)?;
+        let computed = cheapest(traced().collect(), &best.graph, model, numerical_loss)?;
         return Some((best, computed));
     }
     let mut computations = search(&given, &mut best)?;
-    if model.n() <= SMALL
+    if model.n() <= MAX_SEARCHED_VELOCITIES
         && model.spans
-        && let Some(twist) = Setting::twist(model)
+        && let Some(twist) = DerivationContext::in_body_twist(model)
     {
         search(&twist, &mut best);
     }
     let expands = (model.spans || model.is_affine()) && model.accelerated.is_empty();
-    if model.n() <= SMALL && expands && !care.is_taken() {
-        let most = best.least();
+    if model.n() <= MAX_SEARCHED_VELOCITIES && expands && !numerical_loss.comes_first() {
+        let most = best.min_operations();
         for candidate in polynomial::candidates(model, most) {
-            best.keep(Family::Polynomial, candidate);
+            best.keep(CandidateFamily::Polynomial, candidate);
         }
     }
-    let best = best.polished(model)?;
+    let best = best.into_polished(model)?;
     computations.extend(traced());
-    let computed = cheapest(computations, &best.graph, model, care)?;
+    let computed = cheapest(computations, &best.graph, model, numerical_loss)?;
     Some((best, computed))
 }
 
@@ -82,68 +85,71 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
 ///
 /// M may be singular here, and it is where some velocity has no inertia. Returns `None` for a model with
 /// constraints, because their reduction inverts M, unless no requested function needs M.
-pub fn forces(model: &Model, care: &Care) -> Option<Computation> {
-    let given = Setting::given(model);
+pub fn mass_and_forces(model: &Model, numerical_loss: &NumericalLoss) -> Option<MassAndForces> {
+    let given = DerivationContext::in_given_velocities(model);
     if !model.constraints.is_empty() {
-        let variant = *variants(model, false).first()?;
+        let variant = *tracing_variants(model, false).first()?;
         let unneeded = model.asked.needs() == Needs::Nothing;
         return unneeded.then(|| {
             let (Model { graph, .. }, parts) = trace(&given, variant);
-            Computation { graph, parts }
+            MassAndForces { graph, parts }
         });
     }
-    let recursions = recursions(&given, care);
+    let recursions = recursions(&given, numerical_loss);
     let mut computations = Vec::new();
     if !is_long(&given, &recursions) {
-        for variant in variants(model, model.n() <= SMALL) {
+        for variant in tracing_variants(model, model.n() <= MAX_SEARCHED_VELOCITIES) {
             let (Model { graph, .. }, parts) = trace(&given, variant);
-            computations.push(Computation { graph, parts });
+            computations.push(MassAndForces { graph, parts });
         }
     }
-    computations.extend(recursions.iter().map(Recursion::parts));
-    cheapest(computations, &model.graph, model, care)
+    computations.extend(recursions.iter().map(TreeRecursion::mass_and_forces));
+    cheapest(computations, &model.graph, model, numerical_loss)
 }
 
 /// Returns the recursions over links, one for each frame placement; empty if the bodies do not form a tree of
 /// links.
-pub fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
-    let placements = care.placements().iter();
+pub fn recursions(given: &DerivationContext, numerical_loss: &NumericalLoss) -> Vec<TreeRecursion> {
+    let placements = numerical_loss.placements().iter();
     placements
-        .filter_map(|&placement| Recursion::of(given, placement, care))
+        .filter_map(|&placement| TreeRecursion::of(given, placement, numerical_loss))
         .collect()
 }
 
 /// Returns whether the tree is so long that the recursions are certainly the cheapest route.
-fn is_long(given: &Setting, recursions: &[Recursion]) -> bool {
+fn is_long(given: &DerivationContext, recursions: &[TreeRecursion]) -> bool {
     let Some(recursion) = recursions.first() else {
         return false;
     };
     // Planar mechanisms have cheap traced equations, so they count as short up to a larger number of links.
-    let plain = |variant: &Variant| {
+    let plain = |variant: &TracingVariant| {
         let (traced, parts) = trace(given, *variant);
         let roots = [parts.mass.concat(), parts.inertia].concat();
-        count(&traced.graph, &roots).flops() < FEW
+        count(&traced.graph, &roots).flops() < MAX_TRACED_OPERATIONS
     };
     let model = &given.model;
-    let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
-    model.n() > SMALL || !short()
+    let short = || !recursion.is_long() || tracing_variants(model, false).iter().any(plain);
+    model.n() > MAX_SEARCHED_VELOCITIES || !short()
 }
 
 /// Returns the cheapest computation of ξ̇ and the multipliers of a model that keeps constraints.
-fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computation)> {
-    let n = setting.model.n();
-    let rows = hybrid::rows(&setting.model);
-    let constraints = &setting.model.constraints;
-    let raising = dependent::raising(constraints, rows.len() - constraints.len());
-    let raising = setting.model.overconstrained.then_some(&raising[..]);
-    let mut best: Option<(Acceleration, Parts)> = None;
-    for variant in variants(&setting.model, n <= SMALL) {
-        let (mut traced, parts) = trace(setting, variant);
-        let mut right = saddle::right_side(&mut traced, &mut setting.calculus.clone());
+fn constrained(
+    context: &DerivationContext,
+    numerical_loss: &NumericalLoss,
+) -> Option<(Acceleration, MassAndForces)> {
+    let n = context.model.n();
+    let rows = hybrid::constraint_rows(&context.model);
+    let constraints = &context.model.constraints;
+    let raising = dependent::regularization_rows(constraints, rows.len() - constraints.len());
+    let raising = context.model.overconstrained.then_some(&raising[..]);
+    let mut best: Option<(Acceleration, EquationTerms)> = None;
+    for variant in tracing_variants(&context.model, n <= MAX_SEARCHED_VELOCITIES) {
+        let (mut traced, parts) = trace(context, variant);
+        let mut right = kkt::constraint_accelerations(&mut traced, &mut context.calculus.clone());
         right.extend(traced.accelerated.iter().map(|(_, rate)| *rate));
         let mut solved = parts.clone();
         if traced.augmented {
-            let augmented = inertia::augmented(&mut traced.graph, &parts.mass, &rows, &right)?;
+            let augmented = inertia::augment(&mut traced.graph, &parts.mass, &rows, &right)?;
             solved.mass = augmented.0;
             solved.groups.push(augmented.1);
         }
@@ -154,8 +160,7 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
         ];
         for order in orders {
             let mut graph = traced.graph.clone();
-            let Some(factored) = saddle::factored(&mut graph, &solved, &rows, &order, raising)
-            else {
+            let Some(factored) = kkt::factorize(&mut graph, &solved, &rows, &order, raising) else {
                 continue;
             };
             let force: Vec<Edge> = (0..n)
@@ -170,27 +175,27 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
             let mut roots = solution.xi_dot.clone();
             roots.extend(pivots.iter().filter(varying));
             let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
-            let loss = care.loss(&graph, &solution.xi_dot, &pivots);
+            let loss = numerical_loss.loss(&graph, &solution.xi_dot, &pivots);
             let cost = (loss, count.weight(), depth);
             if best.as_ref().is_some_and(|(best, _)| best.cost() <= cost) {
                 continue;
             }
             let route = format!(
                 "{}, constraints by multipliers",
-                route(&traced, &order, &variant)
+                describe_route(&traced, &order, &variant)
             );
-            let projections = saddle::projections(&mut graph, &traced, &factored);
+            let projections = kkt::projections(&mut graph, &traced, &factored);
             let multipliers = match raising.filter(|_| traced.augmented) {
                 None => solution.multipliers,
                 Some(_) => {
-                    let weight = inertia::weight(&mut graph, &parts.mass, &rows)?;
-                    saddle::plain(&mut graph, weight, (&rows, &right), &solution)
+                    let weight = inertia::augmentation_weight(&mut graph, &parts.mass, &rows)?;
+                    kkt::unaugmented_multipliers(&mut graph, weight, (&rows, &right), &solution)
                 }
             };
             let acceleration = Acceleration {
                 other: None,
                 graph,
-                xi_dot: hybrid::exact(&setting.model, solution.xi_dot),
+                xi_dot: hybrid::insert_given_rates(&context.model, solution.xi_dot),
                 pivots,
                 twist: false,
                 multipliers,
@@ -205,27 +210,27 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
     }
     let (best, parts) = best?;
     let graph = best.graph.clone();
-    Some((best, Computation { graph, parts }))
+    Some((best, MassAndForces { graph, parts }))
 }
 
 /// Offers all candidates of a setting to `best` and returns the traced computations of M and the forces.
 ///
 /// The computation that led to the cheapest candidate comes first; for models that are not small it is the only
 /// one.
-fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
-    let family = |variant: &Variant| Family::Traced {
-        twist: setting.back.is_some(),
+fn search(context: &DerivationContext, best: &mut BestCandidates) -> Option<Vec<MassAndForces>> {
+    let family = |variant: &TracingVariant| CandidateFamily::Traced {
+        twist: context.back.is_some(),
         axes: variant.axes,
     };
-    let small = setting.model.n() <= SMALL;
-    let mut chosen: Option<(usize, Variant)> = None;
+    let small = context.model.n() <= MAX_SEARCHED_VELOCITIES;
+    let mut chosen: Option<(usize, TracingVariant)> = None;
     let mut computations = Vec::new();
-    for variant in variants(&setting.model, small) {
-        let (traced, parts) = trace(setting, variant);
+    for variant in tracing_variants(&context.model, small) {
+        let (traced, parts) = trace(context, variant);
         let before = chosen;
-        let (traced, free) = hybrid::free(traced, &parts);
+        let (traced, free) = hybrid::restrict_to_free(traced, &parts);
         for plan in first_plans(&traced.graph, &free, small) {
-            if let Some(candidate) = attempt(setting, &traced, &free, &plan, &variant) {
+            if let Some(candidate) = candidate(context, &traced, &free, &plan, &variant) {
                 let weight = candidate.count.weight();
                 if chosen.is_none_or(|(least, _)| weight < least) {
                     chosen = Some((weight, variant));
@@ -239,16 +244,16 @@ fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
         } else {
             0
         };
-        computations.insert(place, Computation { graph, parts });
+        computations.insert(place, MassAndForces { graph, parts });
     }
     let (_, chosen) = chosen?;
     if small {
         for shift in [None, Some(0), Some(1), Some(2)] {
-            let variant = Variant { shift, ..chosen };
-            let (traced, parts) = trace(setting, variant);
-            let (traced, free) = hybrid::free(traced, &parts);
+            let variant = TracingVariant { shift, ..chosen };
+            let (traced, parts) = trace(context, variant);
+            let (traced, free) = hybrid::restrict_to_free(traced, &parts);
             for plan in all_plans(&traced.graph, &free) {
-                if let Some(candidate) = attempt(setting, &traced, &free, &plan, &variant) {
+                if let Some(candidate) = candidate(context, &traced, &free, &plan, &variant) {
                     best.keep(family(&variant), candidate);
                 }
             }
@@ -258,11 +263,11 @@ fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
     Some(computations)
 }
 
-fn variants(model: &Model, small: bool) -> Vec<Variant> {
+fn tracing_variants(model: &Model, small: bool) -> Vec<TracingVariant> {
     let mut variants = Vec::new();
     for axes in [Axes::Body, Axes::World] {
-        for reference in [Reference::Com, Reference::Origin] {
-            variants.push(Variant {
+        for reference in [ReferencePoint::Com, ReferencePoint::Origin] {
+            variants.push(TracingVariant {
                 axes,
                 reference,
                 shift: None,
@@ -272,34 +277,34 @@ fn variants(model: &Model, small: bool) -> Vec<Variant> {
     if model.bodies.is_empty() {
         variants.truncate(1);
     } else if !small {
-        variants.retain(|variant| variant.reference == Reference::Com);
+        variants.retain(|variant| variant.reference == ReferencePoint::Com);
     }
     variants
 }
 
-fn trace(setting: &Setting, variant: Variant) -> (Model, Parts) {
-    let mut traced = setting.model.clone();
-    let parts = parts(&mut traced, &mut setting.calculus.clone(), variant);
+fn trace(context: &DerivationContext, variant: TracingVariant) -> (Model, EquationTerms) {
+    let mut traced = context.model.clone();
+    let parts = trace_terms(&mut traced, &mut context.calculus.clone(), variant);
     (traced, parts)
 }
 
-fn attempt(
-    setting: &Setting,
+fn candidate(
+    context: &DerivationContext,
     traced: &Model,
-    parts: &Parts,
-    plan: &Plan,
-    variant: &Variant,
+    parts: &EquationTerms,
+    plan: &EliminationPlan,
+    variant: &TracingVariant,
 ) -> Option<Acceleration> {
     let mut graph = traced.graph.clone();
     let solution = solve(&mut graph, parts, plan)?;
-    let xi_dot = hybrid::all_rates(&setting.model, solution.xi_dot);
-    let xi_dot = setting.leave(&mut graph, xi_dot);
-    let pivots = hybrid::pivots(&setting.model, solution.pivots);
+    let xi_dot = hybrid::all_rates(&context.model, solution.xi_dot);
+    let xi_dot = context.to_given_velocities(&mut graph, xi_dot);
+    let pivots = hybrid::all_pivots(&context.model, solution.pivots);
     let mut roots = xi_dot.clone();
     roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
     let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
-    let mut route = route(traced, &plan.order, variant);
-    if setting.back.is_some() {
+    let mut route = describe_route(traced, &plan.order, variant);
+    if context.back.is_some() {
         route = route.replacen("traced", "traced in its own twist", 1);
     }
     Some(Acceleration {
@@ -307,7 +312,7 @@ fn attempt(
         graph,
         xi_dot,
         pivots,
-        twist: setting.back.is_some(),
+        twist: context.back.is_some(),
         multipliers: Vec::new(),
         projections: None,
         loss: 0,
@@ -318,16 +323,16 @@ fn attempt(
 }
 
 /// Describes in words what is traced and in which order velocities are eliminated.
-fn route(traced: &Model, order: &[usize], variant: &Variant) -> String {
+fn describe_route(traced: &Model, order: &[usize], variant: &TracingVariant) -> String {
     let axes = match variant.axes {
         Axes::Body => "body",
         Axes::World => "world",
     };
     let point = match variant.reference {
-        Reference::Com => "centres of mass",
-        Reference::Origin => "frame origins",
+        ReferencePoint::Com => "centres of mass",
+        ReferencePoint::Origin => "frame origins",
     };
-    let order = elimination(traced, order);
+    let order = describe_order(traced, order);
     if traced.bodies.is_empty() {
         format!("masses traced, {order}")
     } else {
@@ -336,7 +341,7 @@ fn route(traced: &Model, order: &[usize], variant: &Variant) -> String {
 }
 
 /// Describes the elimination order in words.
-fn elimination(model: &Model, order: &[usize]) -> String {
+fn describe_order(model: &Model, order: &[usize]) -> String {
     if order.windows(2).all(|pair| pair[0] < pair[1]) {
         return "velocities eliminated in their order".into();
     }
@@ -353,17 +358,17 @@ fn elimination(model: &Model, order: &[usize]) -> String {
 }
 
 /// Returns the few plans that are used to choose what to trace.
-fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
+fn first_plans(graph: &Graph, parts: &EquationTerms, small: bool) -> Vec<EliminationPlan> {
     let n = parts.mass.len();
     let order: Vec<usize> = (0..n).collect();
-    let mut plans = vec![Plan {
+    let mut plans = vec![EliminationPlan {
         order: constant_first(graph, parts),
         apart: 0,
         scale: false,
         inverse: false,
     }];
     if small && n > 3 {
-        plans.push(Plan {
+        plans.push(EliminationPlan {
             order,
             apart: 3,
             scale: false,
@@ -374,11 +379,11 @@ fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
 }
 
 /// Returns all plans worth counting for a small system.
-pub(crate) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
+pub(crate) fn all_plans(graph: &Graph, parts: &EquationTerms) -> Vec<EliminationPlan> {
     let n = parts.mass.len();
     if graph.len() > LARGE {
         return [(0..n).collect(), (0..n).rev().collect()]
-            .map(|order| Plan {
+            .map(|order| EliminationPlan {
                 order,
                 apart: 0,
                 scale: false,
@@ -416,7 +421,7 @@ pub(crate) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
             for scale in [false, true] {
                 for inverse in [false, true] {
                     if apart < n || !(scale || inverse) {
-                        plans.push(Plan {
+                        plans.push(EliminationPlan {
                             order: order.clone(),
                             apart,
                             scale,
@@ -431,7 +436,7 @@ pub(crate) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
 }
 
 /// Orders velocities with a constant diagonal entry of M first, and otherwise keeps their order.
-fn constant_first(graph: &Graph, parts: &Parts) -> Vec<usize> {
+fn constant_first(graph: &Graph, parts: &EquationTerms) -> Vec<usize> {
     let constant = |i: &usize| graph.is_free(parts.mass[*i][*i].node());
     let (first, last): (Vec<usize>, Vec<usize>) = (0..parts.mass.len()).partition(constant);
     first.into_iter().chain(last).collect()

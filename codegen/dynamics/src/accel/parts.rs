@@ -18,14 +18,14 @@ use hamel_language::syntax::ast::Axes;
 
 /// Reference point of a body whose motion is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reference {
+pub enum ReferencePoint {
     /// Centre of mass: force and torque are not coupled.
     Com,
     /// Origin of the frame: no shift terms if the origin is at rest.
     Origin,
 }
 
-impl Parts {
+impl EquationTerms {
     /// Returns the right-hand side f − Γ ξ ξ − ∂V.
     pub fn right(&self, graph: &mut Graph) -> Vec<Edge> {
         (0..self.inertia.len())
@@ -34,17 +34,17 @@ impl Parts {
     }
 
     /// Copies the expressions into another graph, keeping the way they are computed here.
-    pub fn grafted(&self, from: &Graph, into: &mut Graph) -> Parts {
+    pub fn copy_into(&self, from: &Graph, into: &mut Graph) -> EquationTerms {
         self.mapped(|edges| graft(from, into, edges))
     }
 
     /// Rebuilds the expressions in another graph, reusing equal expressions that the graph already contains.
-    pub fn shared(&self, from: &Graph, into: &mut Graph) -> Parts {
+    pub fn rebuild_in(&self, from: &Graph, into: &mut Graph) -> EquationTerms {
         self.mapped(|edges| rebuild(from, into, edges))
     }
 
-    fn mapped(&self, mut vector: impl FnMut(&[Edge]) -> Vec<Edge>) -> Parts {
-        Parts {
+    fn mapped(&self, mut vector: impl FnMut(&[Edge]) -> Vec<Edge>) -> EquationTerms {
+        EquationTerms {
             mass: self.mass.iter().map(|row| vector(row)).collect(),
             groups: self.groups.iter().map(|group| vector(group)).collect(),
             inertia: vector(&self.inertia),
@@ -57,13 +57,13 @@ impl Parts {
     }
 }
 
-/// One way to trace the bodies.
+/// Axes and reference points in which the motion of bodies is expressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Variant {
+pub struct TracingVariant {
     /// Axes in which linear motion is written.
     pub axes: Axes,
     /// Reference point.
-    pub reference: Reference,
+    pub reference: ReferencePoint,
     /// Index k for which Θ_kk I is subtracted in ω × Θ ω, which saves one product and one sum; allowed because (λ
     /// ω) × ω = 0.
     pub shift: Option<usize>,
@@ -71,7 +71,7 @@ pub struct Variant {
 
 /// Terms of the equations of motion M ξ̇ = Σ groups.
 #[derive(Clone, Debug, Default)]
-pub struct Parts {
+pub struct EquationTerms {
     /// Mass matrix M.
     pub mass: Vec<Vec<Edge>>,
     /// Right-hand sides by origin: inertia, gravity, potential, and each load.
@@ -90,7 +90,7 @@ pub struct Parts {
     pub kinetic: Option<Edge>,
 }
 
-impl Parts {
+impl EquationTerms {
     /// Returns the contribution of T to the energy.
     pub fn kinetic_of(&self, graph: &mut Graph, model: &Model, momentum: &[Edge]) -> Edge {
         if let Some(kinetic) = self.kinetic {
@@ -127,15 +127,19 @@ impl Parts {
     }
 }
 
-/// Traces M and the forces of a model.
-pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Parts {
+/// Derives M and the forces of a model from the motion of each body and particle.
+pub fn trace_terms(
+    model: &mut Model,
+    calculus: &mut Calculus,
+    variant: TracingVariant,
+) -> EquationTerms {
     let n = model.n();
     let zero = model.graph.zero();
     let mut mass = vec![vec![zero; n]; n];
     let mut inertia = vec![zero; n];
     let mut gravity = vec![zero; n];
     for body in model.bodies.clone() {
-        let traced = Traced::new(model, calculus, &body, variant);
+        let traced = BodyTerms::new(model, calculus, &body, variant);
         traced.add(&mut model.graph, &mut mass, &mut inertia, &mut gravity);
     }
     for particle in model.particles.clone() {
@@ -175,7 +179,7 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
         }
         accumulate(graph, &mut mass, &part);
     }
-    if n <= super::SMALL {
+    if n <= super::MAX_SEARCHED_VELOCITIES {
         let mut forms = None;
         for entry in mass.iter_mut().flatten() {
             *entry = without_coordinates(
@@ -187,9 +191,11 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
             );
         }
     }
-    let kinetic = model.is_affine().then(|| energy::traced(model, calculus));
+    let kinetic = model
+        .is_affine()
+        .then(|| energy::kinetic_of_bodies(model, calculus));
     let momentum = kinetic.map(|kinetic| energy::momentum(model, kinetic));
-    let kinetic = kinetic.map(|kinetic| energy::part_of_energy(model, kinetic));
+    let kinetic = kinetic.map(|kinetic| energy::kinetic_in_energy(model, kinetic));
     let potential = loads::elastic(model, calculus);
     let loads = loads::applied(model, calculus);
     let graph = &mut model.graph;
@@ -202,7 +208,7 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
     let mut groups = vec![inertia.clone(), gravity, potential];
     groups.extend(loads);
     groups.retain(|group| group.iter().any(|&edge| edge != zero));
-    Parts {
+    EquationTerms {
         mass,
         groups,
         inertia,
@@ -215,7 +221,7 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
 }
 
 /// Jacobian, bias force and weight of a body, in the chosen axes and about the chosen point.
-struct Traced {
+struct BodyTerms {
     linear: Vec<Vec3>,
     angular: Vec<Vec3>,
     mass: Edge,
@@ -230,15 +236,20 @@ struct Traced {
     weight_torque: Vec3,
 }
 
-impl Traced {
-    fn new(model: &mut Model, calculus: &mut Calculus, body: &Body, variant: Variant) -> Self {
+impl BodyTerms {
+    fn new(
+        model: &mut Model,
+        calculus: &mut Calculus,
+        body: &Body,
+        variant: TracingVariant,
+    ) -> Self {
         let frame = model.frames[body.frame].clone();
         let graph = &mut model.graph;
         let zero = zero3(graph);
         let angular = calculus.spin_jacobian(graph, &frame.rotation);
         let omega = calculus.spin(graph, &frame.rotation);
         let alpha = calculus.rate3(graph, omega);
-        let at_com = variant.reference == Reference::Com;
+        let at_com = variant.reference == ReferencePoint::Com;
         let (inertia, arm) = if at_com {
             (body.inertia_com, body.com)
         } else {
@@ -322,7 +333,7 @@ impl Traced {
         }
         graph.label(&weight, of(Quantity::Weight));
         graph.label(&weight_torque, of(Quantity::Weight));
-        Traced {
+        BodyTerms {
             linear,
             angular,
             mass: body.mass,

@@ -3,9 +3,9 @@
 //!
 //! This gives the shortest code for small systems. If M is constant, M⁻¹ can be multiplied into the coefficients.
 
-use super::parts::{Reference, Variant, parts};
-use super::solve::{Plan, solve};
-use super::{Acceleration, Parts, all_plans, elimination};
+use super::parts::{ReferencePoint, TracingVariant, trace_terms};
+use super::solve::{EliminationPlan, solve};
+use super::{Acceleration, EquationTerms, all_plans, describe_order};
 use crate::calculus::Calculus;
 use crate::normal::{Collected, NormalForms, collect, variable_node};
 use hamel_algebra::graph::{Edge, Graph};
@@ -20,24 +20,24 @@ use hamel_program::count::count;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest number of run-time terms of a system that is expanded.
-const MOST_TERMS: usize = 260;
+const MAX_TERMS: usize = 260;
 /// Largest number of terms if M is constant but not inverted into the coefficients; for larger systems, tracing the
 /// bodies gives a smaller right-hand side.
-const MOST_CONSTANT_TERMS: usize = 40;
+const MAX_CONSTANT_MASS_TERMS: usize = 40;
 /// Number of products and sums of terms after which the expansion is abandoned in favour of the traced expressions.
-const MOST_WORK: usize = 1_000_000;
+const MAX_TERM_OPERATIONS: usize = 1_000_000;
 
 /// Returns the candidates of this route that may cost less than `most`; empty if the system is too large to expand.
 pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
     let mut traced = model.clone();
-    let variant = Variant {
+    let variant = TracingVariant {
         axes: Axes::World,
-        reference: Reference::Com,
+        reference: ReferencePoint::Com,
         shift: None,
     };
     let mut calculus = Calculus::new(model);
-    let parts = parts(&mut traced, &mut calculus, variant);
-    let mut forms = NormalForms::within(&model.points, MOST_WORK).keeping_powers();
+    let parts = trace_terms(&mut traced, &mut calculus, variant);
+    let mut forms = NormalForms::with_budget(&model.points, MAX_TERM_OPERATIONS).keeping_powers();
     let mut all = Vec::new();
     let mut before: Option<System> = None;
     for reduced in [false, true] {
@@ -75,7 +75,7 @@ impl System {
     fn expand(
         model: &Model,
         traced: &Model,
-        parts: &Parts,
+        parts: &EquationTerms,
         forms: &mut NormalForms,
         reduced: bool,
     ) -> Option<Self> {
@@ -92,7 +92,7 @@ impl System {
                 sum
             };
             let collected = collect(source, &normal);
-            (collected.len() <= MOST_TERMS).then_some(collected)
+            (collected.len() <= MAX_TERMS).then_some(collected)
         };
         let mut graph = model.graph.clone();
         let mut right = Vec::new();
@@ -131,7 +131,7 @@ impl System {
             }
         }
         let terms: usize = right.iter().map(|c| c.len()).sum();
-        (terms <= MOST_TERMS).then_some(System {
+        (terms <= MAX_TERMS).then_some(System {
             graph,
             right,
             varying,
@@ -174,20 +174,20 @@ impl System {
             })
             .collect();
         let terms: usize = polynomials.iter().map(BTreeMap::len).sum();
-        if terms > MOST_TERMS || least(&graph, &polynomials) >= most {
+        if terms > MAX_TERMS || min_operations(&graph, &polynomials) >= most {
             return None;
         }
         let xi_dot = self.factored(&mut graph, &polynomials);
         // The pivots of the constant M must still be checked for being positive.
-        let parts = Parts {
+        let parts = EquationTerms {
             mass: self.mass.clone(),
             groups: Vec::new(),
             inertia: Vec::new(),
             conservative: Vec::new(),
             applied: Vec::new(),
-            ..Parts::default()
+            ..EquationTerms::default()
         };
-        let plan = Plan {
+        let plan = EliminationPlan {
             order: (0..n).collect(),
             apart: 0,
             scale: false,
@@ -208,8 +208,8 @@ impl System {
             .cloned()
             .collect();
         let terms: usize = polynomials.iter().map(BTreeMap::len).sum();
-        let constant = self.varying.is_empty() && terms > MOST_CONSTANT_TERMS;
-        if constant || least(&graph, &polynomials) >= most {
+        let constant = self.varying.is_empty() && terms > MAX_CONSTANT_MASS_TERMS;
+        if constant || min_operations(&graph, &polynomials) >= most {
             return Vec::new();
         }
         let values = self.factored(&mut graph, &polynomials);
@@ -218,20 +218,20 @@ impl System {
             mass[*i][*j] = value;
             mass[*j][*i] = value;
         }
-        let parts = Parts {
+        let parts = EquationTerms {
             mass,
             groups: vec![values[..n].to_vec()],
             inertia: Vec::new(),
             conservative: Vec::new(),
             applied: Vec::new(),
-            ..Parts::default()
+            ..EquationTerms::default()
         };
         all_plans(&graph, &parts)
             .into_iter()
             .filter_map(|plan| {
                 let mut graph = graph.clone();
                 let solution = solve(&mut graph, &parts, &plan)?;
-                let how = elimination(model, &plan.order);
+                let how = describe_order(model, &plan.order);
                 Some(self.finish(graph, solution.xi_dot, solution.pivots, &how))
             })
             .collect()
@@ -332,7 +332,7 @@ impl System {
 /// Every coefficient other than 1 takes part in a product. Terms whose coefficient occurs in only one polynomial
 /// cannot be summed anywhere else. Polynomials that have such terms of degree two or more are independent, so each
 /// of them needs a product of variables of its own.
-fn least(graph: &Graph, polynomials: &[Collected]) -> usize {
+fn min_operations(graph: &Graph, polynomials: &[Collected]) -> usize {
     let mut rows: BTreeMap<Edge, BTreeSet<usize>> = BTreeMap::new();
     for (row, collected) in polynomials.iter().enumerate() {
         for coefficient in collected.values() {

@@ -1,18 +1,21 @@
 //! Recursion over a tree of links: ξ̇, M and forces.
 
-use super::best::{Acceleration, Best, Family};
-use super::branches::Branches;
-use super::cheapest::Computation;
-use super::parts::Parts;
-use super::setting::Setting;
-use super::solve::{Plan, Solution, solve};
+use super::best::{Acceleration, BestCandidates, CandidateFamily};
+use super::branches::BranchFactors;
+use super::cheapest::MassAndForces;
+use super::context::DerivationContext;
+use super::parts::EquationTerms;
+use super::solve::{EliminationPlan, Solution, solve};
 use crate::calculus::Calculus;
-use crate::care::Care;
 use crate::loads;
-use crate::tree::inverse::{Motion, TENSORS, Tensors, WITH_ALPHA, Wrench, inverse, wrenches};
+use crate::numerical_loss::NumericalLoss;
+use crate::tree::inverse::{
+    Motion, TENSOR_ROUTES, TENSOR_ROUTES_WITH_ALPHA, TensorRoute, Wrench, inverse_dynamics,
+    wrenches,
+};
 use crate::tree::momentum::{columns, quadratic_rate, total};
-use crate::tree::slopes::{Slopes, slopes};
-use crate::tree::uniform::Uniform;
+use crate::tree::slopes::{InverseDynamicsDerivatives, slopes};
+use crate::tree::uniform::CommonMotion;
 use crate::tree::{Placement, Tree, articulated, composite};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
@@ -21,10 +24,10 @@ use hamel_algebra::transplant::map_symbols;
 use hamel_language::model::Model;
 
 /// Largest number of links of a tree for which other routes are tried as well.
-const SHORT: usize = 3;
+const MAX_SHORT_TREE_LINKS: usize = 3;
 
 /// A model whose inertia is that of a tree of links, ready for the recursive algorithms.
-pub struct Recursion {
+pub struct TreeRecursion {
     /// The model, with constants and loads in its graph. It is the model in the full frame if the system's other
     /// velocities are given as functions of time.
     model: Model,
@@ -49,11 +52,15 @@ struct Free {
     active: Vec<usize>,
 }
 
-impl Recursion {
+impl TreeRecursion {
     /// Sets up the recursion over a model's links; `None` if the model is not an unconstrained tree of links.
-    pub fn of(setting: &Setting, placement: Placement, care: &Care) -> Option<Self> {
-        let reduced = &setting.model;
-        if !reduced.constraints.is_empty() || setting.back.is_some() {
+    pub fn of(
+        context: &DerivationContext,
+        placement: Placement,
+        numerical_loss: &NumericalLoss,
+    ) -> Option<Self> {
+        let reduced = &context.model;
+        if !reduced.constraints.is_empty() || context.back.is_some() {
             return None;
         }
         let (mut model, mut calculus, free) = match &reduced.full_frame {
@@ -68,7 +75,7 @@ impl Recursion {
                 (full, calculus, Some(free))
             }
             None if reduced.is_affine() => return None,
-            None => (reduced.clone(), setting.calculus.clone(), None),
+            None => (reduced.clone(), context.calculus.clone(), None),
         };
         let tree = Tree::of(&mut model, &mut calculus, placement)?;
         let elastic = loads::elastic(&mut model, &mut calculus);
@@ -79,10 +86,10 @@ impl Recursion {
                 model.graph.sum(&column)
             })
             .collect();
-        Some(Recursion {
+        Some(TreeRecursion {
             model,
             tree,
-            careful: care.is_taken(),
+            careful: numerical_loss.comes_first(),
             elastic,
             applied,
             free,
@@ -92,7 +99,7 @@ impl Recursion {
     /// Returns the tree that computes U = α̂ + ω̂ ω̂ of its links in the cheapest of some ways.
     ///
     /// If accuracy takes precedence, the tree is returned unchanged, with U computed from each link's ω and α.
-    fn cheapest(&self, ways: &[Tensors], graph: &Graph, motion: Motion) -> Tree {
+    fn cheapest(&self, ways: &[TensorRoute], graph: &Graph, motion: Motion) -> Tree {
         match self.careful {
             true => self.tree.clone(),
             false => self.tree.cheapest(ways, graph, motion),
@@ -101,7 +108,7 @@ impl Recursion {
 
     /// Returns whether the tree is so long that the recursion is certainly the cheapest route.
     pub fn is_long(&self) -> bool {
-        self.tree.links.len() > SHORT
+        self.tree.links.len() > MAX_SHORT_TREE_LINKS
     }
 
     /// Returns the generalised forces other than gravity.
@@ -137,7 +144,7 @@ impl Recursion {
     }
 
     /// Rewrites expressions of the full frame in the free velocities, and returns them with their graph.
-    fn leave<const N: usize>(
+    fn in_active_velocities<const N: usize>(
         &self,
         graph: Graph,
         lists: [Vec<Edge>; N],
@@ -152,7 +159,7 @@ impl Recursion {
 
     /// Offers the recursive candidates to `best`: articulated bodies, and composite bodies with M eliminated from
     /// the leaves and from the root.
-    pub(super) fn search(&self, best: &mut Best) {
+    pub(super) fn search(&self, best: &mut BestCandidates) {
         let n = self.model.n();
         let (active, mut given) = self.places();
         let mut rates = self.given_rates();
@@ -170,11 +177,11 @@ impl Recursion {
         // ξ̇.
         let tree = match self.free {
             Some(_) => self.tree.clone(),
-            None => self.cheapest(&TENSORS, &self.model.graph, (xi, &rates, gravity)),
+            None => self.cheapest(&TENSOR_ROUTES, &self.model.graph, (xi, &rates, gravity)),
         };
         if self.tree.is_plain(&self.model.graph, n, &given) {
             let mut graph = self.model.graph.clone();
-            self.tree.know_polars(&mut graph);
+            self.tree.register_polar_moments(&mut graph);
             let load = self.load(&mut graph);
             let forces = wrenches(&mut graph, &tree, xi, &rates, gravity);
             let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
@@ -182,23 +189,23 @@ impl Recursion {
                 let route = "links traced, articulated bodies".to_string();
                 let xi_dot = self.driven(&active, |i| xi_dot[i]);
                 let pivots = active.iter().map(|&i| pivots[i]).collect();
-                let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
-                let candidate = Acceleration::counted(graph, xi_dot, pivots, route);
-                best.keep(Family::Links, candidate);
+                let (graph, [xi_dot, pivots]) = self.in_active_velocities(graph, [xi_dot, pivots]);
+                let candidate = Acceleration::with_counts(graph, xi_dot, pivots, route);
+                best.keep(CandidateFamily::Links, candidate);
             }
         }
         let mut graph = self.model.graph.clone();
-        self.tree.know_polars(&mut graph);
+        self.tree.register_polar_moments(&mut graph);
         let load = self.load(&mut graph);
-        let bias = inverse(&mut graph, &tree, xi, &rates, gravity);
+        let bias = inverse_dynamics(&mut graph, &tree, xi, &rates, gravity);
         let mass = composite::mass_matrix(&mut graph, &self.tree, n);
         let right = solved.iter().map(|&i| graph.sub(load[i], bias[i]));
         let right = right.collect();
         let of_free = |row: &Vec<Edge>| solved.iter().map(|&j| row[j]).collect();
-        let of_parts = Parts {
+        let of_parts = EquationTerms {
             mass: solved.iter().map(|&i| of_free(&mass[i])).collect(),
             groups: vec![right],
-            ..Parts::default()
+            ..EquationTerms::default()
         };
         let free = solved.len();
         for order in [(0..free).rev().collect::<Vec<_>>(), (0..free).collect()] {
@@ -207,7 +214,7 @@ impl Recursion {
             } else {
                 "from the last velocity to the first"
             };
-            let plan = Plan {
+            let plan = EliminationPlan {
                 order,
                 apart: 0,
                 scale: false,
@@ -223,30 +230,30 @@ impl Recursion {
                     .iter()
                     .map(|&i| place(i).map_or(one, |at| pivots[at]));
                 let pivots = pivots.collect();
-                let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
-                let candidate = Acceleration::counted(graph, xi_dot, pivots, route);
-                best.keep(Family::Links, candidate);
+                let (graph, [xi_dot, pivots]) = self.in_active_velocities(graph, [xi_dot, pivots]);
+                let candidate = Acceleration::with_counts(graph, xi_dot, pivots, route);
+                best.keep(CandidateFamily::Links, candidate);
             }
         }
     }
 
     /// Returns M and the forces.
-    pub fn parts(&self) -> Computation {
+    pub fn mass_and_forces(&self) -> MassAndForces {
         let mut graph = self.model.graph.clone();
         let n = self.model.n();
         let (active, _) = self.places();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
         let (still, weightless) = (vec![graph.zero(); n], zero3(&graph));
-        let tree = self.cheapest(&TENSORS, &graph, (xi, &self.model.xi_dot, gravity));
-        let force = inverse(&mut graph, &tree, xi, &self.model.xi_dot, gravity);
-        let inverse_dynamics = (active.iter())
+        let tree = self.cheapest(&TENSOR_ROUTES, &graph, (xi, &self.model.xi_dot, gravity));
+        let force = inverse_dynamics(&mut graph, &tree, xi, &self.model.xi_dot, gravity);
+        let required = (active.iter())
             .map(|&i| graph.sub(force[i], self.elastic[i]))
             .collect();
         let rates = self.given_rates();
-        let tree = self.cheapest(&TENSORS, &graph, (xi, &rates, weightless));
-        let bias = inverse(&mut graph, &tree, xi, &rates, weightless);
-        let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
-        let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
+        let tree = self.cheapest(&TENSOR_ROUTES, &graph, (xi, &rates, weightless));
+        let bias = inverse_dynamics(&mut graph, &tree, xi, &rates, weightless);
+        let weight = inverse_dynamics(&mut graph, &self.tree, &still, &still, gravity);
+        let momentum = inverse_dynamics(&mut graph, &self.tree, &still, xi, weightless);
         let mass = composite::mass_matrix_alone(&mut graph, &self.tree, n);
         let conservative = (active.iter())
             .map(|&i| graph.sub(self.elastic[i], weight[i]))
@@ -266,11 +273,11 @@ impl Recursion {
             of_free(&bias).into_iter().map(|edge| -edge).collect(),
             conservative,
             of_free(&self.applied),
-            inverse_dynamics,
+            required,
             of_free(&momentum),
             kinetic,
         ];
-        let (graph, lists) = self.leave(graph, lists);
+        let (graph, lists) = self.in_active_velocities(graph, lists);
         let [
             mass,
             inertia,
@@ -280,7 +287,7 @@ impl Recursion {
             momentum,
             kinetic,
         ] = lists;
-        let parts = Parts {
+        let parts = EquationTerms {
             mass: matrix(&mass, active.len()),
             groups: Vec::new(),
             inertia,
@@ -290,19 +297,19 @@ impl Recursion {
             momentum: Some(momentum),
             kinetic: kinetic.first().copied(),
         };
-        Computation { graph, parts }
+        MassAndForces { graph, parts }
     }
 
     /// Returns M ξ̇ + Γ ξ ξ + ∂V − f for some velocities of the full frame: the forces of their drives.
     pub fn residuals(&self, velocities: &[usize]) -> (Graph, Vec<Edge>) {
         let mut graph = self.model.graph.clone();
         let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
-        let tree = self.cheapest(&TENSORS, &graph, (xi, xi_dot, self.model.gravity));
-        let force = inverse(&mut graph, &tree, xi, xi_dot, self.model.gravity);
+        let tree = self.cheapest(&TENSOR_ROUTES, &graph, (xi, xi_dot, self.model.gravity));
+        let force = inverse_dynamics(&mut graph, &tree, xi, xi_dot, self.model.gravity);
         let load = self.load(&mut graph);
         let rows = velocities.iter().map(|&i| graph.sub(force[i], load[i]));
         let rows = rows.collect();
-        let (graph, [rows]) = self.leave(graph, [rows]);
+        let (graph, [rows]) = self.in_active_velocities(graph, [rows]);
         (graph, rows)
     }
 
@@ -314,7 +321,7 @@ impl Recursion {
         let mut graph = self.model.graph.clone();
         let still = vec![graph.zero(); self.model.n()];
         let quadratic = quadratic_rate(&mut graph, &self.tree, &self.model.xi)?;
-        let weight = inverse(&mut graph, &self.tree, &still, &still, self.model.gravity);
+        let weight = inverse_dynamics(&mut graph, &self.tree, &still, &still, self.model.gravity);
         let load = self.load(&mut graph);
         let rate = (0..self.model.n()).map(|i| {
             let terms = [quadratic[i], load[i], -weight[i]];
@@ -331,7 +338,8 @@ impl Recursion {
     pub fn total_momentum(&self) -> (Graph, Vec3, Vec3) {
         let mut graph = self.model.graph.clone();
         let (linear, angular) = total(&mut graph, &self.tree, &self.model.xi);
-        let (graph, [linear, angular]) = self.leave(graph, [linear.to_vec(), angular.to_vec()]);
+        let (graph, [linear, angular]) =
+            self.in_active_velocities(graph, [linear.to_vec(), angular.to_vec()]);
         let three = |list: &[Edge]| std::array::from_fn(|i| list[i]);
         (graph, three(&linear), three(&angular))
     }
@@ -354,7 +362,7 @@ impl Recursion {
         if self.free.is_some() || !self.tree.is_plain(&graph, self.model.n(), &[]) {
             return None;
         }
-        self.tree.know_polars(&mut graph);
+        self.tree.register_polar_moments(&mut graph);
         let none = zero3(&graph);
         let nothing = Wrench {
             force: none,
@@ -370,7 +378,7 @@ impl Recursion {
     /// graph: n rows of 2 n entries.
     ///
     /// Returns `None` if a joint varies with x.
-    pub fn inverse_slopes(&self) -> Option<(Graph, Vec<Vec<Edge>>)> {
+    pub fn inverse_dynamics_derivatives(&self) -> Option<(Graph, Vec<Vec<Edge>>)> {
         if self.free.is_some() {
             return None;
         }
@@ -381,7 +389,7 @@ impl Recursion {
             gravity,
             ..
         } = &self.model;
-        let tree = self.cheapest(&WITH_ALPHA, &graph, (xi, xi_dot, *gravity));
+        let tree = self.cheapest(&TENSOR_ROUTES_WITH_ALPHA, &graph, (xi, xi_dot, *gravity));
         let found = slopes(&mut graph, &tree, xi, xi_dot, *gravity)?;
         let mut columns = self.changes(&self.elastic, &mut graph, &found);
         columns.truncate(2 * self.model.n());
@@ -393,7 +401,7 @@ impl Recursion {
     /// constant.
     ///
     /// Returns `None` if a joint varies with x, or if M is singular everywhere.
-    pub fn rates_and_slopes(&self) -> Option<RatesAndSlopes> {
+    pub fn acceleration_derivatives(&self) -> Option<AccelerationDerivatives> {
         let model = &self.model;
         let n = model.n();
         if self.free.is_some() || !model.accelerated.is_empty() {
@@ -402,16 +410,20 @@ impl Recursion {
         let mut graph = model.graph.clone();
         let load = self.load(&mut graph);
         let rates = self.given_rates();
-        let tree = &self.cheapest(&WITH_ALPHA, &graph, (&model.xi, &rates, model.gravity));
-        let free = tree.uniform(&mut graph, &model.xi, model.gravity);
+        let tree = &self.cheapest(
+            &TENSOR_ROUTES_WITH_ALPHA,
+            &graph,
+            (&model.xi, &rates, model.gravity),
+        );
+        let free = tree.common_motion(&mut graph, &model.xi, model.gravity);
         let (proper, gravity) = match &free {
             Some(uniform) => (&uniform.xi, zero3(&graph)),
             None => (&model.xi, model.gravity),
         };
-        let bias = inverse(&mut graph, tree, proper, &rates, gravity);
+        let bias = inverse_dynamics(&mut graph, tree, proper, &rates, gravity);
         let mass = composite::by_second_moments(&mut graph, tree, n);
-        let twins = tree.twins(&mut graph);
-        let branches = Branches::of(&mut graph, &mass, &twins)?;
+        let equivalent = tree.equivalent_motions(&mut graph);
+        let branches = BranchFactors::of(&mut graph, &mass, &equivalent)?;
         let right: Vec<Edge> = (0..n).map(|i| graph.sub(load[i], bias[i])).collect();
         let mut xi_dot = branches.solve(&mut graph, &right);
         let found = slopes(&mut graph, tree, proper, &xi_dot, gravity)?;
@@ -430,7 +442,7 @@ impl Recursion {
         let moved = changes[..2 * n].iter();
         let moved = moved.map(|column| branches.solve(&mut graph, column));
         columns.splice(..0, moved.collect::<Vec<_>>());
-        if let Some(Uniform { rates, .. }) = &free {
+        if let Some(CommonMotion { rates, .. }) = &free {
             for (j, column) in columns.iter_mut().enumerate() {
                 let more = self.along(&graph, j).all(&mut graph, rates);
                 for (entry, more) in column.iter_mut().zip(more) {
@@ -442,7 +454,7 @@ impl Recursion {
             }
         }
         let row = |i: usize| columns.iter().map(|column| column[i]).collect();
-        Some(RatesAndSlopes {
+        Some(AccelerationDerivatives {
             rows: (0..n).map(row).collect(),
             graph,
             xi_dot,
@@ -468,7 +480,12 @@ impl Recursion {
 
     /// Returns the derivatives of load − M ξ̇ − Γ ξ ξ, gravity included, along displacements, velocities and inputs
     /// at constant ξ̇: 2 n + m columns.
-    fn changes(&self, load: &[Edge], graph: &mut Graph, found: &Slopes) -> Vec<Vec<Edge>> {
+    fn changes(
+        &self,
+        load: &[Edge],
+        graph: &mut Graph,
+        found: &InverseDynamicsDerivatives,
+    ) -> Vec<Vec<Edge>> {
         let n = self.model.n();
         let columns = (0..2 * n + self.model.u.len()).map(|j| {
             let mut column = self.along(graph, j).all(graph, load);
@@ -488,7 +505,7 @@ impl Recursion {
 }
 
 /// ξ̇ and its derivatives.
-pub struct RatesAndSlopes {
+pub struct AccelerationDerivatives {
     /// Graph of all expressions.
     pub graph: Graph,
     /// Accelerations ξ̇.

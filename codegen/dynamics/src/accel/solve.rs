@@ -1,12 +1,12 @@
 //! Solution ξ̇ = M⁻¹ Σ groups by M = L D Lᵀ, unrolled and sparse, with constant parts computed only once.
 
-use super::parts::Parts;
+use super::parts::EquationTerms;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::solve_symmetric;
 
-/// One way to solve M ξ̇ = Σ groups.
+/// Order and form of the elimination by which M ξ̇ = Σ groups is solved.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Plan {
+pub struct EliminationPlan {
     /// Order in which velocities are eliminated.
     pub order: Vec<usize>,
     /// Number of leading columns that are eliminated from each group separately.
@@ -36,7 +36,7 @@ pub struct Solution {
 }
 
 /// Solves M ξ̇ = Σ groups; `None` if a pivot vanishes identically.
-pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> {
+pub fn solve(graph: &mut Graph, parts: &EquationTerms, plan: &EliminationPlan) -> Option<Solution> {
     let n = plan.order.len();
     let zero = graph.zero();
     let mut a: Vec<Vec<Edge>> = plan
@@ -153,7 +153,7 @@ fn multiply_inverse(
         }
         b = b
             .into_iter()
-            .map(|entry| absorb(graph, entry, factor))
+            .map(|entry| absorb_factor(graph, entry, factor))
             .collect();
     }
     Some(inverse.iter().map(|row| graph.dot(row, &b)).collect())
@@ -162,7 +162,7 @@ fn multiply_inverse(
 /// Performs forward, diagonal and backward substitution in the columns from `plan.apart` on.
 fn substitute(
     graph: &mut Graph,
-    plan: &Plan,
+    plan: &EliminationPlan,
     l: &[Vec<Edge>],
     (pivots, inverses): (&[Edge], &[Option<Edge>]),
     right: &mut [Edge],
@@ -176,7 +176,7 @@ fn substitute(
     if let Some(lead) = lead {
         let factor = graph.div(graph.one(), lead)?;
         for entry in right.iter_mut().skip(plan.apart) {
-            *entry = absorb(graph, *entry, factor);
+            *entry = absorb_factor(graph, *entry, factor);
         }
     }
     for c in plan.apart..n {
@@ -204,28 +204,31 @@ fn substitute(
 
 fn divide(graph: &mut Graph, a: Edge, pivot: Edge, inverse: Option<Edge>) -> Option<Edge> {
     match inverse {
-        Some(inverse) => Some(absorb(graph, a, inverse)),
+        Some(inverse) => Some(absorb_factor(graph, a, inverse)),
         None => graph.div(a, pivot),
     }
 }
 
 /// Returns factor · edge, with the factor absorbed into constants of the expression if possible.
-pub fn absorb(graph: &mut Graph, edge: Edge, factor: Edge) -> Edge {
-    if !graph.is_free(factor.node()) || !absorbs(graph, edge, 0) {
+pub fn absorb_factor(graph: &mut Graph, edge: Edge, factor: Edge) -> Edge {
+    if !graph.is_free(factor.node()) || !can_absorb_factor(graph, edge, 0) {
         return graph.mul(factor, edge);
     }
     let negative = edge.is_negative();
     let result = match graph.node(edge.node()) {
         Node::Add(a, b) => {
-            let (a, b) = (absorb(graph, a, factor), absorb(graph, b, factor));
+            let (a, b) = (
+                absorb_factor(graph, a, factor),
+                absorb_factor(graph, b, factor),
+            );
             graph.add(a, b)
         }
-        Node::Mul(a, b) if absorbs(graph, a, 0) => {
-            let a = absorb(graph, a, factor);
+        Node::Mul(a, b) if can_absorb_factor(graph, a, 0) => {
+            let a = absorb_factor(graph, a, factor);
             graph.mul(a, b)
         }
         Node::Mul(a, b) => {
-            let b = absorb(graph, b, factor);
+            let b = absorb_factor(graph, b, factor);
             graph.mul(a, b)
         }
         _ => graph.mul(factor, edge.abs()),
@@ -235,7 +238,7 @@ pub fn absorb(graph: &mut Graph, edge: Edge, factor: Edge) -> Edge {
 
 /// Returns whether a constant factor can be absorbed by an expression at no cost: every term has a constant to take
 /// it.
-fn absorbs(graph: &Graph, edge: Edge, depth: usize) -> bool {
+fn can_absorb_factor(graph: &Graph, edge: Edge, depth: usize) -> bool {
     if graph.is_free(edge.node()) {
         return true;
     }
@@ -244,8 +247,12 @@ fn absorbs(graph: &Graph, edge: Edge, depth: usize) -> bool {
         return false;
     }
     match graph.node(edge.node()) {
-        Node::Add(a, b) => absorbs(graph, a, depth + 1) && absorbs(graph, b, depth + 1),
-        Node::Mul(a, b) => absorbs(graph, a, depth + 1) || absorbs(graph, b, depth + 1),
+        Node::Add(a, b) => {
+            can_absorb_factor(graph, a, depth + 1) && can_absorb_factor(graph, b, depth + 1)
+        }
+        Node::Mul(a, b) => {
+            can_absorb_factor(graph, a, depth + 1) || can_absorb_factor(graph, b, depth + 1)
+        }
         _ => false,
     }
 }

@@ -6,9 +6,9 @@
 
 mod rates;
 
-use super::accel::accel;
-use super::care::Care;
+use super::accel::forward_dynamics;
 use super::kinematics;
+use super::numerical_loss::NumericalLoss;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Function, Node};
 use hamel_algebra::linear::transpose;
@@ -20,11 +20,11 @@ use rates::RateDraft;
 use std::fmt;
 
 /// Largest number of combinations that are tried.
-const MOST: usize = 24;
+const MAX_COMBINATIONS: usize = 24;
 
 /// One choice of velocity coordinates.
 #[derive(Clone, Debug)]
-pub struct Choice {
+pub struct VelocityChoice {
     /// Description of the choice in words.
     pub label: String,
     /// Statements of the description that make this choice.
@@ -84,7 +84,7 @@ impl std::error::Error for AdviseError {}
 /// # Errors
 ///
 /// The reason why the model has no alternative velocities.
-pub fn advise(model: &Model) -> Result<Vec<Choice>, AdviseError> {
+pub fn advise(model: &Model) -> Result<Vec<VelocityChoice>, AdviseError> {
     if !model.points.constraints.is_empty() {
         return Err(AdviseError::ConstrainedCoordinates);
     }
@@ -98,9 +98,9 @@ pub fn advise(model: &Model) -> Result<Vec<Choice>, AdviseError> {
     if dimension != model.n() {
         return Err(AdviseError::FewVelocities);
     }
-    let mut choices = vec![written(model)?];
-    for combination in combinations(&parts(model)) {
-        let choice = rewritten(model, &combination)?;
+    let mut choices = vec![described_choice(model)?];
+    for combination in combinations(&moving_parts(model)) {
+        let choice = evaluate_choice(model, &combination)?;
         if choice.as_written {
             choices[0].label = format!("{}, as written", choice.label);
             choices[0].statements = choice.statements;
@@ -113,14 +113,14 @@ pub fn advise(model: &Model) -> Result<Vec<Choice>, AdviseError> {
 }
 
 /// A moving part and the ways in which its velocity can be described.
-struct Part {
-    moves: Move,
-    options: Vec<Way>,
+struct MovingPart {
+    moves: MotionKind,
+    options: Vec<VelocityKind>,
 }
 
 /// Kind of moving part.
 #[derive(Clone)]
-enum Move {
+enum MotionKind {
     /// Rotation, by its coordinate.
     Rotation(usize),
     /// Point, by its coordinate.
@@ -133,7 +133,7 @@ enum Move {
 
 /// Choice of velocity coordinates for a part.
 #[derive(Clone, Copy, PartialEq)]
-enum Way {
+enum VelocityKind {
     /// World axes, or each coordinate's own rate.
     World,
     /// Axes of the rotation with this coordinate.
@@ -148,7 +148,7 @@ fn is_rotation(kind: CoordKind) -> bool {
     matches!(kind, CoordKind::SO3 | CoordKind::S3 | CoordKind::SE3)
 }
 
-fn parts(model: &Model) -> Vec<Part> {
+fn moving_parts(model: &Model) -> Vec<MovingPart> {
     let rotations: Vec<usize> = (0..model.coordinates.len())
         .filter(|&index| is_rotation(model.coordinates[index].kind))
         .collect();
@@ -158,44 +158,52 @@ fn parts(model: &Model) -> Vec<Part> {
         match coordinate.kind {
             CoordKind::S1 => chain.push(index),
             CoordKind::Real if is_angle(model, coordinate) => chain.push(index),
-            CoordKind::Real => all.push(Part {
-                moves: Move::Plain(index),
-                options: vec![Way::World],
+            CoordKind::Real => all.push(MovingPart {
+                moves: MotionKind::Plain(index),
+                options: vec![VelocityKind::World],
             }),
-            CoordKind::Euclidean(3) => all.push(Part {
-                moves: Move::Point(index),
-                options: std::iter::once(Way::World)
-                    .chain(rotations.iter().map(|&rotation| Way::Body(rotation)))
+            CoordKind::Euclidean(3) => all.push(MovingPart {
+                moves: MotionKind::Point(index),
+                options: std::iter::once(VelocityKind::World)
+                    .chain(
+                        rotations
+                            .iter()
+                            .map(|&rotation| VelocityKind::Body(rotation)),
+                    )
                     .collect(),
             }),
-            CoordKind::Euclidean(_) => all.push(Part {
-                moves: Move::Plain(index),
-                options: vec![Way::World],
+            CoordKind::Euclidean(_) => all.push(MovingPart {
+                moves: MotionKind::Plain(index),
+                options: vec![VelocityKind::World],
             }),
             CoordKind::SE3 => {
-                let options = vec![Way::World, Way::Body(index)];
-                all.push(Part {
-                    moves: Move::Point(index),
+                let options = vec![VelocityKind::World, VelocityKind::Body(index)];
+                all.push(MovingPart {
+                    moves: MotionKind::Point(index),
                     options: options.clone(),
                 });
-                all.push(Part {
-                    moves: Move::Rotation(index),
+                all.push(MovingPart {
+                    moves: MotionKind::Rotation(index),
                     options,
                 });
             }
-            CoordKind::SO3 | CoordKind::S3 => all.push(Part {
-                moves: Move::Rotation(index),
-                options: vec![Way::Body(index), Way::World],
+            CoordKind::SO3 | CoordKind::S3 => all.push(MovingPart {
+                moves: MotionKind::Rotation(index),
+                options: vec![VelocityKind::Body(index), VelocityKind::World],
             }),
         }
     }
     if !chain.is_empty() {
         let options = match chain.len() {
-            1 => vec![Way::World],
-            _ => vec![Way::World, Way::Differences, Way::Sums],
+            1 => vec![VelocityKind::World],
+            _ => vec![
+                VelocityKind::World,
+                VelocityKind::Differences,
+                VelocityKind::Sums,
+            ],
         };
-        all.push(Part {
-            moves: Move::Chain(chain),
+        all.push(MovingPart {
+            moves: MotionKind::Chain(chain),
             options,
         });
     }
@@ -215,9 +223,9 @@ fn is_angle(model: &Model, coordinate: &Coordinate) -> bool {
     })
 }
 
-/// Returns all combinations of ways, up to `MOST`; combinations of the first ways come first.
-fn combinations(parts: &[Part]) -> Vec<Vec<(Move, Way)>> {
-    let mut all: Vec<Vec<(Move, Way)>> = vec![Vec::new()];
+/// Returns all combinations of ways, up to `MAX_COMBINATIONS`; combinations of the first ways come first.
+fn combinations(parts: &[MovingPart]) -> Vec<Vec<(MotionKind, VelocityKind)>> {
+    let mut all: Vec<Vec<(MotionKind, VelocityKind)>> = vec![Vec::new()];
     for part in parts {
         all = all
             .into_iter()
@@ -228,25 +236,26 @@ fn combinations(parts: &[Part]) -> Vec<Vec<(Move, Way)>> {
                     longer
                 })
             })
-            .take(MOST)
+            .take(MAX_COMBINATIONS)
             .collect();
     }
     all
 }
 
-fn written(model: &Model) -> Result<Choice, AdviseError> {
-    Choice::counted("as written".into(), Vec::new(), true, model.clone())
+fn described_choice(model: &Model) -> Result<VelocityChoice, AdviseError> {
+    VelocityChoice::with_counts("as written".into(), Vec::new(), true, model.clone())
 }
 
-impl Choice {
-    fn counted(
+impl VelocityChoice {
+    fn with_counts(
         label: String,
         statements: Vec<String>,
         as_written: bool,
         model: Model,
     ) -> Result<Self, AdviseError> {
-        let (chosen, _) = accel(&model, &Care::default()).ok_or(AdviseError::SingularMass)?;
-        Ok(Choice {
+        let (chosen, _) =
+            forward_dynamics(&model, &NumericalLoss::default()).ok_or(AdviseError::SingularMass)?;
+        Ok(VelocityChoice {
             label,
             statements,
             as_written,
@@ -258,12 +267,15 @@ impl Choice {
 }
 
 /// Rewrites the model in other velocities and counts its operations.
-fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, AdviseError> {
+fn evaluate_choice(
+    model: &Model,
+    combination: &[(MotionKind, VelocityKind)],
+) -> Result<VelocityChoice, AdviseError> {
     let mut own = model.clone();
     let rows = kinematics::left_inverse(&mut own).ok_or(AdviseError::DependentColumns)?;
     let mut rates = RateDraft::new(model, &mut own.graph);
     for (moves, way) in combination {
-        rates.take(moves, *way);
+        rates.add_part(moves, *way);
     }
     let (lines, label) = (rates.statements(), rates.label.join(", "));
     let rate = rates.rate;
@@ -317,5 +329,5 @@ fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, Advis
     }
     own.a = a;
     own.rate = rate;
-    Choice::counted(label, lines, as_written, own)
+    VelocityChoice::with_counts(label, lines, as_written, own)
 }

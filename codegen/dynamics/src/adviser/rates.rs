@@ -1,6 +1,6 @@
 //! Closed-form rates, as edges and as statements.
 
-use super::{Move, Way};
+use super::{MotionKind, VelocityKind};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, apply3, multiply3};
 use hamel_language::model::layout::blocks;
@@ -79,12 +79,12 @@ impl<'a> RateDraft<'a> {
     }
 
     /// Adds the rate of a part for one choice of velocity coordinates.
-    pub fn take(&mut self, moves: &Move, way: Way) {
+    pub fn add_part(&mut self, moves: &MotionKind, way: VelocityKind) {
         match moves {
-            Move::Rotation(index) => self.rotation(*index, way),
-            Move::Point(index) => self.point(*index, way),
-            Move::Chain(indices) => self.chain(indices, way),
-            Move::Plain(index) => self.plain(*index),
+            MotionKind::Rotation(index) => self.rotation(*index, way),
+            MotionKind::Point(index) => self.point(*index, way),
+            MotionKind::Chain(indices) => self.chain(indices, way),
+            MotionKind::Plain(index) => self.plain(*index),
         }
     }
 
@@ -105,12 +105,12 @@ impl<'a> RateDraft<'a> {
     }
 
     /// Adds the rate of a rotation: Ṙ = R ω̂ or ω̂ R; for quaternions q̇ = ½ q ∘ (0, ω) or ½ (0, ω) ∘ q.
-    fn rotation(&mut self, index: usize, way: Way) {
+    fn rotation(&mut self, index: usize, way: VelocityKind) {
         let coordinate = &self.model.coordinates[index];
         let w = self.velocities(3);
         let w = [w[0], w[1], w[2]];
         let name = self.names.new_name(self.model, 1, ": vec3");
-        let world = way == Way::World;
+        let world = way == VelocityKind::World;
         let target = match coordinate.kind {
             CoordKind::SE3 => format!("{}.R", coordinate.name),
             _ => coordinate.name.clone(),
@@ -156,7 +156,7 @@ impl<'a> RateDraft<'a> {
         rate
     }
 
-    fn point(&mut self, index: usize, way: Way) {
+    fn point(&mut self, index: usize, way: VelocityKind) {
         let coordinate = &self.model.coordinates[index];
         let v = self.velocities(3);
         let name = self.names.new_name(self.model, 0, ": vec3");
@@ -166,7 +166,7 @@ impl<'a> RateDraft<'a> {
         };
         let mut rate = [v[0], v[1], v[2]];
         match way {
-            Way::Body(rotation) => {
+            VelocityKind::Body(rotation) => {
                 let r = self.matrix(rotation);
                 rate = apply3(self.graph, &r, rate);
                 let axes = &self.model.coordinates[rotation];
@@ -188,7 +188,7 @@ impl<'a> RateDraft<'a> {
         self.rate[coordinate.offset..coordinate.offset + 3].copy_from_slice(&rate);
     }
 
-    fn chain(&mut self, indices: &[usize], way: Way) {
+    fn chain(&mut self, indices: &[usize], way: VelocityKind) {
         let u = self.velocities(indices.len());
         let names: Vec<String> = indices
             .iter()
@@ -197,11 +197,11 @@ impl<'a> RateDraft<'a> {
         for (place, &index) in indices.iter().enumerate() {
             let coordinate = &self.model.coordinates[index];
             let (turn, text) = match way {
-                Way::Differences if place > 0 => (
+                VelocityKind::Differences if place > 0 => (
                     self.graph.sub(u[place], u[place - 1]),
                     format!("{} - {}", names[place], names[place - 1]),
                 ),
-                Way::Sums => (self.graph.sum(&u[..=place]), names[..=place].join(" + ")),
+                VelocityKind::Sums => (self.graph.sum(&u[..=place]), names[..=place].join(" + ")),
                 _ => (u[place], names[place].clone()),
             };
             let at = coordinate.offset;
@@ -220,8 +220,8 @@ impl<'a> RateDraft<'a> {
             .map(|&index| self.model.coordinates[index].name.as_str())
             .collect();
         let how = match way {
-            Way::Differences => "by differences of rates",
-            Way::Sums => "by sums of rates",
+            VelocityKind::Differences => "by differences of rates",
+            VelocityKind::Sums => "by sums of rates",
             _ => "each by its own rate",
         };
         self.label.push(format!("{} turned {how}", all.join(", ")));

@@ -14,7 +14,7 @@ use hamel_language::model::Model;
 
 /// Order in which poses along a chain are multiplied, once sums of angles are known.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Order {
+enum ProductOrder {
     /// As in the description, from the world outwards.
     Given,
     /// As R₀ (R₁ R₂): frames that turn about parallel axes are combined first.
@@ -26,7 +26,7 @@ enum Order {
 }
 
 /// Runs of consecutive joints with parallel axes on the chain to a frame.
-struct Runs {
+struct ParallelRuns {
     /// Signs and coordinates of the joints of each run.
     joints: Vec<Vec<(bool, usize)>>,
     /// Frames that begin a run or another kind of rotation.
@@ -38,20 +38,25 @@ struct Runs {
 ///
 /// These expressions are the sines and cosines of sums of angles about parallel axes, if the chain to the frame has
 /// such axes, or the vectors to the frame.
-pub fn with_known(model: &Model, index: usize) -> Vec<Model> {
-    let runs = runs(model, index);
-    let orders: &[Order] = match runs.joints.is_empty() {
-        true => &[Order::Ways],
-        false => &[Order::Given, Order::Outwards, Order::Inwards, Order::Ways],
+pub fn with_known_expressions(model: &Model, index: usize) -> Vec<Model> {
+    let runs = find_runs(model, index);
+    let orders: &[ProductOrder] = match runs.joints.is_empty() {
+        true => &[ProductOrder::Ways],
+        false => &[
+            ProductOrder::Given,
+            ProductOrder::Outwards,
+            ProductOrder::Inwards,
+            ProductOrder::Ways,
+        ],
     };
     let orders = orders.iter();
     orders
-        .map(|&order| known(model, index, &runs, order))
+        .map(|&order| model_with_known(model, index, &runs, order))
         .collect()
 }
 
 /// Finds the runs of joints with parallel axes.
-fn runs(model: &Model, index: usize) -> Runs {
+fn find_runs(model: &Model, index: usize) -> ParallelRuns {
     let mut graph = model.graph.clone();
     let mut calculus = Calculus::new(model);
     let mut runs: Vec<Vec<(bool, usize)>> = Vec::new();
@@ -94,14 +99,19 @@ fn runs(model: &Model, index: usize) -> Runs {
         last = Some(axis);
     }
     runs.retain(|run| run.len() > 1);
-    Runs {
+    ParallelRuns {
         joints: runs,
         begins,
     }
 }
 
 /// Returns the model in a graph with known expressions.
-fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
+fn model_with_known(
+    model: &Model,
+    index: usize,
+    runs: &ParallelRuns,
+    order: ProductOrder,
+) -> Model {
     let mut known = model.graph.empty_copy();
     let symbols = model.graph.symbols().iter().enumerate();
     let mut reals = Vec::new();
@@ -138,29 +148,29 @@ fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
     let identity: Pose = (identity3(graph), zero3(graph));
     let (mut base, mut inner) = (identity, identity);
     match order {
-        Order::Given => {}
-        Order::Outwards => {
+        ProductOrder::Given => {}
+        ProductOrder::Outwards => {
             for (begins, pose) in &poses {
                 if *begins {
-                    base = placed(graph, &base, &inner);
+                    base = compose_poses(graph, &base, &inner);
                     inner = identity;
                 }
-                inner = placed(graph, &inner, pose);
-                placed(graph, &base, &inner);
+                inner = compose_poses(graph, &inner, pose);
+                compose_poses(graph, &base, &inner);
             }
         }
-        Order::Inwards => {
+        ProductOrder::Inwards => {
             for (begins, (rotation, position)) in poses.iter().rev() {
                 let back = transpose3(rotation);
                 let moved = apply3(graph, &back, *position);
-                inner = placed(graph, &inner, &(back, moved.map(|entry| -entry)));
-                let whole = placed(graph, &base, &inner);
+                inner = compose_poses(graph, &inner, &(back, moved.map(|entry| -entry)));
+                let whole = compose_poses(graph, &base, &inner);
                 if *begins {
                     (base, inner) = (whole, identity);
                 }
             }
         }
-        Order::Ways => {
+        ProductOrder::Ways => {
             let mut way = zero3(graph);
             for (_, (rotation, position)) in poses.iter().rev() {
                 let turned = apply3(graph, rotation, way);
@@ -175,7 +185,7 @@ fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
 type Pose = (Mat3, Vec3);
 
 /// Returns the pose `on` of something placed on a frame, in the axes in which the frame's pose is given.
-fn placed(graph: &mut Graph, frame: &Pose, on: &Pose) -> Pose {
+fn compose_poses(graph: &mut Graph, frame: &Pose, on: &Pose) -> Pose {
     let moved = apply3(graph, &frame.0, on.1);
     (
         multiply3(graph, &frame.0, &on.0),

@@ -15,7 +15,7 @@ mod known;
 
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::program::Builder;
+use super::program::ProgramBuilder;
 use Argument::{Coordinates, Velocities};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
@@ -26,12 +26,12 @@ use hamel_algebra::linear::{
 use hamel_language::functions::FrameFunction;
 use hamel_language::model::{Frame, Model};
 use hamel_program::{Argument, Function, Shape};
-use known::with_known;
+use known::with_known_expressions;
 
 /// Linear and angular part of a velocity, of its rate, or of a column of J.
 pub(crate) type Twist = (Vec3, Vec3);
 
-impl Builder<'_> {
+impl ProgramBuilder<'_> {
     /// Adds the functions of the requested frames.
     pub(crate) fn frames(&mut self) {
         let model = self.model;
@@ -39,7 +39,7 @@ impl Builder<'_> {
             let Some(index) = model.frames.iter().position(|f| f.name == jacobian.frame) else {
                 continue;
             };
-            let known = with_known(model, index);
+            let known = with_known_expressions(model, index);
             let sources: Vec<&Model> = [model].into_iter().chain(&known).collect();
             for &of in FrameFunction::ALL {
                 let name = jacobian.name_of(of);
@@ -70,7 +70,7 @@ impl Builder<'_> {
         (index, own): (usize, bool),
         of: FrameFunction,
     ) -> Vec<Edge> {
-        let mut candidates = Candidates::with(&self.care);
+        let mut candidates = Candidates::new(&self.numerical_loss);
         for model in sources {
             for route in Route::all(chain(model, index).len(), of) {
                 let mut graph = model.graph.clone();
@@ -84,7 +84,7 @@ impl Builder<'_> {
 
 /// Approximate largest number of borders that are tried for a route: places of the chain from which on the levers
 /// of a Jacobian's columns are written in the axes of their joints.
-const MOST_BORDERS: usize = 8;
+const MAX_BORDERS: usize = 8;
 
 /// Way to compute the kinematics of a frame.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -104,7 +104,7 @@ enum Route {
 impl Route {
     /// Returns all routes by which a function of a frame with a chain of this length can be computed.
     fn all(length: usize, of: FrameFunction) -> Vec<Route> {
-        let step = length.div_ceil(MOST_BORDERS).max(1);
+        let step = length.div_ceil(MAX_BORDERS).max(1);
         let borders: Vec<usize> = match of {
             FrameFunction::Pose => return vec![Route::Defined],
             FrameFunction::Jacobian => (0..=length).rev().step_by(step).collect(),
@@ -139,7 +139,7 @@ impl Route {
         }
         let (columns, from) = match (of, self) {
             (FrameFunction::Jacobian, Route::Defined) => {
-                let twist = defined(graph, &mut calculus, frame, own);
+                let twist = twist_by_definition(graph, &mut calculus, frame, own);
                 (by_velocities(model, graph, twist), Some(own))
             }
             (FrameFunction::Jacobian, Route::World(_) | Route::Before(_)) => {
@@ -154,16 +154,16 @@ impl Route {
         };
         if let Some(from) = from {
             let turned = columns.into_iter().map(|column| match (from, own) {
-                (false, true) => back(graph, &frame.rotation, column),
-                (true, false) => out(graph, &frame.rotation, column),
+                (false, true) => to_frame(graph, &frame.rotation, column),
+                (true, false) => to_world(graph, &frame.rotation, column),
                 _ => column,
             });
-            return by_rows(turned);
+            return matrix_by_rows(turned);
         }
         let (twist, rates, from) = match self {
             Route::Defined => {
-                let twist = defined(graph, &mut calculus, frame, own);
-                let rates = change(graph, &mut calculus, twist);
+                let twist = twist_by_definition(graph, &mut calculus, frame, own);
+                let rates = twist_rate(graph, &mut calculus, twist);
                 (twist, rates, own)
             }
             Route::World(_) | Route::Before(_) => {
@@ -177,17 +177,17 @@ impl Route {
         };
         let rate = of == FrameFunction::BiasAcceleration;
         let lever = cross(graph, twist.1, twist.0);
-        flat(match (from, own, rate) {
-            (false, true, false) => back(graph, &frame.rotation, twist),
-            (true, false, false) => out(graph, &frame.rotation, twist),
+        twist_entries(match (from, own, rate) {
+            (false, true, false) => to_frame(graph, &frame.rotation, twist),
+            (true, false, false) => to_world(graph, &frame.rotation, twist),
             // d/dt (Rᵀ v) = Rᵀ (v̇ − ω × v), and d/dt (R v) = R (v̇ + ω × v).
             (false, true, true) => {
                 let linear = sub3(graph, rates.0, lever);
-                back(graph, &frame.rotation, (linear, rates.1))
+                to_frame(graph, &frame.rotation, (linear, rates.1))
             }
             (true, false, true) => {
                 let linear = add3(graph, rates.0, lever);
-                out(graph, &frame.rotation, (linear, rates.1))
+                to_world(graph, &frame.rotation, (linear, rates.1))
             }
             (_, _, false) => twist,
             (_, _, true) => rates,
@@ -195,26 +195,26 @@ impl Route {
     }
 }
 
-pub(crate) fn flat((linear, angular): Twist) -> Vec<Edge> {
+pub(crate) fn twist_entries((linear, angular): Twist) -> Vec<Edge> {
     [linear, angular].concat()
 }
 
 /// Returns the entries of the matrix with these columns, row by row.
-pub(crate) fn by_rows(columns: impl Iterator<Item = Twist>) -> Vec<Edge> {
-    let columns: Vec<Vec<Edge>> = columns.map(flat).collect();
+pub(crate) fn matrix_by_rows(columns: impl Iterator<Item = Twist>) -> Vec<Edge> {
+    let columns: Vec<Vec<Edge>> = columns.map(twist_entries).collect();
     (0..6)
         .flat_map(|row| columns.iter().map(move |column| column[row]))
         .collect()
 }
 
-fn out(graph: &mut Graph, rotation: &Mat3, (linear, angular): Twist) -> Twist {
+fn to_world(graph: &mut Graph, rotation: &Mat3, (linear, angular): Twist) -> Twist {
     (
         apply3(graph, rotation, linear),
         apply3(graph, rotation, angular),
     )
 }
 
-fn back(graph: &mut Graph, rotation: &Mat3, (linear, angular): Twist) -> Twist {
+fn to_frame(graph: &mut Graph, rotation: &Mat3, (linear, angular): Twist) -> Twist {
     (
         apply_transposed(graph, rotation, linear),
         apply_transposed(graph, rotation, angular),
@@ -222,7 +222,7 @@ fn back(graph: &mut Graph, rotation: &Mat3, (linear, angular): Twist) -> Twist {
 }
 
 /// Returns the time derivative of a twist at ξ̇ = 0.
-pub(crate) fn change(
+pub(crate) fn twist_rate(
     graph: &mut Graph,
     calculus: &mut Calculus,
     (linear, angular): Twist,
@@ -249,7 +249,12 @@ pub(crate) fn by_velocities(
 }
 
 /// Returns the twist by definition: (ṗ, ω) with ω̂ = Ṙ Rᵀ, or (Rᵀ ṗ, Rᵀ ω).
-fn defined(graph: &mut Graph, calculus: &mut Calculus, frame: &Frame, own: bool) -> Twist {
+fn twist_by_definition(
+    graph: &mut Graph,
+    calculus: &mut Calculus,
+    frame: &Frame,
+    own: bool,
+) -> Twist {
     let speed = calculus.rate3(graph, frame.position);
     let spin = calculus.spin(graph, &frame.rotation);
     match own {
@@ -289,7 +294,7 @@ fn outwards_in_world(
     for at in chain(model, index) {
         let frame = &model.frames[at];
         let (slide, turn) = relative(graph, calculus, frame);
-        let (slide_rate, turn_rate) = change(graph, calculus, (slide, turn));
+        let (slide_rate, turn_rate) = twist_rate(graph, calculus, (slide, turn));
         let arm = match from {
             None => frame.position,
             Some(before) => {
@@ -338,7 +343,7 @@ fn outwards_in_frames(
         let frame = &model.frames[at];
         let (rotation, place) = &frame.relative;
         let (slide, turn) = relative(graph, calculus, frame);
-        let (slide_rate, turn_rate) = change(graph, calculus, (slide, turn));
+        let (slide_rate, turn_rate) = twist_rate(graph, calculus, (slide, turn));
         let (v, w) = twist;
         let (a, alpha) = rates;
         // In the axes of the previous frame: v + ω × q + q̇, and the rates of these components.
@@ -351,8 +356,8 @@ fn outwards_in_frames(
         let changed = add3(graph, changed, second);
         let changed = add3(graph, changed, slide_rate);
         // d/dt (R₁ᵀ a) = R₁ᵀ ȧ − w × R₁ᵀ a.
-        let (linear, angular) = back(graph, rotation, (moved, w));
-        let (linear_rate, angular_rate) = back(graph, rotation, (changed, alpha));
+        let (linear, angular) = to_frame(graph, rotation, (moved, w));
+        let (linear_rate, angular_rate) = to_frame(graph, rotation, (changed, alpha));
         let drift = cross(graph, turn, linear);
         let gyro = cross(graph, turn, angular);
         let gyro = sub3(graph, turn_rate, gyro);
@@ -388,18 +393,18 @@ fn add_joint(
     columns: &mut [Twist],
     freedoms: Vec<Twist>,
     [outer, own]: [&Mat3; 2],
-    arm: &Arm,
+    arm: &LeverArm,
 ) {
     for (column, (slide, turn)) in columns.iter_mut().zip(freedoms) {
         let slide = apply3(graph, outer, slide);
         let turned = apply3(graph, own, turn);
         let lever = match arm {
-            Arm::Placed(arm) => cross(graph, turned, *arm),
-            Arm::Own(arm) => {
+            LeverArm::Placed(arm) => cross(graph, turned, *arm),
+            LeverArm::Own(arm) => {
                 let lever = cross(graph, turn, *arm);
                 apply3(graph, own, lever)
             }
-            Arm::Before(rotation, arm) => {
+            LeverArm::Before(rotation, arm) => {
                 let turn = apply3(graph, rotation, turn);
                 let lever = cross(graph, turn, *arm);
                 apply3(graph, outer, lever)
@@ -411,7 +416,7 @@ fn add_joint(
 }
 
 /// Vector from a joint's frame to the frame whose Jacobian is computed.
-enum Arm<'a> {
+enum LeverArm<'a> {
     /// In the axes in which columns are written.
     Placed(Vec3),
     /// In the axes of the joint's frame.
@@ -443,9 +448,9 @@ fn columns_in_world(
         let freedoms = by_velocities(model, graph, moved);
         let [own, turned] = levers[place];
         let arm = match place {
-            _ if place < placed => Arm::Placed(sub3(graph, tip, frame.position)),
-            _ if place < before => Arm::Before(&frame.relative.0, turned),
-            _ => Arm::Own(own),
+            _ if place < placed => LeverArm::Placed(sub3(graph, tip, frame.position)),
+            _ if place < before => LeverArm::Before(&frame.relative.0, turned),
+            _ => LeverArm::Own(own),
         };
         let axes = [&outer, &frame.rotation];
         add_joint(graph, &mut columns, freedoms, axes, &arm);
@@ -473,8 +478,8 @@ fn columns_in_frame(
         let freedoms = by_velocities(model, graph, moved);
         let before = multiply3(graph, &axes, &transpose3(rotation));
         let arm = match place < border {
-            true => Arm::Placed(way),
-            false => Arm::Own(levers[place][0]),
+            true => LeverArm::Placed(way),
+            false => LeverArm::Own(levers[place][0]),
         };
         add_joint(graph, &mut columns, freedoms, [&before, &axes], &arm);
         let further = apply3(graph, &before, *position);

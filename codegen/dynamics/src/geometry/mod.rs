@@ -194,7 +194,7 @@ fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
             .iter()
             .any(|edge| graph.class(edge.node()) & class::PARAM != 0);
     let numbers = constant
-        .then(|| numbers(&geometry.model, &entries))
+        .then(|| default_values(&geometry.model, &entries))
         .flatten();
     let m = members.len();
     let algebra = numbers.and_then(|numbers| {
@@ -213,7 +213,7 @@ fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
 
 /// Returns exact values of expressions at the parameters' default values; `None` if they contain more than
 /// parameters and the four arithmetic operations.
-fn numbers(model: &Model, edges: &[Edge]) -> Option<Vec<BigRational>> {
+fn default_values(model: &Model, edges: &[Edge]) -> Option<Vec<BigRational>> {
     let graph = &model.graph;
     let mut values = vec![BigRational::zero(); graph.len()];
     let read = |values: &[BigRational], edge: Edge| {

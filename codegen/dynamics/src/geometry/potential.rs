@@ -18,11 +18,11 @@ use hamel_language::model::{Model, class};
 use hamel_language::syntax::ast::CoordKind;
 
 /// Largest number of plain coordinates for which monomials and functions of them are tried.
-const MOST_PLAIN: usize = 6;
+const MAX_PLAIN_COORDINATES: usize = 6;
 /// Largest number of candidates.
-const MOST_CANDIDATES: usize = 150;
+const MAX_CANDIDATES: usize = 150;
 /// Largest number of bits of the numerators and denominators of coefficients.
-const BITS: u32 = 16;
+const MAX_COEFFICIENT_BITS: u32 = 16;
 
 /// A candidate f_a, as text and as an expression.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ pub fn potentials(geometry: &mut Geometry, wanted: &[usize]) -> Vec<Option<Strin
         let row: Vec<Edge> = (0..n)
             .map(|i| geometry.calculus.along(graph, i, candidate.value))
             .collect();
-        if row.iter().any(|&slope| slope.abs() != zero) && kept.len() < MOST_CANDIDATES {
+        if row.iter().any(|&slope| slope.abs() != zero) && kept.len() < MAX_CANDIDATES {
             kept.push(candidate);
             slopes.push(row);
         }
@@ -71,9 +71,9 @@ pub fn potentials(geometry: &mut Geometry, wanted: &[usize]) -> Vec<Option<Strin
                 .iter()
                 .enumerate()
                 .filter(|(_, c)| !c.is_zero())
-                .map(|(a, c)| Some((a, c.to_small_rational(BITS)?)))
+                .map(|(a, c)| Some((a, c.to_small_rational(MAX_COEFFICIENT_BITS)?)))
                 .collect::<Option<_>>()?;
-            confirmed(&mut geometry.model.graph, &slopes, &terms, k).then(|| sum(&kept, &terms))
+            is_confirmed(&mut geometry.model.graph, &slopes, &terms, k).then(|| sum(&kept, &terms))
         })
         .collect()
 }
@@ -98,7 +98,7 @@ fn samples(model: &Model, slopes: &[Vec<Edge>], n: usize) -> Vec<Vec<Vec<Residue
 }
 
 /// Returns whether Σ c_a ∂ᵢf_a = δᵢᵏ on X.
-fn confirmed(
+fn is_confirmed(
     graph: &mut Graph,
     slopes: &[Vec<Edge>],
     terms: &[(usize, (i64, i64))],
@@ -160,7 +160,7 @@ fn candidates(model: &mut Model) -> Vec<Candidate> {
             }
         }
     }
-    if plain.len() <= MOST_PLAIN {
+    if plain.len() <= MAX_PLAIN_COORDINATES {
         first.extend(functions(&mut model.graph, &plain));
     }
     let graph = &mut model.graph;

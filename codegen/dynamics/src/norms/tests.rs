@@ -1,6 +1,6 @@
 //! Norms and inverses of matrices of numbers.
 
-use super::{greatest, inverse, norm};
+use super::{inverse, max_or_infinite, row_sum_norm};
 
 #[test]
 fn inverses_and_norms() {
@@ -17,14 +17,17 @@ fn inverses_and_norms() {
             assert!((entry - unit).abs() < 1e-15);
         }
     }
-    assert_eq!(norm(&rows), 5.0);
+    assert_eq!(row_sum_norm(&rows), 5.0);
 }
 
 /// M that has no number at a state says nothing of its condition: it counts as any number.
 #[test]
 fn what_is_no_number_is_no_small_one() {
-    assert_eq!(greatest([f64::NAN, 2.0].into_iter()), f64::INFINITY);
-    assert_eq!(greatest([2.0, f64::NAN].into_iter()), f64::INFINITY);
-    assert_eq!(norm(&[vec![1.0, f64::NAN], vec![0.0, 1.0]]), f64::INFINITY);
-    assert_eq!(greatest(std::iter::empty()), 0.0);
+    assert_eq!(max_or_infinite([f64::NAN, 2.0].into_iter()), f64::INFINITY);
+    assert_eq!(max_or_infinite([2.0, f64::NAN].into_iter()), f64::INFINITY);
+    assert_eq!(
+        row_sum_norm(&[vec![1.0, f64::NAN], vec![0.0, 1.0]]),
+        f64::INFINITY
+    );
+    assert_eq!(max_or_infinite(std::iter::empty()), 0.0);
 }

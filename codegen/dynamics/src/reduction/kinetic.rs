@@ -1,7 +1,7 @@
 //! Contributions of ξ = C ξₐ + c to the equations of motion: the drift Ċ ξₐ + ċ, and the terms of a kinetic energy
 //! written by the user.
 
-use super::Section;
+use super::VelocityParametrization;
 use crate::calculus::Calculus;
 use crate::{commutation, connection, energy, inertia, kinematics};
 use hamel_algebra::derivation::Derivation;
@@ -10,8 +10,15 @@ use hamel_algebra::linear::{multiply, transpose};
 use hamel_language::model::{KineticTerms, Model};
 
 /// Returns ξ = C ξₐ + c.
-pub fn lifted(graph: &mut Graph, xi_active: &[Edge], section: &Section) -> Vec<Edge> {
-    let rows = section.complement.iter().zip(&section.shift);
+pub fn all_velocities(
+    graph: &mut Graph,
+    xi_active: &[Edge],
+    parametrization: &VelocityParametrization,
+) -> Vec<Edge> {
+    let rows = parametrization
+        .complement
+        .iter()
+        .zip(&parametrization.shift);
     rows.map(|(row, &shift)| {
         let part = graph.dot(row, xi_active);
         graph.add(part, shift)
@@ -20,9 +27,13 @@ pub fn lifted(graph: &mut Graph, xi_active: &[Edge], section: &Section) -> Vec<E
 }
 
 /// Returns Ċ ξₐ + ċ along ẋ = A (C ξₐ + c).
-pub fn drift(full: &mut Model, xi_active: &[Edge], section: &Section) -> Vec<Edge> {
+pub fn drift(
+    full: &mut Model,
+    xi_active: &[Edge],
+    parametrization: &VelocityParametrization,
+) -> Vec<Edge> {
     let graph = &mut full.graph;
-    let xi = lifted(graph, xi_active, section);
+    let xi = all_velocities(graph, xi_active, parametrization);
     let rate: Vec<Edge> = full.a.iter().map(|row| graph.dot(row, &xi)).collect();
     let mut along = Derivation::new(full.x.iter().zip(&rate).map(|(x, &rate)| (x.node(), rate)));
     xi.iter().map(|&xi| along.of(graph, xi)).collect()
@@ -35,7 +46,7 @@ pub fn drift(full: &mut Model, xi_active: &[Edge], section: &Section) -> Vec<Edg
 pub fn kinetic_terms(
     full: &mut Model,
     xi_active: &[Edge],
-    section: &Section,
+    parametrization: &VelocityParametrization,
 ) -> Option<KineticTerms> {
     if full.kinetic == full.graph.zero() {
         return None;
@@ -46,9 +57,9 @@ pub fn kinetic_terms(
     full.gyroscopic = energy::gyroscopic(full, &rows);
     let gamma = commutation::gamma(full, &mut calculus, &rows);
     let h = connection::quadratic(full, &mut calculus, &mass, &gamma);
-    let drift = drift(full, xi_active, section);
+    let drift = drift(full, xi_active, parametrization);
     let graph = &mut full.graph;
-    let columns = transpose(&section.complement);
+    let columns = transpose(&parametrization.complement);
     let sum: Vec<Edge> = mass
         .iter()
         .zip(&h)
@@ -57,7 +68,7 @@ pub fn kinetic_terms(
             graph.add(h, part)
         })
         .collect();
-    let half = multiply(graph, &mass, &section.complement);
+    let half = multiply(graph, &mass, &parametrization.complement);
     Some(KineticTerms {
         mass: multiply(graph, &columns, &half),
         bias: columns

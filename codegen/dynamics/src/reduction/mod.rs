@@ -9,25 +9,25 @@
 //! drift away from the loop. With C the equations of motion are Cᵀ (M ξ̇ + Γ ξ ξ + ∂V − f) = 0; for an inactive
 //! velocity of an adapted frame these are the active rows of KR18 (30).
 
-mod carrier;
 mod kinetic;
+mod projection;
 mod redundant;
 mod rows;
 
 pub use kinetic::drift;
 
 use crate::inertia;
-use carrier::Carrier;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::numeric::evaluate;
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::pfaffian::{Kind, Pfaffian};
 use hamel_language::model::{FullFrame, Model};
 use hamel_language::syntax::ast::Span;
+use projection::ModelProjection;
 pub use redundant::warnings;
-use redundant::{contradicting, redundant};
-pub use rows::{independent, unit};
-use rows::{keep, start_numbers};
+use redundant::{contradicting_row_error, redundant_row_error};
+pub use rows::{independent_rows, normalize};
+use rows::{select_rows, start_numbers};
 use std::sync::Arc;
 
 /// Largest ratio at the start of another coefficient of the same row, or of the same velocity in other rows, to a
@@ -35,11 +35,11 @@ use std::sync::Arc;
 ///
 /// A solution by a smaller pivot would lose twice as many digits as that ratio has. A row without pivots gets a
 /// multiplier.
-const LONGEST: f64 = 30.0;
+const MAX_COEFFICIENT_RATIO: f64 = 30.0;
 
-/// Affine map ξ = C ξₐ + c, in the graph of the full model.
+/// Parametrization ξ = C ξₐ + c of the admissible velocities by the active ones, in the graph of the full model.
 #[derive(Clone, Debug)]
-pub struct Section {
+pub struct VelocityParametrization {
     /// Matrix C, n rows of as many entries as ξₐ has.
     pub complement: Vec<Vec<Edge>>,
     /// Vector c, n entries.
@@ -60,7 +60,7 @@ pub struct Reduction {
     /// Rows that follow from the others everywhere and are left out, by their places among the constraints.
     pub dropped: Vec<usize>,
     /// Affine map ξ = C ξₐ + c, in `graph`.
-    pub section: Section,
+    pub parametrization: VelocityParametrization,
     /// Graph of the full model, with C and c.
     pub graph: Graph,
     /// Image of each symbol of the full model, in the graph of the reduced model.
@@ -88,8 +88,8 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         .filter(|&i| model.clock.is_none_or(|clock| clock.xi != i))
         .filter(|&i| solved.iter().all(|&(_, velocity)| velocity != i))
         .collect();
-    let (kept, rank) = keep(&full, &rows, &solved, &mut dropped)?;
-    accelerated(&full, &rows, &kept, &active)?;
+    let (kept, rank) = select_rows(&full, &rows, &solved, &mut dropped)?;
+    check_given_rates(&full, &rows, &kept, &active)?;
     let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
     let driven = model.constraints.iter().any(drives);
     // If drives leave nothing that moves freely, the equations of motion still give the forces that the drives
@@ -144,11 +144,11 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     let given = kept.is_empty()
         && model.clock.is_some()
         && (0..n).all(|i| active.contains(&i) || complement[i].iter().all(|&entry| entry == zero));
-    let section = Section { complement, shift };
+    let parametrization = VelocityParametrization { complement, shift };
     let before = full.clone();
-    let carrier = Carrier::new(full, &active, &section);
-    let images = carrier.images.clone();
-    let mut model = carrier.model(&rows, &kept, &pivots);
+    let projection = ModelProjection::new(full, &active, &parametrization);
+    let images = projection.images.clone();
+    let mut model = projection.model(&rows, &kept, &pivots);
     model.overconstrained = kept.len() > rank;
     model.augmented = !kept.is_empty() && inertia::is_singular(&model);
     model.full_frame = given.then(|| FullFrame {
@@ -164,7 +164,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         solved,
         kept,
         dropped,
-        section,
+        parametrization,
     }))
 }
 
@@ -196,7 +196,10 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
         values.into_iter().map(f64::abs).collect()
     };
     let mut at_start: Vec<Vec<f64>> = rows.iter().map(|row| sizes(graph, row)).collect();
-    let kept: Vec<bool> = constraints.iter().map(|c| returns(graph, c)).collect();
+    let kept: Vec<bool> = constraints
+        .iter()
+        .map(|c| needs_multiplier(graph, c))
+        .collect();
     loop {
         // Largest entry of each column in the rows that are still to be solved.
         let open = (0..rows.len()).filter(|i| solved.iter().all(|&(row, _)| row != *i));
@@ -231,7 +234,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
                     continue;
                 }
                 let beside = if j == top.0 { second.1 } else { top.1 };
-                if beside > 0.0 && at_start[i][j] * LONGEST < beside.max(tallest[j]) {
+                if beside > 0.0 && at_start[i][j] * MAX_COEFFICIENT_RATIO < beside.max(tallest[j]) {
                     continue;
                 }
                 let effort = match graph.as_rational(entry) {
@@ -270,16 +273,16 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     for (i, row) in rows.iter().enumerate() {
         if row.iter().all(|&entry| entry == zero) {
             if matches!(constraints[i].kind, Kind::Drive { .. }) {
-                return Err(redundant(&constraints, i, ""));
+                return Err(redundant_row_error(&constraints, i, ""));
             }
             dropped.push(i);
             continue;
         }
         if (0..row.len()).all(|j| row[j] == zero || is_time(j)) {
-            return Err(contradicting(&constraints, i));
+            return Err(contradicting_row_error(&constraints, i));
         }
         if !kept[i] && solved.iter().all(|&(row, _)| row != i) {
-            impossible(model, &model.graph, (row, &constraints[i]))?;
+            check_independent(model, &model.graph, (row, &constraints[i]))?;
         }
     }
     Ok(Echelon {
@@ -293,14 +296,14 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
 ///
 /// This holds for stabilised constraints, and for loops with varying coefficients. A loop with constant
 /// coefficients, such as a gear ratio, is preserved by every integration method.
-fn returns(graph: &Graph, constraint: &Pfaffian) -> bool {
+fn needs_multiplier(graph: &Graph, constraint: &Pfaffian) -> bool {
     let bent = |entry: &Edge| !graph.is_free(entry.node());
     constraint.stabilized.is_some()
         || constraint.kind == Kind::Loop && constraint.row.iter().any(bent)
 }
 
 /// Returns an error if a row could be solved only for velocities that the user declared as independent.
-fn impossible(
+fn check_independent(
     model: &Model,
     graph: &Graph,
     (row, constraint): (&[Edge], &Pfaffian),
@@ -332,7 +335,7 @@ fn entry_name(model: &Model, place: usize) -> String {
 }
 
 /// Checks that velocities with given rates are active, and that the kept rows leave them free at the start.
-fn accelerated(
+fn check_given_rates(
     full: &Model,
     rows: &[Vec<Edge>],
     kept: &[usize],
@@ -342,14 +345,14 @@ fn accelerated(
         .flat_map(|&row| active.iter().map(move |&i| rows[row][i]))
         .collect();
     let values = evaluate(&full.graph, &edges, &start_numbers(full));
-    let mut given: Vec<Vec<f64>> = values.chunks(active.len().max(1)).map(unit).collect();
-    let mut rank = independent(given.clone()).len();
+    let mut given: Vec<Vec<f64>> = values.chunks(active.len().max(1)).map(normalize).collect();
+    let mut rank = independent_rows(given.clone()).len();
     for &(velocity, _) in &full.accelerated {
         let place = active.iter().position(|&i| i == velocity);
         if let Some(place) = place {
             let entries = (0..active.len()).map(|i| f64::from(i == place));
             given.push(entries.collect());
-            if independent(given.clone()).len() > rank {
+            if independent_rows(given.clone()).len() > rank {
                 rank += 1;
                 continue;
             }

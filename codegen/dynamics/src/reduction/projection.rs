@@ -1,7 +1,7 @@
 //! Transfer of a model to a graph without the velocities that were solved for.
 
-use super::Section;
-use super::kinetic::{drift, kinetic_terms, lifted};
+use super::VelocityParametrization;
+use super::kinetic::{all_velocities, drift, kinetic_terms};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::map_symbols;
@@ -11,8 +11,8 @@ use hamel_language::model::value::Value;
 use hamel_language::model::{Group, KineticTerms, Model, class};
 use hamel_language::syntax::ast::ShapeKind;
 
-/// Transfers a model to a graph without the velocities that were solved for.
-pub struct Carrier {
+/// Projection of a model onto its active velocities: a graph without the others, and the images of all symbols.
+pub struct ModelProjection {
     full: Model,
     graph: Graph,
     /// Image of each symbol of the full model's graph.
@@ -24,16 +24,20 @@ pub struct Carrier {
     kinetic: Option<KineticTerms>,
 }
 
-impl Carrier {
-    pub fn new(mut full: Model, active: &[usize], section: &Section) -> Self {
+impl ModelProjection {
+    pub fn new(
+        mut full: Model,
+        active: &[usize],
+        parametrization: &VelocityParametrization,
+    ) -> Self {
         let xi_active: Vec<Edge> = active.iter().map(|&i| full.xi[i]).collect();
-        let kinetic = kinetic_terms(&mut full, &xi_active, section);
+        let kinetic = kinetic_terms(&mut full, &xi_active, parametrization);
         // ξ = C ξₐ + c and ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ, in the full graph.
         let accelerations: Vec<Edge> = active.iter().map(|&i| full.xi_dot[i]).collect();
-        let drift = drift(&mut full, &xi_active, section);
+        let drift = drift(&mut full, &xi_active, parametrization);
         let graph = &mut full.graph;
-        let xi = lifted(graph, &xi_active, section);
-        let xi_dot: Vec<Edge> = section
+        let xi = all_velocities(graph, &xi_active, parametrization);
+        let xi_dot: Vec<Edge> = parametrization
             .complement
             .iter()
             .zip(&drift)
@@ -42,9 +46,9 @@ impl Carrier {
                 graph.add(part, drift)
             })
             .collect();
-        let (graph, images) = restricted(&full, &full.graph, active, &xi, &xi_dot);
-        let (free, free_images) = restricted(&full, &full.points.free, active, &xi, &xi_dot);
-        Carrier {
+        let (graph, images) = graph_of_active(&full, &full.graph, active, &xi, &xi_dot);
+        let (free, free_images) = graph_of_active(&full, &full.points.free, active, &xi, &xi_dot);
+        ModelProjection {
             full,
             graph,
             images,
@@ -55,7 +59,7 @@ impl Carrier {
         }
     }
 
-    fn carry_free(&mut self, edges: &[Edge]) -> Vec<Edge> {
+    fn project_free(&mut self, edges: &[Edge]) -> Vec<Edge> {
         map_symbols(
             &self.full.points.free,
             &mut self.free,
@@ -133,10 +137,10 @@ impl Carrier {
             self.renumber(&mut claim.set, &model.graph);
         }
         let rows: Vec<Edge> = full.phi.iter().map(|(edge, _)| *edge).collect();
-        for (row, edge) in model.phi.iter_mut().zip(self.carry_free(&rows)) {
+        for (row, edge) in model.phi.iter_mut().zip(self.project_free(&rows)) {
             row.0 = edge;
         }
-        model.points.constraints = self.carry_free(&full.points.constraints);
+        model.points.constraints = self.project_free(&full.points.constraints);
         model.points.symbols = self.free.symbols().len();
         model.points.free = self.free;
         model.points.require_roots(&model.graph);
@@ -194,7 +198,7 @@ impl Carrier {
 
 /// Creates a graph without the symbols of velocities that were solved for, and returns it with the images of all
 /// symbols.
-fn restricted(
+fn graph_of_active(
     full: &Model,
     from: &Graph,
     active: &[usize],

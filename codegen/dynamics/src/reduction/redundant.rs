@@ -4,7 +4,7 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::pfaffian::{Kind, Pfaffian};
 
 /// Returns the error for a row that follows from the others and cannot be left out.
-pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
+pub fn redundant_row_error(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
     let error = Diagnostic::new(
         constraints[row].span,
         format!("this constraint is redundant{when}: it follows from the others"),
@@ -17,7 +17,7 @@ pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic
 }
 
 /// Returns the error for a row that demands a different velocity from the one that the others leave.
-pub fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
+pub fn contradicting_row_error(constraints: &[Pfaffian], row: usize) -> Diagnostic {
     let message = "this row contradicts the others: it requires a velocity that they do not allow";
     let error = Diagnostic::new(constraints[row].span, message).help("remove one of them");
     match constraints.iter().enumerate().find(|(i, _)| *i != row) {
@@ -43,12 +43,12 @@ pub fn warnings(constraints: &[Pfaffian], dropped: &[usize]) -> Vec<Diagnostic> 
     }
     let warnings = equations
         .iter()
-        .filter_map(|rows| Some(following(rows.first()?, rows)));
+        .filter_map(|rows| Some(dropped_rows_warning(rows.first()?, rows)));
     warnings.collect()
 }
 
 /// Returns the warning about dropped rows of one equation.
-fn following(first: &Pfaffian, rows: &[&Pfaffian]) -> Diagnostic {
+fn dropped_rows_warning(first: &Pfaffian, rows: &[&Pfaffian]) -> Diagnostic {
     let what = match first.kind {
         Kind::Inactive => "inactive velocity",
         Kind::Nonholonomic => "nonholonomic constraint",

@@ -1,6 +1,6 @@
 //! Selection of the rows to keep among those that were not solved: all rows that add information.
 
-use super::redundant::{contradicting, redundant};
+use super::redundant::{contradicting_row_error, redundant_row_error};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::{evaluate, rank};
 use hamel_algebra::residue_pair::{Random, ResiduePair};
@@ -10,13 +10,13 @@ use hamel_language::model::pfaffian::Kind;
 
 /// Size, relative to the largest row, below which the part of a row orthogonal to the previous rows makes it
 /// redundant.
-const REDUNDANT: f64 = 1e-8;
+const REDUNDANCY_TOLERANCE: f64 = 1e-8;
 
 /// Distance from the start, in the units of the coordinates, at which rows are compared.
-const BESIDE: f64 = 1.0 / 1024.0;
+const COMPARISON_DISTANCE: f64 = 1.0 / 1024.0;
 
 /// Largest ratio of the largest remaining row to the first one that may come next.
-const ENOUGH: f64 = 8.0;
+const MAX_ROW_RATIO: f64 = 8.0;
 
 /// Returns the rows to keep and the number of them that are independent at the start; adds redundant rows to
 /// `dropped`.
@@ -29,7 +29,7 @@ const ENOUGH: f64 = 8.0;
 /// # Errors
 ///
 /// A diagnostic if a row contradicts the others, or is redundant and cannot be dropped.
-pub fn keep(
+pub fn select_rows(
     model: &Model,
     rows: &[Vec<Edge>],
     solved: &[(usize, usize)],
@@ -58,10 +58,10 @@ pub fn keep(
         }
         let whole = open.iter().map(|&i| rows[i].iter().map(value).collect());
         if rank(whole.collect()) == open.len() {
-            return Err(contradicting(&model.constraints, i));
+            return Err(contradicting_row_error(&model.constraints, i));
         }
         if matches!(model.constraints[i].kind, Kind::Drive { .. }) {
-            return Err(redundant(&model.constraints, i, ""));
+            return Err(redundant_row_error(&model.constraints, i, ""));
         }
         values.pop();
         dropped.extend(open.pop());
@@ -71,7 +71,7 @@ pub fn keep(
         .chain(&loops)
         .map(|&i| moving(&rows[i]))
         .collect();
-    for place in large_ones_first(model, &all, open.len()) {
+    for place in order_by_size(model, &all, open.len()) {
         values.push(at_point(&loops[place]));
         if rank(values.clone()) < values.len() {
             values.pop();
@@ -86,14 +86,18 @@ pub fn keep(
     let values = evaluate(&model.graph, &edges, &start_numbers(model));
     let columns = moving(&model.xi).len().max(1);
     let left: Vec<Vec<f64>> = values.chunks(columns).map(<[f64]>::to_vec).collect();
-    let independent: Vec<usize> = (independent(left).into_iter())
+    let independent: Vec<usize> = (independent_rows(left).into_iter())
         .map(|row| open[row])
         .collect();
     let redundant_row = open
         .iter()
         .find(|i| !independent.contains(i) && model.constraints[**i].kind != Kind::Loop);
     match redundant_row {
-        Some(&row) => Err(redundant(&model.constraints, row, " at the start")),
+        Some(&row) => Err(redundant_row_error(
+            &model.constraints,
+            row,
+            " at the start",
+        )),
         None => Ok((open, independent.len())),
     }
 }
@@ -103,7 +107,7 @@ pub fn keep(
 /// Each next row has a part orthogonal to the previous ones about as large as any other's, at a configuration close
 /// to the start, where loops are not quite closed. The rows of which the others are multiples are then not rows
 /// that vanish on the loop. Each row is scaled by its size far from there.
-fn large_ones_first(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usize> {
+fn order_by_size(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usize> {
     let mut random = Random::new(1);
     let mut coordinate = || (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
     let step: Vec<f64> = model.xi.iter().map(|_| coordinate()).collect();
@@ -124,7 +128,7 @@ fn large_ones_first(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usiz
         let chunks = values.chunks((values.len() / rows.len().max(1)).max(1));
         chunks.map(<[f64]>::to_vec).collect()
     };
-    let (mut close, far) = (at(BESIDE), at(1.0));
+    let (mut close, far) = (at(COMPARISON_DISTANCE), at(1.0));
     for (row, far) in close.iter_mut().zip(&far) {
         let size = norm(far);
         if size > 0.0 && size.is_finite() {
@@ -132,7 +136,7 @@ fn large_ones_first(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usiz
         }
     }
     for row in 0..given {
-        project(&mut close, row);
+        remove_component(&mut close, row);
     }
     let mut order: Vec<usize> = Vec::new();
     for _ in given..rows.len() {
@@ -141,18 +145,18 @@ fn large_ones_first(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usiz
             .clone()
             .map(|row| norm(&close[row]))
             .fold(0.0, f64::max);
-        let large = |row: &usize| norm(&close[*row]) >= largest / ENOUGH;
+        let large = |row: &usize| norm(&close[*row]) >= largest / MAX_ROW_RATIO;
         let Some(next) = left.clone().find(large).or(left.clone().next()) else {
             break;
         };
-        project(&mut close, next);
+        remove_component(&mut close, next);
         order.push(next);
     }
     order.into_iter().map(|row| row - given).collect()
 }
 
 /// Removes from all rows their component along one row.
-fn project(rows: &mut [Vec<f64>], row: usize) {
+fn remove_component(rows: &mut [Vec<f64>], row: usize) {
     let size = norm(&rows[row]);
     if size > 0.0 && size.is_finite() {
         let unit: Vec<f64> = rows[row].iter().map(|v| v / size).collect();
@@ -169,7 +173,7 @@ fn norm(row: &[f64]) -> f64 {
 }
 
 /// Returns the rows that are numerically independent, as many as there are; the largest come first.
-pub fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
+pub fn independent_rows(mut left: Vec<Vec<f64>>) -> Vec<usize> {
     let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
     let mut independent = Vec::new();
     loop {
@@ -178,17 +182,17 @@ pub fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
             Some((_, found)) if size <= found => best,
             _ => Some((i, size)),
         });
-        let Some((row, _)) = largest.filter(|(_, size)| *size > REDUNDANT * most) else {
+        let Some((row, _)) = largest.filter(|(_, size)| *size > REDUNDANCY_TOLERANCE * most) else {
             return independent;
         };
         independent.push(row);
-        project(&mut left, row);
+        remove_component(&mut left, row);
         left[row].fill(0.0);
     }
 }
 
 /// Returns a row divided by its length; a row of zeros is returned unchanged.
-pub fn unit(row: &[f64]) -> Vec<f64> {
+pub fn normalize(row: &[f64]) -> Vec<f64> {
     let length = norm(row);
     let divided = row.iter().map(|v| v / length);
     if length > 0.0 {

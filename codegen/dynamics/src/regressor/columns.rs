@@ -5,7 +5,7 @@
 //! If the joint and neighbouring joints turn about a common point c, this is S_ω·(t − c × f).
 
 use super::parameters::Link;
-use super::wrenches::{AXES, Axes, Motions};
+use super::wrenches::{ALL_AXES, Axes, Motions};
 use crate::tree::inverse::{Wrench, to_parent};
 use crate::tree::{Link as TreeLink, Tree};
 use hamel_algebra::graph::{Edge, Graph};
@@ -48,7 +48,7 @@ const ROUTES: [Route; 6] = [
 ];
 
 /// Sets of routes from which the cheapest is chosen link by link: without common points of axes, and with them.
-const TRIED_TOGETHER: [&[Route]; 2] = [
+const ROUTE_SETS: [&[Route]; 2] = [
     &[
         Route::Wrenches,
         Route::Mixed,
@@ -59,21 +59,26 @@ const TRIED_TOGETHER: [&[Route]; 2] = [
 ];
 
 /// Largest number of changes of single routes that are tried.
-const MOST_CHANGES: usize = 60;
+const MAX_ROUTE_CHANGES: usize = 60;
 
 /// Returns the columns of all links, ten for each, with second moments in place of the diagonal of Θ.
-pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
+pub fn inertial_columns(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
     let motions = Motions::new(model, tree, Axes::Own);
     let all: Vec<usize> = (0..10).collect();
     let links = links.iter().enumerate();
     links
-        .flat_map(|link| of_link(&mut model.graph, &motions, link, &all, Route::Wrenches))
+        .flat_map(|link| link_columns(&mut model.graph, &motions, link, &all, Route::Wrenches))
         .collect()
 }
 
 /// Returns the columns as `inertial` does, with the kept ones at the least cost: in the cheapest axes, and by the
 /// cheapest route for each link.
-pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) -> Vec<Vec<Edge>> {
+pub fn cheapest_columns(
+    model: &mut Model,
+    tree: &Tree,
+    links: &[Link],
+    kept: &[usize],
+) -> Vec<Vec<Edge>> {
     let kept: Vec<Vec<usize>> = (0..links.len())
         .map(|index| {
             let own = (0..10).filter(|k| kept.contains(&(10 * index + k)));
@@ -98,7 +103,7 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
             let own = (0..10).filter(|k| kept[index].contains(k) == first);
             let own: Vec<usize> = own.collect();
             let route = way.routes[index];
-            let found = of_link(&mut model.graph, &motions, (index, link), &own, route);
+            let found = link_columns(&mut model.graph, &motions, (index, link), &own, route);
             for (k, column) in own.into_iter().zip(found) {
                 columns[10 * index + k] = Some(column);
             }
@@ -117,7 +122,7 @@ struct Search<'a> {
 }
 
 /// Axes of all links and the route of each, with their cost.
-struct Way {
+struct AxesAndRoutes {
     cost: usize,
     axes: Axes,
     routes: Vec<Route>,
@@ -126,20 +131,20 @@ struct Way {
 impl Search<'_> {
     /// Returns the cheapest way: first chosen link by link, then improved by changing the routes of single links,
     /// since transformed quantities serve several links.
-    fn best(&self) -> Option<Way> {
-        let ways = AXES.iter().flat_map(|&axes| {
+    fn best(&self) -> Option<AxesAndRoutes> {
+        let ways = ALL_AXES.iter().flat_map(|&axes| {
             let mut tried = self.model.clone();
             let motions = Motions::new(&mut tried, self.tree, axes);
             let graph = tried.graph;
-            TRIED_TOGETHER.map(|allowed| {
+            ROUTE_SETS.map(|allowed| {
                 let (cost, routes) = self.one_by_one(&graph, &motions, allowed);
-                Way { cost, axes, routes }
+                AxesAndRoutes { cost, axes, routes }
             })
         });
         let mut best = ways.min_by_key(|way| way.cost)?;
         let mut tried = self.model.clone();
         let motions = Motions::new(&mut tried, self.tree, best.axes);
-        let mut left = MOST_CHANGES;
+        let mut left = MAX_ROUTE_CHANGES;
         loop {
             let before = best.cost;
             for (index, route) in self
@@ -159,7 +164,7 @@ impl Search<'_> {
                 let roots: Vec<Edge> = roots.collect();
                 let cost = count(&graph, &roots).weight();
                 if cost < best.cost {
-                    best = Way {
+                    best = AxesAndRoutes {
                         cost,
                         routes,
                         ..best
@@ -184,7 +189,7 @@ impl Search<'_> {
         route: Route,
     ) -> Vec<Edge> {
         let link = (index, &self.links[index]);
-        of_link(graph, motions, link, &self.kept[index], route).concat()
+        link_columns(graph, motions, link, &self.kept[index], route).concat()
     }
 
     /// Picks the cheapest of some routes for one link after the other.
@@ -212,7 +217,7 @@ impl Search<'_> {
 }
 
 /// Returns the columns of some parameters of a link.
-fn of_link(
+fn link_columns(
     graph: &mut Graph,
     motions: &Motions,
     (index, link): (usize, &Link),
@@ -283,7 +288,7 @@ impl Path {
         let mut met: Option<Meeting> = None;
         for (place, &index) in self.links.iter().enumerate() {
             let link = &tree.links[index];
-            let joined = met.and_then(|met| met.joined(&mut found, link));
+            let joined = met.and_then(|met| met.meet(&mut found, link));
             if joined.is_none() {
                 first = place;
             }
@@ -353,7 +358,7 @@ impl Meeting {
     }
 
     /// Adds the axes of the next joint; `None` if they miss the common point at some configuration.
-    fn joined(self, graph: &mut Graph, link: &TreeLink) -> Option<Self> {
+    fn meet(self, graph: &mut Graph, link: &TreeLink) -> Option<Self> {
         let zero = zero3(graph);
         let position = link.position;
         let point = match (self, Meeting::alone(graph, link)?) {

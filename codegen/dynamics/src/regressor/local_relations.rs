@@ -6,10 +6,10 @@
 //! the description has them. On a hinge, such δ are masses on its axis; those of other joints, and of links that
 //! move together, are found at random states.
 
-use super::parameters::{Link, of_standard, standard_of};
+use super::parameters::{Link, inertia_of_standard, standard_of};
 use super::samples::Samples;
-use crate::tree::mass::Mass;
-use crate::tree::turn::Turn;
+use crate::tree::mass::LinkInertia;
+use crate::tree::turn::RotationFactor;
 use crate::tree::{Link as TreeLink, Tree};
 use hamel_algebra::echelon::Echelon;
 use hamel_algebra::graph::{Edge, Graph};
@@ -24,17 +24,17 @@ use hamel_language::model::layout::Block;
 use rustc_hash::FxHashMap;
 
 /// Largest number of bits of numerators and denominators of coefficients that are recognised by their values.
-const BITS: u32 = 29;
+const MAX_COEFFICIENT_BITS: u32 = 29;
 
 /// Relation Σ v_k Y_k = 0: its nonzero coefficients, with the places of their parameters.
 pub type Relation = Vec<(usize, Edge)>;
 
-/// Exact constants, by their values modulo p.
-pub struct Known {
+/// Exact expressions of constants, found by their values modulo p.
+pub struct ExactConstants {
     by_value: FxHashMap<ResiduePair, Edge>,
 }
 
-impl Known {
+impl ExactConstants {
     /// Collects the entries of poses with all coordinates zero or the identity, their products and their quotients.
     pub fn new(model: &mut Model, samples: &Samples) -> Self {
         let poses: Vec<(Mat3, Vec3)> = model.frames.iter().map(|frame| frame.relative).collect();
@@ -70,13 +70,13 @@ impl Known {
                 by_value.entry(-value).or_insert(-edge);
             }
         }
-        Known { by_value }
+        ExactConstants { by_value }
     }
 
     /// Returns the exact constant with a given value: a small fraction or a known constant; `None` if it is
     /// neither.
     pub fn exact(&self, graph: &mut Graph, value: ResiduePair) -> Option<Edge> {
-        match value.to_small_rational(BITS) {
+        match value.to_small_rational(MAX_COEFFICIENT_BITS) {
             Some((n, d)) => Some(graph.ratio(n, d)),
             None => self.by_value.get(&value).copied(),
         }
@@ -93,10 +93,10 @@ impl Known {
 
 /// Returns relations Σ v_k Y_k = 0 with exact coefficients that hold at the samples: within each link, between each link
 /// and its parent, and within groups of links that move together. There may be more.
-pub fn candidates(
+pub fn local_relations(
     model: &mut Model,
     samples: &Samples,
-    known: &Known,
+    known: &ExactConstants,
     tree: &Tree,
     links: &[Link],
 ) -> Vec<Relation> {
@@ -107,7 +107,7 @@ pub fn candidates(
         let parents = link.parent.map_or(0..index, |parent| parent..parent + 1);
         groups.extend(parents.map(|parent| (vec![index], Some(parent))));
     }
-    groups.extend(together(tree));
+    groups.extend(coupled_links(tree));
     let mut relations = Vec::new();
     let numbers = model.numbers(&model.defaults, &model.start_x, &[], &[], &[]);
     for index in 0..links.len() {
@@ -119,17 +119,23 @@ pub fn candidates(
         ) {
             let exact = standard_of(&mut model.graph, &masses);
             let group = (&[index][..], links[index].parent);
-            relations.push(moved(model, links, group, &exact));
+            relations.push(rest_relation(model, links, group, &exact));
         }
         if let Some(masses) = along_earlier_axis(model, &numbers, tree, links, index) {
             let exact = standard_of(&mut model.graph, &masses);
             for parent in [None, links[index].parent] {
-                relations.push(moved(model, links, (&[index], parent), &exact));
+                relations.push(rest_relation(model, links, (&[index], parent), &exact));
             }
         }
     }
     for (group, anchor) in groups {
-        relations.extend(among(model, samples, known, links, (&group, anchor)));
+        relations.extend(relations_among(
+            model,
+            samples,
+            known,
+            links,
+            (&group, anchor),
+        ));
     }
     relations.retain(|relation| holds(&model.graph, samples, relation));
     relations
@@ -137,19 +143,24 @@ pub fn candidates(
 
 /// Returns masses on the axis a of a hinge through the frame's origin, which do not move relative to the parent
 /// link: m, h = a and ∫ r rᵀ dm = a aᵀ, for any entries of a.
-fn along_axis(graph: &mut Graph, numbers: &[f64], link: &TreeLink, frame: &Link) -> Vec<Mass> {
+fn along_axis(
+    graph: &mut Graph,
+    numbers: &[f64],
+    link: &TreeLink,
+    frame: &Link,
+) -> Vec<LinkInertia> {
     let Some(axis) = hinge(graph, link, frame) else {
         return Vec::new();
     };
-    let Some(a) = scaled(graph, numbers, axis) else {
+    let Some(a) = scale_to_one(graph, numbers, axis) else {
         return Vec::new();
     };
-    let (one, none) = (graph.one(), Mass::none(graph));
+    let (one, none) = (graph.one(), LinkInertia::zero(graph));
     let second = a.map(|entry| scale3(graph, entry, a));
     vec![
-        Mass { mass: one, ..none },
-        Mass { first: a, ..none },
-        Mass { second, ..none },
+        LinkInertia { mass: one, ..none },
+        LinkInertia { first: a, ..none },
+        LinkInertia { second, ..none },
     ]
 }
 
@@ -161,7 +172,7 @@ fn along_earlier_axis(
     tree: &Tree,
     links: &[Link],
     index: usize,
-) -> Option<Mass> {
+) -> Option<LinkInertia> {
     let slides = |graph: &Graph, link: &TreeLink| match link.freedoms.as_slice() {
         [freedom] => freedom.angular == zero3(graph),
         _ => false,
@@ -177,10 +188,10 @@ fn along_earlier_axis(
     let (turn, _) = pose_at_zero(model, links[index].frame, links[before].frame);
     let graph = &mut model.graph;
     let axis = apply_transposed(graph, &turn, axis);
-    let first = scaled(graph, numbers, axis)?;
-    Some(Mass {
+    let first = scale_to_one(graph, numbers, axis)?;
+    Some(LinkInertia {
         first,
-        ..Mass::none(graph)
+        ..LinkInertia::zero(graph)
     })
 }
 
@@ -194,7 +205,7 @@ fn hinge(graph: &mut Graph, link: &TreeLink, frame: &Link) -> Option<Vec3> {
 }
 
 /// Scales a direction so that its largest entry is 1.
-fn scaled(graph: &mut Graph, numbers: &[f64], axis: Vec3) -> Option<Vec3> {
+fn scale_to_one(graph: &mut Graph, numbers: &[f64], axis: Vec3) -> Option<Vec3> {
     let mut symbols = numbers.to_vec();
     symbols.resize(graph.symbols().len(), f64::NAN);
     let sizes = evaluate(graph, &axis, &symbols);
@@ -205,7 +216,7 @@ fn scaled(graph: &mut Graph, numbers: &[f64], axis: Vec3) -> Option<Vec3> {
 
 /// Returns the groups of links whose joints have a velocity in common, alone and with the one link that all of them
 /// hang on.
-fn together(tree: &Tree) -> Vec<(Vec<usize>, Option<usize>)> {
+fn coupled_links(tree: &Tree) -> Vec<(Vec<usize>, Option<usize>)> {
     let rates = |index: usize| {
         let freedoms = tree.links[index].freedoms.iter();
         freedoms.flat_map(|freedom| freedom.rate.iter().map(|&(i, _)| i))
@@ -234,10 +245,10 @@ fn together(tree: &Tree) -> Vec<(Vec<usize>, Option<usize>)> {
 }
 
 /// Returns the relations among the parameters of a group of links and, if given, of a link before them.
-fn among(
+fn relations_among(
     model: &mut Model,
     samples: &Samples,
-    known: &Known,
+    known: &ExactConstants,
     links: &[Link],
     (group, anchor): (&[usize], Option<usize>),
 ) -> Vec<Relation> {
@@ -251,14 +262,14 @@ fn among(
         let Some(exact) = known.all(&mut model.graph, &values) else {
             continue;
         };
-        relations.push(moved(model, links, (group, anchor), &exact));
+        relations.push(rest_relation(model, links, (group, anchor), &exact));
     }
     relations
 }
 
 /// Returns the relation that inertias of links, ten numbers each, are equivalent to the same inertias at rest in an
 /// earlier link, if one is given; otherwise, that they have no effect.
-fn moved(
+fn rest_relation(
     model: &mut Model,
     links: &[Link],
     (group, anchor): (&[usize], Option<usize>),
@@ -266,27 +277,27 @@ fn moved(
 ) -> Relation {
     let ten_of = |index: &usize| 10 * index..10 * index + 10;
     let own: Vec<usize> = group.iter().flat_map(ten_of).collect();
-    let mut relation = joined(&model.graph, &own, exact);
+    let mut relation = relation_of(&model.graph, &own, exact);
     if let Some(anchor) = anchor {
         let mut all = vec![model.graph.zero(); 10];
         for (&index, exact) in group.iter().zip(exact.chunks(10)) {
             let pose = pose_at_zero(model, links[index].frame, links[anchor].frame);
             let graph = &mut model.graph;
-            let moved = of_standard(graph, exact)
-                .turned(graph, &Turn::By(pose.0))
+            let moved = inertia_of_standard(graph, exact)
+                .turned(graph, &RotationFactor::By(pose.0))
                 .shifted(graph, pose.1);
             for (sum, entry) in all.iter_mut().zip(standard_of(graph, &moved)) {
                 *sum = graph.sub(*sum, entry);
             }
         }
         let before: Vec<usize> = ten_of(&anchor).collect();
-        relation.extend(joined(&model.graph, &before, &all));
+        relation.extend(relation_of(&model.graph, &before, &all));
     }
     relation
 }
 
 /// Returns a relation: the nonzero coefficients, each with its parameter.
-pub fn joined(graph: &Graph, parameters: &[usize], factors: &[Edge]) -> Relation {
+pub fn relation_of(graph: &Graph, parameters: &[usize], factors: &[Edge]) -> Relation {
     let pairs = parameters.iter().copied().zip(factors.iter().copied());
     pairs
         .filter(|(_, factor)| *factor != graph.zero())

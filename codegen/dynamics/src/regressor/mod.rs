@@ -8,7 +8,7 @@
 //! | `wrenches` | wrenches of unit parameters, in axes chosen by the generator |
 //! | `columns` | the columns of Y: the generalised forces of these wrenches at the joints |
 //! | `samples` | Y at random states, modulo p, with one value for everything that is constant at run time |
-//! | `candidates` | relations between a link and its parent, with exact coefficients |
+//! | `local_relations` | relations between a link and its parent, with exact coefficients |
 //! | `relations` | elimination; remaining relations; the base parameters |
 //! | `error` | reasons why a model has no regressor |
 //!
@@ -25,16 +25,18 @@
 //! parameters, with which it holds there; if fewer relations are found than the rank requires, an error is
 //! returned.
 
-mod candidates;
 mod columns;
 mod error;
+mod local_relations;
 mod parameters;
 mod relations;
 mod samples;
 mod wrenches;
 
 pub use error::RegressorError;
-pub use parameters::{DIAGONAL, ENTRIES, Kind, MOMENTS, Standard};
+pub use parameters::{
+    DIAGONAL_PARAMETERS, INERTIA_ENTRIES, Kind, SECOND_MOMENT_NAMES, StandardParameter,
+};
 
 use super::calculus::Calculus;
 use super::tree::Tree;
@@ -46,7 +48,7 @@ use samples::Samples;
 
 /// Base parameter β = Σ k π, a combination of standard parameters.
 #[derive(Clone, Debug)]
-pub struct Base {
+pub struct BaseParameter {
     /// Name: that of the standard parameter that it equals, apart from parameters of other links regrouped with it,
     /// or that of a second moment Σ_xx = (Θ_yy + Θ_zz − Θ_xx) / 2.
     pub name: String,
@@ -66,11 +68,11 @@ pub struct Regressor {
     /// Names of the frames that represent links, in the order of the links with mass.
     pub links: Vec<String>,
     /// Standard parameters.
-    pub standard: Vec<Standard>,
+    pub standard: Vec<StandardParameter>,
     /// Column of Y of every standard parameter.
     pub columns: Vec<Vec<Edge>>,
     /// Base parameters, in the order of the parameters that are kept.
-    pub base: Vec<Base>,
+    pub base: Vec<BaseParameter>,
     /// Standard parameters that have no effect on the force.
     pub idle: Vec<usize>,
     /// Other forces in the model that are not linear functions of these parameters.
@@ -86,43 +88,43 @@ pub struct Regressor {
 ///
 /// The reason why the model has none, or why their relations could not be found.
 pub fn regressor(model: &Model) -> Result<Regressor, RegressorError> {
-    refused(model)?;
-    let described = about(model, false)?;
+    check_supported(model)?;
+    let described = regressor_about(model, false)?;
     let cost = |found: &Regressor| {
         let columns = found.base.iter().flat_map(|base| &base.column);
         count(&found.model.graph, &columns.copied().collect::<Vec<Edge>>()).weight()
     };
-    Ok(match about(model, true) {
+    Ok(match regressor_about(model, true) {
         Ok(moved) if cost(&moved) < cost(&described) => moved,
         _ => described,
     })
 }
 
 /// Derives the base parameters about the origins of frames, or about origins that are moved along hinges.
-fn about(model: &Model, moved: bool) -> Result<Regressor, RegressorError> {
+fn regressor_about(model: &Model, moved: bool) -> Result<Regressor, RegressorError> {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
-    let (tree, carriers) =
+    let (tree, joint_frames) =
         Tree::with_frames(&mut model, &mut calculus, moved).ok_or(RegressorError::OtherInertia)?;
-    let links = parameters::links(&mut model, &tree, &carriers);
-    let mut standard: Vec<Standard> = links
+    let links = parameters::links(&mut model, &tree, &joint_frames);
+    let mut standard: Vec<StandardParameter> = links
         .iter()
         .flat_map(|link| link.standard.clone())
         .collect();
-    let joints = parameters::of_joints(&mut model, &mut calculus);
+    let joints = parameters::joint_parameters(&mut model, &mut calculus);
     // Emitted expressions are derived in a separate graph, because a graph computes equal expressions only in the
     // way of the first one.
     let mut derived = model.clone();
-    let moments = columns::inertial(&mut model, &tree, &links);
+    let moments = columns::inertial_columns(&mut model, &tree, &links);
     let mut columns = parameters::standard_columns(&mut model.graph, &links, &moments);
     for (parameter, column) in &joints.parameters {
         standard.push(parameter.clone());
         columns.push(column.clone());
     }
     let samples = Samples::new(&model, &columns).ok_or(RegressorError::NoValues)?;
-    let found = relations::find(&mut model, &samples, &tree, &links, standard.len())?;
+    let found = relations::solve_relations(&mut model, &samples, &tree, &links, standard.len())?;
     let kept: Vec<usize> = found.iter().map(|(kept, _)| *kept).collect();
-    let mut moments = columns::cheapest(&mut derived, &tree, &links, &kept);
+    let mut moments = columns::cheapest_columns(&mut derived, &tree, &links, &kept);
     let mut columns = parameters::standard_columns(&mut derived.graph, &links, &moments);
     let of_joints: Vec<Vec<Edge>> = joints
         .parameters
@@ -142,7 +144,7 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, RegressorError> {
         let factors = rebuild(&model.graph, &mut derived.graph, &factors);
         let terms = terms.iter().map(|&(k, _)| k).zip(factors);
         let terms = parameters::standard_terms(&mut derived.graph, &links, kept, terms);
-        base.push(Base {
+        base.push(BaseParameter {
             name: parameters::name(&derived.graph, &standard, kept, &terms),
             kind: standard[kept].kind,
             terms: terms
@@ -171,7 +173,7 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, RegressorError> {
 }
 
 /// Returns an error if the model is of a kind that has no regressor here.
-fn refused(model: &Model) -> Result<(), RegressorError> {
+fn check_supported(model: &Model) -> Result<(), RegressorError> {
     if model.clock.is_some() || !model.prescribed.is_empty() || !model.accelerated.is_empty() {
         return Err(RegressorError::PrescribedMotion);
     }

@@ -2,25 +2,25 @@
 //! armatures, dampers and springs. Also the moments of a link about its origin, in terms of which they are
 //! expressed.
 
-use super::candidates::Relation;
+use super::local_relations::Relation;
 use crate::calculus::Calculus;
 use crate::tree::Tree;
-use crate::tree::draft::Carrier;
-use crate::tree::mass::Mass;
-use crate::tree::turn::Turn;
+use crate::tree::draft::JointFrame;
+use crate::tree::mass::LinkInertia;
+use crate::tree::turn::RotationFactor;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::{Mat3, transpose3, zero3};
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
 
 /// Names of the ten parameters of a link, in their order.
-pub const PLACES: [&str; 10] = [
+pub const PARAMETER_NAMES: [&str; 10] = [
     "Theta_xx", "Theta_xy", "Theta_xz", "Theta_yy", "Theta_yz", "Theta_zz", "h_x", "h_y", "h_z",
     "m",
 ];
 
 /// Rows and columns of the entries of Θ in this order.
-pub const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+pub const INERTIA_ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// Kind of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub enum Kind {
 
 /// A standard parameter.
 #[derive(Clone, Debug)]
-pub struct Standard {
+pub struct StandardParameter {
     /// Kind of parameter.
     pub kind: Kind,
     /// Name of the frame of the link, or of the velocity or coordinate, that the parameter belongs to.
@@ -49,11 +49,11 @@ pub struct Standard {
     pub present: bool,
 }
 
-impl Standard {
+impl StandardParameter {
     /// Returns the name of the parameter in text.
     pub fn name(&self) -> String {
         let own = match self.kind {
-            Kind::Inertia(place) => PLACES[place],
+            Kind::Inertia(place) => PARAMETER_NAMES[place],
             Kind::Armature => "armature",
             Kind::Damping => "damping",
             Kind::Stiffness => "stiffness",
@@ -76,35 +76,35 @@ pub struct Link {
     /// Whether the link has mass.
     pub present: bool,
     /// Standard parameters of the link.
-    pub standard: Vec<Standard>,
+    pub standard: Vec<StandardParameter>,
     /// Moments about the link's origin of a unit of each parameter.
     moments: Vec<Vec<Edge>>,
 }
 
 /// Returns the links of a tree with their standard parameters.
-pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> {
-    let pairs = tree.links.iter().zip(carriers);
+pub fn links(model: &mut Model, tree: &Tree, joint_frames: &[JointFrame]) -> Vec<Link> {
+    let pairs = tree.links.iter().zip(joint_frames);
     pairs
-        .map(|(link, carrier)| {
+        .map(|(link, joint_frame)| {
             let graph = &mut model.graph;
-            let back = Turn::By(transpose3(&carrier.axes));
-            let mass = carrier.mass.turned(graph, &back);
-            let name = model.frames[carrier.frame].name.clone();
+            let back = RotationFactor::By(transpose3(&joint_frame.axes));
+            let mass = joint_frame.mass.turned(graph, &back);
+            let name = model.frames[joint_frame.frame].name.clone();
             let values = standard_of(graph, &mass);
             let present = values.iter().any(|&value| value != graph.zero());
             let standard = values.into_iter().enumerate();
             let (zero, one) = (graph.zero(), graph.one());
-            let back = carrier.origin.map(|entry| -entry);
+            let back = joint_frame.origin.map(|entry| -entry);
             let unit = |place: usize| {
                 let mut ten = [zero; 10];
                 ten[place] = one;
-                let mass = of_standard(graph, &ten).shifted(graph, back);
+                let mass = inertia_of_standard(graph, &ten).shifted(graph, back);
                 moments_of(&mass)
             };
             Link {
                 moments: (0..10).map(unit).collect(),
                 standard: standard
-                    .map(|(place, value)| Standard {
+                    .map(|(place, value)| StandardParameter {
                         kind: Kind::Inertia(place),
                         of: name.clone(),
                         value,
@@ -112,8 +112,8 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
                     })
                     .collect(),
                 name,
-                frame: carrier.frame,
-                axes: carrier.axes,
+                frame: joint_frame.frame,
+                axes: joint_frame.axes,
                 parent: link.parent,
                 present,
             }
@@ -122,12 +122,12 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
 }
 
 /// Returns the inertia with these ten standard parameters.
-pub fn of_standard(graph: &mut Graph, ten: &[Edge]) -> Mass {
+pub fn inertia_of_standard(graph: &mut Graph, ten: &[Edge]) -> LinkInertia {
     let mut second: Mat3 = [zero3(graph); 3];
-    let trace = graph.sum(&DIAGONAL.map(|k| ten[k]));
+    let trace = graph.sum(&DIAGONAL_PARAMETERS.map(|k| ten[k]));
     let half = graph.ratio(1, 2);
     let half = graph.mul(half, trace);
-    for (&(i, j), &entry) in ENTRIES.iter().zip(ten) {
+    for (&(i, j), &entry) in INERTIA_ENTRIES.iter().zip(ten) {
         second[i][j] = if i == j {
             graph.sub(half, entry)
         } else {
@@ -135,7 +135,7 @@ pub fn of_standard(graph: &mut Graph, ten: &[Edge]) -> Mass {
         };
         second[j][i] = second[i][j];
     }
-    Mass {
+    LinkInertia {
         mass: ten[9],
         first: std::array::from_fn(|i| ten[6 + i]),
         second,
@@ -143,23 +143,23 @@ pub fn of_standard(graph: &mut Graph, ten: &[Edge]) -> Mass {
 }
 
 /// Returns the ten standard parameters of an inertia.
-pub fn standard_of(graph: &mut Graph, mass: &Mass) -> Vec<Edge> {
+pub fn standard_of(graph: &mut Graph, mass: &LinkInertia) -> Vec<Edge> {
     let theta = mass.inertia(graph);
-    let mut ten = ENTRIES.map(|(i, j)| theta[i][j]).to_vec();
+    let mut ten = INERTIA_ENTRIES.map(|(i, j)| theta[i][j]).to_vec();
     ten.extend(mass.first);
     ten.push(mass.mass);
     ten
 }
 
 /// Places of the diagonal of Θ among the ten parameters.
-pub const DIAGONAL: [usize; 3] = [0, 3, 5];
+pub const DIAGONAL_PARAMETERS: [usize; 3] = [0, 3, 5];
 
 /// Names of the second moments, which take the places of the diagonal.
-pub const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
+pub const SECOND_MOMENT_NAMES: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
 
 /// Returns the ten moments of an inertia: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
-fn moments_of(mass: &Mass) -> Vec<Edge> {
-    let second = ENTRIES.map(|(i, j)| {
+fn moments_of(mass: &LinkInertia) -> Vec<Edge> {
+    let second = INERTIA_ENTRIES.map(|(i, j)| {
         let entry = mass.second[i][j];
         if i == j { entry } else { -entry }
     });
@@ -250,11 +250,16 @@ pub fn standard_terms(
 
 /// Returns the name of a base parameter: that of the single standard parameter of its link in it, or else that of
 /// the kept moment.
-pub fn name(graph: &Graph, standard: &[Standard], kept: usize, terms: &[(usize, Edge)]) -> String {
+pub fn name(
+    graph: &Graph,
+    standard: &[StandardParameter],
+    kept: usize,
+    terms: &[(usize, Edge)],
+) -> String {
     let Kind::Inertia(place) = standard[kept].kind else {
         return standard[kept].name();
     };
-    let Some(axis) = DIAGONAL.iter().position(|&k| k == place) else {
+    let Some(axis) = DIAGONAL_PARAMETERS.iter().position(|&k| k == place) else {
         return standard[kept].name();
     };
     let of_link = |&&(k, _): &&(usize, Edge)| {
@@ -262,14 +267,14 @@ pub fn name(graph: &Graph, standard: &[Standard], kept: usize, terms: &[(usize, 
     };
     match terms.iter().filter(of_link).collect::<Vec<_>>()[..] {
         [&(k, factor)] if factor == graph.one() => standard[k].name(),
-        _ => format!("{}.{}", standard[kept].of, MOMENTS[axis]),
+        _ => format!("{}.{}", standard[kept].of, SECOND_MOMENT_NAMES[axis]),
     }
 }
 
 /// Parameters of joints with their columns, and forces that have no such parameters.
-pub struct OfJoints {
+pub struct JointParameters {
     /// Parameters, each with its column of Y.
-    pub parameters: Vec<(Standard, Vec<Edge>)>,
+    pub parameters: Vec<(StandardParameter, Vec<Edge>)>,
     /// Descriptions of other forces that act.
     pub besides: Vec<&'static str>,
     /// Derivatives ∂ᵢ of all potentials other than gravity and these springs.
@@ -277,11 +282,11 @@ pub struct OfJoints {
 }
 
 /// Collects armatures, dampers and springs.
-pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
+pub fn joint_parameters(model: &mut Model, calculus: &mut Calculus) -> JointParameters {
     let n = model.n();
     let zero = model.graph.zero();
     let mut parameters = Vec::new();
-    let standard = |kind, of: String, value| Standard {
+    let standard = |kind, of: String, value| StandardParameter {
         kind,
         of,
         value,
@@ -291,7 +296,7 @@ pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
         if model.armature[i] != zero {
             let mut column = vec![zero; n];
             column[i] = model.xi_dot[i];
-            let name = named(model, model.xi[i]).unwrap_or_default();
+            let name = symbol_name(model, model.xi[i]).unwrap_or_default();
             parameters.push((standard(Kind::Armature, name, model.armature[i]), column));
         }
     }
@@ -308,7 +313,7 @@ pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
             model.graph.mul(rate, slope)
         });
         let column = column.collect();
-        let name = named(model, rate).unwrap_or_else(|| format!("damper_{}", place + 1));
+        let name = symbol_name(model, rate).unwrap_or_else(|| format!("damper_{}", place + 1));
         parameters.push((standard(Kind::Damping, name, damper.coefficient), column));
     }
     let mut potential = model.potential;
@@ -329,7 +334,7 @@ pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
             model.graph.mul(stretch, slope)
         });
         let column = column.collect();
-        let name = named(model, length).unwrap_or_else(|| format!("spring_{}", place + 1));
+        let name = symbol_name(model, length).unwrap_or_else(|| format!("spring_{}", place + 1));
         parameters.push((standard(Kind::Stiffness, name, spring.stiffness), column));
     }
     let slopes = (0..n).map(|i| calculus.along(&mut model.graph, i, potential));
@@ -346,7 +351,7 @@ pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
             .filter(|(there, _)| *there)
             .map(|(_, what)| *what),
     );
-    OfJoints {
+    JointParameters {
         parameters,
         besides,
         other_potentials,
@@ -354,7 +359,7 @@ pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
 }
 
 /// Returns the name of a symbol; `None` for other expressions.
-fn named(model: &Model, edge: Edge) -> Option<String> {
+fn symbol_name(model: &Model, edge: Edge) -> Option<String> {
     match model.graph.node(edge.node()) {
         Node::Symbol(index) => Some(model.graph.symbols()[index as usize].name.clone()),
         _ => None,

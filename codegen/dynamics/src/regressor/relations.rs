@@ -1,7 +1,7 @@
 //! Elimination with exact coefficients, and the resulting base parameters.
 
-use super::candidates::{Known, Relation, candidates, holds, joined};
 use super::error::RegressorError;
+use super::local_relations::{ExactConstants, Relation, holds, local_relations, relation_of};
 use super::parameters::{Link, between_moments};
 use super::samples::Samples;
 use crate::tree::Tree;
@@ -14,23 +14,23 @@ use hamel_language::model::Model;
 ///
 /// This keeps the coefficients in β from becoming large when an axis is slightly tilted. First moments, second
 /// moments and masses are of different kinds.
-const LEAST: f64 = 0.1;
+const MIN_COEFFICIENT_RATIO: f64 = 0.1;
 
 /// Order of the moment that each of the ten parameters of a link is: 2, 1, or 0 for the mass.
-const KINDS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
+const MOMENT_ORDERS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
 
 /// Base parameter: place of the moment that is kept, and all terms; its own, with coefficient 1, comes first.
-pub type Found = (usize, Vec<(usize, Edge)>);
+pub type SolvedRelation = (usize, Vec<(usize, Edge)>);
 
 /// Finds all relations between standard parameters, and solves them as relations between moments, some of which are
 /// kept.
-pub fn find(
+pub fn solve_relations(
     model: &mut Model,
     samples: &Samples,
     tree: &Tree,
     links: &[Link],
     total: usize,
-) -> Result<Vec<Found>, RegressorError> {
+) -> Result<Vec<SolvedRelation>, RegressorError> {
     let massless = |k: usize| links.get(k / 10).is_some_and(|link| !link.present);
     let present: Vec<usize> = (0..total).filter(|&k| !massless(k)).collect();
     let rank = Echelon::new(samples.of(&present)).rank();
@@ -39,8 +39,8 @@ pub fn find(
     let mut order: Vec<usize> = (0..total).filter(|&k| massless(k)).collect();
     let nothing = order.len();
     order.extend(present.iter().rev());
-    let known = Known::new(model, samples);
-    let mut relations = candidates(model, samples, &known, tree, links);
+    let known = ExactConstants::new(model, samples);
+    let mut relations = local_relations(model, samples, &known, tree, links);
     let numbers = model.numbers(&model.defaults, &model.start_x, &[], &[], &[]);
     let ordered = (&order[..], nothing);
     let mut solved = solve(&mut model.graph, &numbers, &relations, ordered, links.len());
@@ -55,7 +55,7 @@ pub fn find(
             let exact = known
                 .all(&mut model.graph, &values)
                 .ok_or(RegressorError::InexactRelations)?;
-            relations.push(joined(&model.graph, &left, &exact));
+            relations.push(relation_of(&model.graph, &left, &exact));
         }
         solved = solve(&mut model.graph, &numbers, &relations, ordered, links.len());
     }
@@ -123,7 +123,7 @@ fn solve(
         .collect();
     let mut pivots: Vec<usize> = Vec::new();
     // Columns that have only small coefficients come last.
-    for least in [LEAST, 0.0] {
+    for least in [MIN_COEFFICIENT_RATIO, 0.0] {
         for &column in order {
             if pivots.contains(&column) {
                 continue;
@@ -174,7 +174,7 @@ fn solve(
     solved
         .map(|(&pivot, row)| {
             let factors: Vec<Edge> = row.iter().map(|&(factor, _)| factor).collect();
-            (pivot, joined(graph, &all, &factors))
+            (pivot, relation_of(graph, &all, &factors))
         })
         .collect()
 }
@@ -185,9 +185,9 @@ fn is_small(row: &[Factor], column: usize, links: usize, least: f64) -> bool {
     if column >= 10 * links {
         return false;
     }
-    let (link, kind) = (column / 10, KINDS[column % 10]);
+    let (link, kind) = (column / 10, MOMENT_ORDERS[column % 10]);
     let alike = row.iter().enumerate().skip(10 * link).take(10);
-    let alike = alike.filter(|(k, _)| KINDS[k % 10] == kind);
+    let alike = alike.filter(|(k, _)| MOMENT_ORDERS[k % 10] == kind);
     let largest = alike.fold(0.0, |largest, (_, (_, value))| {
         f64::max(largest, value.abs())
     });

@@ -10,13 +10,13 @@ use hamel_algebra::tape::Tape;
 use hamel_language::model::{Model, class};
 
 /// Number of random choices of the constants that are tried until all expressions have a value.
-const TRIES: u64 = 12;
+const MAX_CONSTANT_CHOICES: u64 = 12;
 /// Number of states that are tried for the first one at which all columns have values.
-const STATES: u64 = 40;
+const MAX_STATES_TRIED: u64 = 40;
 /// Number of states beyond those needed for the rank.
-const SPARE: usize = 10;
+const SPARE_STATES: usize = 10;
 /// Smallest number of states; a single joint must be able to distinguish the parameters of two links.
-const FEWEST: usize = 40;
+const MIN_STATES: usize = 40;
 
 /// Values of Y at random states, with the rows of all states.
 pub struct Samples {
@@ -30,23 +30,23 @@ impl Samples {
     /// Evaluates columns; `None` if too few states have values.
     pub fn new(model: &Model, columns: &[Vec<Edge>]) -> Option<Self> {
         let tape = Tape::new(&model.graph, &columns.concat())?;
-        (1..=TRIES).find_map(|seed| Samples::at(model, &tape, columns.len(), seed))
+        (1..=MAX_CONSTANT_CHOICES).find_map(|seed| Samples::at(model, &tape, columns.len(), seed))
     }
 
     fn at(model: &Model, tape: &Tape, columns: usize, seed: u64) -> Option<Self> {
         let n = model.n().max(1);
-        let wanted = FEWEST.max(2 * columns / n + SPARE);
+        let wanted = MIN_STATES.max(2 * columns / n + SPARE_STATES);
         let mut rows = Vec::new();
         let mut last = None;
         let mut tried = 0;
         while rows.len() < wanted * n {
             tried += 1;
-            if tried > STATES + 2 * wanted as u64 {
+            if tried > MAX_STATES_TRIED + 2 * wanted as u64 {
                 return None;
             }
-            let lane = lane(model, seed, tried)?;
+            let lane = random_state(model, seed, tried)?;
             let Some(values) = tape.values(&lane) else {
-                if rows.is_empty() && tried > STATES {
+                if rows.is_empty() && tried > MAX_STATES_TRIED {
                     return None;
                 }
                 continue;
@@ -93,7 +93,7 @@ impl Samples {
 }
 
 /// Returns a random state with the constants of a seed.
-fn lane(model: &Model, seed: u64, state: u64) -> Option<FieldPoint> {
+fn random_state(model: &Model, seed: u64, state: u64) -> Option<FieldPoint> {
     let random = &mut Random::new(seed.wrapping_mul(0x6a09_e667) ^ (state << 32));
     let mut values = model.points.choose(random)?;
     let frozen = &mut Random::new(seed ^ 0x3c6e_f372);

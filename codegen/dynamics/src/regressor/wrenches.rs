@@ -7,10 +7,10 @@
 //! in which U and e are given: those of the link's frame, or those that the link has before it turns. In the
 //! latter, U is that of the previous link plus a few terms of the joint's rate.
 
-use super::parameters::{ENTRIES, Link};
+use super::parameters::{INERTIA_ENTRIES, Link};
 use crate::tree::Tree;
-use crate::tree::inverse::{LinkMotion, Tensors, Turning, Wrench, motions};
-use crate::tree::turn::Turn;
+use crate::tree::inverse::{LinkMotion, RotationalMotion, TensorRoute, Wrench, motions};
+use crate::tree::turn::RotationFactor;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, cross, identity3, multiply3, transpose3, zero3,
@@ -30,14 +30,14 @@ pub enum Axes {
 }
 
 /// All choices of axes.
-pub const AXES: [Axes; 3] = [Axes::Own, Axes::Shared, Axes::Stepwise];
+pub const ALL_AXES: [Axes; 3] = [Axes::Own, Axes::Shared, Axes::Stepwise];
 
 /// Motion of all links in some axes.
 pub struct Motions {
     /// Links in these axes.
     pub tree: Tree,
     /// Rotation of a link's own axes relative to these, if they differ.
-    lags: Vec<Option<Turn>>,
+    lags: Vec<Option<RotationFactor>>,
     motions: Vec<LinkMotion>,
 }
 
@@ -51,8 +51,8 @@ impl Motions {
             Axes::Shared | Axes::Stepwise => tree.sharing_axes(graph),
         };
         tree.tensors = match axes {
-            Axes::Own | Axes::Shared => Tensors::Carried,
-            Axes::Stepwise => Tensors::Chained,
+            Axes::Own | Axes::Shared => TensorRoute::Carried,
+            Axes::Stepwise => TensorRoute::Chained,
         };
         let motions = motions(graph, &tree, &xi, &xi_dot, gravity);
         Motions {
@@ -86,7 +86,7 @@ fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrenc
         (u, [0, 1, 2].map(difference))
     } else {
         let [omega, alpha] = [motion.omega, motion.alpha].map(|v| apply_transposed(graph, axes, v));
-        let turning = Turning::of(graph, omega, alpha);
+        let turning = RotationalMotion::of(graph, omega, alpha);
         (turning.u, turning.differences)
     };
     let mut torques = [[zero3(graph); 3]; 3];
@@ -102,7 +102,7 @@ fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrenc
     }
     let forces = transpose3(&u);
     let units = identity3(graph);
-    let wrenches = assembled(graph, &torques, &forces, &units, a);
+    let wrenches = in_parameter_order(graph, &torques, &forces, &units, a);
     let turned = wrenches.into_iter().map(|wrench| Wrench {
         force: apply3(graph, axes, wrench.force),
         torque: apply3(graph, axes, wrench.torque),
@@ -114,7 +114,12 @@ fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrenc
 ///
 /// The torque along this axis is computed in the link's own axes, where it takes fewer operations: U_xx + U_yy and
 /// U_yx − U_xy are the same in both.
-fn in_shared_axes(graph: &mut Graph, motion: &LinkMotion, lag: &Turn, axes: &Mat3) -> Vec<Wrench> {
+fn in_shared_axes(
+    graph: &mut Graph,
+    motion: &LinkMotion,
+    lag: &RotationFactor,
+    axes: &Mat3,
+) -> Vec<Wrench> {
     let LinkMotion { u, a, .. } = motion;
     let own = transpose3(axes);
     let units = own.map(|e| lag.rotate(graph, e));
@@ -136,7 +141,7 @@ fn in_shared_axes(graph: &mut Graph, motion: &LinkMotion, lag: &Turn, axes: &Mat
         torque
     };
     let mut torques = [[zero3(graph); 3]; 3];
-    for (i, j) in ENTRIES {
+    for (i, j) in INERTIA_ENTRIES {
         let torque = of(graph, i, j);
         torques[i][j] = if i == j {
             torque
@@ -145,12 +150,12 @@ fn in_shared_axes(graph: &mut Graph, motion: &LinkMotion, lag: &Turn, axes: &Mat
             add3(graph, torque, other)
         };
     }
-    assembled(graph, &torques, &forces, &units, *a)
+    in_parameter_order(graph, &torques, &forces, &units, *a)
 }
 
 /// Returns the wrenches in the order of the parameters, from the torques of second moments and the forces of first
 /// moments.
-fn assembled(
+fn in_parameter_order(
     graph: &mut Graph,
     torques: &[[Vec3; 3]; 3],
     forces: &[Vec3; 3],
@@ -158,7 +163,7 @@ fn assembled(
     a: Vec3,
 ) -> Vec<Wrench> {
     let zero = zero3(graph);
-    let second = ENTRIES.iter().map(|&(i, j)| Wrench {
+    let second = INERTIA_ENTRIES.iter().map(|&(i, j)| Wrench {
         force: zero,
         // Products of inertia are second moments with the opposite sign.
         torque: if i == j {

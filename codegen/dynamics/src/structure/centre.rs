@@ -9,8 +9,8 @@
 //! products of entries of R average to δ/3; whether it reproduces K is checked by means of the
 //! remaining inertia.
 
-use super::constant::resting;
-use super::rates::Part;
+use super::constant::rest_configuration;
+use super::rates::CoordinateBlock;
 use super::tetrahedron::{matrix, tetrahedron};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, dot_mat3};
@@ -21,7 +21,7 @@ use hamel_language::model::rotations::quaternion_matrix;
 
 /// Shift of the coordinates and its rate.
 #[derive(Clone, Debug)]
-pub struct Shift {
+pub struct CentreShift {
     /// Offset y − x, ν entries.
     pub offset: Vec<Edge>,
     /// Rate offset ẏ − ẋ per unit of each rate, n × n: rows of plain coordinates, columns of
@@ -36,12 +36,12 @@ pub struct Shift {
 pub fn shift(
     model: &Model,
     graph: &mut Graph,
-    parts: &[Part],
+    parts: &[CoordinateBlock],
     plain: &[usize],
     coupling: &[Vec<Edge>],
-) -> Shift {
+) -> CentreShift {
     let (n, zero) = (model.n(), graph.zero());
-    let mut shift = Shift {
+    let mut shift = CentreShift {
         offset: vec![zero; model.nu()],
         rate: vec![vec![zero; n]; n],
     };
@@ -74,12 +74,12 @@ pub fn shift(
 fn offset(
     model: &Model,
     graph: &mut Graph,
-    parts: &[Part],
-    part: &Part,
+    parts: &[CoordinateBlock],
+    part: &CoordinateBlock,
     k: &[Edge],
 ) -> Option<(Edge, Vec<Edge>)> {
     let x = part.entries(&model.x).to_vec();
-    let rest = resting(model, graph, parts, 0);
+    let rest = rest_configuration(model, graph, parts, 0);
     // K where the part has the given numbers and all other coordinates are at rest.
     let at = |graph: &mut Graph, numbers: &[(i64, i64)]| -> Vec<Edge> {
         let mut set = rest.clone();
@@ -151,7 +151,7 @@ fn offset(
 }
 
 /// Returns the rotation matrix R of a rotor's coordinates.
-pub fn matrix_of(graph: &mut Graph, part: &Part, x: &[Edge]) -> Option<Mat3> {
+pub fn matrix_of(graph: &mut Graph, part: &CoordinateBlock, x: &[Edge]) -> Option<Mat3> {
     match part.block {
         Block::Quaternion => Some(quaternion_matrix(graph, x.try_into().ok()?)),
         Block::Rotation => {

@@ -5,18 +5,18 @@ use std::fmt;
 
 /// Number of steps above which a run is long: errors that grow with time then matter more than the
 /// cost of a step.
-pub const LONG: u64 = 100_000;
+pub const LONG_RUN_STEPS: u64 = 100_000;
 
 /// Chosen method with its reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Choice {
+pub struct MethodChoice {
     /// Name of the method on the command line.
     pub method: &'static str,
     /// Reason for the choice.
     pub reason: &'static str,
 }
 
-impl fmt::Display for Choice {
+impl fmt::Display for MethodChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.method, self.reason)
     }
@@ -27,8 +27,8 @@ impl fmt::Display for Choice {
 /// The criterion is the measured cost at an error of 1e-9: eleven kicks of order 6 beat six of
 /// order 4, and elliptic functions in every drift cost more than the twelve stages of order 8 where
 /// torques have to be followed.
-pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
-    let long = steps.is_some_and(|steps| steps > LONG);
+pub fn choose(structure: &Structure, steps: Option<u64>) -> MethodChoice {
+    let long = steps.is_some_and(|steps| steps > LONG_RUN_STEPS);
     let (method, reason) = match &structure.split {
         Ok(splitting) if splitting.free => {
             ("free", "no force acts, so the motion has a closed form")
@@ -104,5 +104,5 @@ pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
             },
         ),
     };
-    Choice { method, reason }
+    MethodChoice { method, reason }
 }

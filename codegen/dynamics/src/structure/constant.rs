@@ -1,6 +1,6 @@
 //! Rewriting of expressions without the symbols on which their values do not depend.
 
-use super::rates::Part;
+use super::rates::CoordinateBlock;
 use super::variation::Variation;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::substitute;
@@ -12,7 +12,12 @@ pub type Substitution = Vec<(usize, Edge)>;
 
 /// Returns numbers for all coordinates: no rotation, angle 0, and the number `plain` for plain
 /// ones.
-pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> Substitution {
+pub fn rest_configuration(
+    model: &Model,
+    graph: &mut Graph,
+    parts: &[CoordinateBlock],
+    plain: i64,
+) -> Substitution {
     let mut set = Substitution::new();
     for part in parts {
         let flat = !part.turns() && part.block.len() == part.block.dimension();
@@ -29,10 +34,10 @@ pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> 
 /// them.
 ///
 /// Expressions that cannot be written in this way remain as they are.
-pub fn settle(
+pub fn eliminate_symbols(
     model: &Model,
     graph: &mut Graph,
-    parts: &[Part],
+    parts: &[CoordinateBlock],
     variation: &Variation,
     edges: &[Edge],
 ) -> Vec<Edge> {
@@ -51,7 +56,7 @@ pub fn settle(
         .collect();
     let constant: Vec<Edge> = places.iter().map(|&index| edges[index]).collect();
     for plain in [0, 1] {
-        let mut set = resting(model, graph, parts, plain);
+        let mut set = rest_configuration(model, graph, parts, plain);
         set.extend(
             model
                 .xi

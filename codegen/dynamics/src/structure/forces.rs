@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 /// Returns the statements that make the generalised force depend on velocities; empty if the total
 /// force does not.
-pub fn damped(
+pub fn velocity_dependent_loads(
     full: &Model,
     model: &Model,
     graph: &Graph,

@@ -6,12 +6,12 @@
 //! acceleration.
 
 use super::centre::matrix_of;
-use super::constant::settle;
-use super::inertia::Separated;
-use super::rates::Part;
-use super::setting::Setting;
+use super::constant::eliminate_symbols;
+use super::context::StructureContext;
+use super::inertia::SplitInertia;
+use super::rates::CoordinateBlock;
 use crate::candidates::Candidates;
-use crate::program::Builder;
+use crate::program::ProgramBuilder;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{
     Mat3, Vec3, apply_transposed, apply3, multiply, solve_symmetric, transpose,
@@ -24,7 +24,7 @@ use hamel_program::count::count;
 use hamel_program::structure::{Inertia, RotorForm, Symmetry};
 
 /// Functions of a system that splits, in a graph of their own.
-pub struct Functions {
+pub struct SplitFunctions {
     graph: Graph,
     /// Shifted coordinates y(x); `None` if y = x.
     centre: Option<Vec<Edge>>,
@@ -42,19 +42,19 @@ pub struct Functions {
     pub rotors: Vec<RotorForm>,
 }
 
-impl Functions {
+impl SplitFunctions {
     /// Builds the functions; `None` if an inertia is singular for all parameters.
     pub(super) fn new(
-        setting: &Setting,
+        context: &StructureContext,
         mut graph: Graph,
-        separated: &Separated,
+        separated: &SplitInertia,
         force: &[Edge],
     ) -> Option<Self> {
-        let model = setting.model;
+        let model = context.model;
         let before = graph.clone();
         let graph = &mut graph;
         let n = model.n();
-        let Separated {
+        let SplitInertia {
             rates,
             shift,
             rotors,
@@ -68,7 +68,7 @@ impl Functions {
                 .collect()
         };
         let mut pivots = Vec::new();
-        let turning: Vec<_> = setting.parts.iter().filter(|part| part.turns()).collect();
+        let turning: Vec<_> = context.parts.iter().filter(|part| part.turns()).collect();
 
         // η = w + K w, computed by vectors and by one matrix; the cheaper of the two is used.
         let matrix = |graph: &mut Graph, sign: bool| -> Vec<Vec<Edge>> {
@@ -96,7 +96,7 @@ impl Functions {
             let spin: Vec<Edge> = part.rates().map(|i| momenta[i]).collect();
             let p: Vec<Edge> = part.rates().map(|i| eta[i]).collect();
             let rows: Vec<Vec<Edge>> = inertia.iter().map(|row| row.to_vec()).collect();
-            pivots.extend(leading(graph, &rows));
+            pivots.extend(symmetric_pivots(graph, &rows));
             let inverse = solve_symmetric(graph, &rows, &unit(3))?;
             for (i, place) in part.rates().enumerate() {
                 momenta[place] = graph.dot(&rows[i], &spin);
@@ -115,10 +115,10 @@ impl Functions {
         let at_once = times(graph, &transpose(&product), force);
         let kick = cheaper(graph, stepwise, at_once);
         let settled = |graph: &mut Graph, edges: &[Edge]| {
-            settle(model, graph, setting.parts, setting.variation, edges)
+            eliminate_symbols(model, graph, context.parts, context.variation, edges)
         };
         let mut kick = settled(graph, &kick);
-        pivots.extend(leading(graph, block));
+        pivots.extend(symmetric_pivots(graph, block));
         let inverse = solve_symmetric(graph, block, &unit(uniform.len()))?;
         let push: Vec<Edge> = uniform.iter().map(|&i| kick[i]).collect();
         for (row, &place) in inverse.iter().zip(uniform) {
@@ -140,7 +140,7 @@ impl Functions {
             .zip(rotors)
             .map(|(part, inertia)| RotorForm {
                 name: part.name.clone(),
-                inertia: form(graph, inertia),
+                inertia: inertia_form(graph, inertia),
                 steered: kick[part.rates()]
                     .iter()
                     .any(|edge| graph.class(edge.node()) & class::CONFIGURATION != 0),
@@ -156,8 +156,8 @@ impl Functions {
             .collect();
         let positive = |pivot: &Edge| graph.as_rational(*pivot).is_none();
         pivots.retain(positive);
-        Some(Functions {
-            turned: in_body_axes(graph, &before, setting, &of_velocities, rotors),
+        Some(SplitFunctions {
+            turned: in_body_axes(graph, &before, context, &of_velocities, rotors),
             centre,
             uncentre,
             momenta,
@@ -192,12 +192,12 @@ impl Functions {
     ///
     /// Each function is the cheapest of the variants here and in `others`, which were found from
     /// other computations of M and the forces.
-    pub fn add(&self, others: &[Functions], builder: &mut Builder) -> Vec<Edge> {
+    pub fn add(&self, others: &[SplitFunctions], builder: &mut ProgramBuilder) -> Vec<Edge> {
         for &id in FunctionId::ALL {
             let Some(outputs) = self.value(id) else {
                 continue;
             };
-            let mut candidates = Candidates::with(&builder.care);
+            let mut candidates = Candidates::new(&builder.numerical_loss);
             candidates.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
             if id == FunctionId::SplitMomenta {
                 for (graph, momenta) in &self.turned {
@@ -223,14 +223,14 @@ impl Functions {
 fn in_body_axes(
     from: &Graph,
     before: &Graph,
-    setting: &Setting,
+    context: &StructureContext,
     rows: &[Vec<Edge>],
     rotors: &[Mat3],
 ) -> Vec<(Graph, Vec<Edge>)> {
-    let (model, parts) = (setting.model, setting.parts);
+    let (model, parts) = (context.model, context.parts);
     let points = parts.iter().filter(|part| part.block == Block::Flat(3));
-    let points: Vec<&Part> = points.collect();
-    let turning: Vec<&Part> = parts.iter().filter(|part| part.turns()).collect();
+    let points: Vec<&CoordinateBlock> = points.collect();
+    let turning: Vec<&CoordinateBlock> = parts.iter().filter(|part| part.turns()).collect();
     let mut candidates = Vec::new();
     for rotor in turning.iter().filter(|_| !points.is_empty()) {
         let mut graph = before.clone();
@@ -283,7 +283,7 @@ fn cheaper(graph: &Graph, a: Vec<Edge>, b: Vec<Edge>) -> Vec<Edge> {
 }
 
 /// Returns the pivots of a symmetric matrix.
-fn leading(graph: &mut Graph, rows: &[Vec<Edge>]) -> Vec<Edge> {
+fn symmetric_pivots(graph: &mut Graph, rows: &[Vec<Edge>]) -> Vec<Edge> {
     let n = rows.len();
     let mut rows = rows.to_vec();
     for k in 0..n {
@@ -301,7 +301,7 @@ fn leading(graph: &mut Graph, rows: &[Vec<Edge>]) -> Vec<Edge> {
 }
 
 /// Returns the form that an inertia has for all values of the parameters.
-fn form(graph: &Graph, j: &Mat3) -> Inertia {
+fn inertia_form(graph: &Graph, j: &Mat3) -> Inertia {
     let zero = graph.zero();
     let diagonal = (0..3).all(|a| (0..3).all(|b| a == b || j[a][b] == zero));
     if !diagonal {

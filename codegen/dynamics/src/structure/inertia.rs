@@ -1,22 +1,22 @@
 //! Inertia that remains when plain coordinates are shifted to centres of mass: one constant matrix
 //! for each rotor, and one for plain and circular coordinates together.
 
-use super::centre::{Shift, shift};
-use super::constant::settle;
-use super::rates::{Part, RateMaps, dependence, measure_alike, rates};
-use super::setting::Setting;
-use crate::accel::parts::Parts;
+use super::centre::{CentreShift, shift};
+use super::constant::eliminate_symbols;
+use super::context::StructureContext;
+use super::rates::{CoordinateBlock, RateMaps, dependence, preserves_volume, rates};
+use crate::accel::parts::EquationTerms;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, matrix, multiply, solve_symmetric, transpose};
 use hamel_language::model::layout::Block;
 use hamel_program::structure::Reason;
 
 /// System whose inertia splits into constant blocks.
-pub struct Separated {
+pub struct SplitInertia {
     /// Maps w = B ξ and ξ = N w.
     pub rates: RateMaps,
     /// Offset y − x and its rate.
-    pub shift: Shift,
+    pub shift: CentreShift,
     /// Inertia matrix J of every rotor, in order.
     pub rotors: Vec<Mat3>,
     /// Indices of the rates of plain and circular coordinates.
@@ -30,15 +30,15 @@ pub struct Separated {
 /// # Errors
 /// Returns the reasons why it does not split.
 pub fn separate(
-    setting: &Setting,
+    context: &StructureContext,
     graph: &mut Graph,
-    traced: &Parts,
-) -> Result<Separated, Vec<Reason>> {
-    let Setting {
+    traced: &EquationTerms,
+) -> Result<SplitInertia, Vec<Reason>> {
+    let StructureContext {
         model,
         parts,
         variation,
-    } = *setting;
+    } = *context;
     let n = model.n();
     let zero = graph.zero();
     let Some(rates) = rates(model, graph) else {
@@ -53,7 +53,7 @@ pub fn separate(
     let plain: Vec<usize> = parts
         .iter()
         .filter(|part| matches!(part.block, Block::Flat(_)))
-        .flat_map(Part::rates)
+        .flat_map(CoordinateBlock::rates)
         .collect();
     let square = |places: &[usize]| -> Vec<Edge> {
         let rows = places.iter();
@@ -68,7 +68,7 @@ pub fn separate(
     {
         return Err(depends(graph, &inertia.concat()));
     }
-    let of_plain = settle(model, graph, parts, variation, &of_plain);
+    let of_plain = eliminate_symbols(model, graph, parts, variation, &of_plain);
     // K = D⁻¹ M, with the rows of the plain rates.
     let right: Vec<Vec<Edge>> = plain.iter().map(|&f| inertia[f].clone()).collect();
     let of_plain: Vec<Vec<Edge>> = matrix(&of_plain, plain.len());
@@ -94,10 +94,10 @@ pub fn separate(
         let on = depends(graph, &inertia.concat());
         return Err(on);
     }
-    if !measure_alike(model, graph, &rates) {
+    if !preserves_volume(model, graph, &rates) {
         return Err(vec![Reason::Rates]);
     }
-    let left = settle(model, graph, parts, variation, &left.concat());
+    let left = eliminate_symbols(model, graph, parts, variation, &left.concat());
     if left.iter().any(|edge| !graph.is_free(edge.node())) {
         return Err(depends(graph, &inertia.concat()));
     }
@@ -108,7 +108,7 @@ pub fn separate(
     let uniform: Vec<usize> = parts
         .iter()
         .filter(|part| !part.turns())
-        .flat_map(Part::rates)
+        .flat_map(CoordinateBlock::rates)
         .collect();
     let block = uniform
         .iter()
@@ -123,7 +123,7 @@ pub fn separate(
             })
         })
         .collect();
-    Ok(Separated {
+    Ok(SplitInertia {
         rates,
         shift,
         rotors,
@@ -133,7 +133,7 @@ pub fn separate(
 }
 
 /// Returns each rotor that the remaining inertia couples to other coordinates, together with these.
-fn coupled(parts: &[Part], linked: impl Fn(usize, usize) -> bool) -> Vec<Reason> {
+fn coupled(parts: &[CoordinateBlock], linked: impl Fn(usize, usize) -> bool) -> Vec<Reason> {
     let mut found = Vec::new();
     for (place, rotor) in parts.iter().enumerate().filter(|(_, part)| part.turns()) {
         for (index, other) in parts.iter().enumerate() {

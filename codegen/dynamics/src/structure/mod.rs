@@ -22,40 +22,45 @@
 mod centre;
 pub mod choice;
 mod constant;
+mod context;
 mod forces;
 mod functions;
 mod inertia;
 pub mod rates;
-mod setting;
 mod tetrahedron;
 mod variation;
 
-pub(super) use functions::Functions;
+pub(super) use functions::SplitFunctions;
 
-use super::accel::parts::Parts;
+use super::accel::parts::EquationTerms;
+use context::StructureContext;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_language::model::pfaffian::Kind;
 use hamel_language::model::{Model, class};
 use hamel_program::structure::{Reason, Splitting, Structure};
-use rates::{Part, parts};
-use setting::Setting;
+use rates::{CoordinateBlock, coordinate_blocks};
 use variation::Variation;
 
 /// Result of the analysis, with the functions of a system that splits.
-pub struct Found {
+pub struct StructureAnalysis {
     /// Structure of the system.
     pub structure: Structure,
     /// Functions that the splitting methods call; `None` if the system does not split.
-    pub(super) functions: Option<Functions>,
+    pub(super) functions: Option<SplitFunctions>,
 }
 
 /// Analyses the structure of a model.
 ///
 /// `model` is `full` in the velocities that its constraints leave free; `traced` are its M and
 /// forces, in `graph`.
-pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Found {
+pub fn analyse(
+    full: &Model,
+    model: &Model,
+    graph: &Graph,
+    traced: &EquationTerms,
+) -> StructureAnalysis {
     let mut graph = graph.clone();
-    let blocks = parts(model);
+    let blocks = coordinate_blocks(model);
     let force: Vec<Edge> = (0..model.n())
         .map(|i| graph.add(traced.conservative[i], traced.applied[i]))
         .collect();
@@ -64,7 +69,7 @@ pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Fo
     let roots: Vec<Edge> = mass.iter().chain(&force).copied().collect();
     let variation = Variation::new(model, &graph, &roots);
     let damped = match &variation {
-        Some(variation) => forces::damped(full, model, &graph, variation, &force),
+        Some(variation) => forces::velocity_dependent_loads(full, model, &graph, variation, &force),
         None => Vec::new(),
     };
     let constrained = constrained(full);
@@ -88,12 +93,12 @@ pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Fo
             velocities: model.n(),
         }])
     } else if let Some(variation) = &variation {
-        let setting = Setting {
+        let context = StructureContext {
             model,
             parts: &blocks,
             variation,
         };
-        inertia::separate(&setting, &mut graph, traced)
+        inertia::separate(&context, &mut graph, traced)
     } else {
         Err(vec![Reason::Rates])
     };
@@ -101,17 +106,17 @@ pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Fo
     reasons.extend(structure.damped.iter().cloned());
     let (Ok(separated), Some(variation), true) = (found, &variation, reasons.is_empty()) else {
         structure.split = Err(reasons);
-        return Found {
+        return StructureAnalysis {
             structure,
             functions: None,
         };
     };
-    let setting = Setting {
+    let context = StructureContext {
         model,
         parts: &blocks,
         variation,
     };
-    let functions = Functions::new(&setting, graph, &separated, &force);
+    let functions = SplitFunctions::new(&context, graph, &separated, &force);
     structure.split = match &functions {
         Some(functions) => Ok(Splitting {
             rotors: functions.rotors.clone(),
@@ -119,7 +124,7 @@ pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Fo
         }),
         None => Err(vec![Reason::Rates]),
     };
-    Found {
+    StructureAnalysis {
         structure,
         functions,
     }
@@ -132,7 +137,7 @@ pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Fo
 fn dependence(
     model: &Model,
     graph: &Graph,
-    parts: &[Part],
+    parts: &[CoordinateBlock],
     variation: Option<&Variation>,
     mass: &[Edge],
 ) -> Vec<String> {

@@ -14,7 +14,7 @@ use hamel_language::model::layout::{Block, blocks};
 
 /// Block of x, with its position in x and among the rates, and the name of its coordinate.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct CoordinateBlock {
     /// Kind of the block.
     pub block: Block,
     /// Name as the language writes it: `R`, `X.p`.
@@ -25,7 +25,7 @@ pub struct Part {
     pub rate: usize,
 }
 
-impl Part {
+impl CoordinateBlock {
     /// Returns the indices of its rates.
     pub fn rates(&self) -> std::ops::Range<usize> {
         self.rate..self.rate + self.block.dimension()
@@ -44,7 +44,7 @@ impl Part {
 }
 
 /// Returns the blocks of x in order.
-pub fn parts(model: &Model) -> Vec<Part> {
+pub fn coordinate_blocks(model: &Model) -> Vec<CoordinateBlock> {
     let mut parts = Vec::new();
     let (mut first, mut rate) = (0, 0);
     for coordinate in &model.coordinates {
@@ -55,7 +55,7 @@ pub fn parts(model: &Model) -> Vec<Part> {
                 (_, 0) => ".p",
                 _ => ".R",
             };
-            parts.push(Part {
+            parts.push(CoordinateBlock {
                 block,
                 name: format!("{}{suffix}", coordinate.name),
                 first,
@@ -102,7 +102,7 @@ pub fn rates(model: &Model, graph: &mut Graph) -> Option<RateMaps> {
 
 /// Returns whether det B is constant, that is, whether d ln det B = tr (N dB) vanishes along all
 /// rates.
-pub fn measure_alike(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool {
+pub fn preserves_volume(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool {
     let zero = graph.zero();
     let tangents = all_tangents(graph, &model.blocks, &model.x, |_| true);
     // Entries that depend on coordinates; in large matrices they are few.
@@ -132,7 +132,7 @@ pub fn measure_alike(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool
 pub fn dependence(
     variation: &Variation,
     graph: &Graph,
-    parts: &[Part],
+    parts: &[CoordinateBlock],
     x: &[Edge],
     edges: &[Edge],
 ) -> Vec<String> {

@@ -12,9 +12,9 @@ use hamel_algebra::tape::Tape;
 use hamel_language::model::Model;
 
 /// Number of points to try, since square roots have no value at some.
-const TRIES: u64 = 400;
+const MAX_POINTS_TRIED: u64 = 400;
 /// Seed of the first point.
-const SEED: u64 = 0x5711;
+const FIRST_SEED: u64 = 0x5711;
 
 /// Point of X from which symbols are varied.
 pub struct Variation<'a> {
@@ -26,8 +26,8 @@ impl<'a> Variation<'a> {
     /// Finds a point at which all of the expressions have a value; `None` if no tried one has that
     /// property.
     pub fn new(model: &'a Model, graph: &Graph, edges: &[Edge]) -> Option<Self> {
-        (0..TRIES).find_map(|seed| {
-            let here = model.points.lane(SEED + seed)?;
+        (0..MAX_POINTS_TRIED).find_map(|seed| {
+            let here = model.points.lane(FIRST_SEED + seed)?;
             evaluate_at(graph, edges, &mut here.clone())?;
             Some(Variation { model, here })
         })
@@ -67,8 +67,12 @@ impl Dependence<'_> {
     /// point was found.
     pub fn changes(&self, moved: &[Edge]) -> Vec<bool> {
         let places = self.graph.symbol_places(moved);
-        let there = (0..TRIES).find_map(|seed| {
-            let other = self.variation.model.points.lane(SEED + TRIES + seed)?;
+        let there = (0..MAX_POINTS_TRIED).find_map(|seed| {
+            let other = self
+                .variation
+                .model
+                .points
+                .lane(FIRST_SEED + MAX_POINTS_TRIED + seed)?;
             let mut there = self.variation.here.clone();
             for &place in &places {
                 there.set_symbol(place, other.symbol(place));

@@ -6,7 +6,7 @@
 //! from recursive inverse dynamics, so that only the accelerations due to ξ̇ are propagated here.
 
 use super::inverse::{Wrench, to_parent};
-use super::mass::Mass;
+use super::mass::LinkInertia;
 use super::{Freedom, Link, Tree};
 use crate::accel::solve::Solution;
 use hamel_algebra::graph::{Edge, Graph, Label};
@@ -128,7 +128,7 @@ pub fn forward(
 }
 
 impl Inertia {
-    fn rigid(graph: &mut Graph, mass: &Mass) -> Self {
+    fn rigid(graph: &mut Graph, mass: &LinkInertia) -> Self {
         let j = mass.inertia(graph);
         let identity = identity3(graph);
         Inertia {

@@ -5,7 +5,7 @@
 
 use super::Tree;
 use super::inverse::{Wrench, to_parent};
-use super::mass::Mass;
+use super::mass::LinkInertia;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::resubstitute::resubstitute;
 use hamel_language::model::provenance::Quantity;
@@ -17,39 +17,39 @@ use hamel_program::count::count;
 /// second moments and be known to the graph beforehand (`Apart`), or from the rotated second
 /// moments (`OfS`).
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Polar {
+enum PolarMoments {
     Apart,
     OfS,
 }
 
 /// A matrix together with the graph that it was built in.
-type Way = (Graph, Vec<Vec<Edge>>);
+type MatrixInGraph = (Graph, Vec<Vec<Edge>>);
 
 /// Returns M, n × n, by the variant with the fewest operations before resubstitution.
 ///
 /// This is the starting point for computing M⁻¹.
 pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
-    shortest(graph, mass_matrices(graph, tree, n))
+    cheapest_matrix(graph, mass_matrices(graph, tree, n))
 }
 
 /// Returns M by the variant with the fewest operations, resubstituted ones included, for use as M
 /// itself.
 pub fn mass_matrix_alone(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     let mut ways = mass_matrices(graph, tree, n);
-    let polished = |(way, matrix): &Way| {
+    let polished = |(way, matrix): &MatrixInGraph| {
         let (way, entries) = resubstitute(way, &matrix.concat(), graph)?;
         Some((
             way,
             entries.chunks(n.max(1)).map(<[Edge]>::to_vec).collect(),
         ))
     };
-    let polished: Vec<Way> = ways.iter().filter_map(polished).collect();
+    let polished: Vec<MatrixInGraph> = ways.iter().filter_map(polished).collect();
     ways.extend(polished);
-    shortest(graph, ways)
+    cheapest_matrix(graph, ways)
 }
 
-fn shortest(graph: &mut Graph, mut ways: Vec<Way>) -> Vec<Vec<Edge>> {
-    let weight = |(graph, matrix): &Way| count(graph, &matrix.concat()).weight();
+fn cheapest_matrix(graph: &mut Graph, mut ways: Vec<MatrixInGraph>) -> Vec<Vec<Edge>> {
+    let weight = |(graph, matrix): &MatrixInGraph| count(graph, &matrix.concat()).weight();
     let least = (0..ways.len()).min_by_key(|&way| weight(&ways[way]));
     let (chosen, matrix) = ways.swap_remove(least.unwrap_or(0));
     *graph = chosen;
@@ -59,7 +59,7 @@ fn shortest(graph: &mut Graph, mut ways: Vec<Way>) -> Vec<Vec<Edge>> {
 /// Returns M from second moments alone, the inertias from which the slopes of forces are computed,
 /// too.
 pub fn by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
-    by_composites(graph, tree, n, Polar::OfS)
+    by_composites(graph, tree, n, PolarMoments::OfS)
 }
 
 /// Returns M from second moments alone and, if there are parallel hinges, also from inertias about
@@ -67,14 +67,14 @@ pub fn by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Ed
 ///
 /// Each variant is built in its own copy of the graph, since a graph that already knows a value
 /// does not compute it again in another way.
-pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<Way> {
+pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<MatrixInGraph> {
     let mut links = tree.links.iter();
     let parallel = links.any(|link| link.turns.is_empty() || tree.parallel(graph, link).is_some());
-    let ways: &[Polar] = match parallel {
-        true => &[Polar::OfS, Polar::Apart],
-        false => &[Polar::OfS],
+    let ways: &[PolarMoments] = match parallel {
+        true => &[PolarMoments::OfS, PolarMoments::Apart],
+        false => &[PolarMoments::OfS],
     };
-    let by = |&way: &Polar| {
+    let by = |&way: &PolarMoments| {
         let mut graph = graph.clone();
         let matrix = by_composites(&mut graph, tree, n, way);
         (graph, matrix)
@@ -83,17 +83,17 @@ pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<Way> {
 }
 
 /// Returns the composite inertia of each link and its descendants about the origin of the link.
-fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
-    if way == Polar::Apart {
-        tree.know_polars(graph);
+fn composite_inertias(graph: &mut Graph, tree: &Tree, way: PolarMoments) -> Vec<LinkInertia> {
+    if way == PolarMoments::Apart {
+        tree.register_polar_moments(graph);
     }
-    let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
+    let mut composite: Vec<LinkInertia> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
         composite[index].label(graph, Quantity::CompositeInertia.of(link.frame));
         if let Some(parent) = link.parent {
             let mut turned = composite[index];
             for turn in link.turns.iter().rev() {
-                if way == Polar::Apart {
+                if way == PolarMoments::Apart {
                     // Enter the polar moment, which a rotation about the third axis does not
                     // change, before it.
                     turned.polar(graph);
@@ -101,7 +101,7 @@ fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
                 turned = turned.turned(graph, turn);
             }
             let moved = turned.shifted(graph, link.position);
-            if way == Polar::Apart {
+            if way == PolarMoments::Apart {
                 let polar = turned.polar(graph);
                 let moments = [turned.first, moved.first];
                 let arms = moments.map(|h| graph.dot(&link.position[..2], &h[..2]));
@@ -116,8 +116,8 @@ fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
 }
 
 /// Computes M from the wrenches of the composite bodies.
-fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: Polar) -> Vec<Vec<Edge>> {
-    let composite = composites(graph, tree, way);
+fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: PolarMoments) -> Vec<Vec<Edge>> {
+    let composite = composite_inertias(graph, tree, way);
     let mut matrix = vec![vec![graph.zero(); n]; n];
     for (index, link) in tree.links.iter().enumerate() {
         for (place, freedom) in link.freedoms.iter().enumerate() {

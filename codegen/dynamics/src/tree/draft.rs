@@ -1,9 +1,9 @@
 //! Derivation of links and joints from frames: the joint follows from the coordinates on which the
 //! frame's pose in its parent depends.
 
-use super::mass::Mass;
+use super::mass::LinkInertia;
 use super::revolute::{Hinge, hinge};
-use super::turn::Turn;
+use super::turn::RotationFactor;
 use super::{Freedom, Link};
 use crate::calculus::Calculus;
 use hamel_algebra::graph::{Edge, Graph};
@@ -15,7 +15,7 @@ use hamel_language::model::provenance::Quantity;
 
 /// A link whose frame can still be moved.
 #[derive(Clone, Debug)]
-pub struct Draft {
+pub struct LinkDraft {
     /// Index of the frame that the joint carries.
     pub frame: usize,
     /// Index of the parent link.
@@ -27,7 +27,7 @@ pub struct Draft {
     /// Motion of the link relative to its parent.
     pub motion: JointMotion,
     /// Inertia of the link.
-    pub mass: Mass,
+    pub mass: LinkInertia,
 }
 
 /// Motion of a link relative to its parent.
@@ -40,7 +40,7 @@ pub enum JointMotion {
         /// Cosine and sine of a constant offset that is added to the joint angle.
         phase: (Edge, Edge),
         /// Plane rotations whose product is `base`, up to a rotation about the third axis.
-        turns: Vec<Turn>,
+        turns: Vec<RotationFactor>,
         /// Rate of the joint angle, Σ k ξⁱ, as pairs (i, k).
         rate: Vec<(usize, Edge)>,
     },
@@ -49,7 +49,7 @@ pub enum JointMotion {
     Other(Option<Mat3>, Vec<Freedom>, (Vec3, Vec3)),
 }
 
-impl Draft {
+impl LinkDraft {
     /// Converts the draft to a link.
     pub fn finish(self, graph: &mut Graph) -> Link {
         let zero = zero3(graph);
@@ -62,7 +62,7 @@ impl Draft {
             } => {
                 let (cc, ss) = (graph.mul(cos, c), graph.mul(sin, s));
                 let (sc, cs) = (graph.mul(sin, c), graph.mul(cos, s));
-                turns.push(Turn::About {
+                turns.push(RotationFactor::About {
                     axis: 2,
                     cos: graph.sub(cc, ss),
                     sin: graph.add(sc, cs),
@@ -79,13 +79,13 @@ impl Draft {
                 let identity = identity3(graph);
                 match rotation {
                     Some(rotation) if is_permutation(graph, &self.base) => {
-                        turns.push(Turn::By(multiply3(graph, &self.base, &rotation)));
+                        turns.push(RotationFactor::By(multiply3(graph, &self.base, &rotation)));
                     }
                     rotation => {
                         if self.base != identity {
-                            turns.push(Turn::By(self.base));
+                            turns.push(RotationFactor::By(self.base));
                         }
-                        turns.extend(rotation.map(Turn::By));
+                        turns.extend(rotation.map(RotationFactor::By));
                     }
                 }
                 (turns, freedoms, velocity_product)
@@ -115,20 +115,20 @@ fn is_permutation(graph: &Graph, matrix: &Mat3) -> bool {
 
 /// Pose of a frame of the description: its link, and its constant pose in the link's frame.
 #[derive(Clone, Copy)]
-struct Place {
+struct FixedPose {
     link: Option<usize>,
     rotation: Mat3,
     position: Vec3,
 }
 
 /// Derives the links of a model; `None` as for [`draft_with_carriers`].
-pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
-    Some(draft_with_carriers(model, calculus)?.0)
+pub fn draft_links(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<LinkDraft>> {
+    Some(draft_links_with_frames(model, calculus)?.0)
 }
 
 /// Frame of the description that a joint carries.
 #[derive(Clone, Copy, Debug)]
-pub struct Carrier {
+pub struct JointFrame {
     /// Index of the frame in the model.
     pub frame: usize,
     /// Axes of the frame in those of the link.
@@ -136,25 +136,25 @@ pub struct Carrier {
     /// Origin of the link in this frame.
     pub origin: Vec3,
     /// Inertia of the link about the origin of this frame, in the axes of the link.
-    pub mass: Mass,
+    pub mass: LinkInertia,
 }
 
 /// Derives the links of a model, and the frame from which each of them was made.
 ///
 /// Returns `None` if the model has neither bodies nor particles, has other kinetic energy than
 /// theirs and that of armatures, or has a particle that is not fixed to a frame.
-pub fn draft_with_carriers(
+pub fn draft_links_with_frames(
     model: &mut Model,
     calculus: &mut Calculus,
-) -> Option<(Vec<Draft>, Vec<Carrier>)> {
+) -> Option<(Vec<LinkDraft>, Vec<JointFrame>)> {
     if model.bodies.len() + model.particles.len() == 0 || has_more_inertia(model) {
         return None;
     }
-    let mut links: Vec<Draft> = Vec::new();
-    let mut places: Vec<Place> = Vec::new();
-    let mut carriers: Vec<Carrier> = Vec::new();
+    let mut links: Vec<LinkDraft> = Vec::new();
+    let mut places: Vec<FixedPose> = Vec::new();
+    let mut joint_frames: Vec<JointFrame> = Vec::new();
     for (index, frame) in model.frames.clone().into_iter().enumerate() {
-        let world = Place {
+        let world = FixedPose {
             link: None,
             rotation: identity3(&model.graph),
             position: zero3(&model.graph),
@@ -169,7 +169,7 @@ pub fn draft_with_carriers(
         let moved = apply3(graph, &on.rotation, shift);
         let position = add3(graph, on.position, moved);
         if constant(graph, &turn.concat()) && constant(graph, &shift) {
-            places.push(Place {
+            places.push(FixedPose {
                 link: on.link,
                 rotation: multiply3(graph, &on.rotation, &turn),
                 position,
@@ -178,39 +178,40 @@ pub fn draft_with_carriers(
         }
         let (motion, base, rotation) = joint(model, calculus, &on.rotation, &turn, shift)?;
         let graph = &model.graph;
-        links.push(Draft {
+        links.push(LinkDraft {
             frame: index,
             parent: on.link,
             base,
             position,
             motion,
-            mass: Mass::none(graph),
+            mass: LinkInertia::zero(graph),
         });
-        carriers.push(Carrier {
+        joint_frames.push(JointFrame {
             frame: index,
             axes: rotation,
             origin: zero3(graph),
-            mass: Mass::none(graph),
+            mass: LinkInertia::zero(graph),
         });
-        places.push(Place {
+        places.push(FixedPose {
             link: Some(links.len() - 1),
             rotation,
             position: zero3(graph),
         });
     }
     for body in model.bodies.clone() {
-        let mass = Mass::of(&mut model.graph, &body);
-        load(&mut model.graph, &mut links, places.get(body.frame)?, &mass);
+        let mass = LinkInertia::of(&mut model.graph, &body);
+        add_inertia(&mut model.graph, &mut links, places.get(body.frame)?, &mass);
     }
     for particle in model.particles.clone() {
-        let (frame, position) = carrier(model, particle.position)?;
-        let mass = Mass::point(&model.graph, particle.mass).shifted(&mut model.graph, position);
-        load(&mut model.graph, &mut links, places.get(frame)?, &mass);
+        let (frame, position) = frame_of_point(model, particle.position)?;
+        let mass =
+            LinkInertia::point(&model.graph, particle.mass).shifted(&mut model.graph, position);
+        add_inertia(&mut model.graph, &mut links, places.get(frame)?, &mass);
     }
-    for (carrier, link) in carriers.iter_mut().zip(&links) {
-        carrier.mass = link.mass;
+    for (joint_frame, link) in joint_frames.iter_mut().zip(&links) {
+        joint_frame.mass = link.mass;
     }
-    Some((links, carriers))
+    Some((links, joint_frames))
 }
 
 /// Returns whether there is kinetic energy in addition to that of bodies, particles and armatures.
@@ -229,7 +230,7 @@ pub fn has_more_inertia(model: &mut Model) -> bool {
 }
 
 /// Finds a frame to which a point is fixed, and its position in that frame.
-fn carrier(model: &mut Model, point: Vec3) -> Option<(usize, Vec3)> {
+fn frame_of_point(model: &mut Model, point: Vec3) -> Option<(usize, Vec3)> {
     let frames = model.frames.clone();
     frames.iter().enumerate().find_map(|(index, frame)| {
         let graph = &mut model.graph;
@@ -241,12 +242,12 @@ fn carrier(model: &mut Model, point: Vec3) -> Option<(usize, Vec3)> {
 }
 
 /// Adds a mass that is fixed to a frame to the link of the frame.
-fn load(graph: &mut Graph, links: &mut [Draft], place: &Place, mass: &Mass) {
+fn add_inertia(graph: &mut Graph, links: &mut [LinkDraft], place: &FixedPose, mass: &LinkInertia) {
     let Some(link) = place.link.and_then(|link| links.get_mut(link)) else {
         return;
     };
     let mass = mass
-        .turned(graph, &Turn::By(place.rotation))
+        .turned(graph, &RotationFactor::By(place.rotation))
         .shifted(graph, place.position);
     link.mass = link.mass.plus(graph, &mass);
 }

@@ -5,13 +5,13 @@
 //! vector of the hinge's own velocity, then M s and M e agree in the rows of the velocities of the
 //! hinge's subtree, provided that the hinge has no armature.
 
-use super::uniform::{along, unit};
+use super::uniform::{axis_of_unit_vector, translation_axis};
 use super::{Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, cross, zero3};
 
-/// The motion of a joint, expressed by velocities of the first link.
-pub struct Twin {
+/// Velocities of the first link that move a joint's subtree as the joint itself does.
+pub struct EquivalentMotion {
     /// Index of the joint's velocity.
     pub of: usize,
     /// Velocities of the first link and their values per unit of the joint's velocity.
@@ -21,12 +21,14 @@ pub struct Twin {
 impl Tree {
     /// Returns the twins of all joints on first links, for which the first link has the freedoms
     /// needed.
-    pub fn twins(&self, graph: &mut Graph) -> Vec<Twin> {
+    pub fn equivalent_motions(&self, graph: &mut Graph) -> Vec<EquivalentMotion> {
         let links = self.links.iter();
-        links.filter_map(|link| self.twin(graph, link)).collect()
+        links
+            .filter_map(|link| self.equivalent_motion(graph, link))
+            .collect()
     }
 
-    fn twin(&self, graph: &mut Graph, link: &Link) -> Option<Twin> {
+    fn equivalent_motion(&self, graph: &mut Graph, link: &Link) -> Option<EquivalentMotion> {
         let root = &self.links[link.parent?];
         if root.parent.is_some() {
             return None;
@@ -52,7 +54,10 @@ impl Tree {
             let &[(i, factor)] = freedom.rate.as_slice() else {
                 return None;
             };
-            let place = match (along(graph, freedom), unit(graph, freedom.angular)) {
+            let place = match (
+                translation_axis(graph, freedom),
+                axis_of_unit_vector(graph, freedom.angular),
+            ) {
                 (Some(axis), _) => &mut slides[axis],
                 (None, Some(axis)) if freedom.linear == zero3(graph) => &mut turns[axis],
                 _ => return None,
@@ -67,6 +72,6 @@ impl Tree {
         }
         // A remainder is motion for which the first link has no freedom.
         let whole = turns.iter().chain(&slides).all(|&rest| rest == zero);
-        whole.then_some(Twin { of, by })
+        whole.then_some(EquivalentMotion { of, by })
     }
 }

@@ -7,7 +7,7 @@
 //! For a hinge about an axis e the column U e equals that of the parent link, since ê e = 0. Given
 //! U e, ω and α·e, the rest of U takes fewer operations than from ω and α.
 
-use super::mass::Mass;
+use super::mass::LinkInertia;
 use super::{Link, Tree};
 use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{
@@ -96,7 +96,7 @@ pub fn wrenches(
     let wrenches: Vec<Wrench> = links
         .map(|(link, motion)| wrench(graph, &link.mass, motion))
         .collect();
-    if let Some(made) = Made::of(graph, xi, xi_dot) {
+    if let Some(made) = LinkQuantities::of(graph, xi, xi_dot) {
         for (link, wrench) in tree.links.iter().zip(&wrenches) {
             wrench.label(graph, made.wrench.of(link.frame));
         }
@@ -105,13 +105,13 @@ pub fn wrenches(
 }
 
 /// Quantities that the recursion makes for each link.
-struct Made {
+struct LinkQuantities {
     alpha: Quantity,
     acceleration: Quantity,
     wrench: Quantity,
 }
 
-impl Made {
+impl LinkQuantities {
     /// Returns the quantities of a motion with these velocities and accelerations. `None` if velocities stand in the
     /// place of accelerations, for a momentum.
     fn of(graph: &Graph, xi: &[Edge], xi_dot: &[Edge]) -> Option<Self> {
@@ -120,13 +120,13 @@ impl Made {
         // Accelerations that are still unknown are set to zero, those of drives are not.
         match xi_dot.iter().any(is_zero) {
             true if rests && !xi_dot.iter().all(is_zero) => None,
-            true => Some(Made {
+            true => Some(LinkQuantities {
                 alpha: Quantity::LinkBiasAngularAcceleration,
                 acceleration: Quantity::LinkBiasAcceleration,
                 wrench: Quantity::LinkBiasWrench,
             }),
             false if rests => None,
-            false => Some(Made {
+            false => Some(LinkQuantities {
                 alpha: Quantity::LinkAngularAcceleration,
                 acceleration: Quantity::LinkAcceleration,
                 wrench: Quantity::LinkWrench,
@@ -137,7 +137,7 @@ impl Made {
 
 /// How U = α̂ + ω̂ ω̂ of the links is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tensors {
+pub enum TensorRoute {
     /// From ω and α of each link.
     Each,
     /// If the hinge is along a coordinate axis of the link and of its parent, the column of U along
@@ -149,9 +149,14 @@ pub enum Tensors {
 }
 
 /// All variants, the simplest first.
-pub(crate) const TENSORS: [Tensors; 3] = [Tensors::Each, Tensors::Carried, Tensors::Chained];
+pub(crate) const TENSOR_ROUTES: [TensorRoute; 3] = [
+    TensorRoute::Each,
+    TensorRoute::Carried,
+    TensorRoute::Chained,
+];
 /// Variants that compute α of every link, too.
-pub(crate) const WITH_ALPHA: [Tensors; 2] = [Tensors::Each, Tensors::Carried];
+pub(crate) const TENSOR_ROUTES_WITH_ALPHA: [TensorRoute; 2] =
+    [TensorRoute::Each, TensorRoute::Carried];
 
 /// Velocities ξ, their derivatives ξ̇ and gravity.
 pub(crate) type Motion<'a> = (&'a [Edge], &'a [Edge], Vec3);
@@ -160,15 +165,15 @@ impl Tree {
     /// Returns the tree with the variant for U by which M ξ̇ + Γ ξ ξ + ∂V of a motion is cheapest.
     ///
     /// The cost is that of adding these forces to (a copy of) the graph.
-    pub(crate) fn cheapest(&self, ways: &[Tensors], graph: &Graph, motion: Motion) -> Tree {
-        let with = |&tensors: &Tensors| Tree {
+    pub(crate) fn cheapest(&self, ways: &[TensorRoute], graph: &Graph, motion: Motion) -> Tree {
+        let with = |&tensors: &TensorRoute| Tree {
             tensors,
             ..self.clone()
         };
         let cost = |tree: &Tree| {
             let mut graph = graph.clone();
             let (xi, xi_dot, gravity) = motion;
-            let forces = inverse(&mut graph, tree, xi, xi_dot, gravity);
+            let forces = inverse_dynamics(&mut graph, tree, xi, xi_dot, gravity);
             count(&graph, &forces).weight()
         };
         let cheapest = ways.iter().map(with).min_by_key(cost);
@@ -196,11 +201,15 @@ pub(crate) fn motions(
     };
     // At rest, U = α̂.
     let rest = xi.iter().all(|&rate| rate == graph.zero());
-    let tensors = if rest { Tensors::Each } else { tree.tensors };
+    let tensors = if rest {
+        TensorRoute::Each
+    } else {
+        tree.tensors
+    };
     // Links whose α is needed by a child.
     let mut passing = vec![false; tree.links.len()];
     for link in &tree.links {
-        let is_chained = tensors == Tensors::Chained && kept_axes(graph, link).is_some();
+        let is_chained = tensors == TensorRoute::Chained && kept_axes(graph, link).is_some();
         if let Some(parent) = link.parent.filter(|_| !is_chained) {
             passing[parent] = true;
         }
@@ -210,7 +219,7 @@ pub(crate) fn motions(
         let before = link.parent.map_or(ground, |parent| motions[parent]);
         let way = (tensors, passes);
         let motion = outward(graph, link, &before, (xi, xi_dot), way);
-        if let Some(made) = Made::of(graph, xi, xi_dot) {
+        if let Some(made) = LinkQuantities::of(graph, xi, xi_dot) {
             let of = |quantity: Quantity| quantity.of(link.frame);
             graph.label(&motion.omega, of(Quantity::LinkAngularVelocity));
             graph.label(&motion.alpha, of(made.alpha));
@@ -228,7 +237,7 @@ fn outward(
     link: &Link,
     before: &LinkMotion,
     (xi, xi_dot): (&[Edge], &[Edge]),
-    (tensors, passes): (Tensors, bool),
+    (tensors, passes): (TensorRoute, bool),
 ) -> LinkMotion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
@@ -257,11 +266,11 @@ fn outward(
     let omega = add3(graph, omega_before, relative.0);
     let alpha_before = link.from_parent_axes(graph, before.alpha);
     let turning = match tensors {
-        Tensors::Each => None,
-        Tensors::Chained if kept_axes(graph, link).is_some() => None,
-        Tensors::Carried | Tensors::Chained => {
+        TensorRoute::Each => None,
+        TensorRoute::Chained if kept_axes(graph, link).is_some() => None,
+        TensorRoute::Carried | TensorRoute::Chained => {
             let along = add3(graph, alpha_before, change.0);
-            carried(graph, link, before, (omega, along), passes)
+            carry_tensor(graph, link, before, (omega, along), passes)
         }
     };
     let turning = turning.unwrap_or_else(|| {
@@ -269,12 +278,12 @@ fn outward(
         let alpha = add3(graph, alpha_before, gyro);
         let alpha = add3(graph, alpha, change.0);
         let chained = match tensors {
-            Tensors::Each | Tensors::Carried => None,
-            Tensors::Chained => chained(graph, link, before, omega_before, (xi, xi_dot)),
+            TensorRoute::Each | TensorRoute::Carried => None,
+            TensorRoute::Chained => chain_tensor(graph, link, before, omega_before, (xi, xi_dot)),
         };
         match chained {
-            Some(u) => Turning::with(graph, alpha, u),
-            None => Turning::of(graph, omega, alpha),
+            Some(u) => RotationalMotion::with(graph, alpha, u),
+            None => RotationalMotion::of(graph, omega, alpha),
         }
     });
     let across = apply3(graph, &before.u, link.position);
@@ -287,7 +296,7 @@ fn outward(
         a = add3(graph, a, coriolis);
     }
     let a = add3(graph, a, change.1);
-    let Turning {
+    let RotationalMotion {
         alpha,
         u,
         differences,
@@ -304,7 +313,7 @@ fn outward(
 }
 
 /// Rotational motion of a link: α and U.
-pub(crate) struct Turning {
+pub(crate) struct RotationalMotion {
     alpha: Vec3,
     /// α̂ + ω̂ ω̂ = α̂ + ω ωᵀ − |ω|² I.
     pub(crate) u: Mat3,
@@ -312,7 +321,7 @@ pub(crate) struct Turning {
     pub(crate) differences: Vec3,
 }
 
-impl Turning {
+impl RotationalMotion {
     pub(crate) fn of(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Self {
         let square = omega.map(|w| graph.mul(w, w));
         let mut differences = zero3(graph);
@@ -325,7 +334,7 @@ impl Turning {
             u[j][k] = graph.sub(product, alpha[i]);
             u[k][j] = graph.add(product, alpha[i]);
         }
-        Turning {
+        RotationalMotion {
             alpha,
             u,
             differences,
@@ -337,7 +346,7 @@ impl Turning {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             graph.sub(u[k][k], u[j][j])
         };
-        Turning {
+        RotationalMotion {
             alpha,
             u,
             differences: [0, 1, 2].map(difference),
@@ -364,7 +373,7 @@ fn kept_axes(graph: &mut Graph, link: &Link) -> Option<Mat3> {
 ///
 /// Here ω₀ is in the axes of this link, and the third column is that of U₀. Returns `None` for
 /// other joints, and if the axes of link and parent do not just differ in sign and order.
-fn chained(
+fn chain_tensor(
     graph: &mut Graph,
     link: &Link,
     before: &LinkMotion,
@@ -398,13 +407,13 @@ fn chained(
 ///
 /// Returns `None` unless the joint is a hinge whose axis is a coordinate axis of both the link and
 /// its parent. `passes` says whether a child needs α, which decides what is cheaper.
-fn carried(
+fn carry_tensor(
     graph: &mut Graph,
     link: &Link,
     before: &LinkMotion,
     (omega, along): (Vec3, Vec3),
     passes: bool,
-) -> Option<Turning> {
+) -> Option<RotationalMotion> {
     let zero = zero3(graph);
     let [freedom] = link.freedoms.as_slice() else {
         return None;
@@ -460,14 +469,14 @@ fn carried(
     } else {
         (graph.sub(u[l][l], u[j][j]), graph.sub(u[h][h], u[l][l]))
     };
-    Some(Turning {
+    Some(RotationalMotion {
         alpha,
         u,
         differences,
     })
 }
 
-pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wrench {
+pub(super) fn wrench(graph: &mut Graph, mass: &LinkInertia, motion: &LinkMotion) -> Wrench {
     let LinkMotion { a, u, .. } = motion;
     let s = &mass.second;
     let push = scale3(graph, mass.mass, *a);
@@ -493,13 +502,18 @@ pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wre
 
 /// Returns the generalised force of wrenches on links: at each joint, that of the sum over its
 /// subtree.
-pub fn collect(graph: &mut Graph, tree: &Tree, wrenches: &[Wrench], n: usize) -> Vec<Edge> {
-    collect_with(graph, tree, wrenches, n, |_, _, total| *total)
+pub fn generalized_forces(
+    graph: &mut Graph,
+    tree: &Tree,
+    wrenches: &[Wrench],
+    n: usize,
+) -> Vec<Edge> {
+    generalized_forces_with(graph, tree, wrenches, n, |_, _, total| *total)
 }
 
 /// As [`collect`], with a function that maps the wrench on a joint's subtree to the one that acts
 /// on the joint.
-pub(super) fn collect_with(
+pub(super) fn generalized_forces_with(
     graph: &mut Graph,
     tree: &Tree,
     wrenches: &[Wrench],
@@ -532,7 +546,7 @@ pub fn to_parent(graph: &mut Graph, link: &Link, wrench: &Wrench) -> Wrench {
 }
 
 /// Returns the inverse dynamics M ξ̇ + Γ ξ ξ + ∂V, where V is the potential of gravity.
-pub fn inverse(
+pub fn inverse_dynamics(
     graph: &mut Graph,
     tree: &Tree,
     xi: &[Edge],
@@ -540,13 +554,15 @@ pub fn inverse(
     gravity: Vec3,
 ) -> Vec<Edge> {
     let wrenches = wrenches(graph, tree, xi, xi_dot, gravity);
-    let forces = match Made::of(graph, xi, xi_dot) {
-        None => collect(graph, tree, &wrenches, xi.len()),
-        Some(_) => collect_with(graph, tree, &wrenches, xi.len(), |graph, index, total| {
-            let frame = tree.links[index].frame;
-            total.label(graph, Quantity::JointWrench.of(frame));
-            *total
-        }),
+    let forces = match LinkQuantities::of(graph, xi, xi_dot) {
+        None => generalized_forces(graph, tree, &wrenches, xi.len()),
+        Some(_) => {
+            generalized_forces_with(graph, tree, &wrenches, xi.len(), |graph, index, total| {
+                let frame = tree.links[index].frame;
+                total.label(graph, Quantity::JointWrench.of(frame));
+                *total
+            })
+        }
     };
     let rotors = tree.armature.iter().zip(xi_dot);
     forces

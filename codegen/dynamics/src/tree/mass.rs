@@ -3,14 +3,14 @@
 //! m, h = ∫ r dm and S = ∫ r rᵀ dm, from which the inertia matrix is Θ = tr(S) I − S.
 
 use super::Link;
-use super::turn::Turn;
+use super::turn::RotationFactor;
 use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, scale3, zero3};
 use hamel_language::model::Body;
 
 /// Inertia of a link as mass m, first moment h and second moment S.
 #[derive(Clone, Copy, Debug)]
-pub struct Mass {
+pub struct LinkInertia {
     /// Mass (kg).
     pub mass: Edge,
     /// First moment (kg m).
@@ -19,10 +19,10 @@ pub struct Mass {
     pub second: Mat3,
 }
 
-impl Mass {
+impl LinkInertia {
     /// Returns the inertia of a massless link.
-    pub fn none(graph: &Graph) -> Self {
-        Mass {
+    pub fn zero(graph: &Graph) -> Self {
+        LinkInertia {
             mass: graph.zero(),
             first: zero3(graph),
             second: [zero3(graph); 3],
@@ -38,9 +38,9 @@ impl Mass {
 
     /// Returns the inertia of a particle at the origin.
     pub fn point(graph: &Graph, mass: Edge) -> Self {
-        Mass {
+        LinkInertia {
             mass,
-            ..Mass::none(graph)
+            ..LinkInertia::zero(graph)
         }
     }
 
@@ -60,7 +60,7 @@ impl Mass {
                 }
             })
         });
-        let central = Mass {
+        let central = LinkInertia {
             mass: body.mass,
             first: zero3(graph),
             second,
@@ -82,7 +82,7 @@ impl Mass {
                 second[j][i] = second[i][j];
             }
         }
-        Mass {
+        LinkInertia {
             mass: self.mass,
             first,
             second,
@@ -90,8 +90,8 @@ impl Mass {
     }
 
     /// Returns the inertia in rotated axes, where a point at r has the position R r.
-    pub fn turned(&self, graph: &mut Graph, turn: &Turn) -> Self {
-        Mass {
+    pub fn turned(&self, graph: &mut Graph, turn: &RotationFactor) -> Self {
+        LinkInertia {
             mass: self.mass,
             first: turn.rotate(graph, self.first),
             second: turn.symmetric(graph, &self.second),
@@ -106,8 +106,8 @@ impl Mass {
     }
 
     /// Returns the inertia of two bodies that are fixed to each other.
-    pub fn plus(&self, graph: &mut Graph, other: &Mass) -> Self {
-        Mass {
+    pub fn plus(&self, graph: &mut Graph, other: &LinkInertia) -> Self {
+        LinkInertia {
             mass: graph.add(self.mass, other.mass),
             first: add3(graph, self.first, other.first),
             second: std::array::from_fn(|i| {
@@ -123,7 +123,7 @@ impl Mass {
         let push = scale3(graph, self.mass, a);
         let tangential = cross(graph, alpha, self.first);
         let lever = cross(graph, self.first, a);
-        let spin = self.spun(graph, alpha);
+        let spin = self.times(graph, alpha);
         (add3(graph, push, tangential), add3(graph, spin, lever))
     }
 
@@ -146,8 +146,8 @@ impl Mass {
         })
     }
 
-    /// Returns Θ α = tr(S) α − S α.
-    pub fn spun(&self, graph: &mut Graph, alpha: Vec3) -> Vec3 {
+    /// Returns the product Θ α = tr(S) α − S α of the inertia matrix and a vector.
+    pub fn times(&self, graph: &mut Graph, alpha: Vec3) -> Vec3 {
         let s = &self.second;
         std::array::from_fn(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);

@@ -10,6 +10,7 @@
 pub mod articulated;
 pub mod composite;
 pub(crate) mod draft;
+pub mod equivalent_motion;
 pub mod inverse;
 pub mod mass;
 pub mod momentum;
@@ -17,19 +18,18 @@ mod parallel;
 mod reframe;
 mod regroup;
 mod revolute;
-mod safe;
+mod rounding_limits;
 pub mod slopes;
 pub mod turn;
-pub mod twin;
 pub mod uniform;
 
 use super::calculus::Calculus;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, apply_transposed};
 use hamel_language::model::Model;
-use inverse::{Tensors, Wrench};
-use mass::Mass;
-use turn::Turn;
+use inverse::{TensorRoute, Wrench};
+use mass::LinkInertia;
+use turn::RotationFactor;
 
 /// One column of a joint's motion subspace S.
 ///
@@ -85,7 +85,7 @@ pub struct Link {
     pub parent: Option<usize>,
     /// Factors of the rotation matrix whose columns are the axes of this link in those of its
     /// parent.
-    pub turns: Vec<Turn>,
+    pub turns: Vec<RotationFactor>,
     /// Origin of this link relative to its parent's, in the axes of the parent.
     pub position: Vec3,
     /// Columns of the motion subspace of its joint.
@@ -93,9 +93,9 @@ pub struct Link {
     /// Velocity-product acceleration of the joint, Ṡ times its rates: (angular, linear).
     pub velocity_product: (Vec3, Vec3),
     /// Inertia about the origin of the link.
-    pub mass: Mass,
+    pub mass: LinkInertia,
     /// The same inertia in the link's own axes, where the link uses axes shared with other links.
-    pub unshared: Mass,
+    pub unshared: LinkInertia,
 }
 
 impl Link {
@@ -131,7 +131,7 @@ pub struct Tree {
     /// force.
     pub armature: Vec<Edge>,
     /// How U = α̂ + ω̂ ω̂ of the links is computed.
-    pub tensors: Tensors,
+    pub tensors: TensorRoute,
 }
 
 /// Where the frames of the links are placed.
@@ -151,20 +151,20 @@ impl Tree {
     /// Returns `None` unless all of its inertia is that of armatures and of bodies and particles
     /// that are fixed to frames.
     pub fn of(model: &mut Model, calculus: &mut Calculus, placement: Placement) -> Option<Tree> {
-        let mut draft = draft::draft(model, calculus)?;
-        let safe = safe::Safe::of(model, &draft);
+        let mut draft = draft::draft_links(model, calculus)?;
+        let limits = rounding_limits::RoundingLimits::of(model, &draft);
         match placement {
             Placement::Chosen | Placement::Parallel => {
-                reframe::reframe(&mut model.graph, &mut draft, &safe);
+                reframe::reframe(&mut model.graph, &mut draft, &limits);
                 regroup::regroup(&mut model.graph, &mut draft);
             }
-            Placement::Described => reframe::keep(&mut model.graph, &mut draft, &safe),
+            Placement::Described => reframe::keep_frames(&mut model.graph, &mut draft, &limits),
         }
         let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
         let tree = Tree {
             links: links.collect(),
             armature: model.armature.clone(),
-            tensors: Tensors::Each,
+            tensors: TensorRoute::Each,
         };
         Some(match placement {
             Placement::Parallel => tree.sharing_axes(&mut model.graph).0,
@@ -180,33 +180,33 @@ impl Tree {
         model: &mut Model,
         calculus: &mut Calculus,
         moved: bool,
-    ) -> Option<(Tree, Vec<draft::Carrier>)> {
-        let (mut draft, mut carriers) = draft::draft_with_carriers(model, calculus)?;
-        let safe = safe::Safe::of(model, &draft);
+    ) -> Option<(Tree, Vec<draft::JointFrame>)> {
+        let (mut draft, mut joint_frames) = draft::draft_links_with_frames(model, calculus)?;
+        let limits = rounding_limits::RoundingLimits::of(model, &draft);
         let graph = &mut model.graph;
         if moved {
-            let distances = reframe::slide_all(graph, &mut draft, &safe);
-            for (carrier, distance) in carriers.iter_mut().zip(distances) {
+            let distances = reframe::keep_frames_shifted(graph, &mut draft, &limits);
+            for (joint_frame, distance) in joint_frames.iter_mut().zip(distances) {
                 let along = [graph.zero(), graph.zero(), distance];
-                carrier.origin = apply_transposed(graph, &carrier.axes, along);
+                joint_frame.origin = apply_transposed(graph, &joint_frame.axes, along);
             }
         } else {
-            reframe::keep(graph, &mut draft, &safe);
+            reframe::keep_frames(graph, &mut draft, &limits);
         }
         let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
         let tree = Tree {
             links: links.collect(),
             armature: model.armature.clone(),
-            tensors: Tensors::Each,
+            tensors: TensorRoute::Each,
         };
-        Some((tree, carriers))
+        Some((tree, joint_frames))
     }
 
     /// Computes the inertias of all links about their hinges in the graph.
     ///
     /// Rotations to shared axes do not change them. Once the graph knows their values, it does not
     /// compute them again from rotated entries.
-    pub fn know_polars(&self, graph: &mut Graph) {
+    pub fn register_polar_moments(&self, graph: &mut Graph) {
         for link in &self.links {
             link.unshared.polar(graph);
         }

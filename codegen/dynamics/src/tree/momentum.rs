@@ -7,8 +7,8 @@
 //! link this is (torque k × ω + l × v, force l × ω).
 
 use super::Tree;
-use super::inverse::{LinkMotion, Wrench, collect_with, motions, to_parent, wrench};
-use super::mass::Mass;
+use super::inverse::{LinkMotion, Wrench, generalized_forces_with, motions, to_parent, wrench};
+use super::mass::LinkInertia;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, add3, cross, zero3};
 
@@ -48,7 +48,7 @@ pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
 /// Each column is (linear, angular about the origin of the world) in world axes, and is the
 /// momentum of the subtree of the joint, moving as one body.
 pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
-    let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
+    let mut composite: Vec<LinkInertia> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
             let moved = composite[index].to_parent(graph, link);
@@ -94,5 +94,11 @@ pub fn quadratic_rate(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec
             torque: add3(graph, spin, lever),
         }
     };
-    Some(collect_with(graph, tree, &momenta, xi.len(), turned))
+    Some(generalized_forces_with(
+        graph,
+        tree,
+        &momenta,
+        xi.len(),
+        turned,
+    ))
 }

@@ -6,14 +6,14 @@
 //! each link is rotated, by the sum of the joint angles. The last link of a chain does the same,
 //! since its inertia is the only thing to rotate.
 
-use super::turn::Turn;
+use super::turn::RotationFactor;
 use super::{Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 
 impl Tree {
     /// Returns the same links in shared axes, and for each link that has given up its own axes
     /// their rotation relative to the shared ones.
-    pub fn sharing_axes(&self, graph: &mut Graph) -> (Tree, Vec<Option<Turn>>) {
+    pub fn sharing_axes(&self, graph: &mut Graph) -> (Tree, Vec<Option<RotationFactor>>) {
         let shares = self.shares(graph);
         let mut lags: Vec<Option<Plane>> = Vec::with_capacity(self.links.len());
         let mut links = Vec::with_capacity(self.links.len());
@@ -83,7 +83,7 @@ impl Tree {
 }
 
 /// Returns the rotations that precede the one of a hinge itself, and the angle of the hinge.
-fn hinge<'a>(graph: &Graph, link: &'a Link) -> Option<(&'a [Turn], Plane)> {
+fn hinge<'a>(graph: &Graph, link: &'a Link) -> Option<(&'a [RotationFactor], Plane)> {
     let (zero, one) = (graph.zero(), graph.one());
     let [freedom] = &link.freedoms[..] else {
         return None;
@@ -96,11 +96,11 @@ fn hinge<'a>(graph: &Graph, link: &'a Link) -> Option<(&'a [Turn], Plane)> {
 }
 
 /// Returns whether a rotation keeps the third axis.
-fn is_level(graph: &Graph, turn: &Turn) -> bool {
+fn is_level(graph: &Graph, turn: &RotationFactor) -> bool {
     match *turn {
-        Turn::About { axis: 2, .. } => true,
-        Turn::About { cos, sin, .. } => sin.abs() == graph.zero() && cos == graph.one(),
-        Turn::By(_) => false,
+        RotationFactor::About { axis: 2, .. } => true,
+        RotationFactor::About { cos, sin, .. } => sin.abs() == graph.zero() && cos == graph.one(),
+        RotationFactor::By(_) => false,
     }
 }
 
@@ -119,15 +119,15 @@ impl Plane {
         }
     }
 
-    fn of(turn: &Turn) -> Option<Self> {
+    fn of(turn: &RotationFactor) -> Option<Self> {
         match *turn {
-            Turn::About { axis: 2, cos, sin } => Some(Plane { cos, sin }),
+            RotationFactor::About { axis: 2, cos, sin } => Some(Plane { cos, sin }),
             _ => None,
         }
     }
 
-    fn turn(self) -> Turn {
-        Turn::About {
+    fn turn(self) -> RotationFactor {
+        RotationFactor::About {
             axis: 2,
             cos: self.cos,
             sin: self.sin,

@@ -5,18 +5,18 @@
 //!
 //! If α is the angle between two axes, the foot of their common normal is at p·z / sin² α along the
 //! axis. Rounding at a distance d costs (d / L)² units of roundoff if L is the size of the
-//! description. Therefore an origin is moved only as far as `safe` allows, and a direction is used
+//! description. Therefore an origin is moved only as far as `limits` allows, and a direction is used
 //! only if its numbers keep their digits; axes that are almost parallel are treated as parallel
 //! ones, and the small tilt between them is a rotation Rx(a) Ry(b).
 
-use super::draft::{Draft, JointMotion};
-use super::safe::Safe;
-use super::turn::Turn;
+use super::draft::{JointMotion, LinkDraft};
+use super::rounding_limits::RoundingLimits;
+use super::turn::RotationFactor;
 use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::linear::{Vec3, add3, scale3};
 
 /// Moves and rotates the frames of all links on hinges.
-pub fn reframe(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
+pub fn reframe(graph: &mut Graph, links: &mut [LinkDraft], limits: &RoundingLimits) {
     let weights = weights(links);
     for i in 0..=links.len() {
         // The world first, then every link.
@@ -26,32 +26,36 @@ pub fn reframe(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
             .collect();
         let hinged = parent.is_some_and(|link| is_hinge(&links[link]));
         for &j in &children {
-            if let Some(distance) = foot(graph, &links[j], hinged, safe) {
+            if let Some(distance) = foot(graph, &links[j], hinged, limits) {
                 slide(graph, links, j, distance);
             }
         }
         if let (Some(link), true) = (parent, hinged) {
             let mut children = children.clone();
             children.sort_by_key(|&j| std::cmp::Reverse(weights[j]));
-            if let Some(angle) = normal(graph, links, &children, safe) {
+            if let Some(angle) = normal(graph, links, &children, limits) {
                 spin(graph, links, link, angle);
             }
         }
         for j in children {
-            factor(graph, &mut links[j], safe);
+            factor(graph, &mut links[j], limits);
         }
     }
 }
 
 /// Keeps the frames of the description, except that hinges rotate about third axes.
-pub fn keep(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
+pub fn keep_frames(graph: &mut Graph, links: &mut [LinkDraft], limits: &RoundingLimits) {
     for link in links.iter_mut().filter(|link| is_hinge(link)) {
-        factor(graph, link, safe);
+        factor(graph, link, limits);
     }
 }
 
 /// As [`keep`], but with origins moved along their hinges; returns for each link how far.
-pub fn slide_all(graph: &mut Graph, links: &mut [Draft], safe: &Safe) -> Vec<Edge> {
+pub fn keep_frames_shifted(
+    graph: &mut Graph,
+    links: &mut [LinkDraft],
+    limits: &RoundingLimits,
+) -> Vec<Edge> {
     let mut distances = vec![graph.zero(); links.len()];
     // In order from the root, since the position of a link depends on the frame of its parent.
     for j in 0..links.len() {
@@ -59,21 +63,21 @@ pub fn slide_all(graph: &mut Graph, links: &mut [Draft], safe: &Safe) -> Vec<Edg
             continue;
         }
         let hinged = links[j].parent.is_some_and(|link| is_hinge(&links[link]));
-        if let Some(distance) = foot(graph, &links[j], hinged, safe) {
+        if let Some(distance) = foot(graph, &links[j], hinged, limits) {
             slide(graph, links, j, distance);
             distances[j] = distance;
         }
     }
-    keep(graph, links, safe);
+    keep_frames(graph, links, limits);
     distances
 }
 
-fn is_hinge(link: &Draft) -> bool {
+fn is_hinge(link: &LinkDraft) -> bool {
     matches!(link.motion, JointMotion::Hinge { .. })
 }
 
 /// Returns for each link the number of links in its subtree, including the link itself.
-fn weights(links: &[Draft]) -> Vec<usize> {
+fn weights(links: &[LinkDraft]) -> Vec<usize> {
     let mut weights = vec![1; links.len()];
     for j in (0..links.len()).rev() {
         if let Some(parent) = links[j].parent {
@@ -84,7 +88,7 @@ fn weights(links: &[Draft]) -> Vec<usize> {
 }
 
 /// Returns the hinge axis of a link in the axes of its parent.
-fn axis(link: &Draft) -> Vec3 {
+fn axis(link: &LinkDraft) -> Vec3 {
     std::array::from_fn(|row| link.base[row][2])
 }
 
@@ -96,7 +100,12 @@ fn numeric(graph: &Graph, edges: &[Edge]) -> bool {
 
 /// Returns by how much the origin of a link is best moved along its hinge: to the foot of the
 /// common normal with the hinge of the parent, or to where a coordinate vanishes.
-fn foot(graph: &mut Graph, link: &Draft, hinged: bool, safe: &Safe) -> Option<Edge> {
+fn foot(
+    graph: &mut Graph,
+    link: &LinkDraft,
+    hinged: bool,
+    limits: &RoundingLimits,
+) -> Option<Edge> {
     let (z, p) = (axis(link), link.position);
     let zero = graph.zero();
     if !numeric(graph, &z) {
@@ -113,42 +122,42 @@ fn foot(graph: &mut Graph, link: &Draft, hinged: bool, safe: &Safe) -> Option<Ed
     let square = graph.add(x, y);
     let forward = graph.dot(&p[..2], &z[..2]);
     let distance = -graph.div(forward, square)?;
-    if safe.is_near(graph, distance) {
+    if limits.allows_shift(graph, distance) {
         return Some(distance);
     }
     // The hinges are almost parallel: move to the height of the parent's origin, as for parallel
     // axes.
     let level = -graph.div(p[2], z[2])?;
-    safe.is_near(graph, level).then_some(level)
+    limits.allows_shift(graph, level).then_some(level)
 }
 
 /// Returns cosine and sine of the angle by which the axes of a link are best rotated about its
 /// hinge.
 fn normal(
     graph: &mut Graph,
-    links: &[Draft],
+    links: &[LinkDraft],
     children: &[usize],
-    safe: &Safe,
+    limits: &RoundingLimits,
 ) -> Option<(Edge, Edge)> {
     let zero = graph.zero();
     let directions: Vec<(Edge, Edge)> = children
         .iter()
         .map(|&j| axis(&links[j]))
-        .filter(|z| numeric(graph, z) && safe.has_direction(graph, &z[..2]))
+        .filter(|z| numeric(graph, z) && limits.has_direction(graph, &z[..2]))
         .map(|z| (-z[1], z[0]))
         .collect();
     let oblique = |&(x, y): &(Edge, Edge)| x.abs() != zero || y.abs() != zero;
     for (x, y) in directions.into_iter().filter(oblique) {
         let (c, s) = direction(graph, x, y)?;
-        if safe.is_sharp(graph, &[c, s]) {
+        if limits.is_accurate(graph, &[c, s]) {
             return Some((c, s));
         }
     }
     let arms = children.iter().map(|&j| links[j].position);
     for p in arms.filter(|p| p[0] != zero && p[1] != zero) {
-        if numeric(graph, &p[..2]) && safe.has_direction(graph, &p[..2]) {
+        if numeric(graph, &p[..2]) && limits.has_direction(graph, &p[..2]) {
             let (c, s) = direction(graph, p[0], p[1])?;
-            if safe.is_sharp(graph, &[c, s]) {
+            if limits.is_accurate(graph, &[c, s]) {
                 return Some((c, s));
             }
         }
@@ -170,7 +179,7 @@ fn direction(graph: &mut Graph, x: Edge, y: Edge) -> Option<(Edge, Edge)> {
 }
 
 /// Moves the origin of a link along its hinge.
-fn slide(graph: &mut Graph, links: &mut [Draft], j: usize, distance: Edge) {
+fn slide(graph: &mut Graph, links: &mut [LinkDraft], j: usize, distance: Edge) {
     if distance.abs() == graph.zero() {
         return;
     }
@@ -185,8 +194,8 @@ fn slide(graph: &mut Graph, links: &mut [Draft], j: usize, distance: Edge) {
 }
 
 /// Rotates the axes of a link about its hinge.
-fn spin(graph: &mut Graph, links: &mut [Draft], i: usize, (c, s): (Edge, Edge)) {
-    let back = Turn::About {
+fn spin(graph: &mut Graph, links: &mut [LinkDraft], i: usize, (c, s): (Edge, Edge)) {
+    let back = RotationFactor::About {
         axis: 2,
         cos: c,
         sin: -s,
@@ -200,7 +209,7 @@ fn spin(graph: &mut Graph, links: &mut [Draft], i: usize, (c, s): (Edge, Edge)) 
 }
 
 /// base := R base.
-fn turn_base(graph: &mut Graph, link: &mut Draft, turn: &Turn) {
+fn turn_base(graph: &mut Graph, link: &mut LinkDraft, turn: &RotationFactor) {
     for column in 0..3 {
         let v = turn.rotate(graph, std::array::from_fn(|row| link.base[row][column]));
         for (row, entry) in link.base.iter_mut().zip(v) {
@@ -210,7 +219,7 @@ fn turn_base(graph: &mut Graph, link: &mut Draft, turn: &Turn) {
 }
 
 /// Adds a constant to the angle of a link's hinge, given by its cosine and sine.
-fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
+fn advance(graph: &mut Graph, link: &mut LinkDraft, (c, s): (Edge, Edge)) {
     if let JointMotion::Hinge { phase, .. } = &mut link.motion {
         let (cc, ss) = (graph.mul(phase.0, c), graph.mul(phase.1, s));
         let (sc, cs) = (graph.mul(phase.1, c), graph.mul(phase.0, s));
@@ -222,8 +231,8 @@ fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
 /// accurate.
 ///
 /// The first two factors are stored as turns, the last is added to the joint angle.
-fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
-    let Some(first) = tilt(graph, axis(link), safe) else {
+fn factor(graph: &mut Graph, link: &mut LinkDraft, limits: &RoundingLimits) {
+    let Some(first) = tilt(graph, axis(link), limits) else {
         return;
     };
     let mut rest = link.base;
@@ -245,20 +254,20 @@ fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
 ///
 /// They are Rz(β) Rx(α) with (sin β, −cos β) = (x, y) / sin α, or Rx(a) Ry(b) with sin b = x and
 /// (−sin a, cos a) = (y, w) / cos b.
-fn tilt(graph: &mut Graph, z: Vec3, safe: &Safe) -> Option<[Turn; 2]> {
+fn tilt(graph: &mut Graph, z: Vec3, limits: &RoundingLimits) -> Option<[RotationFactor; 2]> {
     let zero = graph.zero();
     let [x, y, w] = z;
-    let about = |axis, cos, sin| Turn::About { axis, cos, sin };
+    let about = |axis, cos, sin| RotationFactor::About { axis, cos, sin };
     if x.abs() == zero {
         return Some([about(2, graph.one(), zero), about(0, w, -y)]);
     }
     if y.abs() == zero {
         return Some([about(2, zero, graph.one()), about(0, w, x)]);
     }
-    if safe.has_direction(graph, &[x, y]) {
+    if limits.has_direction(graph, &[x, y]) {
         let length = hypotenuse(graph, x, y);
         let (c, s) = (-graph.div(y, length)?, graph.div(x, length)?);
-        if safe.is_sharp(graph, &[c, s]) {
+        if limits.is_accurate(graph, &[c, s]) {
             return Some([about(2, c, s), about(0, w, length)]);
         }
     }

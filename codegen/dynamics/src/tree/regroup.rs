@@ -5,17 +5,17 @@
 //! parent link. A prismatic joint does not rotate its link, so that all of S is moved; a ball joint
 //! passes on m.
 
-use super::draft::{Draft, JointMotion};
-use super::mass::Mass;
-use super::turn::Turn;
+use super::draft::{JointMotion, LinkDraft};
+use super::mass::LinkInertia;
+use super::turn::RotationFactor;
 use hamel_algebra::graph::Graph;
 use hamel_algebra::linear::zero3;
 
 /// Regroups the inertias of all links, from the last to the first.
-pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
+pub fn regroup(graph: &mut Graph, links: &mut [LinkDraft]) {
     for j in (0..links.len()).rev() {
         let zero = graph.zero();
-        let mut moved = Mass::none(graph);
+        let mut moved = LinkInertia::zero(graph);
         let own = links[j].mass;
         let mut left = own;
         match &links[j].motion {
@@ -45,7 +45,7 @@ pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
             JointMotion::Hinge { turns, .. } => turns.clone(),
             // A link that only translates keeps the axes that its parent had before those were
             // rotated.
-            JointMotion::Other(..) => vec![Turn::By(links[j].base)],
+            JointMotion::Other(..) => vec![RotationFactor::By(links[j].base)],
         };
         links[j].mass = left;
         if let Some(parent) = links[j].parent {

@@ -10,13 +10,13 @@
 //! Russell and Wensing (2022), in axes of links.
 
 use super::inverse::{LinkMotion, Wrench, motions, to_parent, wrench};
-use super::mass::Mass;
+use super::mass::LinkInertia;
 use super::{Freedom, Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, scale3, zero3};
 
 /// Derivatives ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ requires.
-pub struct Slopes {
+pub struct InverseDynamicsDerivatives {
     /// ∂f/∂h; columns belong to displacements.
     pub displacement: Vec<Vec<Edge>>,
     /// ∂f/∂ξ; columns belong to velocities.
@@ -49,7 +49,7 @@ pub fn slopes(
     xi: &[Edge],
     xi_dot: &[Edge],
     gravity: Vec3,
-) -> Option<Slopes> {
+) -> Option<InverseDynamicsDerivatives> {
     let n = xi.len();
     let steady = |link: &Link| {
         let entries = link
@@ -62,7 +62,7 @@ pub fn slopes(
         return None;
     }
     let motions = motions(graph, tree, xi, xi_dot, gravity);
-    let mut masses: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
+    let mut masses: Vec<LinkInertia> = tree.links.iter().map(|link| link.mass).collect();
     let mut totals = Vec::new();
     let mut relative_momenta = vec![RelativeMomentum::none(graph); tree.links.len()];
     for (link, motion) in tree.links.iter().zip(&motions) {
@@ -79,7 +79,7 @@ pub fn slopes(
             totals[parent] = totals[parent].plus(graph, &total);
         }
     }
-    let mut slopes = Slopes {
+    let mut slopes = InverseDynamicsDerivatives {
         displacement: vec![vec![graph.zero(); n]; n],
         velocity: vec![vec![graph.zero(); n]; n],
     };
@@ -90,8 +90,13 @@ pub fn slopes(
         .zip(&motions)
         .map(|(link, motion)| {
             let both = link.freedoms.iter();
-            both.map(|f| (displaced(graph, f, motion), faster(graph, f, motion)))
-                .collect()
+            both.map(|f| {
+                (
+                    displacement_variation(graph, f, motion),
+                    velocity_variation(graph, f, motion),
+                )
+            })
+            .collect()
         })
         .collect();
     for (index, link) in tree.links.iter().enumerate() {
@@ -125,7 +130,7 @@ pub fn slopes(
             let (by_place, by_rate) = varied[index][place];
             let mut wrenches = [by_place, by_rate].map(|v| composite.wrench(graph, &v));
             let total = totals[index];
-            wrenches[0] = follow(graph, &wrenches[0], freedom, &total);
+            wrenches[0] = transport_change(graph, &wrenches[0], freedom, &total);
             let mut here = index;
             while let Some(parent) = tree.links[here].parent {
                 wrenches = wrenches.map(|wrench| to_parent(graph, &tree.links[here], &wrench));
@@ -142,7 +147,12 @@ pub fn slopes(
 }
 
 /// Adds the change of the wrench that rotates and moves along with the joint: e × f, e × n + l × f.
-fn follow(graph: &mut Graph, change: &Wrench, freedom: &Freedom, total: &Wrench) -> Wrench {
+fn transport_change(
+    graph: &mut Graph,
+    change: &Wrench,
+    freedom: &Freedom,
+    total: &Wrench,
+) -> Wrench {
     let force = cross(graph, freedom.angular, total.force);
     let torque = cross(graph, freedom.angular, total.torque);
     let lever = cross(graph, freedom.linear, total.force);
@@ -155,7 +165,7 @@ fn follow(graph: &mut Graph, change: &Wrench, freedom: &Freedom, total: &Wrench)
 
 /// Variation of a link's motion with a displacement of its joint: the motion of the parent link as
 /// seen from the displaced link.
-fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
+fn displacement_variation(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
     let [omega, alpha, a] = motion.from_parent.map(|v| cross(graph, v, freedom.angular));
     let gyro = cross(graph, omega, motion.relative.0);
     let alpha = add3(graph, alpha, gyro);
@@ -173,7 +183,7 @@ fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Varia
 }
 
 /// Variation of a link's motion with the velocity of its joint.
-fn faster(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
+fn velocity_variation(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
     let before = motion.from_parent[0];
     let twice = add3(graph, before, motion.omega);
     let (a, b) = (
@@ -243,7 +253,7 @@ fn centripetal(graph: &mut Graph, omega: Vec3, p: Vec3) -> Mat3 {
 
 /// Subtree of a joint as one rigid body, in addition to the motion of its links relative to it.
 struct Composite {
-    mass: Mass,
+    mass: LinkInertia,
     relative_momentum: RelativeMomentum,
     omega: Vec3,
 }
@@ -348,7 +358,13 @@ impl RelativeMomentum {
 
     /// Transforms to the motion relative to the parent, which includes the motion of the link
     /// itself.
-    fn to_parent(self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
+    fn to_parent(
+        self,
+        graph: &mut Graph,
+        link: &Link,
+        mass: &LinkInertia,
+        motion: &LinkMotion,
+    ) -> Self {
         let (spin, speed) = motion.relative;
         let (spin, speed) = (add3(graph, spin, spin), add3(graph, speed, speed));
         let turning = cross(graph, spin, mass.first);

@@ -3,9 +3,9 @@
 use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, apply_transposed, apply3, multiply3, transpose3};
 
-/// One factor of a rotation.
+/// Factor of a rotation: a plane rotation about a coordinate axis, or a rotation matrix.
 #[derive(Clone, Copy, Debug)]
-pub enum Turn {
+pub enum RotationFactor {
     /// Rotation about the axis `axis` (0, 1, 2) by the angle with this cosine and sine.
     About {
         /// Index of the axis.
@@ -19,28 +19,28 @@ pub enum Turn {
     By(Mat3),
 }
 
-impl Turn {
+impl RotationFactor {
     /// Labels the entries of the rotation.
     pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
         match self {
-            Turn::By(matrix) => graph.label(&matrix.concat(), label),
-            Turn::About { cos, sin, .. } => graph.label(&[*cos, *sin], label),
+            RotationFactor::By(matrix) => graph.label(&matrix.concat(), label),
+            RotationFactor::About { cos, sin, .. } => graph.label(&[*cos, *sin], label),
         }
     }
 
     /// Returns R v.
     pub fn rotate(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
-            Turn::By(ref matrix) => apply3(graph, matrix, v),
-            Turn::About { axis, cos, sin } => plane(graph, axis, cos, sin, v),
+            RotationFactor::By(ref matrix) => apply3(graph, matrix, v),
+            RotationFactor::About { axis, cos, sin } => plane(graph, axis, cos, sin, v),
         }
     }
 
     /// Returns Rᵀ v.
     pub fn rotate_back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
-            Turn::By(ref matrix) => apply_transposed(graph, matrix, v),
-            Turn::About { axis, cos, sin } => plane(graph, axis, cos, -sin, v),
+            RotationFactor::By(ref matrix) => apply_transposed(graph, matrix, v),
+            RotationFactor::About { axis, cos, sin } => plane(graph, axis, cos, -sin, v),
         }
     }
 
@@ -50,12 +50,12 @@ impl Turn {
     /// becomes a − sin t, d + sin t and cos t − b.
     pub fn symmetric(&self, graph: &mut Graph, s: &Mat3) -> Mat3 {
         match *self {
-            Turn::By(ref matrix) => {
+            RotationFactor::By(ref matrix) => {
                 let left = multiply3(graph, matrix, s);
                 let turned = multiply3(graph, &left, &transpose3(matrix));
                 std::array::from_fn(|i| std::array::from_fn(|j| turned[i.max(j)][i.min(j)]))
             }
-            Turn::About { axis, cos, sin } => {
+            RotationFactor::About { axis, cos, sin } => {
                 if sin == graph.zero() && cos == graph.one() {
                     return *s;
                 }
@@ -74,7 +74,7 @@ impl Turn {
                 turned[j][j] = graph.add(d, along);
                 turned[i][j] = graph.sub(across, b);
                 turned[j][i] = turned[i][j];
-                let pair = pair(graph, cos, sin, (s[i][k], s[j][k]));
+                let pair = rotate_pair(graph, cos, sin, (s[i][k], s[j][k]));
                 (turned[i][k], turned[j][k]) = pair;
                 (turned[k][i], turned[k][j]) = pair;
                 turned
@@ -85,11 +85,11 @@ impl Turn {
     /// Returns R H Rᵀ for any matrix H.
     pub fn general(&self, graph: &mut Graph, h: &Mat3) -> Mat3 {
         match *self {
-            Turn::By(ref matrix) => {
+            RotationFactor::By(ref matrix) => {
                 let left = multiply3(graph, matrix, h);
                 multiply3(graph, &left, &transpose3(matrix))
             }
-            Turn::About { axis, cos, sin } => {
+            RotationFactor::About { axis, cos, sin } => {
                 if sin == graph.zero() && cos == graph.one() {
                     return *h;
                 }
@@ -106,8 +106,8 @@ impl Turn {
                 turned[j][j] = graph.add(h[j][j], along);
                 turned[i][j] = graph.sub(across, h[j][i]);
                 turned[j][i] = graph.sub(across, h[i][j]);
-                (turned[i][k], turned[j][k]) = pair(graph, cos, sin, (h[i][k], h[j][k]));
-                (turned[k][i], turned[k][j]) = pair(graph, cos, sin, (h[k][i], h[k][j]));
+                (turned[i][k], turned[j][k]) = rotate_pair(graph, cos, sin, (h[i][k], h[j][k]));
+                (turned[k][i], turned[k][j]) = rotate_pair(graph, cos, sin, (h[k][i], h[k][j]));
                 turned
             }
         }
@@ -115,7 +115,7 @@ impl Turn {
 }
 
 /// Returns (c a − s b, s a + c b).
-fn pair(graph: &mut Graph, cos: Edge, sin: Edge, (a, b): (Edge, Edge)) -> (Edge, Edge) {
+fn rotate_pair(graph: &mut Graph, cos: Edge, sin: Edge, (a, b): (Edge, Edge)) -> (Edge, Edge) {
     let (ca, sb) = (graph.mul(cos, a), graph.mul(sin, b));
     let (sa, cb) = (graph.mul(sin, a), graph.mul(cos, b));
     (graph.sub(ca, sb), graph.add(sa, cb))
@@ -124,6 +124,6 @@ fn pair(graph: &mut Graph, cos: Edge, sin: Edge, (a, b): (Edge, Edge)) -> (Edge,
 fn plane(graph: &mut Graph, axis: usize, cos: Edge, sin: Edge, v: Vec3) -> Vec3 {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut turned = v;
-    (turned[i], turned[j]) = pair(graph, cos, sin, (v[i], v[j]));
+    (turned[i], turned[j]) = rotate_pair(graph, cos, sin, (v[i], v[j]));
     turned
 }

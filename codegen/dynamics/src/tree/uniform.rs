@@ -10,8 +10,8 @@ use super::{Freedom, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, zero3};
 
-/// Motion that all links have in common.
-pub struct Uniform {
+/// Velocity and acceleration that all links of a free tree have in common.
+pub struct CommonMotion {
     /// ξ with zeros in place of the velocities of the first links.
     pub xi: Vec<Edge>,
     /// Difference between ξ̇ and the proper acceleration, −ω × v + Rᵀ g.
@@ -23,11 +23,16 @@ pub struct Uniform {
 impl Tree {
     /// Returns the common motion of all links; `None` if a first link is held, or its velocity is
     /// not plain.
-    pub fn uniform(&self, graph: &mut Graph, xi: &[Edge], gravity: Vec3) -> Option<Uniform> {
+    pub fn common_motion(
+        &self,
+        graph: &mut Graph,
+        xi: &[Edge],
+        gravity: Vec3,
+    ) -> Option<CommonMotion> {
         let zero = graph.zero();
         let still = vec![zero; xi.len()];
         let motions = motions(graph, self, xi, &still, gravity);
-        let mut uniform = Uniform {
+        let mut uniform = CommonMotion {
             xi: xi.to_vec(),
             rates: still,
             common: Vec::new(),
@@ -39,7 +44,7 @@ impl Tree {
             }
             let mut axes = Vec::new();
             for freedom in &link.freedoms {
-                if let Some(axis) = along(graph, freedom) {
+                if let Some(axis) = translation_axis(graph, freedom) {
                     let &[(i, factor)] = freedom.rate.as_slice() else {
                         return None;
                     };
@@ -64,12 +69,12 @@ impl Tree {
 }
 
 /// Returns the axis of the link along which a freedom translates it without rotation.
-pub fn along(graph: &Graph, freedom: &Freedom) -> Option<usize> {
-    unit(graph, freedom.linear).filter(|_| freedom.angular == zero3(graph))
+pub fn translation_axis(graph: &Graph, freedom: &Freedom) -> Option<usize> {
+    axis_of_unit_vector(graph, freedom.linear).filter(|_| freedom.angular == zero3(graph))
 }
 
 /// Returns the axis of which a vector is the unit vector.
-pub fn unit(graph: &Graph, v: Vec3) -> Option<usize> {
+pub fn axis_of_unit_vector(graph: &Graph, v: Vec3) -> Option<usize> {
     let (zero, one) = (graph.zero(), graph.one());
     (0..3).find(|&k| (0..3).all(|i| v[i] == if i == k { one } else { zero }))
 }

@@ -10,7 +10,7 @@ use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::residue_pair::ResiduePair;
-use hamel_dynamics::accel::saddle::{self, Solved};
+use hamel_dynamics::accel::kkt::{self, KktValues};
 use hamel_dynamics::reduction::Reduction;
 use hamel_program::{FunctionId, Program};
 
@@ -199,10 +199,10 @@ impl<'a> PointComparison<'a> {
         force: Option<&[ResiduePair]>,
         right: &[ResiduePair],
         driven: &[(usize, ResiduePair)],
-    ) -> Option<Solved> {
+    ) -> Option<KktValues> {
         let none = vec![ResiduePair::ZERO; self.reduction.active.len()];
         let parts = [&self.mass[..], force.unwrap_or(&none), &self.kept, right];
-        saddle::solve_at(
+        kkt::solve_at(
             &self.full.reduced,
             parts,
             driven,
@@ -212,7 +212,7 @@ impl<'a> PointComparison<'a> {
     }
 
     /// Returns the ξ̇ₐ and λ that the forces imply.
-    fn solve_implied(&self) -> Option<Solved> {
+    fn solve_implied(&self) -> Option<KktValues> {
         let Values { force, slope, .. } = &self.values;
         let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
         let rest: Vec<ResiduePair> = rest.collect();

@@ -14,7 +14,7 @@ use hamel_algebra::graph::{Edge, Function, Graph};
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::transplant::{substitute, substitute_under_roots};
-use hamel_dynamics::accel::saddle;
+use hamel_dynamics::accel::kkt;
 use hamel_dynamics::calculus::Calculus;
 use hamel_dynamics::reduction::{Reduction, drift};
 use hamel_dynamics::{kinematics, quantity};
@@ -59,9 +59,13 @@ impl Full {
         let frame = agrees(model, &reference);
         let full = &mut reference.model;
         let xi: Vec<Edge> = reduction.active.iter().map(|&i| full.xi[i]).collect();
-        let drift = drift(full, &xi, &reduction.section);
-        let section = &reduction.section;
-        let lifted = [section.complement.concat(), section.shift.clone()].concat();
+        let drift = drift(full, &xi, &reduction.parametrization);
+        let parametrization = &reduction.parametrization;
+        let lifted = [
+            parametrization.complement.concat(),
+            parametrization.shift.clone(),
+        ]
+        .concat();
         let mut calculus = Calculus::new(full);
         let energy = full.graph.add(reference.kinetic, reference.potential);
         let change = calculus.rate(&mut full.graph, energy);
@@ -77,8 +81,8 @@ impl Full {
         let solved = reduction.solved.iter();
         let solved: Vec<(usize, Edge)> = solved
             .map(|&(_, i)| {
-                let moved = full.graph.dot(&section.complement[i], &xi);
-                (place[i], full.graph.add(moved, section.shift[i]))
+                let moved = full.graph.dot(&parametrization.complement[i], &xi);
+                (place[i], full.graph.add(moved, parametrization.shift[i]))
             })
             .collect();
         let mut reduced = states::with_rates(&reduction.model, program);
@@ -90,7 +94,7 @@ impl Full {
         });
         let forms = forms.collect();
         let mut calculus = Calculus::new(&reduced);
-        let right = saddle::right_side(&mut reduced, &mut calculus);
+        let right = kkt::constraint_accelerations(&mut reduced, &mut calculus);
         let mut full = Full {
             drift,
             complement: lifted,

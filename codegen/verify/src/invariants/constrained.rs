@@ -86,12 +86,12 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
 /// Returns T and V.
 fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
     let kinetic = if model.is_affine() {
-        energy::traced(model, calculus)
+        energy::kinetic_of_bodies(model, calculus)
     } else {
         let mass = inertia::mass_matrix(model, calculus);
         energy::kinetic(model, &mass)
     };
-    let kinetic = energy::part_of_energy(model, kinetic);
+    let kinetic = energy::kinetic_in_energy(model, kinetic);
     (kinetic, energy::potential(model))
 }
 

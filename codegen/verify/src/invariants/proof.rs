@@ -63,7 +63,7 @@ impl Prover {
         } = Geometry::unreduced(model)?;
         // Normal forms at every stage keep the polynomials small. They may be differentiated, since the columns of A
         // are tangent to X.
-        let mut forms = NormalForms::within(&model.points, EXPANSION_WORK);
+        let mut forms = NormalForms::with_budget(&model.points, EXPANSION_WORK);
         let entries = gamma.iter_mut().flatten().flatten();
         for entry in entries.chain(mass.iter_mut().flatten()) {
             *entry = normal(&mut forms, &mut free.graph, *entry);
