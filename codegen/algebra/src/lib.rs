@@ -17,6 +17,7 @@ pub mod function;
 pub mod graph;
 pub mod interval;
 pub mod jets;
+pub mod least_norm_newton;
 pub mod linear;
 pub mod nearest_solution;
 pub mod newton;

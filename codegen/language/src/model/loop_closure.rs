@@ -10,23 +10,28 @@ use super::pfaffian::{Kind, Pfaffian};
 use super::{Clock, Coordinate, Model};
 use crate::algebra::dense::{dot, least_norm};
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::least_norm_newton::{self, End, Linearized, Outcome, StoppingRule};
 use crate::algebra::linear::matrix;
 use crate::algebra::nearest_solution::find_nearest;
 use crate::algebra::numeric::evaluate;
 use crate::algebra::residual_scale::{relative_residual, residual_scales};
 use crate::algebra::slopes::slopes;
 
-/// Largest number of steps of Newton's method.
-const STEPS: usize = 60;
+/// Largest number of steps of Newton's method; near a solution, six are usual.
+const MAX_NEWTON_STEPS: usize = 60;
 /// Number of searches in `LoopClosure::assemble`; each scales the equations by their sizes where the last one ended.
-const JUDGED: usize = 3;
+const MAX_RESCALED_SEARCHES: usize = 3;
 /// Smallest number of steps for constraints on velocities, so that rounding is refined away.
-const LEAST_ROUNDS: usize = 3;
+const MIN_VELOCITY_STEPS: usize = 3;
+/// Ratio of the residuals of constraints on velocities after and before a step at which only rounding is left.
+const VELOCITY_STAGNATION_RATIO: f64 = 0.5;
+/// Ratio of the sums of squared residuals φ after and before a step at which only rounding is left.
+const SQUARED_STAGNATION_RATIO: f64 = 0.25;
 /// Largest residual of a solution, relative to its [scale](residual_scales).
-const SOLVED: f64 = 1e-12;
+const RESIDUAL_TOLERANCE: f64 = 1e-12;
 /// Largest residual, relative to the size of its terms, that counts as rounding of the given numbers; those are then
 /// corrected.
-const ROUNDING: f64 = 1e-6;
+const ROUNDED_RESIDUAL: f64 = 1e-6;
 
 /// The equations φ(x) = 0 of loops and B(x) ξ = 0, with numeric parameters.
 pub struct LoopClosure<'a> {
@@ -118,7 +123,10 @@ impl<'a> LoopClosure<'a> {
             return Ok(());
         };
         let all = vec![false; given.len()];
-        let attempts = [Some(given), (beside <= ROUNDING).then_some(&all[..])];
+        let attempts = [
+            Some(given),
+            (beside <= ROUNDED_RESIDUAL).then_some(&all[..]),
+        ];
         for fixed in attempts.into_iter().flatten() {
             if let Some(closed) = self.newton(x, fixed, &sizes).filter(|x| self.is_closed(x)) {
                 *x = closed;
@@ -143,7 +151,7 @@ impl<'a> LoopClosure<'a> {
         // Sizes at the guess say little about points far from it.
         let mut sizes = self.sizes(x);
         let mut found = None;
-        for _ in 0..JUDGED {
+        for _ in 0..MAX_RESCALED_SEARCHES {
             let loops = Loops::new(self, mass, x, given, &sizes);
             found = find_nearest(&loops, x);
             let Some(there) = found.as_ref().filter(|x| !self.is_closed(x)) else {
@@ -219,49 +227,57 @@ impl<'a> LoopClosure<'a> {
     /// Returns x with all loops closed, moved along A without changing fixed entries; `None` if Newton's method
     /// fails.
     fn newton(&self, from: &[f64], fixed: &[bool], sizes: &[f64]) -> Option<Vec<f64>> {
-        let mut x = from.to_vec();
         let n = self.n;
         let rows = self
             .loops()
             .into_iter()
             .map(|place| &self.constraints[place].row);
         let rows: Vec<Edge> = rows.flatten().copied().collect();
-        let mut best = f64::INFINITY;
-        for _ in 0..STEPS {
-            let residuals = self.residuals(&x);
-            let (_, size) = worst(&relative(&residuals, sizes))?;
-            if !size.is_finite() {
-                return None;
-            }
-            if size <= SOLVED && size >= best {
-                return Some(x);
-            }
-            best = best.min(size);
-            let numbers = self.numbers(&x);
+        let size = |residuals: &[f64]| Some(worst(&relative(residuals, sizes))?.1);
+        let rule = StoppingRule {
+            max_steps: MAX_NEWTON_STEPS,
+            min_steps: 0,
+            stagnation_ratio: 1.0,
+            tolerance: RESIDUAL_TOLERANCE,
+        };
+        let linearize = |x: &[f64]| {
+            let residuals = self.residuals(x);
+            let numbers = self.numbers(x);
             let b = evaluate(self.graph, &rows, &numbers);
             let a = evaluate(self.graph, &self.a, &numbers);
             // A velocity that moves a fixed coordinate stays zero.
-            let free: Vec<usize> = (0..n)
-                .filter(|&i| self.time != Some(i))
-                .filter(|i| (0..x.len()).all(|alpha| !fixed[alpha] || a[alpha * n + i] == 0.0))
-                .collect();
-            let jacobian: Vec<Vec<f64>> = b
+            let is_free = |i: usize| {
+                self.time != Some(i)
+                    && (0..x.len()).all(|alpha| !fixed[alpha] || a[alpha * n + i] == 0.0)
+            };
+            let free: Vec<bool> = (0..n).map(is_free).collect();
+            let entry = |(&b, &free): (&f64, &bool)| if free { b } else { 0.0 };
+            let jacobian = b
                 .chunks(n.max(1))
-                .map(|row| free.iter().map(|&i| row[i]).collect())
-                .collect();
-            let target: Vec<f64> = residuals.iter().map(|r| -r).collect();
-            let step = least_norm(&jacobian, &target)?;
-            for (alpha, entry) in x.iter_mut().enumerate() {
-                *entry += free
-                    .iter()
-                    .zip(&step)
-                    .map(|(&i, h)| a[alpha * n + i] * h)
-                    .sum::<f64>();
+                .map(|row| row.iter().zip(&free).map(entry).collect());
+            Linearized {
+                size: size(&residuals).unwrap_or(f64::NAN),
+                jacobian: jacobian.collect(),
+                residuals,
             }
-            self.lead_back(&mut x, fixed);
+        };
+        let advance = |x: &mut Vec<f64>, step: &[f64]| {
+            let a = evaluate(self.graph, &self.a, &self.numbers(x));
+            for (entry, row) in x.iter_mut().zip(a.chunks(n.max(1))) {
+                *entry += dot(row, step);
+            }
+            self.lead_back(x, fixed);
+        };
+        let Outcome { point, end, .. } =
+            least_norm_newton::solve(from.to_vec(), rule, linearize, advance);
+        match end {
+            End::Converged => Some(point),
+            End::OutOfSteps => {
+                let left = size(&self.residuals(&point))?;
+                (left <= RESIDUAL_TOLERANCE).then_some(point)
+            }
+            End::NoStep => None,
         }
-        let (_, size) = worst(&relative(&self.residuals(&x), sizes))?;
-        (size <= SOLVED).then_some(x)
     }
 
     /// Projects x back to φ = 0 of the coordinates, which a step along A violates to second order; fixed entries
@@ -280,32 +296,32 @@ impl<'a> LoopClosure<'a> {
             direction
         });
         let directions: Vec<Vec<f64>> = directions.collect();
-        let mut before = f64::INFINITY;
-        let mut best = x.to_vec();
-        for _ in 0..STEPS {
+        let rule = StoppingRule {
+            max_steps: MAX_NEWTON_STEPS,
+            min_steps: 0,
+            stagnation_ratio: SQUARED_STAGNATION_RATIO,
+            tolerance: f64::INFINITY,
+        };
+        let linearize = |x: &[f64]| {
             let mut numbers = self.numbers(x);
             numbers.resize(free.symbols().len(), 0.0);
-            let left = slopes(free, phi, &numbers, &directions);
-            let size = left
+            let rows = slopes(free, phi, &numbers, &directions);
+            let jacobian = rows
                 .iter()
-                .fold(0.0, |sum, row| sum + row.value * row.value);
-            if size.is_nan() || size >= 0.25 * before {
-                break;
+                .map(|row| (0..open.len()).map(|k| row.slope(k)).collect());
+            Linearized {
+                size: rows
+                    .iter()
+                    .fold(0.0, |sum, row| sum + row.value * row.value),
+                residuals: rows.iter().map(|row| row.value).collect(),
+                jacobian: jacobian.collect(),
             }
-            before = size;
-            best.copy_from_slice(x);
-            let columns = 0..open.len();
-            let rows = left
-                .iter()
-                .map(|row| columns.clone().map(|k| row.slope(k)).collect());
-            let rows: Vec<Vec<f64>> = rows.collect();
-            let target: Vec<f64> = left.iter().map(|row| -row.value).collect();
-            let Some(step) = least_norm(&rows, &target) else {
-                break;
-            };
+        };
+        let advance = |x: &mut Vec<f64>, step: &[f64]| {
             open.iter().zip(step).for_each(|(&alpha, h)| x[alpha] += h);
-        }
-        x.copy_from_slice(&best);
+        };
+        let outcome = least_norm_newton::solve(x.to_vec(), rule, linearize, advance);
+        x.copy_from_slice(&outcome.before);
     }
 
     /// Returns whether any velocity is given, apart from that of time.
@@ -342,35 +358,45 @@ impl<'a> LoopClosure<'a> {
         let Some((constraint, beside)) = worst(&relative(&before, &sizes(xi))) else {
             return Ok(());
         };
+        if beside == 0.0 {
+            return Ok(());
+        }
         let all = vec![false; n];
-        for fixed in [Some(given), (beside <= ROUNDING).then_some(&all[..])]
-            .into_iter()
-            .flatten()
+        for fixed in [
+            Some(given),
+            (beside <= ROUNDED_RESIDUAL).then_some(&all[..]),
+        ]
+        .into_iter()
+        .flatten()
         {
-            let mut settled = xi.clone();
             let free = (0..n).filter(|&i| !fixed[i] && self.time != Some(i));
             let free: Vec<usize> = free.collect();
             let jacobian: Vec<Vec<f64>> = b
                 .chunks(n.max(1))
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
-            let mut before = f64::INFINITY;
-            for round in 0..STEPS {
-                let target: Vec<f64> = speeds(&settled).iter().map(|r| -r).collect();
-                // Rows that are much shorter than others need several steps.
-                let left = worst(&relative(&target, &sizes(&settled)));
-                let left = left.map_or(0.0, |(_, left)| left);
-                if left == 0.0 || round >= LEAST_ROUNDS && left >= 0.5 * before {
-                    break;
+            // Rows that are much shorter than others need several steps.
+            let rule = StoppingRule {
+                max_steps: MAX_NEWTON_STEPS,
+                min_steps: MIN_VELOCITY_STEPS,
+                stagnation_ratio: VELOCITY_STAGNATION_RATIO,
+                tolerance: f64::INFINITY,
+            };
+            let linearize = |xi: &[f64]| {
+                let residuals = speeds(xi);
+                let left = worst(&relative(&residuals, &sizes(xi)));
+                Linearized {
+                    size: left.map_or(0.0, |(_, left)| left),
+                    residuals,
+                    jacobian: jacobian.clone(),
                 }
-                before = left;
-                let Some(step) = least_norm(&jacobian, &target) else {
-                    break;
-                };
-                free.iter().zip(step).for_each(|(&i, h)| settled[i] += h);
-            }
+            };
+            let advance = |xi: &mut Vec<f64>, step: &[f64]| {
+                free.iter().zip(step).for_each(|(&i, h)| xi[i] += h);
+            };
+            let settled = least_norm_newton::solve(xi.clone(), rule, linearize, advance).point;
             let left = relative(&speeds(&settled), &sizes(&settled));
-            if worst(&left).is_none_or(|(_, size)| size <= SOLVED) {
+            if worst(&left).is_none_or(|(_, size)| size <= RESIDUAL_TOLERANCE) {
                 *xi = settled;
                 return Ok(());
             }
@@ -384,7 +410,7 @@ impl<'a> LoopClosure<'a> {
     /// Returns whether all loops are closed, relative to their sizes at x.
     fn is_closed(&self, x: &[f64]) -> bool {
         let left = relative(&self.residuals(x), &self.sizes(x));
-        worst(&left).is_none_or(|(_, left)| left <= 2.0 * SOLVED)
+        worst(&left).is_none_or(|(_, left)| left <= 2.0 * RESIDUAL_TOLERANCE)
     }
 
     /// Returns the sizes relative to which residuals of the loops are judged.
