@@ -4,7 +4,7 @@
 use super::accel::cheapest::MassAndForces;
 use super::accel::{Acceleration, forward_dynamics, mass_and_forces};
 use super::calculus::Calculus;
-use super::candidates::Candidates;
+use super::candidates::{Candidates, SHORT_SEARCH_NODES};
 use super::multipliers::with_accelerations;
 use super::numerical_loss::{self, NumericalLoss};
 use super::program::{MAX_LITERAL_VELOCITIES, ProgramBuilder, shape_of};
@@ -22,9 +22,6 @@ use hamel_language::model::{Model, class};
 use hamel_program::structure::Structure;
 use hamel_program::{Argument, Cause, Function, FunctionId, Program};
 use rustc_hash::FxHashSet;
-
-/// Size of the model's graph from which on T is not also computed from the velocities of bodies.
-const MAX_TRACED_NODES: usize = 3000;
 
 /// Derives the requested functions of a model.
 ///
@@ -223,7 +220,7 @@ impl ProgramBuilder<'_> {
         let by_momentum = self.parts.kinetic_of(&mut graph, self.model, momentum);
         let value = graph.value(by_momentum);
         offer(graph, by_momentum);
-        if self.model.graph.len() < MAX_TRACED_NODES {
+        if self.model.graph.len() < SHORT_SEARCH_NODES {
             let mut model = self.model.clone();
             let mut calculus = Calculus::new(&model);
             let traced = energy::kinetic_of_bodies(&mut model, &mut calculus);

@@ -7,8 +7,11 @@ use hamel_algebra::transplant::{graft, rebuild};
 use hamel_program::count::count;
 use std::borrow::Cow;
 
-/// Size of the surrounding graph from which on candidates are not also rebuilt in it.
-const LARGE: usize = 3000;
+/// Largest number of velocities for which all routes, elimination orders and axes are tried.
+pub(crate) const MAX_SEARCHED_VELOCITIES: usize = 8;
+/// Number of nodes of a graph from which on the search is short: computations are not rebuilt in the graph to share
+/// its expressions, and two elimination orders are tried alone. Each trial would take as long as the graph is large.
+pub(crate) const SHORT_SEARCH_NODES: usize = 3000;
 
 /// The cheapest computation so far.
 ///
@@ -66,7 +69,7 @@ impl<'a> Candidates<'a> {
     /// Adds a candidate as it is, and as it becomes when it is rebuilt in the graph `around`, where
     /// it shares the values that are computed there already.
     pub fn offer_both(&mut self, graph: Graph, roots: Vec<Edge>, around: &Graph) {
-        if around.len() < LARGE {
+        if around.len() < SHORT_SEARCH_NODES {
             let mut merged = around.clone();
             let roots = rebuild(&graph, &mut merged, &roots);
             self.offer_own(merged, roots);

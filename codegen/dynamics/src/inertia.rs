@@ -1,6 +1,5 @@
 //! The mass matrix M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩, KR18 (20), for bodies, particles and a given T.
 
-use super::accel::hybrid;
 use super::calculus::{Calculus, into_frame};
 use super::inertialess_motion;
 use hamel_algebra::derivation::Derivation;
@@ -199,6 +198,18 @@ fn generic_configuration(model: &Model) -> Option<Vec<f64>> {
         .then_some(x)
 }
 
+/// Returns the rows of B in B ξ̇ = b: those of the constraints, then one for each given rate.
+pub fn constraint_rows(model: &Model) -> Vec<Vec<Edge>> {
+    let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
+    let constraints = model.constraints.iter().map(|c| c.row.clone());
+    let given = model.accelerated.iter().map(move |(place, _)| {
+        let mut row = vec![zero; n];
+        row[*place] = one;
+        row
+    });
+    constraints.chain(given).collect()
+}
+
 /// Returns M + w BᵀB and the force w Bᵀ b for M ξ̇ = f + Bᵀ λ with B ξ̇ = b.
 ///
 /// Using this matrix, and adding this force to f, changes neither ξ̇ nor λ, and provides pivots for
@@ -259,7 +270,7 @@ pub fn check_positive_definite(
     let n = model.n();
     let (mut graph, mut mass) = (graph.clone(), mass.to_vec());
     if model.augmented {
-        let rows = hybrid::constraint_rows(model);
+        let rows = constraint_rows(model);
         let right = vec![graph.zero(); rows.len()];
         if let Some((sum, _)) = augment(&mut graph, &mass, &rows, &right) {
             mass = sum;

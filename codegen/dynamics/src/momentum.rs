@@ -1,7 +1,7 @@
 //! Hamiltonian form: p = M ξ, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ (KR18 (30a)), and ξ = M⁻¹ p.
 
-use super::accel::all_plans;
 use super::accel::parts::EquationTerms;
+use super::accel::solve::all_plans;
 use super::accel::solve::{Solution, solve};
 use super::calculus::Calculus;
 use super::{commutation, energy, inertia, kinematics};

@@ -1,8 +1,8 @@
 //! Selection of the cheapest of several computations, separately for each function.
 
-use super::LARGE;
 use super::parts::EquationTerms;
 use crate::candidates::Candidates;
+use crate::candidates::SHORT_SEARCH_NODES;
 use crate::numerical_loss::NumericalLoss;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::matrix;
@@ -40,7 +40,7 @@ pub fn cheapest(
     let merged: Vec<(Graph, Functions)> = computations
         .iter()
         .zip(&functions)
-        .filter(|_| chosen.len() < LARGE)
+        .filter(|_| chosen.len() < SHORT_SEARCH_NODES)
         .map(|(MassAndForces { graph, .. }, functions)| {
             let mut merged = chosen.clone();
             let functions = functions.each_ref();

@@ -62,18 +62,6 @@ pub fn all_pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     all
 }
 
-/// Returns the rows of B in B ξ̇ = b: those of the constraints, then one for each given rate.
-pub fn constraint_rows(model: &Model) -> Vec<Vec<Edge>> {
-    let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
-    let constraints = model.constraints.iter().map(|c| c.row.clone());
-    let given = model.accelerated.iter().map(move |(place, _)| {
-        let mut row = vec![zero; n];
-        row[*place] = one;
-        row
-    });
-    constraints.chain(given).collect()
-}
-
 /// Replaces the given rates in ξ̇ by their exact expressions.
 pub fn insert_given_rates(model: &Model, mut xi_dot: Vec<Edge>) -> Vec<Edge> {
     for &(place, rate) in &model.accelerated {

@@ -16,6 +16,7 @@ pub mod polynomial;
 pub mod recursive;
 pub mod solve;
 
+use crate::candidates::MAX_SEARCHED_VELOCITIES;
 use crate::inertia;
 use crate::numerical_loss::NumericalLoss;
 pub use best::Acceleration;
@@ -29,16 +30,10 @@ use hamel_language::syntax::ast::Axes;
 use hamel_program::count::count;
 use parts::{EquationTerms, ReferencePoint, TracingVariant, trace_terms};
 use recursive::TreeRecursion;
-use solve::{EliminationPlan, solve};
-
-/// Largest number of velocities for which all routes and elimination orders are tried.
-const MAX_SEARCHED_VELOCITIES: usize = 8;
+use solve::{EliminationPlan, all_plans, constant_first, describe_order, solve};
 
 /// Number of operations of the traced M and Γ ξ ξ below which all routes are tried, however long the tree is.
 const MAX_TRACED_OPERATIONS: usize = 1000;
-
-/// Largest number of graph nodes for which more than two plans (the two elimination orders) are tried.
-const LARGE: usize = 3000;
 
 /// Returns the cheapest computation of ξ̇, and the cheapest computations of M and of the forces, which share the
 /// graph of ξ̇.
@@ -138,7 +133,7 @@ fn constrained(
     numerical_loss: &NumericalLoss,
 ) -> Option<(Acceleration, MassAndForces)> {
     let n = context.model.n();
-    let rows = hybrid::constraint_rows(&context.model);
+    let rows = inertia::constraint_rows(&context.model);
     let constraints = &context.model.constraints;
     let raising = dependent::regularization_rows(constraints, rows.len() - constraints.len());
     let raising = context.model.overconstrained.then_some(&raising[..]);
@@ -340,23 +335,6 @@ fn describe_route(traced: &Model, order: &[usize], variant: &TracingVariant) -> 
     }
 }
 
-/// Describes the elimination order in words.
-fn describe_order(model: &Model, order: &[usize]) -> String {
-    if order.windows(2).all(|pair| pair[0] < pair[1]) {
-        return "velocities eliminated in their order".into();
-    }
-    let name = |i: &usize| {
-        model
-            .graph
-            .symbols()
-            .iter()
-            .find(|s| s.node == model.xi[*i].node())
-            .map_or("", |s| s.name.as_str())
-    };
-    let names: Vec<String> = order.iter().map(|i| format!("`{}`", name(i))).collect();
-    format!("velocities eliminated in the order {}", names.join(", "))
-}
-
 /// Returns the few plans that are used to choose what to trace.
 fn first_plans(graph: &Graph, parts: &EquationTerms, small: bool) -> Vec<EliminationPlan> {
     let n = parts.mass.len();
@@ -376,68 +354,4 @@ fn first_plans(graph: &Graph, parts: &EquationTerms, small: bool) -> Vec<Elimina
         });
     }
     plans
-}
-
-/// Returns all plans worth counting for a small system.
-pub(crate) fn all_plans(graph: &Graph, parts: &EquationTerms) -> Vec<EliminationPlan> {
-    let n = parts.mass.len();
-    if graph.len() > LARGE {
-        return [(0..n).collect(), (0..n).rev().collect()]
-            .map(|order| EliminationPlan {
-                order,
-                apart: 0,
-                scale: false,
-                inverse: false,
-            })
-            .to_vec();
-    }
-    // A constant M is factored once, when the parameters are set, so its elimination order costs nothing at run
-    // time.
-    let constant = parts
-        .mass
-        .iter()
-        .flatten()
-        .all(|edge| graph.is_free(edge.node()));
-    let mut orders: Vec<Vec<usize>> = match constant {
-        true => vec![(0..n).collect()],
-        false => vec![
-            (0..n).collect(),
-            (0..n).rev().collect(),
-            constant_first(graph, parts),
-        ],
-    };
-    orders.sort();
-    orders.dedup();
-    // The first three velocities of a body are usually the linear ones; other useful values are none and all.
-    let mut aparts = if parts.groups.len() > 1 {
-        vec![0, 3.min(n), n]
-    } else {
-        vec![0]
-    };
-    aparts.dedup();
-    let mut plans = Vec::new();
-    for order in orders {
-        for &apart in &aparts {
-            for scale in [false, true] {
-                for inverse in [false, true] {
-                    if apart < n || !(scale || inverse) {
-                        plans.push(EliminationPlan {
-                            order: order.clone(),
-                            apart,
-                            scale,
-                            inverse,
-                        });
-                    }
-                }
-            }
-        }
-    }
-    plans
-}
-
-/// Orders velocities with a constant diagonal entry of M first, and otherwise keeps their order.
-fn constant_first(graph: &Graph, parts: &EquationTerms) -> Vec<usize> {
-    let constant = |i: &usize| graph.is_free(parts.mass[*i][*i].node());
-    let (first, last): (Vec<usize>, Vec<usize>) = (0..parts.mass.len()).partition(constant);
-    first.into_iter().chain(last).collect()
 }

@@ -179,7 +179,7 @@ pub fn trace_terms(
         }
         accumulate(graph, &mut mass, &part);
     }
-    if n <= super::MAX_SEARCHED_VELOCITIES {
+    if n <= crate::candidates::MAX_SEARCHED_VELOCITIES {
         let mut forms = None;
         for entry in mass.iter_mut().flatten() {
             *entry = without_coordinates(

@@ -3,9 +3,11 @@
 //!
 //! This gives the shortest code for small systems. If M is constant, M⁻¹ can be multiplied into the coefficients.
 
+use super::best::Acceleration;
+use super::parts::EquationTerms;
 use super::parts::{ReferencePoint, TracingVariant, trace_terms};
 use super::solve::{EliminationPlan, solve};
-use super::{Acceleration, EquationTerms, all_plans, describe_order};
+use super::solve::{all_plans, describe_order};
 use crate::calculus::Calculus;
 use crate::normal::{Collected, NormalForms, collect, variable_node};
 use hamel_algebra::graph::{Edge, Graph};

@@ -10,12 +10,13 @@ use crate::calculus::Calculus;
 use crate::loads;
 use crate::numerical_loss::NumericalLoss;
 use crate::tree::inverse::{
-    Motion, TENSOR_ROUTES, TENSOR_ROUTES_WITH_ALPHA, TensorRoute, Wrench, inverse_dynamics,
-    wrenches,
+    Motion, TENSOR_ROUTES, TENSOR_ROUTES_WITH_ALPHA, inverse_dynamics, wrenches,
 };
+use crate::tree::link::TensorRoute;
 use crate::tree::momentum::{columns, quadratic_rate, total};
 use crate::tree::slopes::{InverseDynamicsDerivatives, slopes};
 use crate::tree::uniform::CommonMotion;
+use crate::tree::wrench::Wrench;
 use crate::tree::{Placement, Tree, articulated, composite};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};

@@ -1,8 +1,10 @@
 //! Solution ξ̇ = M⁻¹ Σ groups by M = L D Lᵀ, unrolled and sparse, with constant parts computed only once.
 
 use super::parts::EquationTerms;
+use crate::candidates::SHORT_SEARCH_NODES;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::solve_symmetric;
+use hamel_language::model::Model;
 
 /// Order and form of the elimination by which M ξ̇ = Σ groups is solved.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +25,87 @@ pub struct EliminationPlan {
     /// For a full block this takes as many operations as substitution, but the chain of dependent operations is
     /// shorter.
     pub inverse: bool,
+}
+
+/// Returns all plans worth counting for a small system.
+pub(crate) fn all_plans(graph: &Graph, parts: &EquationTerms) -> Vec<EliminationPlan> {
+    let n = parts.mass.len();
+    if graph.len() > SHORT_SEARCH_NODES {
+        return [(0..n).collect(), (0..n).rev().collect()]
+            .map(|order| EliminationPlan {
+                order,
+                apart: 0,
+                scale: false,
+                inverse: false,
+            })
+            .to_vec();
+    }
+    // A constant M is factored once, when the parameters are set, so its elimination order costs nothing at run
+    // time.
+    let constant = parts
+        .mass
+        .iter()
+        .flatten()
+        .all(|edge| graph.is_free(edge.node()));
+    let mut orders: Vec<Vec<usize>> = match constant {
+        true => vec![(0..n).collect()],
+        false => vec![
+            (0..n).collect(),
+            (0..n).rev().collect(),
+            constant_first(graph, parts),
+        ],
+    };
+    orders.sort();
+    orders.dedup();
+    // The first three velocities of a body are usually the linear ones; other useful values are none and all.
+    let mut aparts = if parts.groups.len() > 1 {
+        vec![0, 3.min(n), n]
+    } else {
+        vec![0]
+    };
+    aparts.dedup();
+    let mut plans = Vec::new();
+    for order in orders {
+        for &apart in &aparts {
+            for scale in [false, true] {
+                for inverse in [false, true] {
+                    if apart < n || !(scale || inverse) {
+                        plans.push(EliminationPlan {
+                            order: order.clone(),
+                            apart,
+                            scale,
+                            inverse,
+                        });
+                    }
+                }
+            }
+        }
+    }
+    plans
+}
+
+/// Orders velocities with a constant diagonal entry of M first, and otherwise keeps their order.
+pub(super) fn constant_first(graph: &Graph, parts: &EquationTerms) -> Vec<usize> {
+    let constant = |i: &usize| graph.is_free(parts.mass[*i][*i].node());
+    let (first, last): (Vec<usize>, Vec<usize>) = (0..parts.mass.len()).partition(constant);
+    first.into_iter().chain(last).collect()
+}
+
+/// Describes the elimination order in words.
+pub(super) fn describe_order(model: &Model, order: &[usize]) -> String {
+    if order.windows(2).all(|pair| pair[0] < pair[1]) {
+        return "velocities eliminated in their order".into();
+    }
+    let name = |i: &usize| {
+        model
+            .graph
+            .symbols()
+            .iter()
+            .find(|s| s.node == model.xi[*i].node())
+            .map_or("", |s| s.name.as_str())
+    };
+    let names: Vec<String> = order.iter().map(|i| format!("`{}`", name(i))).collect();
+    format!("velocities eliminated in the order {}", names.join(", "))
 }
 
 /// Solution ξ̇ with the pivots that must be positive.

@@ -6,7 +6,7 @@
 //! scalar parameter. The c_a are determined at random points of X modulo p; the result is confirmed symbolically in
 //! the graph, where expressions that are equal on X are one node.
 
-use super::Geometry;
+use crate::tables::Geometry;
 use hamel_algebra::echelon::solution;
 use hamel_algebra::graph::{Edge, Function, Graph, Node};
 use hamel_algebra::linear::matrix;

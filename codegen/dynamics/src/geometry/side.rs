@@ -2,7 +2,7 @@
 //! world axes.
 
 use super::super::calculus::Calculus;
-use super::Geometry;
+use crate::tables::Geometry;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, zero3};
 use hamel_language::model::Model;

@@ -3,7 +3,7 @@
 //! Along ∂ᵢ the metric changes by (L_{∂ᵢ} M)_jk = ∂ᵢM_jk − γᵢⱼˢ M_sk − γᵢₖˢ M_sj. If that is 0, the flow of ∂ᵢ
 //! preserves T, and by Noether's theorem dpᵢ/dt = fᵢ − ∂ᵢV with p = M ξ.
 
-use super::Geometry;
+use crate::tables::Geometry;
 use hamel_algebra::graph::Edge;
 
 /// Symmetries along a direction ∂ᵢ.

@@ -1,13 +1,21 @@
-//! Contributions of ξ = C ξₐ + c to the equations of motion: the drift Ċ ξₐ + ċ, and the terms of a kinetic energy
+//! The parametrization ξ = C ξₐ + c of admissible velocities, and its contributions to the equations of motion: the drift Ċ ξₐ + ċ, and the terms of a kinetic energy
 //! written by the user.
 
-use super::VelocityParametrization;
 use crate::calculus::Calculus;
 use crate::{commutation, connection, energy, inertia, kinematics};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{multiply, transpose};
 use hamel_language::model::{KineticTerms, Model};
+
+/// Parametrization ξ = C ξₐ + c of the admissible velocities by the active ones, in the graph of the full model.
+#[derive(Clone, Debug)]
+pub struct VelocityParametrization {
+    /// Matrix C, n rows of as many entries as ξₐ has.
+    pub complement: Vec<Vec<Edge>>,
+    /// Vector c, n entries.
+    pub shift: Vec<Edge>,
+}
 
 /// Returns ξ = C ξₐ + c.
 pub fn all_velocities(

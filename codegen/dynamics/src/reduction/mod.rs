@@ -14,7 +14,7 @@ mod projection;
 mod redundant;
 mod rows;
 
-pub use kinetic::drift;
+pub use kinetic::{VelocityParametrization, drift};
 
 use crate::inertia;
 use hamel_algebra::graph::{Edge, Graph};
@@ -36,15 +36,6 @@ use std::sync::Arc;
 /// A solution by a smaller pivot would lose twice as many digits as that ratio has. A row without pivots gets a
 /// multiplier.
 const MAX_COEFFICIENT_RATIO: f64 = 30.0;
-
-/// Parametrization ξ = C ξₐ + c of the admissible velocities by the active ones, in the graph of the full model.
-#[derive(Clone, Debug)]
-pub struct VelocityParametrization {
-    /// Matrix C, n rows of as many entries as ξₐ has.
-    pub complement: Vec<Vec<Edge>>,
-    /// Vector c, n entries.
-    pub shift: Vec<Edge>,
-}
 
 /// Active velocities, and the model in them.
 #[derive(Clone, Debug)]

@@ -1,7 +1,6 @@
 //! Transfer of a model to a graph without the velocities that were solved for.
 
-use super::VelocityParametrization;
-use super::kinetic::{all_velocities, drift, kinetic_terms};
+use super::kinetic::{VelocityParametrization, all_velocities, drift, kinetic_terms};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::map_symbols;

@@ -6,7 +6,8 @@
 
 use super::parameters::Link;
 use super::wrenches::{ALL_AXES, Axes, Motions};
-use crate::tree::inverse::{Wrench, to_parent};
+use crate::tree::inverse::to_parent;
+use crate::tree::wrench::Wrench;
 use crate::tree::{Link as TreeLink, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, add3, cross, scale3, sub3, zero3};

@@ -9,8 +9,10 @@
 
 use super::parameters::{INERTIA_ENTRIES, Link};
 use crate::tree::Tree;
-use crate::tree::inverse::{LinkMotion, RotationalMotion, TensorRoute, Wrench, motions};
+use crate::tree::inverse::{LinkMotion, RotationalMotion, motions};
+use crate::tree::link::TensorRoute;
 use crate::tree::turn::RotationFactor;
+use crate::tree::wrench::Wrench;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, cross, identity3, multiply3, transpose3, zero3,

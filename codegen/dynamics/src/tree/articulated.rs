@@ -5,9 +5,10 @@
 //! freedoms of the link's own joint and transformed to the parent link. The forces at ξ̇ = 0 come
 //! from recursive inverse dynamics, so that only the accelerations due to ξ̇ are propagated here.
 
-use super::inverse::{Wrench, to_parent};
+use super::inverse::to_parent;
+use super::link::{Freedom, Link, Tree};
 use super::mass::LinkInertia;
-use super::{Freedom, Link, Tree};
+use super::wrench::Wrench;
 use crate::accel::solve::Solution;
 use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, identity3, scale3, zero3};

@@ -3,9 +3,10 @@
 //! Each freedom moves the whole subtree of its joint as one body; the wrench that this takes acts
 //! on the joints of all ancestors.
 
-use super::Tree;
-use super::inverse::{Wrench, to_parent};
+use super::inverse::to_parent;
+use super::link::Tree;
 use super::mass::LinkInertia;
+use super::wrench::Wrench;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::resubstitute::resubstitute;
 use hamel_language::model::provenance::Quantity;

@@ -1,10 +1,10 @@
 //! Derivation of links and joints from frames: the joint follows from the coordinates on which the
 //! frame's pose in its parent depends.
 
+use super::link::{Freedom, Link};
 use super::mass::LinkInertia;
 use super::revolute::{Hinge, hinge};
 use super::turn::RotationFactor;
-use super::{Freedom, Link};
 use crate::calculus::Calculus;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{

@@ -5,8 +5,8 @@
 //! vector of the hinge's own velocity, then M s and M e agree in the rows of the velocities of the
 //! hinge's subtree, provided that the hinge has no armature.
 
+use super::link::{Link, Tree};
 use super::uniform::{axis_of_unit_vector, translation_axis};
-use super::{Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, cross, zero3};
 

@@ -7,47 +7,15 @@
 //! For a hinge about an axis e the column U e equals that of the parent link, since ê e = 0. Given
 //! U e, ω and α·e, the rest of U takes fewer operations than from ω and α.
 
+use super::link::{Link, TensorRoute, Tree};
 use super::mass::LinkInertia;
-use super::{Link, Tree};
-use hamel_algebra::graph::{Edge, Graph, Label};
+use super::wrench::Wrench;
+use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply3, cross, identity3, multiply3, scale3, transpose3, zero3,
 };
 use hamel_language::model::provenance::Quantity;
 use hamel_program::count::count;
-
-/// Wrench: force and torque about the origin of a link, in its axes.
-#[derive(Clone, Copy, Debug)]
-pub struct Wrench {
-    /// Force (N).
-    pub force: Vec3,
-    /// Torque (N m).
-    pub torque: Vec3,
-}
-
-impl Wrench {
-    /// Returns the sum of two wrenches.
-    pub fn plus(&self, graph: &mut Graph, other: &Wrench) -> Self {
-        Wrench {
-            force: add3(graph, self.force, other.force),
-            torque: add3(graph, self.torque, other.torque),
-        }
-    }
-
-    /// Labels force and torque.
-    pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
-        graph.label(&self.torque, label);
-        graph.label(&self.force, label);
-    }
-
-    /// Returns k times the wrench.
-    pub fn scaled(&self, graph: &mut Graph, k: Edge) -> Self {
-        Wrench {
-            torque: scale3(graph, k, self.torque),
-            force: scale3(graph, k, self.force),
-        }
-    }
-}
 
 /// Motion of a link in its own axes.
 #[derive(Clone, Copy, Debug)]
@@ -133,19 +101,6 @@ impl LinkQuantities {
             }),
         }
     }
-}
-
-/// How U = α̂ + ω̂ ω̂ of the links is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TensorRoute {
-    /// From ω and α of each link.
-    Each,
-    /// If the hinge is along a coordinate axis of the link and of its parent, the column of U along
-    /// it is taken from the parent.
-    Carried,
-    /// U is updated from that of the parent link if their axes differ only in sign and order;
-    /// otherwise as `Carried`.
-    Chained,
 }
 
 /// All variants, the simplest first.

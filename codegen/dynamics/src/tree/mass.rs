@@ -2,7 +2,7 @@
 //!
 //! m, h = ∫ r dm and S = ∫ r rᵀ dm, from which the inertia matrix is Θ = tr(S) I − S.
 
-use super::Link;
+use super::link::Link;
 use super::turn::RotationFactor;
 use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, scale3, zero3};

@@ -6,9 +6,10 @@
 //! where V = (ω, v) is the twist of the link and Sᵢ is constant in its axes. As a wrench on the
 //! link this is (torque k × ω + l × v, force l × ω).
 
-use super::Tree;
-use super::inverse::{LinkMotion, Wrench, generalized_forces_with, motions, to_parent, wrench};
+use super::inverse::{LinkMotion, generalized_forces_with, motions, to_parent, wrench};
+use super::link::Tree;
 use super::mass::LinkInertia;
+use super::wrench::Wrench;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, add3, cross, zero3};
 

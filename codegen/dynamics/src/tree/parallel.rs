@@ -6,8 +6,8 @@
 //! each link is rotated, by the sum of the joint angles. The last link of a chain does the same,
 //! since its inertia is the only thing to rotate.
 
+use super::link::{Link, Tree};
 use super::turn::RotationFactor;
-use super::{Link, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 
 impl Tree {

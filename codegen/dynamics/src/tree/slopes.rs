@@ -9,9 +9,10 @@
 //! are transformed towards the root as wrenches are. After Carpentier and Mansard (2018) and Singh,
 //! Russell and Wensing (2022), in axes of links.
 
-use super::inverse::{LinkMotion, Wrench, motions, to_parent, wrench};
+use super::inverse::{LinkMotion, motions, to_parent, wrench};
+use super::link::{Freedom, Link, Tree};
 use super::mass::LinkInertia;
-use super::{Freedom, Link, Tree};
+use super::wrench::Wrench;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, scale3, zero3};
 

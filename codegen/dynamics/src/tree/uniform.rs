@@ -6,7 +6,7 @@
 //! in place of v̇, the equations of motion therefore contain neither v nor g.
 
 use super::inverse::motions;
-use super::{Freedom, Tree};
+use super::link::{Freedom, Tree};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Vec3, zero3};
 

@@ -1,8 +1,23 @@
-//! Springs, dampers and forces along lines.
+//! Wrenches; springs, dampers and forces along lines.
 
-use super::Wrench;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::Vec3;
+use crate::syntax::ast::Axes;
+
+/// A wrench on a frame, acting at a point fixed to it.
+#[derive(Clone, Debug)]
+pub struct Wrench {
+    /// Index of the frame.
+    pub frame: usize,
+    /// Point of application, frame axes (m).
+    pub at: Vec3,
+    /// Force (N).
+    pub force: Vec3,
+    /// Torque (N m).
+    pub torque: Vec3,
+    /// Axes in which force and torque are given.
+    pub axes: Axes,
+}
 
 /// The distance or scalar along which a spring, damper or force acts.
 #[derive(Clone, Debug)]

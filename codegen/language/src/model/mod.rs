@@ -4,6 +4,7 @@
 
 mod chart_difference;
 pub mod charts;
+pub mod class;
 pub mod closest;
 pub mod complete;
 pub mod completion;
@@ -30,9 +31,10 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::diagnostics::Diagnostic;
 use crate::functions::Asked;
-use crate::syntax::ast::{Axes, CoordKind, Origins, ShapeKind, Span};
+use crate::syntax::ast::{CoordKind, Origins, ShapeKind, Span};
 use completion::Completion;
 use elements::Elements;
+pub use elements::Wrench;
 use initial_conditions::InitialConditions;
 use layout::Block;
 use motion::Observed;
@@ -41,28 +43,6 @@ use points::Points;
 use statements::Statements;
 use std::sync::Arc;
 use value::Value;
-
-/// Classes of symbols, one bit each.
-pub mod class {
-    /// Run-time parameters: constant while the system moves.
-    pub const PARAM: u8 = 1;
-    /// Configuration coordinates x.
-    pub const COORD: u8 = 2;
-    /// Velocity coordinates ξ.
-    pub const VELOCITY: u8 = 4;
-    /// Inputs u, and first-order states z: forces may depend on both, but the motion does not change them by itself.
-    pub const INPUT: u8 = 8;
-    /// Accelerations ξ̇, the argument of inverse dynamics.
-    pub const ACCEL: u8 = 16;
-    /// Momenta p, arguments of the functions of momenta.
-    pub const MOMENTUM: u8 = 32;
-    /// The time, which is a coordinate, too.
-    pub const TIME: u8 = 64;
-    /// Coordinates and time, which determine the configuration.
-    pub const CONFIGURATION: u8 = COORD | TIME;
-    /// Rates ẋ, used while definitions of velocities are read; never in a model's graph.
-    pub const RATE: u8 = 128;
-}
 
 /// A named group of symbols, such as a parameter, a velocity or an input.
 #[derive(Clone, Debug)]
@@ -138,21 +118,6 @@ pub struct Particle {
     pub mass: Edge,
     /// Position in world axes (m).
     pub position: Vec3,
-}
-
-/// A wrench on a frame, acting at a point fixed to it.
-#[derive(Clone, Debug)]
-pub struct Wrench {
-    /// Index of the frame.
-    pub frame: usize,
-    /// Point of application, frame axes (m).
-    pub at: Vec3,
-    /// Force (N).
-    pub force: Vec3,
-    /// Torque (N m).
-    pub torque: Vec3,
-    /// Axes in which force and torque are given.
-    pub axes: Axes,
 }
 
 /// Contribution of a kinetic energy that the user wrote, if ξ does not span the tangent space.
