@@ -73,7 +73,7 @@ pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
 }
 
 /// Returns the applied forces fᵢᴱ, one vector for every load: wrenches, then generalised forces.
-pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
+pub fn forces_of_loads(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     let mut loads: Vec<Vec<Edge>> = Vec::new();
     for load in model.wrenches.clone() {
         loads.push(wrench(model, calculus, &load));
@@ -90,7 +90,7 @@ pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
 
 /// Returns the sum of the applied forces, as a reference for validation.
 pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
-    let all = applied(model, calculus);
+    let all = forces_of_loads(model, calculus);
     (0..model.n())
         .map(|i| {
             let column: Vec<Edge> = all.iter().map(|load| load[i]).collect();

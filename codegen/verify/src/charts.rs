@@ -8,19 +8,19 @@ use hamel_algebra::tape::Tape;
 use hamel_language::model::charts::all_tangents;
 use hamel_program::{FunctionId, Program};
 
-/// K and the emitted rates of the chart, evaluated together; `None` inside if no such rates are emitted.
-pub(super) struct Charts(Option<Tangents>);
+/// Comparison of K times the emitted rates of the chart with ẋ; `None` inside if no such rates are emitted.
+pub(super) struct ChartComparison(Option<Tangents>);
 
 struct Tangents {
     tape: Tape,
     columns: usize,
 }
 
-impl Charts {
+impl ChartComparison {
     /// Prepares the comparison for a program; `None` if an expression has no value modulo p.
     pub(super) fn new(program: &Program) -> Option<Self> {
         let Some(chart) = program.function(FunctionId::ChartRate) else {
-            return Some(Charts(None));
+            return Some(ChartComparison(None));
         };
         let [_, first, end, ..] = program.symbols();
         let mut graph = program.graph.clone();
@@ -31,7 +31,7 @@ impl Charts {
         let roots: Vec<Edge> = roots.copied().collect();
         let tape = Tape::new(&graph, &roots)?;
         let columns = columns.len();
-        Some(Charts(Some(Tangents { tape, columns })))
+        Some(ChartComparison(Some(Tangents { tape, columns })))
     }
 
     /// Returns whether K times the rates of the chart is the given ẋ at a point; `None` if they have no value there.

@@ -4,9 +4,9 @@
 //! derived again in the graph with free coordinates, where nothing is merged modulo φ, expanded over the rationals, and
 //! compared by normal forms modulo φ ("proved").
 
-use super::confidence::{ComparisonRecord, Confidence};
+use super::confidence::{Confidence, ConfidenceBounds};
 use super::forms::Symbols;
-use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
+use super::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
 use super::verdict::Sides;
 pub use super::verdict::{Identity, Verdict};
 use super::{constrained, invariants, motion};
@@ -62,7 +62,7 @@ fn verdicts(
     // Identities without entries are not reported.
     all.retain(|sides| !sides.left.is_empty());
     let graph = &symbols.geometry.model.graph;
-    let mut compared = ComparisonRecord::new(model, graph);
+    let mut compared = ConfidenceBounds::new(model, graph);
     let mut identities: Vec<Identity> = all
         .iter()
         .map(|sides| {
@@ -388,7 +388,7 @@ fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
 }
 
 /// Bounds the chance that both sides agree at all points although they differ.
-fn confidence(compared: &mut ComparisonRecord<'_>, graph: &Graph, sides: &Sides) -> Confidence {
+fn confidence(compared: &mut ConfidenceBounds<'_>, graph: &Graph, sides: &Sides) -> Confidence {
     let merged = |(left, right): (&Edge, &Edge)| left == right && left.abs() != graph.zero();
     let mut pairs = sides.left.iter().zip(&sides.right);
     if pairs.any(merged) {
@@ -414,11 +414,11 @@ fn at_points(model: &Model, graph: &Graph, sides: &Sides) -> Option<String> {
     );
     match compared {
         Ok(()) => None,
-        Err(Unequal::Differs(entry)) => {
+        Err(Disagreement::Differs(entry)) => {
             let count = sides.left.len();
             Some(format!("entry {} of {count} differs", entry + 1))
         }
-        Err(Unequal::Nowhere) => {
+        Err(Disagreement::Nowhere) => {
             Some("too few points were found at which both sides have a value".into())
         }
     }

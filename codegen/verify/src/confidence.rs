@@ -25,7 +25,7 @@ pub struct Confidence {
 impl Confidence {
     /// Bounds the chance that a graph merged nodes that differ: each pair could be equal at its point by chance.
     pub fn of_merging(model: &Model, graph: &Graph) -> Self {
-        ComparisonRecord::new(model, graph).merging()
+        ConfidenceBounds::new(model, graph).merging()
     }
 
     /// Bounds the error for sums of `terms` products of expressions, compared `comparisons` times at each point.
@@ -57,19 +57,19 @@ impl Confidence {
     }
 }
 
-/// Repeated comparisons of expressions of one graph.
-pub struct ComparisonRecord<'a> {
+/// Bounds on the chance that expressions of one graph agree at random points although they differ.
+pub struct ConfidenceBounds<'a> {
     graph: &'a Graph,
     degrees: Degrees<'a>,
     solved: f64,
     merging: Option<Confidence>,
 }
 
-impl<'a> ComparisonRecord<'a> {
+impl<'a> ConfidenceBounds<'a> {
     /// Prepares bounds on the chance that expressions of a graph agree at random points although they differ; `model` gives
     /// the degrees of the constraints.
     pub fn new(model: &Model, graph: &'a Graph) -> Self {
-        ComparisonRecord {
+        ConfidenceBounds {
             graph,
             degrees: Degrees::new(graph, groups(model)),
             solved: solved_degree(model),

@@ -1,7 +1,7 @@
 //! Proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
 
 use super::kernel::multiply;
-use super::points::{Unequal, at_fresh_points};
+use super::points::{Disagreement, at_fresh_points};
 use super::verdict::{failure, nowhere};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
@@ -51,8 +51,8 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         },
     )
     .map_err(|unequal| match unequal {
-        Unequal::Differs(()) => failure(),
-        Unequal::Nowhere => nowhere(model),
+        Disagreement::Differs(()) => failure(),
+        Disagreement::Nowhere => nowhere(model),
     })
 }
 
@@ -83,7 +83,7 @@ fn constraint(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         },
     )
     .map_err(|unequal| match unequal {
-        Unequal::Differs(()) => failure(model, "φ as described"),
-        Unequal::Nowhere => nowhere(model),
+        Disagreement::Differs(()) => failure(model, "φ as described"),
+        Disagreement::Nowhere => nowhere(model),
     })
 }

@@ -8,14 +8,18 @@ use hamel_language::model::points::Moved;
 use hamel_language::model::{Model, class};
 
 /// Returns velocities that satisfy all constraints of a model, with their symbols, by changing those of a point.
-pub(super) fn at_rest(model: &Model, point: FieldPoint) -> Option<Moved> {
+pub(super) fn satisfying_constraints(model: &Model, point: FieldPoint) -> Option<Moved> {
     let rows = model.constraints.iter().flat_map(|c| c.row.clone());
     let rows: Vec<Edge> = rows.collect();
-    rows_at_rest(model, &rows, point)
+    satisfying_rows(model, &rows, point)
 }
 
 /// Does the same with other expressions for the rows of B; in the full frame with time ξ⁰ is 1.
-pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut point: FieldPoint) -> Option<Moved> {
+pub(super) fn satisfying_rows(
+    model: &Model,
+    rows: &[Edge],
+    mut point: FieldPoint,
+) -> Option<Moved> {
     let places = places(&model.graph, class::VELOCITY);
     let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
     let mut xi: Vec<ResiduePair> = places.iter().map(|&place| point.symbol(place)).collect();
@@ -30,12 +34,12 @@ pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut point: FieldPoint) 
             *shift = *shift + std::mem::replace(&mut row[time], ResiduePair::ZERO);
         }
     }
-    let moved = in_kernel(&rows, &shifts, &xi)?;
+    let moved = solve_for_velocities(&rows, &shifts, &xi)?;
     Some(places.into_iter().zip(moved).collect())
 }
 
 /// Changes the dependent entries of ξ by elimination, so that B ξ + b = 0; `None` if there is no solution.
-pub(super) fn in_kernel(
+pub(super) fn solve_for_velocities(
     rows: &[ResiduePair],
     shifts: &[ResiduePair],
     xi: &[ResiduePair],
@@ -108,7 +112,7 @@ pub(super) fn virtual_velocity(
         .fold(n as u64, |seed, xi| seed.rotate_left(7) ^ xi.bits());
     let mut random = Random::new(seed);
     let random: Vec<ResiduePair> = (0..n).map(|_| random.element()).collect();
-    in_kernel(
+    solve_for_velocities(
         &rows,
         &vec![ResiduePair::ZERO; rows.len() / n.max(1)],
         &random,

@@ -15,7 +15,7 @@ pub const MAX_FAILED_SEARCHES: u64 = 2;
 
 /// Reason why a comparison failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unequal<E> {
+pub enum Disagreement<E> {
     /// Both sides differ at a point.
     Differs(E),
     /// Both sides have values at too few points.
@@ -28,7 +28,7 @@ pub enum Unequal<E> {
 pub fn at_fresh_points<E>(
     point: impl Fn(u64) -> Option<FieldPoint>,
     mut at: impl FnMut(&FieldPoint, u64) -> Option<Result<(), E>>,
-) -> Result<(), Unequal<E>> {
+) -> Result<(), Disagreement<E>> {
     let (mut compared, mut missing) = (0, 0);
     for number in 1..=MAX_TRIED_POINTS {
         let Some(point) = point(number) else {
@@ -41,11 +41,11 @@ pub fn at_fresh_points<E>(
         match at(&point, number) {
             None => continue,
             Some(Ok(())) => compared += 1,
-            Some(Err(what)) => return Err(Unequal::Differs(what)),
+            Some(Err(what)) => return Err(Disagreement::Differs(what)),
         }
         if compared == COMPARED_POINTS {
             return Ok(());
         }
     }
-    Err(Unequal::Nowhere)
+    Err(Disagreement::Nowhere)
 }

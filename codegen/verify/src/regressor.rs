@@ -6,7 +6,7 @@
 //! column is multiplied by 0.
 
 use super::numbers::Numbers;
-use super::points::{Unequal, at_fresh_points};
+use super::points::{Disagreement, at_fresh_points};
 use super::verdict::{failure, nowhere};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
@@ -41,8 +41,10 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
     );
     match compared {
         Ok(()) => Ok(()),
-        Err(Unequal::Differs(what)) => Err(failed(&what)),
-        Err(Unequal::Nowhere) => Err(failed("there are too few points to compare its forces at")),
+        Err(Disagreement::Differs(what)) => Err(failed(&what)),
+        Err(Disagreement::Nowhere) => {
+            Err(failed("there are too few points to compare its forces at"))
+        }
     }
 }
 
@@ -84,8 +86,10 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
         },
     );
     compared.map_err(|unequal| match unequal {
-        Unequal::Differs(()) => failure(model, "the emitted regressor is Y, the base parameters β"),
-        Unequal::Nowhere => nowhere(model),
+        Disagreement::Differs(()) => {
+            failure(model, "the emitted regressor is Y, the base parameters β")
+        }
+        Disagreement::Nowhere => nowhere(model),
     })
 }
 

@@ -31,17 +31,17 @@ fn rates_at(program: &Program, point: &FieldPoint) -> Option<bool> {
     Some(value(&linearize.rates)? == value(&accel.outputs)?)
 }
 
-/// Quantities that are compared at every point.
-pub struct Slopes {
+/// Comparison of linearisations and invariants with dual numbers, at one point after another.
+pub struct DerivativeComparison {
     /// Names of the invariants with their entries in the graph of `model`.
     invariants: Vec<(String, Vec<Edge>)>,
     model: Model,
     /// Functions to differentiate, if the linearisation is wanted.
-    source: Option<Source>,
+    source: Option<DifferentiatedFunctions>,
 }
 
 /// Functions that are differentiated.
-enum Source {
+enum DifferentiatedFunctions {
     /// The functions of the program.
     Emitted,
     /// An independent derivation.
@@ -92,7 +92,7 @@ impl Numbers {
     }
 }
 
-impl Slopes {
+impl DerivativeComparison {
     /// Prepares the comparison for a program; `None` if AᵀA is singular.
     pub fn new(model: &Model, program: &Program) -> Option<Self> {
         let claims: Vec<_> = model
@@ -115,10 +115,12 @@ impl Slopes {
         let emitted = EMITTED.iter().all(|name| program.function(name).is_some());
         let source = match linear {
             false => None,
-            true if emitted => Some(Source::Emitted),
-            true => Some(Source::Derived(Box::new(Reference::new(model)?))),
+            true if emitted => Some(DifferentiatedFunctions::Emitted),
+            true => Some(DifferentiatedFunctions::Derived(Box::new(Reference::new(
+                model,
+            )?))),
         };
-        Some(Slopes {
+        Some(DerivativeComparison {
             invariants,
             model: own,
             source,
@@ -153,8 +155,10 @@ impl Slopes {
         }
         match &self.source {
             None => Some(Ok(())),
-            Some(Source::Emitted) => self.emitted_at(program, point),
-            Some(Source::Derived(reference)) => derived_at(reference, program, point),
+            Some(DifferentiatedFunctions::Emitted) => self.emitted_at(program, point),
+            Some(DifferentiatedFunctions::Derived(reference)) => {
+                derived_at(reference, program, point)
+            }
         }
     }
 

@@ -10,7 +10,7 @@
 //! | `split_momenta` | θ̇ of circles, J ω of rotors |
 //! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
 
-use super::numbers::{Numbers, Values};
+use super::numbers::{Numbers, PointValues};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::{evaluate_at, solve};
@@ -140,7 +140,7 @@ impl Proof {
         moving: &FieldPoint,
     ) -> Option<(Vec<ResiduePair>, Vec<ResiduePair>)> {
         let model = &self.model;
-        let Values {
+        let PointValues {
             mass,
             force,
             bias,

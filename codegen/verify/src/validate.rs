@@ -17,13 +17,13 @@
 //! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
 //! | `velocity_from_momentum` | the ξ with M ξ = p |
 
-use super::charts::Charts;
+use super::charts::ChartComparison;
 use super::check::failures;
 use super::forms::Symbols;
 use super::kernel::dot;
-use super::numbers::{Numbers, Values};
-use super::points::{Unequal, at_fresh_points};
-use super::slopes::Slopes;
+use super::numbers::{Numbers, PointValues};
+use super::points::{Disagreement, at_fresh_points};
+use super::slopes::DerivativeComparison;
 use super::splitting::Proof;
 use super::states;
 use super::verdict::{failure, nowhere};
@@ -47,7 +47,7 @@ const MAX_EXPLAINED_VELOCITIES: usize = 8;
 /// to help to find the fault.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     first_failure(model, program).map_err(|unequal| {
-        let Unequal::Differs(what) = unequal else {
+        let Disagreement::Differs(what) = unequal else {
             return nowhere(model);
         };
         let mut broken = vec![what];
@@ -62,15 +62,16 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
 }
 
 /// Returns the first comparison that fails, at the first point at which one does.
-pub(super) fn first_failure(model: &Model, program: &Program) -> Result<(), Unequal<String>> {
-    let without = |what: &str| Unequal::Differs(what.to_string());
+pub(super) fn first_failure(model: &Model, program: &Program) -> Result<(), Disagreement<String>> {
+    let without = |what: &str| Disagreement::Differs(what.to_string());
     let with_rates = states::with_rates(model, program);
     let numbers = Numbers::new(model).ok_or_else(|| without("Y A = I"))?;
     let emitted =
         Emitted::new(model, program).ok_or_else(|| without("that numbers have values"))?;
-    let slopes = Slopes::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
+    let slopes =
+        DerivativeComparison::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
     let splitting = Proof::new(model, program);
-    let charts = Charts::new(program).ok_or_else(|| without("that charts have values"))?;
+    let charts = ChartComparison::new(program).ok_or_else(|| without("that charts have values"))?;
     let at_point = |point: &FieldPoint| -> Option<Result<(), String>> {
         let values = match numbers.at(point)? {
             Ok(values) => values,
@@ -160,7 +161,7 @@ impl Emitted {
 fn compare(
     [model, with_rates]: [&Model; 2],
     program: &Program,
-    values: &Values,
+    values: &PointValues,
     emitted: &FxHashMap<&str, Vec<ResiduePair>>,
     point: &FieldPoint,
 ) -> Option<Result<(), String>> {

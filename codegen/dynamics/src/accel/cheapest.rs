@@ -27,7 +27,7 @@ type Functions = [Vec<Edge>; 5];
 /// ξ̇ can be shared. The momentum ∂T/∂ξ and M ξ̇ + Γ ξ ξ + ∂V may also be composed from the cheapest of the other
 /// functions. The result is in a copy of `chosen`. The loads are those of the first computation; returns `None` if
 /// there is none.
-pub fn cheapest(
+pub fn cheapest_of_each_function(
     mut computations: Vec<MassAndForces>,
     chosen: &Graph,
     model: &Model,

@@ -21,7 +21,7 @@ use crate::inertia;
 use crate::numerical_loss::NumericalLoss;
 pub use best::Acceleration;
 use best::{BestCandidates, CandidateFamily};
-use cheapest::{MassAndForces, cheapest};
+use cheapest::{MassAndForces, cheapest_of_each_function};
 use context::DerivationContext;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_language::functions::Needs;
@@ -53,7 +53,8 @@ pub fn forward_dynamics(
     let traced = || recursions.iter().map(TreeRecursion::mass_and_forces);
     if is_long(&given, &recursions) {
         let best = best.cheapest()?;
-        let computed = cheapest(traced().collect(), &best.graph, model, numerical_loss)?;
+        let computed =
+            cheapest_of_each_function(traced().collect(), &best.graph, model, numerical_loss)?;
         return Some((best, computed));
     }
     let mut computations = search(&given, &mut best)?;
@@ -72,7 +73,7 @@ pub fn forward_dynamics(
     }
     let best = best.into_polished(model)?;
     computations.extend(traced());
-    let computed = cheapest(computations, &best.graph, model, numerical_loss)?;
+    let computed = cheapest_of_each_function(computations, &best.graph, model, numerical_loss)?;
     Some((best, computed))
 }
 
@@ -99,7 +100,7 @@ pub fn mass_and_forces(model: &Model, numerical_loss: &NumericalLoss) -> Option<
         }
     }
     computations.extend(recursions.iter().map(TreeRecursion::mass_and_forces));
-    cheapest(computations, &model.graph, model, numerical_loss)
+    cheapest_of_each_function(computations, &model.graph, model, numerical_loss)
 }
 
 /// Returns the recursions over links, one for each frame placement; empty if the bodies do not form a tree of

@@ -19,8 +19,9 @@ const MIN_COEFFICIENT_RATIO: f64 = 0.1;
 /// Order of the moment that each of the ten parameters of a link is: 2, 1, or 0 for the mass.
 const MOMENT_ORDERS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
 
-/// Base parameter: place of the moment that is kept, and all terms; its own, with coefficient 1, comes first.
-pub type SolvedRelation = (usize, Vec<(usize, Edge)>);
+/// Terms of a base parameter: place of the moment that is kept, and all moments with their coefficients; its own, with
+/// coefficient 1, comes first.
+pub type BaseParameterTerms = (usize, Vec<(usize, Edge)>);
 
 /// Finds all relations between standard parameters, and solves them as relations between moments, some of which are
 /// kept.
@@ -30,7 +31,7 @@ pub fn solve_relations(
     tree: &Tree,
     links: &[Link],
     total: usize,
-) -> Result<Vec<SolvedRelation>, RegressorError> {
+) -> Result<Vec<BaseParameterTerms>, RegressorError> {
     let massless = |k: usize| links.get(k / 10).is_some_and(|link| !link.present);
     let present: Vec<usize> = (0..total).filter(|&k| !massless(k)).collect();
     let rank = Echelon::new(samples.of(&present)).rank();

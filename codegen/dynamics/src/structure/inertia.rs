@@ -4,7 +4,7 @@
 use super::centre::{CentreShift, shift};
 use super::constant::eliminate_symbols;
 use super::context::StructureContext;
-use super::rates::{CoordinateBlock, RateMaps, dependence, preserves_volume, rates};
+use super::rates::{CoordinateBlock, RateMaps, dependence, preserves_volume, rate_maps};
 use crate::accel::parts::EquationTerms;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, matrix, multiply, solve_symmetric, transpose};
@@ -41,7 +41,7 @@ pub fn separate(
     } = *context;
     let n = model.n();
     let zero = graph.zero();
-    let Some(rates) = rates(model, graph) else {
+    let Some(rates) = rate_maps(model, graph) else {
         return Err(vec![Reason::Rates]);
     };
     let depends = |graph: &Graph, edges: &[Edge]| {

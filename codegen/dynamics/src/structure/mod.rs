@@ -41,7 +41,7 @@ use hamel_program::structure::{Reason, Splitting, Structure};
 use rates::{CoordinateBlock, coordinate_blocks};
 use variation::Variation;
 
-/// Result of the analysis, with the functions of a system that splits.
+/// Whether a system splits into free motion and kicks, with its functions if it does.
 pub struct StructureAnalysis {
     /// Structure of the system.
     pub structure: Structure,

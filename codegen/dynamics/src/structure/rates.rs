@@ -76,10 +76,11 @@ pub struct RateMaps {
     pub to_velocities: Vec<Vec<Edge>>,
 }
 
-/// Computes B and N in `graph`, another graph with the model's symbols.
+/// Computes the matrices B and N between velocities and rates of the coordinates, in `graph`, another graph with the
+/// model's symbols.
 ///
 /// The model must have as many velocities as its blocks have rates.
-pub fn rates(model: &Model, graph: &mut Graph) -> Option<RateMaps> {
+pub fn rate_maps(model: &Model, graph: &mut Graph) -> Option<RateMaps> {
     let mut own = model.clone();
     let y = left_inverse(&mut own)?;
     let columns = transpose(&own.a);

@@ -121,7 +121,7 @@ struct FixedPose {
     position: Vec3,
 }
 
-/// Derives the links of a model; `None` as for [`draft_with_carriers`].
+/// Derives the links of a model; `None` as for [`draft_links_with_frames`].
 pub fn draft_links(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<LinkDraft>> {
     Some(draft_links_with_frames(model, calculus)?.0)
 }

@@ -466,7 +466,7 @@ pub fn generalized_forces(
     generalized_forces_with(graph, tree, wrenches, n, |_, _, total| *total)
 }
 
-/// As [`collect`], with a function that maps the wrench on a joint's subtree to the one that acts
+/// As [`generalized_forces`], with a function that maps the wrench on a joint's subtree to the one that acts
 /// on the joint.
 pub(super) fn generalized_forces_with(
     graph: &mut Graph,

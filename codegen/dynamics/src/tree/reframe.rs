@@ -50,7 +50,7 @@ pub fn keep_frames(graph: &mut Graph, links: &mut [LinkDraft], limits: &Rounding
     }
 }
 
-/// As [`keep`], but with origins moved along their hinges; returns for each link how far.
+/// As [`keep_frames`], but with origins moved along their hinges; returns for each link how far.
 pub fn keep_frames_shifted(
     graph: &mut Graph,
     links: &mut [LinkDraft],

@@ -1,9 +1,9 @@
 //! Comparisons at one point of a system with constraints.
 
 use super::Claim;
-use super::frame::Full;
-use super::point::{ConstrainedPoint, Values};
-use crate::charts::Charts;
+use super::frame::FullFrameQuantities;
+use super::point::{ConstrainedPoint, FullFrameValues};
+use crate::charts::ChartComparison;
 use crate::kernel::{dot, virtual_velocity};
 use crate::{centroidal, derivatives, frames, outputs, states};
 use hamel_algebra::field_point::FieldPoint;
@@ -16,12 +16,12 @@ use hamel_program::{FunctionId, Program};
 
 /// A point with the numbers that several comparisons need.
 pub(super) struct PointComparison<'a> {
-    full: &'a Full,
+    full: &'a FullFrameQuantities,
     reduction: &'a Reduction,
     program: &'a Program,
-    charts: &'a Charts,
+    charts: &'a ChartComparison,
     at: ConstrainedPoint<'a>,
-    values: Values,
+    values: FullFrameValues,
     /// B of the full frame, by rows.
     rows: Vec<ResiduePair>,
     /// Kept rows in terms of ξₐ, and the B ξ̇ₐ that they demand.
@@ -41,9 +41,9 @@ pub(super) struct PointComparison<'a> {
 impl<'a> PointComparison<'a> {
     /// Evaluates the numbers at a point; `None` if something has no value there.
     pub(super) fn new(
-        full: &'a Full,
+        full: &'a FullFrameQuantities,
         reduction: &'a Reduction,
-        (program, charts): (&'a Program, &'a Charts),
+        (program, charts): (&'a Program, &'a ChartComparison),
         point: &FieldPoint,
     ) -> Option<Self> {
         let (n, na) = (full.reference.model.n(), reduction.active.len());
@@ -213,7 +213,7 @@ impl<'a> PointComparison<'a> {
 
     /// Returns the ξ̇ₐ and λ that the forces imply.
     fn solve_implied(&self) -> Option<KktValues> {
-        let Values { force, slope, .. } = &self.values;
+        let FullFrameValues { force, slope, .. } = &self.values;
         let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
         let rest: Vec<ResiduePair> = rest.collect();
         self.solution(Some(&self.project(&rest)), &self.right, &self.driven)

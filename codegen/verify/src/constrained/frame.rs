@@ -6,7 +6,7 @@
 
 use crate::kernel::places;
 use crate::numbers::Numbers;
-use crate::points::{Unequal, at_fresh_points};
+use crate::points::{Disagreement, at_fresh_points};
 use crate::reference::Reference;
 use crate::states;
 use hamel_algebra::field_point::FieldPoint;
@@ -23,7 +23,7 @@ use hamel_program::{FunctionId, Program};
 use num_rational::BigRational;
 
 /// Quantities of the full frame, with which reduced systems are compared.
-pub(super) struct Full {
+pub(super) struct FullFrameQuantities {
     pub(super) reference: Reference,
     /// Whether the full frame agrees with the three forms in numbers; `None` if no point was found to compare at.
     pub(super) frame: Option<bool>,
@@ -49,7 +49,7 @@ pub(super) struct Full {
     pub(super) claims: Vec<(String, Vec<Edge>)>,
 }
 
-impl Full {
+impl FullFrameQuantities {
     pub(super) fn new(model: &Model, reduction: &Reduction, program: &Program) -> Option<Self> {
         let full = Model {
             graph: reduction.graph.clone(),
@@ -95,7 +95,7 @@ impl Full {
         let forms = forms.collect();
         let mut calculus = Calculus::new(&reduced);
         let right = kkt::constraint_accelerations(&mut reduced, &mut calculus);
-        let mut full = Full {
+        let mut full = FullFrameQuantities {
             drift,
             complement: lifted,
             rows: model
@@ -257,12 +257,12 @@ pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         (model.points).lane_moved(0xf4a_3e0 + number, &model.graph, &given, &unmoved)
     };
     let compared = match at_fresh_points(anywhere, |point, _| at(point)) {
-        Err(Unequal::Nowhere) => at_fresh_points(prescribed, |point, _| at(point)),
+        Err(Disagreement::Nowhere) => at_fresh_points(prescribed, |point, _| at(point)),
         compared => compared,
     };
     match compared {
         Ok(()) => Some(true),
-        Err(Unequal::Differs(())) => Some(false),
-        Err(Unequal::Nowhere) => None,
+        Err(Disagreement::Differs(())) => Some(false),
+        Err(Disagreement::Nowhere) => None,
     }
 }

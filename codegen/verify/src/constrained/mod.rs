@@ -7,13 +7,13 @@ mod comparison;
 pub mod frame;
 mod point;
 
-use super::charts::Charts;
+use super::charts::ChartComparison;
 use super::confidence::Confidence;
-use super::kernel::rows_at_rest;
-use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
+use super::kernel::satisfying_rows;
+use super::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
 use super::verdict::{Identity, Verdict, failure, nowhere};
 use comparison::PointComparison;
-use frame::{Full, prescribed_values};
+use frame::{FullFrameQuantities, prescribed_values};
 use hamel_algebra::graph::Edge;
 use hamel_dynamics::reduction::Reduction;
 use hamel_language::diagnostics::Diagnostic;
@@ -126,7 +126,12 @@ impl Claim {
     }
 
     /// Returns whether the program has the functions that the claim is about; other claims are not shown.
-    fn is_applicable(self, full: &Full, reduction: &Reduction, program: &Program) -> bool {
+    fn is_applicable(
+        self,
+        full: &FullFrameQuantities,
+        reduction: &Reduction,
+        program: &Program,
+    ) -> bool {
         let has_entries = |id: &FunctionId| {
             let function = program.function(*id);
             function.is_some_and(|function| !function.outputs.is_empty())
@@ -182,7 +187,7 @@ impl Claim {
 /// # Errors
 /// A fault of the generator, with the first claim that fails.
 pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Result<(), Diagnostic> {
-    let Some(full) = Full::new(model, reduction, program) else {
+    let Some(full) = FullFrameQuantities::new(model, reduction, program) else {
         return Err(failure(model, "Y A = I"));
     };
     let Some(failed) = compare(&full, model, reduction, program) else {
@@ -199,7 +204,7 @@ pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Resu
 /// If constraints make velocities multiples of one another, their norm is √c |ξ|, and c may have no root in F_p: then
 /// points are tried that allow roots in F_p(i).
 fn compare(
-    full: &Full,
+    full: &FullFrameQuantities,
     model: &Model,
     reduction: &Reduction,
     program: &Program,
@@ -210,12 +215,12 @@ fn compare(
 
 fn compare_at(
     points: &Points,
-    full: &Full,
+    full: &FullFrameQuantities,
     reduction: &Reduction,
     program: &Program,
 ) -> Option<Vec<Claim>> {
     let mut failed: Vec<Claim> = Vec::new();
-    let charts = Charts::new(program)?;
+    let charts = ChartComparison::new(program)?;
     // Prescribed coordinates take their prescribed values, so that roots of them have values.
     let given = prescribed_values(&full.reference.model);
     let compared = at_fresh_points(
@@ -246,7 +251,7 @@ fn compare_at(
     let still = at_fresh_points(
         |number| {
             let model = &full.reference.model;
-            let moved = |point| rows_at_rest(model, &rows, point);
+            let moved = |point| satisfying_rows(model, &rows, point);
             points.lane_moved(0x50_0e4 + number, &model.graph, &given, &moved)
         },
         |point, _| {
@@ -254,14 +259,14 @@ fn compare_at(
             Some(if balanced { Ok(()) } else { Err(()) })
         },
     );
-    if let Err(Unequal::Differs(())) = still {
+    if let Err(Disagreement::Differs(())) = still {
         failed.push(Claim::Power);
     }
-    (compared.is_ok() && still != Err(Unequal::Nowhere)).then_some(failed)
+    (compared.is_ok() && still != Err(Disagreement::Nowhere)).then_some(failed)
 }
 
 /// Bounds the chance of error: everything is evaluated, in sums and linear solves of n + rows terms.
-fn confidence(full: &Full, model: &Model, program: &Program) -> Confidence {
+fn confidence(full: &FullFrameQuantities, model: &Model, program: &Program) -> Confidence {
     let reference = &full.reference;
     let mut roots = reference.mass.concat();
     let lists = [
@@ -291,7 +296,7 @@ fn confidence(full: &Full, model: &Model, program: &Program) -> Confidence {
 
 /// Returns the identities with their verdicts.
 pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
-    let full = Full::new(model, reduction, program);
+    let full = FullFrameQuantities::new(model, reduction, program);
     let failed = full
         .as_ref()
         .and_then(|full| compare(full, model, reduction, program));

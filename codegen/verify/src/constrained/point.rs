@@ -1,7 +1,7 @@
 //! One point at which a system with constraints is compared: numbers of the full frame, balance of power,
 //! linearisation.
 
-use super::frame::Full;
+use super::frame::FullFrameQuantities;
 use crate::kernel::{dot, places};
 use crate::outputs::slopes_hold;
 use crate::slopes::measured_at;
@@ -16,7 +16,7 @@ use hamel_program::{FunctionId, Program};
 
 /// A point with ξ = C ξₐ + c, as a point of the full model and of the reduced one.
 pub(super) struct ConstrainedPoint<'a> {
-    full: &'a Full,
+    full: &'a FullFrameQuantities,
     program: &'a Program,
     /// C, by rows.
     pub(super) c: Vec<ResiduePair>,
@@ -29,7 +29,7 @@ pub(super) struct ConstrainedPoint<'a> {
 }
 
 /// Numbers of the full frame at a point.
-pub(super) struct Values {
+pub(super) struct FullFrameValues {
     pub(super) mass: Vec<ResiduePair>,
     pub(super) bias: Vec<ResiduePair>,
     pub(super) slope: Vec<ResiduePair>,
@@ -42,7 +42,7 @@ pub(super) struct Values {
     pub(super) xi: Vec<ResiduePair>,
 }
 
-impl Values {
+impl FullFrameValues {
     /// Returns ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ.
     pub(super) fn lift(&self, c: &[ResiduePair], xi_dot: &[ResiduePair]) -> Vec<ResiduePair> {
         let na = xi_dot.len();
@@ -66,7 +66,7 @@ impl Values {
 impl<'a> ConstrainedPoint<'a> {
     /// Creates the point with the active velocities of a point of the full model.
     pub(super) fn new(
-        full: &'a Full,
+        full: &'a FullFrameQuantities,
         reduction: &Reduction,
         program: &'a Program,
         point: &FieldPoint,
@@ -119,7 +119,7 @@ impl<'a> ConstrainedPoint<'a> {
     }
 
     /// Returns the numbers of the full frame.
-    pub(super) fn values(&self) -> Option<Values> {
+    pub(super) fn values(&self) -> Option<FullFrameValues> {
         let reference = &self.full.reference;
         let (graph, n) = (&reference.model.graph, reference.model.n());
         let mut roots: Vec<Edge> = reference.mass.concat();
@@ -144,7 +144,7 @@ impl<'a> ConstrainedPoint<'a> {
         let [in_energy, potential, dissipation, change] = rest[5 * n..] else {
             return None;
         };
-        Some(Values {
+        Some(FullFrameValues {
             mass: mass.to_vec(),
             bias: part(0),
             slope: part(1),

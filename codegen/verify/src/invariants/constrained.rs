@@ -2,8 +2,8 @@
 //! from the program, which has already been validated.
 
 use crate::confidence::Confidence;
-use crate::kernel::at_rest;
-use crate::points::{COMPARED_POINTS, Unequal, at_fresh_points};
+use crate::kernel::satisfying_constraints;
+use crate::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
 use crate::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
@@ -27,11 +27,11 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
     for claim in &model.invariants {
         let message = match find_refutation(model, program, claim) {
             None => continue,
-            Some(Unequal::Nowhere) => format!(
+            Some(Disagreement::Nowhere) => format!(
                 "the claim `{}` cannot be checked: the motion has no value where the claim is made",
                 claim.name
             ),
-            Some(Unequal::Differs(entry)) => format!(
+            Some(Disagreement::Differs(entry)) => format!(
                 "entry {} of `{}` is not constant along the motion: d/dt is not zero where the constraints hold",
                 entry + 1,
                 claim.name
@@ -96,7 +96,11 @@ fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
 }
 
 /// Returns how the claim fails, with the index of the entry that changes; `None` if it does not fail.
-fn find_refutation(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
+fn find_refutation(
+    model: &Model,
+    program: &Program,
+    claim: &Invariant,
+) -> Option<Disagreement<usize>> {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
     let energies = energies(&mut own, &mut calculus);
@@ -104,7 +108,7 @@ fn find_refutation(model: &Model, program: &Program, claim: &Invariant) -> Optio
     let entries = value.entries();
     let compared = at_fresh_points(
         |number| {
-            let moved = |point| at_rest(&own, point);
+            let moved = |point| satisfying_constraints(&own, point);
             own.points
                 .lane_moved(0x1a7f + number, &own.graph, &claim.set, &moved)
         },

@@ -16,7 +16,7 @@ mod proof;
 mod remainder;
 
 use super::confidence::Confidence;
-use super::points::{COMPARED_POINTS, Unequal, at_fresh_points};
+use super::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
@@ -49,7 +49,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
         let entries = motion.entries(claim);
         match motion.find_refutation(claim, &entries) {
             None => {}
-            Some(Unequal::Nowhere) => {
+            Some(Disagreement::Nowhere) => {
                 let message = format!(
                     "the claim `{}` cannot be checked: the motion has no value where the claim is made",
                     claim.name
@@ -57,7 +57,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
                 let help = "check the values after `when`: they may make the mass matrix singular, or a divisor zero";
                 errors.push(Diagnostic::new(claim.span, message).help(help));
             }
-            Some(Unequal::Differs(entry)) => {
+            Some(Disagreement::Differs(entry)) => {
                 let prover = prover.get_or_insert_with(|| Prover::new(model));
                 let leaves = prover
                     .as_mut()
@@ -106,10 +106,10 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     for claim in &model.invariants {
         let entries = motion.entries(claim);
         let verdict = match motion.find_refutation(claim, &entries) {
-            Some(Unequal::Nowhere) => {
+            Some(Disagreement::Nowhere) => {
                 Verdict::Failed("no point was found at which to check it".into())
             }
-            Some(Unequal::Differs(entry)) => Verdict::Failed(format!(
+            Some(Disagreement::Differs(entry)) => Verdict::Failed(format!(
                 "entry {} of {} is not constant",
                 entry + 1,
                 entries.len()
@@ -197,7 +197,11 @@ impl Equations {
     }
 
     /// Returns how the claim fails; `None` if it does not.
-    fn find_refutation(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Unequal<usize>> {
+    fn find_refutation(
+        &mut self,
+        claim: &Invariant,
+        entries: &[Edge],
+    ) -> Option<Disagreement<usize>> {
         let force = self.force();
         let model = &self.reference.model;
         let compared = at_fresh_points(

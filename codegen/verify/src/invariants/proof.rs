@@ -6,7 +6,7 @@
 //! otherwise, for n ≤ 3, w = ∂I/∂ξ adj M and σ = det M.
 
 use super::Equations;
-use super::remainder::readable;
+use super::remainder::polynomial_text;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::{cross, identity3, matrix, solve_symmetric};
@@ -195,7 +195,7 @@ impl Prover {
         if forms[0].is_zero() {
             return Proof::Proved;
         }
-        match readable(&self.model.graph, &forms[0]) {
+        match polynomial_text(&self.model.graph, &forms[0]) {
             Some(text) => Proof::Leaves(text),
             None => Proof::Open,
         }

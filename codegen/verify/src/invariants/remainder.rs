@@ -11,7 +11,7 @@ use num_traits::{One, Signed};
 const MAX_SHOWN_TERMS: usize = 6;
 
 /// Returns the text of a polynomial; `None` if one of its variables cannot be written briefly, such as a quotient.
-pub fn readable(graph: &Graph, polynomial: &Poly<BigRational>) -> Option<String> {
+pub fn polynomial_text(graph: &Graph, polynomial: &Poly<BigRational>) -> Option<String> {
     let mut text = String::new();
     let terms = polynomial.terms();
     for (index, (monomial, number)) in terms.iter().take(MAX_SHOWN_TERMS).enumerate() {

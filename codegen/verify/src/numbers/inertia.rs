@@ -18,7 +18,7 @@ pub struct BodyNumbers {
 }
 
 /// Sums over bodies and particles, and over a kinetic energy that the user wrote.
-pub struct Sums {
+pub struct FormSums {
     /// ∂S/∂ξ̇ⁱ by accelerations, (30b).
     pub gibbs: Vec<ResiduePair>,
     /// Generalised weights Σ m ⟨g, ∂ᵢr⟩.
@@ -47,11 +47,11 @@ fn increase(sum: &mut ResiduePair, by: ResiduePair) {
     *sum = *sum + by;
 }
 
-impl Sums {
+impl FormSums {
     /// Creates sums without any terms.
     pub fn new(n: usize) -> Self {
         let zero = || vec![ResiduePair::ZERO; n];
-        Sums {
+        FormSums {
             gibbs: zero(),
             weight: zero(),
             momentum: zero(),

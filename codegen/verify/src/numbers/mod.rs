@@ -31,7 +31,7 @@ use hamel_algebra::jets::{Jet, Seeds};
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
-use inertia::{BodyNumbers, Sums};
+use inertia::{BodyNumbers, FormSums};
 use loads::Forces;
 use motion::{Moving, MovingFrame, point};
 use rustc_hash::FxHashMap;
@@ -43,7 +43,7 @@ pub struct Numbers {
 }
 
 /// Left sides of (30a), (30b), (30c) at one point (x, ξ, ξ̇, u), and the quantities in them, as numbers modulo p.
-pub struct Values {
+pub struct PointValues {
     /// Left sides of (30a), (30b), (30c).
     pub left: [Vec<ResiduePair>; 3],
     /// Mass matrix M.
@@ -180,7 +180,7 @@ impl Numbers {
     ///
     /// # Errors
     /// The name of the identity if Y A is not I.
-    pub fn at(&self, field_point: &FieldPoint) -> Option<Result<Values, String>> {
+    pub fn at(&self, field_point: &FieldPoint) -> Option<Result<PointValues, String>> {
         let all = &self.expressions;
         let model = &all.model;
         let (n, nu) = (model.n(), model.nu());
@@ -249,7 +249,7 @@ impl Numbers {
         let mut points = points
             .chunks_exact(3)
             .map(|jets| point(n, &std::array::from_fn(|i| jets[i].clone())));
-        let mut sums = Sums::new(n);
+        let mut sums = FormSums::new(n);
         let gravity = read.three()?;
         for body in &model.bodies {
             let inertia = BodyNumbers {
@@ -291,7 +291,7 @@ impl Numbers {
         let left = [hamel.collect(), gibbs.collect(), levi_civita.collect()];
         let (force, dissipation) =
             self.forces(field_point, &mut read, &frames, &mut points, &xi)?;
-        Some(Ok(Values {
+        Some(Ok(PointValues {
             left,
             bias,
             slope,
@@ -311,7 +311,7 @@ impl Numbers {
         &self,
         field_point: &FieldPoint,
         kinematics: &Kinematics,
-        sums: &mut Sums,
+        sums: &mut FormSums,
         (rate, xi, xi_dot): (&[ResiduePair], &[ResiduePair], &[ResiduePair]),
         written: &Jet,
     ) -> Option<Vec<ResiduePair>> {

@@ -1,6 +1,6 @@
 //! Tests of fresh points: agreement requires all of them.
 
-use super::{COMPARED_POINTS, MAX_FAILED_SEARCHES, Unequal, at_fresh_points};
+use super::{COMPARED_POINTS, Disagreement, MAX_FAILED_SEARCHES, at_fresh_points};
 use hamel_algebra::field_point::FieldPoint;
 
 #[test]
@@ -11,7 +11,7 @@ fn too_few_points_are_no_agreement() {
     assert_eq!(at_fresh_points(point, some(COMPARED_POINTS)), Ok(()));
     assert_eq!(
         at_fresh_points(point, some(COMPARED_POINTS - 1)),
-        Err(Unequal::Nowhere)
+        Err(Disagreement::Nowhere)
     );
     let looked = std::cell::Cell::new(0);
     let nowhere = |number| {
@@ -20,7 +20,7 @@ fn too_few_points_are_no_agreement() {
     };
     assert_eq!(
         at_fresh_points(nowhere, some(COMPARED_POINTS)),
-        Err(Unequal::Nowhere)
+        Err(Disagreement::Nowhere)
     );
     assert_eq!(looked.get(), MAX_FAILED_SEARCHES);
     let last = |_: &FieldPoint, number| {
@@ -32,6 +32,6 @@ fn too_few_points_are_no_agreement() {
     };
     assert_eq!(
         at_fresh_points(point, last),
-        Err(Unequal::Differs(COMPARED_POINTS))
+        Err(Disagreement::Differs(COMPARED_POINTS))
     );
 }
