@@ -127,9 +127,9 @@ const put = (text, place, part) => {
   return text.replace(place, () => part);
 };
 let whole = html;
-const { apart, together } = await module("instructions.ts");
-const streams = apart(wasm);
-if (!WebAssembly.validate(together(streams)) || Buffer.compare(apart(together(streams)), streams) !== 0) {
+const { splitStreams, joinStreams } = await module("instructions.ts");
+const streams = splitStreams(wasm);
+if (!WebAssembly.validate(joinStreams(streams)) || Buffer.compare(splitStreams(joinStreams(streams)), streams) !== 0) {
   throw new Error("the module reassembled from its streams differs from the original");
 }
 const generator = packed(streams, 2);

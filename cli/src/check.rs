@@ -95,11 +95,11 @@ pub struct CheckedIdentity {
     pub equation: String,
     /// `proved`, `checked` or `failed`.
     pub verdict: &'static str,
-    /// Explanation of the verdict; empty where it is proved.
+    /// Explanation of the verdict; empty if it is proved.
     pub explanation: String,
 }
 
-/// The identities behind the equations, with their verdicts.
+/// Returns the identities behind the equations, with their verdicts.
 pub fn check_identities(generated: &Generated) -> Vec<CheckedIdentity> {
     let identities = check(&generated.model, &generated.program).into_iter();
     identities
@@ -119,7 +119,7 @@ pub fn check_identities(generated: &Generated) -> Vec<CheckedIdentity> {
         .collect()
 }
 
-/// The text below the identities: rounding, merging, constraints, geometry, methods.
+/// Returns the text below the identities: rounding, merging, constraints, geometry, methods.
 pub fn remarks(generated: &Generated, text: &str) -> String {
     [
         rounding_report(generated),

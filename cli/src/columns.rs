@@ -20,7 +20,7 @@ pub fn headed(rows: &[Vec<String>]) -> String {
     }
 }
 
-/// The number of characters of the widest entry of each column.
+/// Returns the number of characters of the widest entry of each column.
 pub fn widths(rows: &[Vec<String>]) -> Vec<usize> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {

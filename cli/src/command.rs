@@ -5,7 +5,7 @@ use crate::{
     check, compare, draw, emit, eval, import, linearize, ops, regressor, simulate, sweep, tables,
 };
 use clap::{Parser, Subcommand};
-use hamel_engine::Stop;
+use hamel_engine::CancellationToken;
 use std::ffi::OsString;
 
 const EXAMPLES: &str = "\
@@ -48,7 +48,7 @@ enum Command {
     Import(import::Arguments),
 }
 
-/// The subcommands and options of the command line, from which its reference is generated.
+/// Returns the subcommands and options of the command line, from which its reference is generated.
 pub fn described() -> clap::Command {
     <Line as clap::CommandFactory>::command()
 }
@@ -69,7 +69,7 @@ pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
 /// Errors in the words, or the failure of the command.
 pub fn asked(
     words: impl IntoIterator<Item = OsString>,
-    stop: Option<&Stop>,
+    stop: Option<&CancellationToken>,
 ) -> Result<(), Failure> {
     let line = Line::try_parse_from(words);
     let line = line.map_err(|said| Failure::Usage(said.render().to_string()))?;

@@ -42,8 +42,8 @@ pub struct Arguments {
     /// Number type of C: `double` or `float`; default: `double`. Rust is generic over it.
     #[arg(long, value_name = "NUMBERS")]
     precision: Option<Precision>,
-    /// Also writes every statement of the code as JSON: name, expression, quantity, equation, and line and column of the
-    /// description.
+    /// Also writes every statement of the code as JSON: name, expression, quantity, equation, and line and column of
+    /// the description.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     trace: Option<PathBuf>,
     #[command(flatten)]
@@ -130,7 +130,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The statements of all functions as JSON. `text` and `path` are those of the description, or of the robot's file.
+/// Returns the statements of all functions as JSON. `text` and `path` are those of the description, or of the robot's
+/// file.
 fn traced(generated: &Generated, text: &str, path: &str) -> String {
     let mut places = Places::of(generated, text);
     let mut statement = |traced: &Traced| {
@@ -179,7 +180,7 @@ fn write_c(arguments: &Arguments, files: &Files, stem: Option<&str>) -> Result<(
     }
 }
 
-/// The name of the C files without extension, which `#include` contains as well.
+/// Returns the name of the C files without extension, which `#include` contains as well.
 fn stem(out: &Path) -> Result<String, Failure> {
     let name = out.file_name().and_then(|name| name.to_str());
     let stem = name.map(|name| {

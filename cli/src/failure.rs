@@ -1,4 +1,4 @@
-//! What ends a command early, how it is shown, and the exit status that it ends with.
+//! Failures of commands: how they are shown, and their exit statuses.
 
 #[cfg(feature = "command")]
 use crate::simulate::SeriesError;
@@ -8,10 +8,10 @@ use hamel_engine::{Error, Warning};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Why a command ends early.
+/// Failure of a command.
 #[derive(Debug)]
 pub enum Failure {
-    /// The engine cannot do what is asked for.
+    /// An error of the engine.
     Engine(Error),
     /// A description or a check failed: status 1.
     Failed(String),
@@ -21,7 +21,7 @@ pub enum Failure {
     Usages {
         /// The input.
         about: String,
-        /// What is wrong with it.
+        /// The messages.
         messages: Vec<String>,
     },
     /// The words of the command line are wrong, in the words of its parser: status 2.
@@ -46,17 +46,17 @@ impl From<SeriesError> for Failure {
 }
 
 impl Failure {
-    /// A failure of the request, in one message.
+    /// Creates a failure of the request from one message.
     pub fn failed(message: impl Into<String>) -> Self {
         Failure::Failed(message.into())
     }
 
-    /// Unusable input, in one message.
+    /// Creates a failure of unusable input from one message.
     pub fn usage(message: impl Into<String>) -> Self {
         Failure::Usage(message.into())
     }
 
-    /// Several messages about the same subject.
+    /// Creates a failure from several messages about the same input.
     pub fn usages(about: &str, messages: &[String]) -> Self {
         Failure::Usages {
             about: about.into(),
@@ -64,7 +64,7 @@ impl Failure {
         }
     }
 
-    /// What is shown of it, on as many lines as that takes.
+    /// Renders the failure as one or more lines.
     pub fn render(&self, color: bool) -> String {
         let format_error = |message: &str| match color {
             true => format!("\x1b[1;31merror\x1b[0m: {message}\n"),
@@ -92,7 +92,7 @@ impl Failure {
         }
     }
 
-    /// The exit status of a command that ends by it.
+    /// Returns the exit status of a command that ends with this failure.
     fn status(&self) -> u8 {
         match self {
             Failure::Engine(error) => 1 + u8::from(error.is_misuse()),
@@ -103,14 +103,14 @@ impl Failure {
         }
     }
 
-    /// Writes the failure to standard error; the exit status.
+    /// Writes the failure to standard error, and returns the exit status.
     pub fn report(self) -> u8 {
         // If standard error is closed, the message cannot be delivered.
         let _ = anstream::stderr().write_all(self.render(true).as_bytes());
         self.status()
     }
 
-    /// Both of two failures.
+    /// Combines two failures.
     pub fn and(self, other: Failure) -> Failure {
         match (self, other) {
             (Failure::Closed, other) => other,
@@ -120,7 +120,7 @@ impl Failure {
     }
 }
 
-/// An error that has places in a text, with these underlined.
+/// Renders an error that has places in a text, with these underlined; `None` for other errors.
 fn underlined(error: &Error, color: bool) -> Option<String> {
     Some(match error {
         Error::Description {

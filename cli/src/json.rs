@@ -23,7 +23,7 @@ pub enum Json {
 const WIDTH: usize = 100;
 
 impl Json {
-    /// An object with these members.
+    /// Returns an object with these members.
     pub fn object<'a>(members: impl IntoIterator<Item = (&'a str, Json)>) -> Json {
         Json::Object(
             members
@@ -33,17 +33,17 @@ impl Json {
         )
     }
 
-    /// A list of numbers.
+    /// Returns a list of numbers.
     pub fn vector(values: &[f64]) -> Json {
         Json::List(values.iter().map(|&value| Json::Number(value)).collect())
     }
 
-    /// A list of rows.
+    /// Returns a list of rows.
     pub fn matrix(rows: &[Vec<f64>]) -> Json {
         Json::List(rows.iter().map(|row| Json::vector(row)).collect())
     }
 
-    /// A list of texts.
+    /// Returns a list of texts.
     pub fn texts(texts: &[String]) -> Json {
         Json::List(texts.iter().map(|text| Json::Text(text.clone())).collect())
     }

@@ -9,10 +9,10 @@
 //! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
 //! | `command` | the command line, with the feature of that name |
 //! | `source`, `robot` | descriptions as the command line opens them, and the options for that |
-//! | `reports` | what commands report, for other front ends |
+//! | `reports` | reports of the commands, for other front ends |
 //! | `parse` | numbers on the command line |
 //! | `json`, `columns`, `outputs` | how results are written; pictures are those of `hamel-report` |
-//! | `progress` | what long work shows |
+//! | `progress` | progress of long work |
 //! | `failure` | errors and warnings as they are shown, and exit statuses |
 
 //! # Features

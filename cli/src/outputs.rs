@@ -43,7 +43,7 @@ pub fn svg(option: &str, path: Option<&Path>) -> Result<(), Failure> {
     )))
 }
 
-/// The canonical path, if it is or may become a file.
+/// Returns the canonical path, if it is or may become a file.
 fn place(path: &Path) -> Option<PathBuf> {
     if path.as_os_str() == "-" || is_stream(path) {
         return None;
@@ -59,7 +59,7 @@ fn place(path: &Path) -> Option<PathBuf> {
     Some(folder.join(path.file_name()?))
 }
 
-/// Whether a path exists and is neither a file nor a folder.
+/// Returns whether a path exists and is neither a file nor a folder.
 fn is_stream(path: &Path) -> bool {
     let known = path.metadata();
     known.is_ok_and(|known| !known.is_file() && !known.is_dir())

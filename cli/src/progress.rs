@@ -9,12 +9,12 @@ use std::time::Duration;
 /// Interval between updates of a spinner.
 const TICK: Duration = Duration::from_millis(200);
 
-/// A bar for a number of steps, with the remaining time.
+/// Returns a bar for a number of steps, with the remaining time.
 fn bar(steps: u64) -> ProgressBar {
     styled(steps, "{percent}%  {eta} left")
 }
 
-/// A bar for many items, with their rate and the remaining time.
+/// Returns a bar for many items, with their rate and the remaining time.
 pub fn rated(count: u64) -> ProgressBar {
     let bar = styled(count, "{percent}%  {pos} of {len}, {per_sec}, {eta} left");
     bar.enable_steady_tick(TICK);
@@ -31,7 +31,7 @@ fn styled(steps: u64, told: &str) -> ProgressBar {
     }
 }
 
-/// A bar with a name and the elapsed time; its length is set later.
+/// Returns a bar with a name and the elapsed time; its length is set later.
 pub fn named(name: &str) -> ProgressBar {
     let bar = ProgressBar::new(1).with_message(name.to_string());
     match ProgressStyle::with_template("{msg} {bar:40} {elapsed}") {
@@ -40,7 +40,7 @@ pub fn named(name: &str) -> ProgressBar {
     }
 }
 
-/// Shows what the engine reports on standard error: warnings, and how long work takes where that is a terminal.
+/// Shows what the engine reports on standard error: warnings, and how long work takes if that is a terminal.
 #[derive(Default)]
 pub struct Terminal(Mutex<Option<ProgressBar>>);
 

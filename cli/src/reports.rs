@@ -1,4 +1,4 @@
-//! What commands report of a description, for other front ends: identities, costs, generated code, tables, comparisons.
+//! Reports of the commands for other front ends: identities, costs, generated code, tables, comparisons.
 
 use crate::check::{self, CheckedIdentity};
 use crate::compare::{self, Comparison};
@@ -9,13 +9,13 @@ use hamel_codegen::builder;
 use hamel_codegen::emit::c::{Files, Precision};
 use hamel_engine::{Error, Session, State, method};
 
-/// The results of `hamel check`: the identities with their verdicts, and the lines below them.
+/// Returns the results of `hamel check`: the identities with their verdicts, and the lines below them.
 pub fn check(session: &Session) -> (Vec<CheckedIdentity>, String) {
     let remarks = check::remarks(session.generated(), session.source().shown());
     (check::check_identities(session.generated()), remarks)
 }
 
-/// The output of `hamel ops --format json`.
+/// Returns the output of `hamel ops --format json`.
 ///
 /// # Errors
 /// Errors of the derivation.
@@ -23,7 +23,7 @@ pub fn operations(session: &Session) -> Result<String, Failure> {
     ops::counts_json(session.source())
 }
 
-/// The output of `hamel ops --advise --format json`.
+/// Returns the output of `hamel ops --advise --format json`.
 ///
 /// # Errors
 /// If there are no velocities to compare.
@@ -31,7 +31,7 @@ pub fn advice(session: &Session) -> Result<String, Failure> {
     ops::advice_json(session.source())
 }
 
-/// The generated Rust, as for a description in a file of this name.
+/// Returns the generated Rust, as for a description in a file of this name.
 ///
 /// # Errors
 /// Errors of the derivation or of the generated code.
@@ -40,7 +40,7 @@ pub fn rust(session: &Session, name: &str) -> Result<String, Error> {
     builder::written(&generated, name).map_err(|errors| session.source().refused(&errors))
 }
 
-/// The generated C99, as for a description in a file of this name.
+/// Returns the generated C99, as for a description in a file of this name.
 ///
 /// # Errors
 /// Errors of the derivation or of the generated code.
@@ -68,7 +68,7 @@ pub fn tables(
 /// # Errors
 /// Unknown methods, and runs that cannot begin.
 pub fn compare(session: &Session, state: &State, asked: &Comparison) -> Result<String, Failure> {
-    method::known(&asked.methods)?;
+    method::check_names(&asked.methods)?;
     let shown = session.source().shown();
     let case = compare::case(
         session.generated(),

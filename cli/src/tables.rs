@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&written(&tables, arguments.format, arguments.all))
 }
 
-/// The tables as a text.
+/// Returns the tables as a text.
 pub fn written(tables: &Tables, format: Format, all: bool) -> String {
     match format {
         Format::Text => tables::text(tables, all),

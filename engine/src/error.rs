@@ -1,4 +1,4 @@
-//! What cannot be done, as data: front ends show it.
+//! Errors of the engine as data, which front ends render.
 
 use crate::mechanism::SingularState;
 use crate::run::{InputProblem, SamplingProblem, SteppingProblem};
@@ -10,7 +10,7 @@ use hamel_codegen::render::render;
 use hamel_codegen::urdf::{self, Undecoded};
 use std::fmt;
 
-/// Why something cannot be derived, read or run.
+/// Error of reading, deriving or running a description.
 ///
 /// [`Display`](fmt::Display) gives the message in plain text, with underlined sources where there are any.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub enum Error {
         /// The reason.
         source: std::io::Error,
     },
-    /// The bytes of a file are no text.
+    /// The bytes of a file are not text.
     Decode {
         /// Its path.
         path: String,
@@ -58,9 +58,9 @@ pub enum Error {
         /// The errors, with their places in the text.
         problems: Vec<urdf::Problem>,
     },
-    /// An argument that has a text with a structure is wrong.
+    /// The text of an option has errors.
     Argument {
-        /// Its name, as `--keep`.
+        /// Name of the option, as `--keep`.
         option: String,
         /// Text of the file.
         text: String,
@@ -93,14 +93,14 @@ pub enum Error {
         /// The links.
         unknown: Vec<UnknownLink>,
     },
-    /// A state is not one of the description.
+    /// A state does not fit the description.
     State {
-        /// Where it was given.
+        /// Path of its file, or another name for messages.
         path: String,
-        /// All that is wrong with it.
+        /// All errors in it.
         problems: Vec<StateProblem>,
     },
-    /// Inputs cannot be what was asked for.
+    /// The inputs of a run have an error.
     Input(InputProblem),
     /// No method has this name.
     UnknownMethod {
@@ -114,7 +114,7 @@ pub enum Error {
         /// The unmet requirements.
         obstacles: Vec<String>,
     },
-    /// Length, step and tolerance of a run contradict one another, or are none.
+    /// Length, step and tolerance of a run are invalid, or contradict one another.
     Stepping(SteppingProblem),
     /// Times of samples are wrong.
     Sampling(SamplingProblem),
@@ -152,11 +152,11 @@ pub enum Error {
         /// The known name that is closest to it.
         closest: Option<String>,
     },
-    /// A function in Rust, which has no code here, is called.
+    /// A function in Rust, which has no code here, is needed.
     ForeignFunction {
         /// Name.
         name: String,
-        /// What is missing: numbers or slopes.
+        /// Missing part: `numbers` or `slopes`.
         missing: &'static str,
     },
     /// The inertia of a rotor does not have the number of entries of its kind.
@@ -195,12 +195,12 @@ pub enum Error {
         /// The reason.
         why: String,
     },
-    /// A table is not known, or cannot be had.
+    /// A table is unknown or does not exist for the system.
     Table(String),
 }
 
 impl Error {
-    /// Whether the caller can only be helped by asking otherwise: what is asked for is wrong, not the description.
+    /// Returns whether the request is wrong, not the description.
     pub fn is_misuse(&self) -> bool {
         match self {
             Error::Read { .. }
@@ -241,7 +241,7 @@ impl Error {
         }
     }
 
-    /// The errors in a description, with their places in it; none of other errors.
+    /// Returns the errors in a description, with their places in it; empty for other errors.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match self {
             Error::Description { diagnostics, .. } | Error::Robot { diagnostics, .. } => {
@@ -251,7 +251,7 @@ impl Error {
         }
     }
 
-    /// The messages of an error that has several about one thing, and that thing.
+    /// Returns the subject and the messages of an error that has several messages about one subject.
     pub fn list(&self) -> Option<(String, Vec<String>)> {
         match self {
             Error::State { path, problems } => {
@@ -266,7 +266,7 @@ impl Error {
     }
 }
 
-/// A plain text as it is shown, without the word in front of it.
+/// Strips the leading `error: ` of a rendered message.
 fn bare(shown: &str) -> &str {
     let shown = shown.trim_end();
     shown.strip_prefix("error: ").unwrap_or(shown)

@@ -8,17 +8,17 @@
 //! |---|---|
 //! | [`source`] | descriptions and robots in URDF: reading and deriving them |
 //! | [`state`] | the numbers of a state: reading and completing them |
-//! | [`mechanism`] | a described system that the integrators can run, and why it has no motion where it has none |
+//! | [`mechanism`] | a described system as the integrators run it, and explanations of its singular states |
 //! | [`method`] | the methods by their names, and which systems they are for |
-//! | [`baselines`] | methods that are measured to show what they lose |
+//! | [`baselines`] | methods that serve as baselines of comparisons |
 //! | [`run`] | runs in time: plans, steps, inputs, events, samples |
 //! | [`evaluate`], [`linearize`] | numbers at a state |
-//! | [`drawing`] | what of a mechanism can be drawn at a state, as numbers |
-//! | [`session`] | a description with everything that is asked of it |
+//! | [`drawing`] | the drawable parts of a mechanism at a state, as numbers |
+//! | [`session`] | a description with everything that can be asked of it |
 //! | [`reporter`] | warnings and progress, for a front end |
-//! | [`error`] | what cannot be done, as data |
+//! | [`error`] | errors as data |
 //! | [`names`] | names of single numbers |
-//! | [`text`] | arguments that are lists, with places for what is wrong with them |
+//! | [`option_text`] | texts of options that are lists, with places for error messages |
 //!
 //! Machine code is made by `hamel-native`, which holds the only `unsafe` code.
 //!
@@ -38,12 +38,12 @@ pub mod linearize;
 pub mod mechanism;
 pub mod method;
 pub mod names;
+pub mod option_text;
 pub mod reporter;
 pub mod run;
 pub mod session;
 pub mod source;
 pub mod state;
-pub mod text;
 
 pub use drawing::{Drawing, ParametrizedDrawing, Scene};
 pub use error::Error;
@@ -51,7 +51,8 @@ pub use evaluate::Evaluation;
 pub use linearize::Linearization;
 pub use reporter::{Quiet, Reporter, Warning, WarningTexts};
 pub use run::{
-    Drive, InputOptions, Law, Motion, Run, Samples, Simulation, Stepping, Stop, TimeSeries,
+    CancellationToken, ControlLaw, InputOptions, InputSource, Run, RunArrays, Samples, Simulation,
+    Stepping, TimeSeries,
 };
 pub use session::{Function, Grip, Names, Session};
 pub use source::{OpenOptions, Source};

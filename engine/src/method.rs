@@ -1,4 +1,4 @@
-//! The methods by their names on the command line, and their requirements.
+//! Methods by their names on the command line, and their requirements.
 
 use crate::baselines::{Baseline, Buss, Slide};
 use crate::error::Error;
@@ -10,12 +10,12 @@ use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;
 use hamel_files::number::short;
 
-/// The name that leaves the choice to the structure of the system.
+/// Name that leaves the choice to the structure of the system.
 pub const AUTO: &str = "auto";
 
 /// Requirements of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Needs {
+enum Requirement {
     /// Nothing beyond ξ̇.
     Any,
     /// Generalised momenta.
@@ -36,17 +36,17 @@ pub enum Role {
 }
 
 /// A row of the table of methods.
-struct Entry {
+struct MethodEntry {
     name: &'static str,
     role: Role,
     about: &'static str,
-    needs: Needs,
+    needs: Requirement,
     make: fn(&Instance) -> Stepper,
 }
 
 macro_rules! entries {
     ($($name:literal $role:ident $needs:ident $make:expr, $about:literal;)*) => {
-        &[$(Entry { name: $name, role: Role::$role, about: $about, needs: Needs::$needs, make: $make }),*]
+        &[$(MethodEntry { name: $name, role: Role::$role, about: $about, needs: Requirement::$needs, make: $make }),*]
     };
 }
 
@@ -55,7 +55,7 @@ fn split(system: &Instance, scheme: Scheme) -> Stepper {
 }
 
 /// The table of methods.
-const METHODS: &[Entry] = entries! {
+const METHODS: &[MethodEntry] = entries! {
     "rkmk4" Method Any |_| Stepper::General(General::Rkmk4), "any system; order 4, on the manifold";
     "cf4" Method Any |_| Stepper::General(General::Cf4), "any system; order 4, without commutators";
     "rkmk54" Method Any |_| Stepper::General(General::Rkmk54), "any system; order 5, or steps by --tol";
@@ -81,14 +81,14 @@ const METHODS: &[Entry] = entries! {
     "buss4" Baseline Split |_| Stepper::Buss(Buss::Fourth), "baseline; the same, order 4 without torques";
 };
 
-/// All values of `--method`.
+/// Returns all values of `--method`.
 pub fn names() -> Vec<&'static str> {
     let all = METHODS.iter().map(|entry| entry.name);
     std::iter::once(AUTO).chain(all).collect()
 }
 
-/// A line for each method: its name and purpose.
-pub fn described() -> String {
+/// Returns a line for each method, with its name and purpose.
+pub fn descriptions() -> String {
     let width = METHODS.iter().map(|entry| entry.name.len()).max();
     let width = width.unwrap_or(0);
     let lines = METHODS
@@ -98,9 +98,9 @@ pub fn described() -> String {
         + &lines.collect::<String>()
 }
 
-/// A method for one system, with the reason if `auto` chose it.
+/// Method for one system, with the reason if `auto` chose it.
 #[derive(Clone, Debug)]
-pub struct Chosen {
+pub struct ChosenMethod {
     /// Name.
     pub name: &'static str,
     /// The method.
@@ -109,9 +109,9 @@ pub struct Chosen {
     pub reason: Option<&'static str>,
 }
 
-impl Chosen {
-    /// The method of this name for a run of about `steps` steps. Fails, with reasons from the system's structure, if it
-    /// does not fit.
+impl ChosenMethod {
+    /// Chooses the method of this name for a run of about `steps` steps. Fails, with reasons from the system's
+    /// structure, if it does not fit.
     pub fn new(
         name: &str,
         system: &Instance,
@@ -135,14 +135,14 @@ impl Chosen {
                 obstacles,
             });
         }
-        Ok(Chosen {
+        Ok(ChosenMethod {
             name: entry.name,
             stepper: (entry.make)(system),
             reason,
         })
     }
 
-    /// The same method for another system of the same structure: with other parameters or another start.
+    /// Adapts the method to another system of the same structure: with other parameters or another start.
     pub fn of_another(&self, system: &Instance) -> Self {
         let entry = METHODS.iter().find(|entry| entry.name == self.name);
         let stepper = match (&self.stepper, entry) {
@@ -150,16 +150,16 @@ impl Chosen {
             (Stepper::General(_) | Stepper::Baseline(_), _) | (_, None) => self.stepper.clone(),
             (_, Some(entry)) => (entry.make)(system),
         };
-        Chosen {
+        ChosenMethod {
             stepper,
             ..self.clone()
         }
     }
 }
 
-/// A method of a comparison.
+/// Method of a comparison.
 #[derive(Clone, Debug)]
-pub struct Named {
+pub struct NamedMethod {
     /// Name.
     pub name: &'static str,
     /// Its role in a comparison.
@@ -168,21 +168,22 @@ pub struct Named {
     pub stepper: Stepper,
 }
 
-/// A method that does not fit a system.
+/// Method that does not fit a system, with the reasons.
 #[derive(Clone, Debug)]
-pub struct Unfit {
+pub struct UnsuitableMethod {
     /// Name.
     pub name: &'static str,
     /// The unmet requirements.
     pub obstacles: Vec<String>,
 }
 
-/// The methods with these names, or all, that fit a system; and the others with the reasons why they do not.
-pub fn fitting(
+/// Selects the methods with these names, or all, that fit a system. Named methods that do not fit are returned with the
+/// reasons.
+pub fn suitable(
     names: &[String],
     system: &Instance,
     structure: &Structure,
-) -> (Vec<Named>, Vec<Unfit>) {
+) -> (Vec<NamedMethod>, Vec<UnsuitableMethod>) {
     let (mut fit, mut missing) = (Vec::new(), Vec::new());
     for entry in METHODS {
         let asked = names.iter().any(|name| name.trim() == entry.name);
@@ -191,13 +192,13 @@ pub fn fitting(
         }
         let obstacles = entry.needs.obstacles(structure);
         if obstacles.is_empty() {
-            fit.push(Named {
+            fit.push(NamedMethod {
                 name: entry.name,
                 role: entry.role,
                 stepper: (entry.make)(system),
             });
         } else if asked {
-            missing.push(Unfit {
+            missing.push(UnsuitableMethod {
                 name: entry.name,
                 obstacles,
             });
@@ -207,7 +208,7 @@ pub fn fitting(
 }
 
 /// Checks that all names are names of methods.
-pub fn known(names: &[String]) -> Result<(), Error> {
+pub fn check_names(names: &[String]) -> Result<(), Error> {
     let unknown = |name: &&String| METHODS.iter().all(|entry| entry.name != name.trim());
     match names.iter().find(unknown) {
         Some(name) => Err(Error::UnknownMethod {
@@ -217,33 +218,33 @@ pub fn known(names: &[String]) -> Result<(), Error> {
     }
 }
 
-/// The methods whose steps have slopes: those for any system that stay in a chart.
+/// Returns the methods whose steps have slopes: those for any system that stay in a chart.
 pub fn with_step_slopes() -> impl Iterator<Item = General> {
     let all = General::ALL.iter().copied();
     all.filter(|method| !matches!(method, General::Rk4 { .. }))
 }
 
-impl Needs {
-    /// The unmet requirements.
+impl Requirement {
+    /// Returns the unmet requirements.
     fn obstacles(self, structure: &Structure) -> Vec<String> {
         match (self, &structure.split) {
-            (Needs::Any, _) => Vec::new(),
-            (Needs::Momenta, _) => {
+            (Requirement::Any, _) => Vec::new(),
+            (Requirement::Momenta, _) => {
                 let reason = structure.canonical.as_ref().err();
                 reason.map(ToString::to_string).into_iter().collect()
             }
-            (Needs::Split | Needs::Free, Err(reasons)) => {
+            (Requirement::Split | Requirement::Free, Err(reasons)) => {
                 reasons.iter().map(ToString::to_string).collect()
             }
-            (Needs::Free, Ok(splitting)) if !splitting.free => {
+            (Requirement::Free, Ok(splitting)) if !splitting.free => {
                 vec!["forces act on the system".into()]
             }
-            (Needs::Split | Needs::Free, Ok(_)) => Vec::new(),
+            (Requirement::Split | Requirement::Free, Ok(_)) => Vec::new(),
         }
     }
 }
 
-/// A method, as a type that steps mechanisms.
+/// Method of any kind, as one type that steps mechanisms.
 #[derive(Clone, Debug)]
 pub enum Stepper {
     /// A method for any system.
@@ -279,7 +280,7 @@ impl Stepper {
         }
     }
 
-    /// The function whose evaluations are counted.
+    /// Returns the function whose evaluations are counted.
     pub fn evaluated(&self) -> &'static str {
         match self {
             Stepper::General(_) | Stepper::Baseline(_) => "the acceleration",
@@ -333,7 +334,7 @@ where
     where
         U: Fn(f64, &Numbers, &Numbers) -> Sys::Inputs,
     {
-        self.stepped(system, state, h, inputs)
+        self.take_step(system, state, h, inputs)
     }
 
     fn step_reusing_force<U>(
@@ -347,21 +348,21 @@ where
     where
         U: Fn(f64, &Numbers, &Numbers) -> Sys::Inputs,
     {
-        self.followed(system, state, h, inputs, force)
+        self.take_step_reusing_force(system, state, h, inputs, force)
     }
 }
 
-/// Inputs in closed form, as methods take them. Every method is compiled for this one type, no matter how a run
+/// Type of the inputs that methods take. Every method is compiled for this one type, no matter how a run
 /// computes its inputs.
-pub type Given<'a, Sys> = &'a dyn Fn(f64, &Numbers, &Numbers) -> <Sys as System>::Inputs;
+pub type InputFunction<'a, Sys> = &'a dyn Fn(f64, &Numbers, &Numbers) -> <Sys as System>::Inputs;
 
 impl Stepper {
-    fn stepped<Sys>(
+    fn take_step<Sys>(
         &self,
         system: &Sys,
         state: &State<Sys>,
         h: f64,
-        inputs: Given<Sys>,
+        inputs: InputFunction<Sys>,
     ) -> Result<State<Sys>, StepError>
     where
         Sys:
@@ -385,12 +386,12 @@ impl Stepper {
         }
     }
 
-    fn followed<Sys>(
+    fn take_step_reusing_force<Sys>(
         &self,
         system: &Sys,
         state: &State<Sys>,
         h: f64,
-        inputs: Given<Sys>,
+        inputs: InputFunction<Sys>,
         force: &mut Option<Sys::Chart>,
     ) -> Result<State<Sys>, StepError>
     where
@@ -403,7 +404,7 @@ impl Stepper {
             }
             Stepper::Lgvi => Lgvi.step_reusing_force(system, state, h, &inputs, force),
             Stepper::Buss(method) => method.step_reusing_force(system, state, h, &inputs, force),
-            _ => self.stepped(system, state, h, inputs),
+            _ => self.take_step(system, state, h, inputs),
         }
     }
 }

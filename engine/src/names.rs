@@ -11,7 +11,7 @@ pub const TIME: &str = "t";
 /// Suffix of the name of the time if it is taken.
 const OF_RUN: &str = "_run";
 
-/// Names of the entries of x.
+/// Returns the names of the entries of x.
 pub fn coordinates(model: &Model) -> Vec<String> {
     model
         .coordinates
@@ -20,7 +20,7 @@ pub fn coordinates(model: &Model) -> Vec<String> {
         .collect()
 }
 
-/// Names of the entries of ξ.
+/// Returns the names of the entries of ξ.
 pub fn velocities(model: &Model) -> Vec<String> {
     model.velocities.iter().flat_map(group).collect()
 }
@@ -43,13 +43,13 @@ pub fn advice_on_rate(rates: &[(String, String)], name: &str) -> Option<String> 
     Some(format!("the rate of `{coordinate}` is `{velocity}`"))
 }
 
-/// Names of the entries of ξ, followed by those of the states of first order.
+/// Returns the names of the entries of ξ, followed by those of the states of first order.
 pub fn moving(model: &Model) -> Vec<String> {
     let groups = model.velocities.iter().chain(&model.states);
     groups.flat_map(group).collect()
 }
 
-/// The time of a run among the recorded values.
+/// Column of the time among the recorded values of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Time {
     /// Name, which is unique.
@@ -59,7 +59,7 @@ pub struct Time {
 }
 
 impl Time {
-    /// The name `t` of the time of a run. It is the description's time if that declares `time t;`; if another quantity
+    /// Names the time of a run `t`. It is the description's time if that declares `time t;`; if another quantity
     /// has this name, including those in `taken`, a suffix is added.
     pub fn of(model: &Model, taken: &[&[String]]) -> Self {
         let mut name = TIME.to_string();
@@ -74,7 +74,7 @@ impl Time {
         Time { name, place }
     }
 
-    /// The time at x, where t is the time of the run.
+    /// Returns the time at x, where t is the time of the run.
     pub fn at(&self, t: f64, x: &[f64]) -> f64 {
         self.place
             .and_then(|place| x.get(place))
@@ -83,7 +83,7 @@ impl Time {
     }
 }
 
-/// Names of the entries of a group of symbols.
+/// Returns the names of the entries of a group of symbols.
 pub fn group(group: &Group) -> Vec<String> {
     let name = &group.name;
     match group.shape {
@@ -96,7 +96,7 @@ pub fn group(group: &Group) -> Vec<String> {
     }
 }
 
-/// Names of the entries of a value, matrices by rows.
+/// Returns the names of the entries of a value, matrices by rows.
 pub fn shaped(name: &str, shape: Shape) -> Vec<String> {
     match shape {
         Shape::Scalar => vec![name.to_string()],

@@ -1,4 +1,4 @@
-//! What a front end learns while something is derived or run: warnings, and how far long work has come.
+//! Interface through which front ends receive warnings and the progress of long work.
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::LeftOut;
@@ -7,22 +7,23 @@ use hamel_codegen::urdf::{self, Imported};
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// A front end that is told of warnings and of progress.
+/// Receiver of warnings and of the progress of long work.
 pub trait Reporter: Send + Sync {
     /// Receives a warning.
     fn warn(&self, warning: &Warning<'_>);
 
-    /// Learns that work begins whose length is not known, such as a derivation.
+    /// Called when work of unknown length begins, such as a derivation.
     fn begin(&self, _work: &'static str) {}
 
-    /// Learns how many steps of a long run are done, of about how many. The first call comes late: short runs make none.
+    /// Called from time to time during a long run, with the number of steps done and the expected total. The first call
+    /// comes late: short runs make none.
     fn advance(&self, _done: u64, _all: u64) {}
 
-    /// Learns that the work is done.
+    /// Called when the work is done.
     fn end(&self) {}
 }
 
-/// A warning, with what is needed to show it.
+/// Warning, with the texts that are needed to show it.
 #[derive(Clone, Copy, Debug)]
 pub enum Warning<'a> {
     /// Parts of a description are legal but suspicious.
@@ -40,14 +41,14 @@ pub enum Warning<'a> {
         path: &'a str,
         /// The text of that file.
         urdf: &'a str,
-        /// What was made of it, with the warnings.
+        /// Result of the import, with the warnings.
         imported: &'a Imported,
     },
     /// Functions are left out.
     LeftOut {
         /// The path of the description.
         path: &'a str,
-        /// Which, and why.
+        /// The functions and the reason.
         left_out: &'a LeftOut,
     },
 }
@@ -73,7 +74,7 @@ impl fmt::Display for Warning<'_> {
     }
 }
 
-/// A reporter that ignores everything.
+/// Reporter that ignores everything.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quiet;
 
@@ -81,12 +82,12 @@ impl Reporter for Quiet {
     fn warn(&self, _: &Warning<'_>) {}
 }
 
-/// A reporter that keeps the texts of warnings.
+/// Reporter that collects the texts of warnings.
 #[derive(Debug, Default)]
 pub struct WarningTexts(Mutex<String>);
 
 impl WarningTexts {
-    /// The warnings since they were taken last.
+    /// Takes the warnings collected since the last call.
     pub fn take(&self) -> String {
         std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }

@@ -16,10 +16,10 @@ interface Waiting {
 }
 
 // Rejection of a request that a newer text or request has superseded.
-export class Dropped extends Error {}
+export class Superseded extends Error {}
 
 // Time that a new request waits for older work before terminating it (ms).
-const PATIENCE = 2000;
+const TERMINATE_AFTER_MS = 2000;
 
 export class Generator {
   private worker: Worker;
@@ -63,11 +63,11 @@ export class Generator {
     const urgent = ++this.urgent;
     if (this.waiting.size > 0) {
       await new Promise<void>((resolve) => {
-        setTimeout(resolve, PATIENCE);
+        setTimeout(resolve, TERMINATE_AFTER_MS);
         this.idle.push(resolve);
       });
       if (urgent !== this.urgent) {
-        throw new Dropped("something newer is wanted");
+        throw new Superseded("something newer is wanted");
       }
       this.drop();
     }
@@ -89,7 +89,7 @@ export class Generator {
       return;
     }
     this.replace();
-    this.refuse(new Dropped("a newer text has come"));
+    this.refuse(new Superseded("a newer text has come"));
   }
 
   // Terminates the worker, and replaces it by the standby worker.

@@ -185,7 +185,7 @@ function unknown(operation: number): never {
 }
 
 // Splits a module into streams, concatenated after a list of their lengths.
-export function apart(module: Bytes): Bytes {
+export function splitStreams(module: Bytes): Bytes {
   const from = new Reader(module);
   const streams = Array.from({ length: STREAMS }, () => new Writer());
   const stream = (index: Stream) => streams[index] as Writer;
@@ -221,7 +221,7 @@ export function apart(module: Bytes): Bytes {
 }
 
 // Joins the streams of a module.
-export function together(streams: Bytes): Bytes {
+export function joinStreams(streams: Bytes): Bytes {
   const all = new Reader(streams);
   const lengths = Array.from({ length: STREAMS }, () => all.number());
   const readers = lengths.map((length) => new Reader(all.some(length)));

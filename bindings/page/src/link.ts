@@ -1,6 +1,7 @@
 // Links that contain the text of a description, compressed, in the fragment of the address.
 
-export async function packed(text: string): Promise<string> {
+// Returns the fragment that contains a text.
+export async function toFragment(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   let binary = "";
@@ -11,16 +12,16 @@ export async function packed(text: string): Promise<string> {
 }
 
 // Returns the text of a fragment, or `undefined` if it is not valid.
-export async function unpacked(packed: string): Promise<string | undefined> {
+export async function fromFragment(packed: string): Promise<string | undefined> {
   try {
     const binary = atob(packed.replaceAll("-", "+").replaceAll("_", "/"));
-    return new TextDecoder().decode(await inflated(Uint8Array.from(binary, (letter) => letter.charCodeAt(0))));
+    return new TextDecoder().decode(await inflate(Uint8Array.from(binary, (letter) => letter.charCodeAt(0))));
   } catch {
     return undefined;
   }
 }
 
-async function inflated(bytes: Uint8Array<ArrayBuffer>): Promise<ArrayBuffer> {
+async function inflate(bytes: Uint8Array<ArrayBuffer>): Promise<ArrayBuffer> {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
   return new Response(stream).arrayBuffer();
 }

@@ -3,9 +3,9 @@
 import type { Advice, Checked, Imported, Mark, Operations, System, Tables } from "./answers";
 import { byId, element } from "./dom";
 import { Editor } from "./editor";
-import { Dropped, Generator } from "./generator";
-import { together } from "./instructions";
-import { packed, unpacked } from "./link";
+import { Superseded, Generator } from "./generator";
+import { joinStreams } from "./instructions";
+import { toFragment, fromFragment } from "./link";
 import { Motion } from "./motion";
 import * as reports from "./reports";
 import * as tables from "./tables";
@@ -18,7 +18,7 @@ interface Example {
 }
 
 // Time after the last change before the text is read (ms), so that a paste or a held key is read once.
-const REST = 8;
+const DEBOUNCE_MS = 8;
 
 class Page {
   private readonly editor: Editor;
@@ -60,7 +60,7 @@ class Page {
     this.generator.drop();
     document.body.dataset["answered"] = "";
     const begin = performance.now();
-    this.resting = window.setTimeout(() => void this.read(begin), REST);
+    this.resting = window.setTimeout(() => void this.read(begin), DEBOUNCE_MS);
   }
 
   // Reads the text, then fills the active panel.
@@ -120,7 +120,7 @@ class Page {
       document.body.dataset[name] = String(age);
     } catch (error) {
       this.shown.delete(name);
-      if (!(error instanceof Dropped)) {
+      if (!(error instanceof Superseded)) {
         panel.replaceChildren(element("pre", {}, error instanceof Error ? error.message : String(error)));
       }
     }
@@ -133,12 +133,12 @@ class Page {
       return { answer, shown: answer.tables.filter((table) => table.nonzero > 0 || table.name === "gamma") };
     };
     // Each table is derived while the one before it is typeset.
-    const coming = tables.ALL.map((name) => ({ name, table: tables.waits(name, velocities) ? null : derived(name) }));
+    const coming = tables.ALL.map((name) => ({ name, table: tables.isDerivedOnRequest(name, velocities) ? null : derived(name) }));
     coming.forEach(({ table }) => table?.catch(() => {}));
     let begun = false;
     for (const { name, table } of coming) {
       if (table === null) {
-        const place = tables.asked(name, velocities, () => {
+        const place = tables.placeholder(name, velocities, () => {
           derived(name).then(({ shown }) => place.replaceWith(...shown.map(tables.section)), (error: unknown) => this.failed(error));
         });
         panel.append(place);
@@ -164,7 +164,7 @@ class Page {
     try {
       below.replaceChildren(...reports.advice(await this.generator.ask<Advice>("advice")));
     } catch (error) {
-      if (error instanceof Dropped) {
+      if (error instanceof Superseded) {
         throw error;
       }
       below.replaceChildren(element("pre", {}, error instanceof Error ? error.message : String(error)));
@@ -215,7 +215,7 @@ class Page {
   }
 
   private failed(error: unknown): void {
-    if (!(error instanceof Dropped)) {
+    if (!(error instanceof Superseded)) {
       this.status(error instanceof Error ? error.message : String(error), true);
     }
   }
@@ -298,14 +298,14 @@ class Page {
   }
 
   private async keep(text: string): Promise<void> {
-    const hash = `#${await packed(text)}`;
+    const hash = `#${await toFragment(text)}`;
     if (text === this.editor.text && hash !== location.hash) {
       history.replaceState(null, "", hash);
     }
   }
 
   private async followLink(): Promise<void> {
-    const text = await unpacked(location.hash.slice(1));
+    const text = await fromFragment(location.hash.slice(1));
     if (text !== undefined && text !== this.editor.text) {
       this.editor.text = text;
     }
@@ -341,10 +341,10 @@ async function decoded(file: File): Promise<string> {
 declare const hamelPart: (id: string) => Uint8Array<ArrayBuffer>;
 
 async function begin(): Promise<void> {
-  const module = await WebAssembly.compile(together(hamelPart("module")));
+  const module = await WebAssembly.compile(joinStreams(hamelPart("module")));
   const examples = JSON.parse(new TextDecoder().decode(hamelPart("examples-packed"))) as Example[];
   const worker = byId("worker").textContent ?? "";
-  const linked = location.hash.length > 1 ? await unpacked(location.hash.slice(1)) : undefined;
+  const linked = location.hash.length > 1 ? await fromFragment(location.hash.slice(1)) : undefined;
   const first = examples.find((example) => example.name === "heavy_top");
   const generator = new Generator(module, worker);
   const page = new Page(generator, examples, linked ?? first?.text ?? "");

@@ -2,20 +2,20 @@
 
 import type { Case, Pulled, Run, System } from "./answers";
 import { element } from "./dom";
-import { Dropped, type Generator } from "./generator";
+import { Superseded, type Generator } from "./generator";
 import { overTime, precision, type Line } from "./plots";
 import { type Grip, Stage } from "./scene";
 import { Start } from "./start";
 
 // Time after the last change of a number before a new run starts (ms).
-const REST = 120;
+const DEBOUNCE_MS = 120;
 // Time after which a run is shown as running (ms).
-const SLOW = 500;
+const SHOW_RUNNING_AFTER_MS = 500;
 // Largest number of lines in a plot, and of plots of outputs and invariants.
-const MOST = 8;
+const MAX_LINES = 8;
 // Numbers of steps of a comparison, and its largest length (s).
-const STEPS = [50, 100, 200, 400, 800];
-const LONGEST = 5;
+const COMPARISON_STEPS = [50, 100, 200, 400, 800];
+const MAX_COMPARISON_TIME = 5;
 
 export class Motion {
   private stage: Stage | undefined;
@@ -177,11 +177,11 @@ export class Motion {
     clearTimeout(this.resting);
     this.resting = window.setTimeout(() => {
       this.integrate(false).catch((error: unknown) => this.refused(error));
-    }, REST);
+    }, DEBOUNCE_MS);
   }
 
   private refused(error: unknown): void {
-    if (!(error instanceof Dropped)) {
+    if (!(error instanceof Superseded)) {
       this.summary.classList.add("bad");
       this.summary.textContent = error instanceof Error ? error.message : String(error);
     }
@@ -201,7 +201,7 @@ export class Motion {
 
   private async integrate(fresh: boolean): Promise<void> {
     const turn = ++this.turn;
-    const slow = window.setTimeout(() => (this.summary.textContent = "running…"), SLOW);
+    const slow = window.setTimeout(() => (this.summary.textContent = "running…"), SHOW_RUNNING_AFTER_MS);
     let run: Run;
     try {
       run = await this.generator.instead<Run>("simulate", this.asked());
@@ -209,7 +209,7 @@ export class Motion {
       // Errors of a superseded run are ignored.
       if (turn === this.turn) {
         this.refused(error);
-        if (error instanceof Dropped) {
+        if (error instanceof Superseded) {
           throw error;
         }
       }
@@ -252,16 +252,16 @@ export class Motion {
     const names = this.names;
     const count = run.t.length;
     const wide = run.xi.length / count;
-    const velocities: Line[] = names.slice(0, MOST).map((name, index) => ({ name, y: run.t.map((_, at) => run.xi[at * wide + index] ?? null) }));
+    const velocities: Line[] = names.slice(0, MAX_LINES).map((name, index) => ({ name, y: run.t.map((_, at) => run.xi[at * wide + index] ?? null) }));
     const first = run.energy[0] ?? 0;
     const energy: Line[] = [{ name: "energy", y: run.energy.map((value) => (value === null ? null : value - first)) }];
-    const pictures = [overTime(names.length > MOST ? `velocities, the first ${MOST}` : "velocities", run.t, velocities), overTime(`energy minus its initial value, ${first.toPrecision(4)}`, run.t, energy)];
+    const pictures = [overTime(names.length > MAX_LINES ? `velocities, the first ${MAX_LINES}` : "velocities", run.t, velocities), overTime(`energy minus its initial value, ${first.toPrecision(4)}`, run.t, energy)];
     const tracks = [
       ...run.invariants.map((track) => ({ ...track, title: `invariant ${track.name}` })),
       ...run.outputs.map((track) => ({ ...track, title: `output ${track.name}` })),
     ];
-    for (const track of tracks.slice(0, MOST)) {
-      const lines = Array.from({ length: Math.min(track.width, MOST) }, (_, entry): Line => ({
+    for (const track of tracks.slice(0, MAX_LINES)) {
+      const lines = Array.from({ length: Math.min(track.width, MAX_LINES) }, (_, entry): Line => ({
         name: track.width === 1 ? track.name : `${track.name}[${entry + 1}]`,
         y: run.t.map((_, at) => track.values[at * track.width + entry] ?? null),
       }));
@@ -337,8 +337,8 @@ export class Motion {
     this.comparison.replaceChildren(element("p", { class: "note" }, "running all methods…"));
     const asked = this.asked() as { until: number };
     try {
-      const until = Math.min(asked.until, LONGEST);
-      const compared = await this.generator.ask<Case>("compare", { ...asked, until, steps: STEPS, methods: [] });
+      const until = Math.min(asked.until, MAX_COMPARISON_TIME);
+      const compared = await this.generator.ask<Case>("compare", { ...asked, until, steps: COMPARISON_STEPS, methods: [] });
       const curves = compared.methods
         .filter((method) => method.kind === "method" && !method.method.endsWith("adaptive"))
         .map((method) => ({
@@ -351,7 +351,7 @@ export class Motion {
       );
     } catch (error) {
       // A newer run has superseded the comparison.
-      this.comparison.replaceChildren(...(error instanceof Dropped ? [] : [element("pre", {}, error instanceof Error ? error.message : String(error))]));
+      this.comparison.replaceChildren(...(error instanceof Superseded ? [] : [element("pre", {}, error instanceof Error ? error.message : String(error))]));
     }
   }
 }

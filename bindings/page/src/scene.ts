@@ -33,9 +33,9 @@ export type Grip = { frame: number; at: number[] } | { particle: number };
 
 const COLOURS = [0x4f8fd9, 0xe08a4c, 0x5fae78, 0xb877b8, 0xcf6a5f, 0x9aa653, 0x45a5ab, 0x8f83cf];
 // Smallest radius of a body, relative to the size of the mechanism.
-const THIN = 0.012;
+const MIN_BODY_RADIUS = 0.012;
 // Extent of a run, relative to the size of the mechanism, above which the camera follows.
-const FAR = 8;
+const FOLLOW_EXTENT = 8;
 
 // Reads the vectors of a scene, in the order in which `bindings/page/wasm/src/scenes.rs` writes them.
 class Reader {
@@ -108,7 +108,7 @@ export class Stage {
     this.update = this.built(scene, size);
     const whole = Math.max(box.getSize(new Vector3()).length() + 2 * reach, size);
     // A mechanism that moves far would be too small in a view of the whole run.
-    this.followed = whole > FAR * size;
+    this.followed = whole > FOLLOW_EXTENT * size;
     const shown = this.followed ? 2 * size : whole;
     const centre = (this.followed ? own : box).getCenter(new Vector3());
     this.centre.copy(centre);
@@ -255,7 +255,7 @@ export class Stage {
       scene.bodies.forEach((body, index) => {
         const at = reader.vector();
         const [a, b, c] = [reader.vector(), reader.vector(), reader.vector()];
-        const [i = 0, j = 0, k = 0] = body.radii.map((radius) => Math.max(radius, THIN * size));
+        const [i = 0, j = 0, k = 0] = body.radii.map((radius) => Math.max(radius, MIN_BODY_RADIUS * size));
         bodies[index]?.matrix.makeBasis(a.setLength(i), b.setLength(j), c.setLength(k)).setPosition(at);
       });
       scene.particles.forEach((particle, index) => {

@@ -5,18 +5,18 @@ import { element } from "./dom";
 import { formula } from "./formulas";
 
 // Number of rows that are shown at first; more are shown on request.
-const ROWS = 40;
+const ROWS_AT_FIRST = 40;
 
 // Names of the tables in the order of the requests: cheap ones first.
 export const ALL = ["phi", "A", "Y", "gamma", "M", "Gamma"];
 
 // Whether a table is derived only on request, since its entries would fill pages.
-export function waits(name: string, velocities: number): boolean {
+export function isDerivedOnRequest(name: string, velocities: number): boolean {
   return velocities > ({ M: 8, Gamma: 5 }[name] ?? Infinity);
 }
 
-// The placeholder of such a table, with a button that derives it.
-export function asked(name: string, velocities: number, derive: () => void): HTMLElement {
+// Placeholder of a table that is derived on request, with a button that derives it.
+export function placeholder(name: string, velocities: number, derive: () => void): HTMLElement {
   const symbol = formula(name === "M" ? "M" : "\\Gamma");
   const entries = name === "M" ? velocities ** 2 : velocities ** 3;
   const button = element("button", { type: "button" }, `derive ${entries.toLocaleString("en")} entries (slow)`);
@@ -118,16 +118,16 @@ function definitions(list: Definition[]): Node[] {
 
 // A table with a button that shows more rows.
 function rows(kind: string, head: HTMLElement | null, make: (() => HTMLElement)[]): HTMLElement {
-  const body = element("tbody", {}, ...make.slice(0, ROWS).map((row) => row()));
+  const body = element("tbody", {}, ...make.slice(0, ROWS_AT_FIRST).map((row) => row()));
   const table = element("table", { class: kind }, head === null ? null : element("thead", {}, head), body);
   const scroll = element("div", { class: "scroll" }, table);
-  let shown = ROWS;
+  let shown = ROWS_AT_FIRST;
   if (make.length > shown) {
     const more = element("button", { type: "button", class: "more" });
-    const label = () => (more.textContent = `show ${Math.min(make.length - shown, 10 * ROWS)} of ${make.length - shown} more rows`);
+    const label = () => (more.textContent = `show ${Math.min(make.length - shown, 10 * ROWS_AT_FIRST)} of ${make.length - shown} more rows`);
     more.onclick = () => {
-      body.append(...make.slice(shown, shown + 10 * ROWS).map((row) => row()));
-      shown += 10 * ROWS;
+      body.append(...make.slice(shown, shown + 10 * ROWS_AT_FIRST).map((row) => row()));
+      shown += 10 * ROWS_AT_FIRST;
       if (shown >= make.length) {
         more.remove();
       } else {

@@ -17,7 +17,7 @@ create_exception!(
     "Raised if a function has no value: M is not positive definite, or constraints are dependent."
 );
 
-/// The exception of an error.
+/// Returns the exception of an error.
 pub fn raised(error: Error) -> PyErr {
     HamelError::new_err(error.to_string())
 }

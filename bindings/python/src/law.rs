@@ -1,8 +1,8 @@
 //! Python functions of (t, x, ξ), which supply inputs or are watched for events.
 
 use crate::rows::numbers;
-use hamel_engine::run::{Control, Gauge};
-use hamel_engine::{Law, Stop};
+use hamel_engine::run::{ControlFunction, EventFunction};
+use hamel_engine::{CancellationToken, ControlLaw};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -36,7 +36,7 @@ impl Raised {
 
 /// Converts a Python function to a law. If it raises an exception, the exception is kept, and inputs are NaN from then
 /// on, which ends the run.
-pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
+pub fn law(function: Py<PyAny>, raised: &Raised) -> ControlLaw {
     let raised = raised.clone();
     let control = move |t: f64, x: &[f64], xi: &[f64], u: &mut [f64]| {
         let given = match raised.is_set() {
@@ -53,14 +53,14 @@ pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
             None => u.fill(f64::NAN),
         }
     };
-    let control: Arc<Control> = Arc::new(control);
-    Law(control)
+    let control: Arc<ControlFunction> = Arc::new(control);
+    ControlLaw(control)
 }
 
 /// Cancels a run after an exception, or after an interruption of Python such as Ctrl-C, whose exception is kept.
-pub fn stop(raised: &Raised) -> Stop {
+pub fn stop(raised: &Raised) -> CancellationToken {
     let (raised, signals) = (raised.clone(), Signals::default());
-    Stop(Arc::new(move || {
+    CancellationToken(Arc::new(move || {
         if let Err(error) = signals.check() {
             raised.set(error);
         }
@@ -92,7 +92,7 @@ impl Signals {
 
 /// Converts a Python function to a watched quantity. If it raises an exception, the exception is kept, and the quantity
 /// is NaN from then on, which ends the run.
-pub fn gauge(name: &str, function: Py<PyAny>, raised: &Raised) -> Arc<Gauge> {
+pub fn gauge(name: &str, function: Py<PyAny>, raised: &Raised) -> Arc<EventFunction> {
     let (name, raised) = (name.to_string(), raised.clone());
     Arc::new(move |t: f64, x: &[f64], xi: &[f64]| {
         if raised.is_set() {

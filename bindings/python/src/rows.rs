@@ -31,8 +31,8 @@ pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py
     Ok(array)
 }
 
-/// Whether an object is a NumPy array that can be read in place. Its numbers must be aligned, unlike those of packed
-/// records.
+/// Returns whether an object is a NumPy array that can be read in place. Its numbers must be aligned, unlike those of
+/// packed records.
 fn is_plain(value: &Bound<'_, PyAny>) -> bool {
     let Ok(array) = value.cast::<PyArrayDyn<f64>>() else {
         return false;

@@ -6,8 +6,10 @@ use crate::law::{Raised, gauge, law, stop};
 use hamel::adaptive::Direction;
 use hamel_cli::read_series;
 use hamel_codegen::program::Shape;
-use hamel_engine::run::{Event, Every, Happened, Watched};
-use hamel_engine::{Drive, InputOptions, Motion, Samples, Session, Simulation, State, Stepping};
+use hamel_engine::run::{Event, EventOccurrences, EventQuantity, Every};
+use hamel_engine::{
+    InputOptions, InputSource, RunArrays, Samples, Session, Simulation, State, Stepping,
+};
 use numpy::ndarray::IxDyn;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -22,8 +24,8 @@ type Given = (String, Py<PyAny>, i8, bool);
 fn watched(py: Python<'_>, given: Vec<Given>, raised: &Raised) -> PyResult<Vec<Event>> {
     let event = |(name, of, direction, terminal): Given| {
         let of = match of.extract::<String>(py) {
-            Ok(text) => Watched::Expression(text),
-            Err(_) => Watched::Function(gauge(&name, of, raised)),
+            Ok(text) => EventQuantity::Expression(text),
+            Err(_) => EventQuantity::Function(gauge(&name, of, raised)),
         };
         Ok(Event {
             name,
@@ -117,16 +119,16 @@ pub fn simulate<'py>(
             (None, Some(every)) => Samples::Every(every),
             (None, None) => Samples::Usual,
         },
-        drive: match own {
-            Some(law) => Drive::Law(law),
-            None => Drive::Options(asked),
+        inputs: match own {
+            Some(law) => InputSource::ControlLaw(law),
+            None => InputSource::Options(asked),
         },
         events,
         stop: Some(stop(&thrown)),
     };
     let run = py.detach(|| {
         let run = session.simulate(state, &simulation)?;
-        Ok(Motion::of(&run))
+        Ok(RunArrays::of(&run))
     });
     if let Some(error) = thrown.take() {
         return Err(error);
@@ -156,7 +158,7 @@ pub fn simulate<'py>(
     all.set_item("constraint", run.constraint)?;
     all.set_item("failure", run.failure.map(|why| why.to_string()))?;
     let happened = PyDict::new(py);
-    for Happened { name, t, x, xi } in run.events {
+    for EventOccurrences { name, t, x, xi } in run.events {
         let times = t.len();
         let parts = (
             rows(py, t, times, &[])?,

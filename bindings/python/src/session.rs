@@ -357,7 +357,7 @@ impl Session {
         };
         let (mut all_x, mut all_xi) = (unknown(&lead, lengths[0])?, unknown(&lead, lengths[1])?);
         let stepped = py.detach(|| -> PyResult<()> {
-            let stepped = self.0.stepped(&state, method).map_err(raised)?;
+            let stepped = self.0.single_stepper(&state, method).map_err(raised)?;
             let signals = Signals::default();
             let mut place = vec![0; lead.len()];
             let ends = all_x
@@ -398,7 +398,7 @@ impl Session {
         let state = self.of(py, state)?;
         length(h)?;
         let stepped = py.detach(|| {
-            let (varied, method) = self.0.varied(&state, method).map_err(raised)?;
+            let (varied, method) = self.0.sensitivity_stepper(&state, method).map_err(raised)?;
             let end = varied.step(&method, [&state.x, &state.xi, &state.u], h);
             end.map_err(|error| SingularError::new_err(error.to_string()))
         });

@@ -4,8 +4,8 @@ use hamel_cli::Terminal;
 use hamel_engine::{Reporter, Warning};
 use std::sync::{Mutex, PoisonError};
 
-/// Keeps the texts of warnings until they are taken; later ones are shown on standard error. Progress is shown where that is a
-/// terminal.
+/// Keeps the texts of warnings until they are taken; later ones are shown on standard error. Progress is shown where
+/// that is a terminal.
 pub struct Warnings {
     /// None once they were taken.
     kept: Mutex<Option<String>>,
@@ -22,7 +22,7 @@ impl Default for Warnings {
 }
 
 impl Warnings {
-    /// The warnings so far.
+    /// Returns the warnings so far.
     pub fn take(&self) -> String {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.take().unwrap_or_default()

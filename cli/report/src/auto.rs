@@ -48,8 +48,8 @@ pub fn ratio(case: &Case) -> Option<f64> {
 /// Largest accepted time of the chosen method, relative to the fastest.
 pub const MAX_TIME_RATIO: f64 = 2.0;
 
-/// Summarises the choices over all cases in words: choices beyond the [`MAX_TIME_RATIO`], and choices that cannot be judged.
-/// `None` if nothing was chosen.
+/// Summarises the choices over all cases in words: choices beyond the [`MAX_TIME_RATIO`], and choices that cannot be
+/// judged. `None` if nothing was chosen.
 pub fn verdict(report: &Report) -> Option<String> {
     let chosen: Vec<&Case> = report
         .cases
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// A slow method, which is chosen, and a fast one.
+    /// Returns a slow method, which is chosen, and a fast one.
     fn case(name: &str, slow: f64) -> Case {
         Case {
             name: name.into(),

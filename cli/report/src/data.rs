@@ -20,7 +20,7 @@ pub struct Report {
     pub peers: Vec<Peer>,
 }
 
-/// Where and how times were measured.
+/// Machine and code with which times were measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Kind of processor, as reported by the operating system.

@@ -7,9 +7,9 @@ use hamel::adaptive::Statistics;
 /// The relative deviation of a state from the constants of motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Deviation {
-    /// |T + V − E₀| over max(|E₀|, T₀), or over 1 where that is zero; NaN if nothing is conserved.
+    /// |T + V − E₀| over max(|E₀|, T₀), or over 1 if that is zero; NaN if nothing is conserved.
     pub energy: f64,
-    /// Norm of the change of the momenta over their norm, or over 1 where that is zero; NaN if there are none.
+    /// Norm of the change of the momenta over their norm, or over 1 if that is zero; NaN if there are none.
     pub momentum: f64,
     /// max |φ(x)|
     pub defect: f64,

@@ -7,8 +7,8 @@
 //! | module | owns |
 //! |---|---|
 //! | [`auto`] | how good the chosen method is |
-//! | `controlled` | runs by error control as a table |
-//! | [`counted`] | a system that counts the evaluations of its forces |
+//! | `tolerance_table` | runs by error control as a table |
+//! | [`counted_system`] | a system that counts the evaluations of its forces |
 //! | [`problem`] | a system with its start, its error and its constants of motion |
 //! | [`entry`] | a method on a problem, in equal steps or by error control |
 //! | [`measure`] | the loop: errors and drifts once, times interleaved and as medians |
@@ -16,8 +16,8 @@
 //! | [`solution`] | reference solutions as files |
 //! | [`data`] | the results, in the form of the JSON file |
 //! | [`work`] | work to reach an error, between the runs measured |
-//! | [`markdown`], [`json`], [`page`], [`excerpt`] | the output for people and programs |
-//! | `code` | code between backticks, in pages and pictures |
+//! | [`markdown`], [`json`], [`page`], [`book_excerpt`] | the output for people and programs |
+//! | `code_markup` | code between backticks, in pages and pictures |
 //! | [`summary`] | the runs behind the excerpt |
 //! | [`plot`] | pictures as SVG |
 //!
@@ -36,14 +36,13 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod auto;
+pub mod book_excerpt;
 #[cfg(feature = "pictures")]
-mod code;
-mod controlled;
-pub mod counted;
+mod code_markup;
+pub mod counted_system;
 pub mod data;
 pub mod drift;
 pub mod entry;
-pub mod excerpt;
 pub mod json;
 pub mod markdown;
 pub mod measure;
@@ -54,6 +53,7 @@ pub mod plot;
 pub mod problem;
 pub mod solution;
 pub mod summary;
+mod tolerance_table;
 pub mod work;
 
 use hamel_files::number;

@@ -3,7 +3,7 @@
 use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
 use crate::number::{digits, error, group_thousands, short};
 use crate::work::{TARGET_ERRORS, Work, work};
-use crate::{auto, controlled};
+use crate::{auto, tolerance_table};
 use std::fmt::Write;
 
 /// Renders a whole report; `picture` returns the file of a case's picture, if there is one.
@@ -142,7 +142,7 @@ pub fn case(case: &Case) -> String {
     for method in &case.methods {
         row(&mut text, &best(method, case.until, timed));
     }
-    if let Some((head, rows)) = controlled::table(case) {
+    if let Some((head, rows)) = tolerance_table::table(case) {
         text.push('\n');
         table(&mut text, &head);
         for cells in rows {

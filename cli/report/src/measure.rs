@@ -3,8 +3,8 @@
 //! Errors, drifts and evaluations are reproducible: one watched run gives them. Times are not: machines are noisy, in
 //! phases longer than a run. Therefore every method is timed once at every step length before any is timed again, and
 //! the median of the repeats is kept; ratios of such medians are steadier than the times themselves. Only the first
-//! steps of a run are timed, at most [`MAX_TIMED_STEPS`] of them, and the time is scaled to the whole run (by steps, or by
-//! evaluations where steps differ): a long run would be interrupted too often to be timed.
+//! steps of a run are timed, at most [`MAX_TIMED_STEPS`] of them, and the time is scaled to the whole run (by steps, or
+//! by evaluations where steps differ): a long run would be interrupted too often to be timed.
 
 use crate::data::{Case, MethodRun, MethodRuns, round_to_three_digits};
 use crate::entry::{Division, Entry, Worst};
@@ -157,7 +157,7 @@ mod tests {
     use crate::entry::{Deviation, Entry, Outcome};
     use hamel::adaptive::Statistics;
 
-    /// A method with error = floor + hᵖ, whose clock returns 1 µs a step.
+    /// Returns a method with error = floor + hᵖ, whose clock returns 1 µs a step.
     fn entry<'a>(name: &str, p: i32, floor: f64) -> Entry<'a> {
         Entry::new(
             name,

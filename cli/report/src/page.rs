@@ -1,12 +1,12 @@
 //! Reports as one self-contained HTML page: pictures inline, light and dark.
 
-use crate::code::{mark_up, plain};
+use crate::code_markup::{mark_up, plain};
 use crate::data::{Case, MethodRun, Report};
 use crate::markdown::{format_work, how, name};
 use crate::number::short;
 use crate::plot::{Figure, sheet};
 use crate::work::{TARGET_ERRORS, work};
-use crate::{auto, controlled};
+use crate::{auto, tolerance_table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A picture with a heading.
@@ -143,7 +143,7 @@ fn summary(case: &Case) -> Markup {
 /// Renders the results at each tolerance, for methods with error control.
 fn tolerances(case: &Case) -> Markup {
     html! {
-        @if let Some((head, rows)) = controlled::table(case) {
+        @if let Some((head, rows)) = tolerance_table::table(case) {
             table {
                 caption { "steps chosen by their error" }
                 thead { tr { @for cell in &head { th scope="col" { (cell) } } } }

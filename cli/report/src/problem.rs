@@ -13,8 +13,8 @@ use std::time::Instant;
 pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
     /// The system.
     pub system: &'a Sys,
-    /// Returns how often the system has evaluated its forces until now. A system that does not count itself is wrapped in
-    /// [`Counted`](crate::counted::Counted).
+    /// Returns how often the system has evaluated its forces until now. A system that does not count itself is wrapped
+    /// in [`CountedSystem`](crate::counted_system::CountedSystem).
     pub evaluations: EvaluationCount<'a>,
     /// x at t = 0.
     pub x: Sys::Coordinates,

@@ -3,7 +3,7 @@
 use crate::auto::{TARGET_ERROR, fastest};
 use crate::data::{Case, MethodRun, MethodRuns, Report};
 
-/// Reduces a report to the runs that [`crate::excerpt::block`] reads: of every case the fastest method, the one of
+/// Reduces a report to the runs that [`crate::book_excerpt::block`] reads: of every case the fastest method, the one of
 /// `auto` and rkmk4, and of these the two runs between which the error falls to 1e-9.
 pub fn summary(report: &Report) -> Report {
     Report {

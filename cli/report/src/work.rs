@@ -55,7 +55,7 @@ mod tests {
     use super::{Work, work};
     use crate::data::MethodRun;
 
-    /// The runs of a method with error = C hᵖ, h = 1/n, and s evaluations a step.
+    /// Returns the runs of a method with error = C hᵖ, h = 1/n, and s evaluations a step.
     fn runs(c: f64, p: i32, s: u64) -> Vec<MethodRun> {
         let run = |steps: u64| MethodRun {
             steps,

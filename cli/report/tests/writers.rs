@@ -5,7 +5,7 @@ use hamel_report::data::{
 };
 use hamel_report::plot::precision;
 use hamel_report::summary::summary;
-use hamel_report::{excerpt, json, markdown, page};
+use hamel_report::{book_excerpt, json, markdown, page};
 
 /// A report with error = 1/n⁴, 4 n evaluations and 1 µs a step, so that 1e-6 takes 10^1.5 steps and 1e-9 takes 10^2.25.
 fn report() -> Report {
@@ -210,7 +210,7 @@ fn the_page_sets_code_apart() {
 fn the_summary_says_what_the_book_says() {
     let whole = report();
     let small = summary(&whole);
-    assert_eq!(excerpt::block(&small), excerpt::block(&whole));
+    assert_eq!(book_excerpt::block(&small), book_excerpt::block(&whole));
     assert_eq!(summary(&small), small);
     let [rkmk4] = &small.cases[0].methods[..] else {
         panic!("one method is in the block: {small:?}");
@@ -221,7 +221,7 @@ fn the_summary_says_what_the_book_says() {
 
 #[test]
 fn the_book_names_the_fastest_method() {
-    let block = excerpt::block(&report());
+    let block = book_excerpt::block(&report());
     let row = "| A top | <heavy> | `rkmk4` | 711 | 178 µs | 178 µs | - | - |";
     assert!(
         block.lines().last() == Some(&row.replace(" | <heavy>", " \\| <heavy>")),
@@ -229,11 +229,11 @@ fn the_book_names_the_fastest_method() {
     );
     let text = format!(
         "a\n{}\nold\n{}\nb\n",
-        excerpt::BEGIN_MARKER,
-        excerpt::END_MARKER
+        book_excerpt::BEGIN_MARKER,
+        book_excerpt::END_MARKER
     );
-    let new = excerpt::replace_block(&text, &block).expect("a block");
-    assert_eq!(excerpt::present(&new), Some(block.as_str()));
+    let new = book_excerpt::replace_block(&text, &block).expect("a block");
+    assert_eq!(book_excerpt::present(&new), Some(block.as_str()));
     assert!(new.starts_with("a\n") && new.ends_with("\nb\n") && !new.contains("old"));
-    assert_eq!(excerpt::replace_block("nothing", &block), None);
+    assert_eq!(book_excerpt::replace_block("nothing", &block), None);
 }

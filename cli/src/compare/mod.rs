@@ -19,7 +19,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::structure::Structure;
 use hamel_engine::State;
 use hamel_engine::mechanism::{Instance, Numbers};
-use hamel_engine::method::{self, Named, Role, Stepper, Unfit};
+use hamel_engine::method::{self, NamedMethod, Role, Stepper, UnsuitableMethod};
 use hamel_report::auto;
 use hamel_report::data::{Case, Choice, Kind, Machine, Missing, Report};
 use hamel_report::entry::Entry;
@@ -101,7 +101,7 @@ enum Format {
 /// Runs the comparisons and prints the report.
 #[cfg(feature = "command")]
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    method::known(&arguments.methods)?;
+    method::check_names(&arguments.methods)?;
     let solution = arguments.reference.as_deref().map(read).transpose()?;
     let mut report = Report {
         title: "Speed against error".into(),
@@ -212,7 +212,7 @@ pub fn case(
     let system = Instance::new(generated, state, shown)?;
     system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
-    let (methods, missing) = method::fitting(&asked.methods, &system, structure);
+    let (methods, missing) = method::suitable(&asked.methods, &system, structure);
     let inputs = |t: f64, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let momenta = |x: &[f64], xi: &[f64]| -> Vec<f64> {
         let claims = system.invariants().iter();
@@ -279,7 +279,7 @@ pub fn case(
         }
     }
     let mut entries: Vec<Entry> = Vec::new();
-    for Named {
+    for NamedMethod {
         name,
         role,
         stepper,
@@ -315,7 +315,7 @@ fn kind(role: Role) -> Kind {
     }
 }
 
-fn unfit(method: Unfit) -> Missing {
+fn unfit(method: UnsuitableMethod) -> Missing {
     Missing {
         method: method.name.into(),
         why: method.obstacles.join("; "),
@@ -327,9 +327,9 @@ pub fn one(case: &Case) -> Result<String, Failure> {
     serde_json::to_string(case).map_err(|error| Failure::failed(error.to_string()))
 }
 
-/// The method of the highest order, baselines last; the first in the table among equals.
-fn best(methods: &[Named]) -> &Named {
-    let rank = |named: &Named| {
+/// Returns the method of the highest order, baselines last; the first in the table among equals.
+fn best(methods: &[NamedMethod]) -> &NamedMethod {
+    let rank = |named: &NamedMethod| {
         let order = Method::<Instance>::order(&named.stepper);
         (named.role == Role::Method, order)
     };
@@ -343,7 +343,7 @@ fn best(methods: &[Named]) -> &Named {
     methods.iter().skip(1).fold(&methods[0], better)
 }
 
-/// The choice of `--method auto`.
+/// Returns the choice of `--method auto`.
 fn choice(structure: &Structure) -> Choice {
     let choice = choose(structure, None);
     Choice {
@@ -352,7 +352,7 @@ fn choice(structure: &Structure) -> Choice {
     }
 }
 
-/// The name of the system with the first line of its documentation.
+/// Returns the name of the system with the first line of its documentation.
 fn title(name: &str, docs: &[String]) -> String {
     match docs.first() {
         Some(line) if !line.trim().is_empty() => format!("{name}: {}", line.trim()),
@@ -367,7 +367,7 @@ fn number_of_steps(text: &str) -> Result<u64, String> {
     number.ok_or_else(|| format!("a whole number from 1 to {MAX_STEPS} is needed"))
 }
 
-/// The end time, which a reference has to list.
+/// Returns the end time, which a reference has to list.
 fn until(arguments: &Arguments, solution: Option<&Solution>) -> Result<f64, Failure> {
     let Some(solution) = solution else {
         return Ok(arguments.until.unwrap_or(DEFAULT_DURATION));
@@ -396,7 +396,7 @@ fn read(path: &Path) -> Result<Solution, Failure> {
         .map_err(|error| Failure::usage(format!("{}: {error}", source.path)))
 }
 
-/// The given command line, with file names instead of paths.
+/// Returns the given command line, with file names instead of paths.
 fn command(arguments: &Arguments) -> String {
     let name = |path: Option<&Path>| -> String {
         let name = path.and_then(Path::file_name);

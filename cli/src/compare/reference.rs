@@ -76,7 +76,7 @@ impl<'a> Fields<'a> {
         Ok(Fields { solution, fields })
     }
 
-    /// The names of the fields.
+    /// Returns the names of the fields.
     pub fn names(&self) -> String {
         let names: Vec<&str> = self
             .fields
@@ -104,7 +104,7 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    /// The values of the fields at a listed time.
+    /// Returns the values of the fields at a listed time.
     pub fn end(&self, until: f64) -> Result<End, Failure> {
         let value = |field: &Field| {
             let values = self.solution.sample(until, &field.name);
@@ -121,7 +121,7 @@ impl<'a> Fields<'a> {
 }
 
 impl End {
-    /// The largest error of all fields.
+    /// Returns the largest error of all fields.
     pub fn error(&self, x: &[f64], xi: &[f64]) -> f64 {
         largest(self.0.iter().map(|(velocity, offset, values)| {
             let list = if *velocity { xi } else { x };

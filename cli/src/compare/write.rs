@@ -6,12 +6,12 @@ use hamel_report::plot::{Figure, precision};
 use hamel_report::{json, markdown, page};
 use std::path::Path;
 
-/// The tables as Markdown, with links to the pictures if these are written.
+/// Returns the tables as Markdown, with links to the pictures if these are written.
 pub fn markdown(report: &Report, pictures: bool) -> String {
     markdown::write(report, |case| pictures.then(|| file(case)))
 }
 
-/// The report as one JSON object.
+/// Returns the report as one JSON object.
 pub fn json(report: &Report) -> Result<String, Failure> {
     json::write(report).map_err(|error| Failure::failed(error.to_string()))
 }

@@ -10,7 +10,7 @@ use crate::simulate::InputArguments;
 use crate::source;
 use clap::Args;
 use hamel_codegen::generate::Generated;
-use hamel_engine::{Drive, Samples, Scene, Session, Simulation, State, Stepping};
+use hamel_engine::{InputSource, Samples, Scene, Session, Simulation, State, Stepping};
 use hamel_files::number::short;
 use hamel_report::plot::space::{ISOMETRIC, Space, Vector, base, space};
 use shapes::Shapes;
@@ -106,13 +106,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. Place a part of it by a statement such as `frame f = pose(R, r);`{}",
             session.name(),
             drawing
-                .missing()
+                .unplaced_parts()
                 .iter()
                 .map(|part| format!("\n  {part}"))
                 .collect::<String>()
         )));
     }
-    for part in drawing.missing() {
+    for part in drawing.unplaced_parts() {
         failure::warn(&format!("not drawn: {part}\n"));
     }
     let path = |frame: usize| -> Vec<Vector> {
@@ -181,7 +181,7 @@ fn moments(
     times.dedup();
     let simulation = Simulation {
         samples: Samples::At(times),
-        drive: Drive::Options(arguments.inputs.read()?),
+        inputs: InputSource::Options(arguments.inputs.read()?),
         ..Simulation::new(Stepping::until(until))
     };
     let run = session.simulate(state, &simulation)?;
@@ -199,7 +199,7 @@ fn moments(
     })
 }
 
-/// The indices of the frames whose paths are drawn.
+/// Returns the indices of the frames whose paths are drawn.
 fn traced_frames(generated: &Generated, names: &[String]) -> Result<Vec<usize>, Failure> {
     let frames = &generated.active.frames;
     let mut unknown = Vec::new();

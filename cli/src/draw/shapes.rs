@@ -1,6 +1,6 @@
 //! Turns the scene of a mechanism into shapes of a picture.
 
-use hamel_engine::drawing::{Acts, Frame, Joint, Scene, Vector};
+use hamel_engine::drawing::{Frame, Joint, LineKind, Scene, Vector};
 use hamel_report::plot::space::{Ink, Part, Shape};
 
 /// Widths of links, joint axes, rails and frame axes (pixels).
@@ -66,7 +66,7 @@ impl Shapes {
         }
     }
 
-    /// The shapes of a scene.
+    /// Returns the shapes of a scene.
     pub fn of(&self, scene: &Scene) -> Vec<Part> {
         let mut parts = Vec::new();
         self.axes(scene, &mut parts);
@@ -77,7 +77,7 @@ impl Shapes {
         parts
     }
 
-    /// The shapes of a faint pose: moving parts, without axes.
+    /// Returns the shapes of a faint pose: moving parts, without axes.
     pub fn faint(&self, scene: &Scene) -> Vec<Part> {
         let mut parts = Vec::new();
         self.links(scene, &mut parts);
@@ -208,9 +208,9 @@ impl Shapes {
         for line in &scene.lines {
             let ends = line.points;
             let (ink, shape) = match line.acts {
-                Acts::Spring => (Ink::Dark, Shape::Spring { ends }),
-                Acts::Damper => (Ink::Soft, Shape::Damper { ends }),
-                Acts::Force => (Ink::Series(4), Shape::Dashes { ends }),
+                LineKind::Spring => (Ink::Dark, Shape::Spring { ends }),
+                LineKind::Damper => (Ink::Soft, Shape::Damper { ends }),
+                LineKind::Force => (Ink::Series(4), Shape::Dashes { ends }),
             };
             parts.push(Part { ink, shape });
         }
@@ -235,7 +235,7 @@ impl Shapes {
     }
 }
 
-/// Whether a joint holds no point of the frame that it carries.
+/// Returns whether a joint holds no point of the frame that it carries.
 fn floats(joint: &Joint) -> bool {
     ["free", "planar"].contains(&joint.kind)
 }
@@ -244,7 +244,7 @@ fn pivot(frame: &Frame) -> bool {
     frame.attached && frame.turns
 }
 
-/// The colour of the first body of a frame, or of its nearest ancestor that has a body.
+/// Returns the colour of the first body of a frame, or of its nearest ancestor that has a body.
 fn ink(scene: &Scene, frame: usize) -> Ink {
     let mut place = Some(frame);
     while let Some(frame) = place {

@@ -17,19 +17,18 @@ const MAX_SHOWN_VELOCITIES: usize = 64;
 
 /// Prints the values of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
 ///
-/// The state is the description's start with default parameters and zero input, changed by the entries of
-/// STATE.json: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…},
-/// "state": {…}, "input": {…}}.
-/// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
-/// Velocities of joints may also be given by the joint's name (for a robot, its name in the URDF file). The state is the
-/// start that the description would have if it contained these numbers: they and the other exact starts are kept,
-/// prescribed motions are followed, and the remaining numbers close the loops and satisfy the constraints. Where the
-/// numbers contradict exact starts of the text, the starts that loops and constraints tie to them move to the nearest
-/// values; a state that by itself contradicts loops or constraints is refused. From a list of samples, as
-/// `hamel simulate --out` writes it to a .json file, the last is taken. Matrices are written by rows; gamma[i][j][k] is
-/// γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk. A, γ, M and Γ refer to all velocities, named in `frame`;
-/// forces, bias and accel to the velocities that constraints leave, named in `velocities`. `undetermined` names the
-/// rows of `constraints` whose forces are not unique: their values are one of many solutions.
+/// The state is the description's start with default parameters and zero input, changed by the entries of STATE.json:
+/// {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…}, "state": {…}, "input": {…}}. A circle takes [cos,
+/// sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows. Velocities of joints may also be given
+/// by the joint's name (for a robot, its name in the URDF file). The state is the start that the description would have
+/// if it contained these numbers: they and the other exact starts are kept, prescribed motions are followed, and the
+/// remaining numbers close the loops and satisfy the constraints. Where the numbers contradict exact starts of the
+/// text, the starts that loops and constraints tie to them move to the nearest values; a state that by itself
+/// contradicts loops or constraints is refused. From a list of samples, as `hamel simulate --out` writes it to a .json
+/// file, the last is taken. Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k]
+/// is Γ_ijk. A, γ, M and Γ refer to all velocities, named in `frame`; forces, bias and accel to the velocities that
+/// constraints leave, named in `velocities`. `undetermined` names the rows of `constraints` whose forces are not
+/// unique: their values are one of many solutions.
 ///
 /// STATE.json may also be given by joints, for every command that takes a state: {"configuration": {"elbow": 0.3,
 /// "root_joint": {"position": […], "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […],
@@ -99,7 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The numbers as JSON.
+/// Returns the numbers as JSON.
 fn json(numbers: &Evaluation) -> Json {
     let cube = |table: &Cube| Json::List(table.iter().map(|rows| Json::matrix(rows)).collect());
     let vector = |list: &Option<Vec<f64>>| list.as_deref().map_or(Json::Null, Json::vector);
@@ -160,7 +159,7 @@ fn json(numbers: &Evaluation) -> Json {
     Json::object(members)
 }
 
-/// A value, matrices by rows.
+/// Returns a value, matrices by rows.
 fn json_of(value: &Value) -> Json {
     match value {
         Value::Number(number) => Json::Number(*number),
@@ -169,7 +168,7 @@ fn json_of(value: &Value) -> Json {
     }
 }
 
-/// An object for every frame.
+/// Returns an object for every frame.
 fn json_of_frames(Kinematics(frames): &Kinematics) -> Json {
     let frame = |values: &[(String, Value)]| {
         let values = values.iter();

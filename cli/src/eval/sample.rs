@@ -8,7 +8,7 @@ use hamel_codegen::generate::Generated;
 use hamel_engine::evaluate::{NamedFrame, kinematics, requested_jacobians};
 use hamel_engine::mechanism::{self, constant_singular, function};
 use hamel_engine::names;
-use hamel_engine::state::{File, ORDER, Sample, rows};
+use hamel_engine::state::{File, JointState, VELOCITY_ORDER, rows};
 use hamel_engine::{Error, Source, State};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
@@ -40,11 +40,11 @@ pub fn run(source: &Source, at: &File, frames: &[NamedFrame]) -> Result<(), Fail
         _ => (std::slice::from_ref(json), false),
     };
     // Entries that are common to all samples.
-    let order = json.get(ORDER).filter(|_| several);
+    let order = json.get(VELOCITY_ORDER).filter(|_| several);
     let mut errors = Vec::new();
     let mut samples = Vec::new();
     for (index, one) in list.iter().enumerate() {
-        match Sample::parse(
+        match JointState::parse(
             State::start(&generated.active),
             one,
             order,
@@ -99,7 +99,7 @@ type Members = (Vec<(&'static str, Json)>, Vec<String>);
 
 fn members(
     (generated, text): (&Generated, &str),
-    sample: &Sample,
+    sample: &JointState,
     frames: &[NamedFrame],
 ) -> Result<Members, Error> {
     let model = &generated.active;
@@ -155,7 +155,7 @@ fn members(
     // A missing function has been reported before.
     let is_there = generated.program.function(FunctionId::Accel).is_some();
     if let (None, true, Some(mass)) = (&accel.value, is_there, &mass) {
-        let why = mechanism::of(generated, &state.params, mass, text);
+        let why = mechanism::explain_singular_state(generated, &state.params, mass, text);
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));
@@ -174,7 +174,7 @@ struct Accel {
 
 fn accel(
     generated: &Generated,
-    sample: &Sample,
+    sample: &JointState,
     mass: Option<&DMatrix<f64>>,
 ) -> Result<Accel, Error> {
     let state = &sample.state;

@@ -152,7 +152,7 @@ fn text(linear: &Linearization) -> String {
     text
 }
 
-/// All zero eigenvalues on one line, with the largest deviation that rounding left; empty if there are none.
+/// Returns all zero eigenvalues on one line, with the largest deviation that rounding left; empty if there are none.
 fn zeroes(zeros: &[&(f64, f64)], rounding: f64) -> String {
     let off = zeros.iter().map(|(re, im)| re.hypot(*im));
     let off = off.fold(0.0, f64::max);
@@ -167,7 +167,7 @@ fn zeroes(zeros: &[&(f64, f64)], rounding: f64) -> String {
     }
 }
 
-/// A matrix with its name; a zero matrix takes one line.
+/// Returns a matrix with its name; a zero matrix takes one line.
 fn matrix(name: &str, rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
     if values.iter().flatten().all(|&value| value == 0.0) {
         return format!("\n\x1b[1m{name}\x1b[0m = 0\n");

@@ -61,12 +61,12 @@ struct Row {
     unshared: Written,
 }
 
-/// The counts as JSON.
+/// Returns the counts as JSON.
 pub fn counts_json(source: &Source) -> Result<String, Failure> {
     Ok(Counts::of(source)?.json())
 }
 
-/// The counts of other velocity coordinates as JSON.
+/// Returns the counts of other velocity coordinates as JSON.
 pub fn advice_json(source: &Source) -> Result<String, Failure> {
     let model = source.derive()?.model;
     advice::write(source, &model, true)
@@ -153,7 +153,7 @@ fn flops(operations: &Operations) -> u128 {
     operations[..3].iter().sum()
 }
 
-/// The flops of expressions written out.
+/// Returns the flops of expressions written out.
 fn flops_written(operations: &Written) -> Option<u128> {
     operations[..3]
         .iter()

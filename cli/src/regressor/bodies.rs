@@ -1,13 +1,13 @@
 //! Finds bodies with given base parameters.
 //!
-//! Many standard parameters π have the same base parameters β = K π. Among those whose pseudo-inertias
-//! J = [[tr(Θ)/2 I − Θ, h], [hᵀ, m]] are positive definite, as those of all bodies are, the nearest to given bodies π₀ are
-//! found, in the sense of D = Σ tr(J J₀⁻¹) − log det(J J₀⁻¹) − 4 over the links, which depends on no choice of units or
-//! axes. Noise may lead to a β that no bodies have: then D + ½ Σ (K π − β)²/r is minimised, with small r.
-//! Newton's method is damped for long steps: D is self-concordant, so that J stays positive definite. Sources:
-//! P. Wensing, S. Kim, J.-J. Slotine, *Linear matrix inequalities for physically consistent inertial parameter
-//! identification*, IEEE RA-L 3 (2018) 60; T. Lee, P. Wensing, F. Park, *Geometric robot dynamic identification*, IEEE T-RO
-//! 36 (2020) 348; S. Boyd, L. Vandenberghe, *Convex Optimization* (2004), 9.6, 10.3.
+//! Many standard parameters π have the same base parameters β = K π. Among those whose pseudo-inertias J = [[tr(Θ)/2 I
+//! − Θ, h], [hᵀ, m]] are positive definite, as those of all bodies are, the nearest to given bodies π₀ are found, in
+//! the sense of D = Σ tr(J J₀⁻¹) − log det(J J₀⁻¹) − 4 over the links, which depends on no choice of units or axes.
+//! Noise may lead to a β that no bodies have: then D + ½ Σ (K π − β)²/r is minimised, with small r. Newton's method is
+//! damped for long steps: D is self-concordant, so that J stays positive definite. Sources: P. Wensing, S. Kim, J.-J.
+//! Slotine, *Linear matrix inequalities for physically consistent inertial parameter identification*, IEEE RA-L 3
+//! (2018) 60; T. Lee, P. Wensing, F. Park, *Geometric robot dynamic identification*, IEEE T-RO 36 (2020) 348; S. Boyd,
+//! L. Vandenberghe, *Convex Optimization* (2004), 9.6, 10.3.
 
 use hamel_codegen::tables;
 use nalgebra::{DMatrix, DVector, Matrix4, SMatrix, SVector};
@@ -47,21 +47,21 @@ pub struct Bodies {
     pub exact: bool,
 }
 
-/// The pseudo-inertia of a link's ten parameters, or of a change of them.
+/// Returns the pseudo-inertia of a link's ten parameters, or of a change of them.
 fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
     let rows = tables::regressor::pseudo_inertia(std::array::from_fn(|k| ten[k]));
     // It is symmetric: columns equal rows.
     Matrix4::from(rows)
 }
 
-/// The inverse of a pseudo-inertia; `None` if it is not positive definite.
+/// Returns the inverse of a pseudo-inertia; `None` if it is not positive definite.
 fn inverse(ten: &[f64]) -> Option<Matrix4<f64>> {
     pseudo_inertia(ten)
         .cholesky()
         .map(|factor| factor.inverse())
 }
 
-/// The gradient of D by the parameters of a link, and its second derivatives.
+/// Returns the gradient of D by the parameters of a link, and its second derivatives.
 fn of_link(
     inverse: &Matrix4<f64>,
     nominal: &Matrix4<f64>,
@@ -97,8 +97,8 @@ struct Problem<'a> {
     beta: DVector<f64>,
 }
 
-/// The standard parameters of bodies nearest to `nominal` that have the base parameters `beta`, or approximate them if
-/// no bodies have them; both lists contain ten for each link, followed by those of joints.
+/// Finds the standard parameters of bodies nearest to `nominal` that have the base parameters `beta`, or approximate
+/// them if no bodies have them; both lists contain ten for each link, followed by those of joints.
 ///
 /// # Errors
 /// See [`NoBodies`].
@@ -145,7 +145,7 @@ pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result
 }
 
 impl Problem<'_> {
-    /// The minimum of D + ½ Σ (K π − β)²/r, with K π = β where r is 0; `None` if the method does not converge.
+    /// Finds the minimum of D + ½ Σ (K π − β)²/r, with K π = β where r is 0; `None` if the method does not converge.
     fn minimize(&self, mut pi: DVector<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
         let (size, k) = (pi.len(), &self.k);
         let joints = LINK_PARAMETERS * self.links.len()..size;

@@ -83,7 +83,7 @@ pub fn print_bodies(
     })
 }
 
-/// The base parameters β = K π.
+/// Returns the base parameters β = K π.
 fn base(map: &Map, standard: &[f64]) -> Vec<f64> {
     let sum = |terms: &Vec<(usize, f64)>| {
         let terms = terms.iter();

@@ -17,7 +17,7 @@ use clap::Args;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
 use hamel_engine::run::Every;
-use hamel_engine::{Drive, Samples, Session, Simulation, Stepping, method};
+use hamel_engine::{InputSource, Samples, Session, Simulation, Stepping, method};
 pub use options::{InputArguments, SteppingArguments};
 use picture::picture;
 pub use series::{SeriesError, read_series};
@@ -38,7 +38,7 @@ use write::Format;
   hamel simulate heavy_top.eom --until 10 --method rk4 --lambda 5
   hamel simulate heavy_top.eom --until 10 --at state.json
   hamel simulate cart_pole.eom --until 10 --input \"F = 2 * sin(3 * t) - 4 * v\"
-  hamel simulate cart_pole.eom --until 10 --inputs forces.csv --times times.csv --out run.csv", after_long_help = method::described())]
+  hamel simulate cart_pole.eom --until 10 --inputs forces.csv --times times.csv --out run.csv", after_long_help = method::descriptions())]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
@@ -128,20 +128,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     /// Reads the files of the run, and collects its options.
     fn simulation(&self, stepping: Stepping) -> Result<Simulation, Failure> {
-        let drive = Drive::Options(self.inputs.read()?);
+        let inputs = InputSource::Options(self.inputs.read()?);
         Ok(Simulation {
             samples: match (&self.times, self.every) {
                 (Some(path), _) => Samples::Of(read_series(path)?),
                 (None, Some(every)) => Samples::Every(every),
                 (None, None) => Samples::Usual,
             },
-            drive,
+            inputs,
             ..Simulation::new(stepping)
         })
     }
 }
 
-/// The SVG of a picture.
+/// Returns the SVG of a picture.
 fn drawn(picture: &hamel_report::plot::Picture) -> Result<String, Failure> {
     let figure =
         hamel_report::plot::run(picture).map_err(|error| Failure::failed(error.to_string()))?;

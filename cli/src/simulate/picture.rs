@@ -7,7 +7,7 @@ use hamel_codegen::model::layout::Block;
 use hamel_engine::run::{Run, Sample};
 use hamel_report::plot::{Panel, Path, Picture};
 
-/// The plot: coordinates, velocities, outputs, conserved quantities, and the rotation of a body.
+/// Returns the plot: coordinates, velocities, outputs, conserved quantities, and the rotation of a body.
 pub fn picture(run: &Run) -> Picture {
     let time = run.track.iter();
     let time: Vec<f64> = time.map(|s| run.time.at(s.t, &s.x)).collect();
@@ -66,8 +66,8 @@ fn drift(run: &Run) -> Panel {
     panel
 }
 
-/// The path of a body axis in the world, if exactly one coordinate is an attitude: the axis
-/// about which the body turns most at first.
+/// Returns the path of a body axis in the world, if exactly one coordinate is an attitude: the axis about which the
+/// body turns most at first.
 fn attitude(run: &Run) -> Option<Path> {
     let (mut offset, mut found) = (0, Vec::new());
     for &block in &run.generated.program.blocks {

@@ -43,7 +43,7 @@ pub fn poinsot(system: &Instance, track: &[Sample]) -> Option<Poinsot> {
     })
 }
 
-/// The row of the only attitude in the chart.
+/// Returns the row of the only attitude in the chart.
 fn attitude(blocks: &[Block]) -> Option<usize> {
     let (mut row, mut found) = (0, None);
     for block in blocks {

@@ -12,7 +12,7 @@ const COLUMNS: usize = 8;
 /// Relative change below which a momentum is reported as conserved.
 const KEPT: f64 = 1e-6;
 
-/// A table of about twenty rows of t and velocities.
+/// Returns a table of about twenty rows of t and velocities.
 pub fn table(run: &Run) -> String {
     let shown = run.velocity_names.len().min(COLUMNS);
     let header = std::iter::once(run.time.name.clone())
@@ -39,7 +39,7 @@ pub fn table(run: &Run) -> String {
     text
 }
 
-/// The method, the last state and the invariants.
+/// Returns the method, the last state and the invariants.
 pub fn text(run: &Run, default_step: bool) -> String {
     let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
         return String::new();
@@ -85,7 +85,7 @@ pub fn text(run: &Run, default_step: bool) -> String {
     text
 }
 
-/// The last state by names, with rotation matrices as matrices.
+/// Returns the last state by names, with rotation matrices as matrices.
 fn state(run: &Run, last: &Sample) -> String {
     let mut groups: Vec<(String, Vec<&[f64]>)> = Vec::new();
     for coordinate in &run.generated.program.coordinates {

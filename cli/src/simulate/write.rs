@@ -18,7 +18,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format for a path.
+    /// Chooses the format by the extension of a path.
     pub fn of(path: &Path) -> Result<Self, Failure> {
         let extension = path
             .extension()
@@ -35,7 +35,7 @@ impl Format {
     }
 }
 
-/// Names of the columns.
+/// Returns the names of the columns.
 fn columns(run: &Run) -> impl Iterator<Item = &String> {
     let coordinates = run.coordinate_names.iter().enumerate();
     let coordinates = coordinates.filter(|(place, _)| run.time.place != Some(*place));
@@ -45,7 +45,7 @@ fn columns(run: &Run) -> impl Iterator<Item = &String> {
         .chain(&run.output_names)
 }
 
-/// Values of the columns.
+/// Returns the values of the columns.
 fn values(run: &Run, sample: &Sample) -> impl Iterator<Item = f64> {
     let coordinates = sample.x.iter().enumerate();
     let coordinates = coordinates.filter(|(place, _)| run.time.place != Some(*place));
@@ -55,7 +55,7 @@ fn values(run: &Run, sample: &Sample) -> impl Iterator<Item = f64> {
         .chain(sample.outputs.iter().copied())
 }
 
-/// A header and one row for each sample: time, coordinates, velocities, outputs.
+/// Returns a header and one row for each sample: time, coordinates, velocities, outputs.
 pub fn csv(run: &Run) -> String {
     let names: Vec<String> = columns(run)
         .map(|name| {
@@ -75,7 +75,7 @@ pub fn csv(run: &Run) -> String {
     text
 }
 
-/// A list of objects with the members of the CSV columns, one on each line.
+/// Returns a list of objects with the members of the CSV columns, one on each line.
 pub fn json(run: &Run) -> String {
     let rows: Vec<String> = run
         .samples

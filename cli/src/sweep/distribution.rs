@@ -4,7 +4,7 @@ use super::draws::Draws;
 use super::permutation::Permutation;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
-use hamel_engine::text::Piece;
+use hamel_engine::option_text::Piece;
 
 /// Largest number of points of one grid.
 const MAX_GRID_POINTS: f64 = 1e9;
@@ -102,7 +102,7 @@ impl Distribution {
         Ok(all)
     }
 
-    /// The value for a member, at its point of the grid, and with the permutation of its strata.
+    /// Returns the value for a member, at its point of the grid, and with the permutation of its strata.
     pub fn value(
         &self,
         draws: &Draws,
@@ -178,7 +178,7 @@ pub fn count(count: usize, word: &str) -> String {
 mod tests {
     use super::Distribution;
     use crate::sweep::draws::Draws;
-    use hamel_engine::text::Piece;
+    use hamel_engine::option_text::Piece;
 
     fn read(text: &str, entries: usize) -> Result<Vec<Distribution>, String> {
         let numbers = |text: &str| Err(format!("{text} is unknown"));

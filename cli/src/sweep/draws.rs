@@ -21,7 +21,7 @@ pub struct Draws {
 }
 
 impl Draws {
-    /// The draws for a seed.
+    /// Creates the draws for a seed.
     pub fn new(seed: u64) -> Self {
         Draws { seed }
     }
@@ -36,12 +36,12 @@ impl Draws {
         generator
     }
 
-    /// A uniform number in 0 ≤ u < 1.
+    /// Returns a uniform number in 0 ≤ u < 1.
     pub fn uniform(&self, member: u64, entry: usize) -> f64 {
         unit(&mut self.generator(MEMBER_KEYS, member, entry))
     }
 
-    /// A normal number with mean 0 and standard deviation 1 (G. E. P. Box, M. E. Muller, 1958).
+    /// Returns a normal number with mean 0 and standard deviation 1 (G. E. P. Box, M. E. Muller, 1958).
     pub fn normal(&self, member: u64, entry: usize) -> f64 {
         let mut generator = self.generator(MEMBER_KEYS, member, entry);
         // Avoid the logarithm of 0.
@@ -49,14 +49,14 @@ impl Draws {
         libm::sqrt(-2.0 * libm::log(length)) * libm::cos(TAU * angle)
     }
 
-    /// The permutation of members for an entry.
+    /// Returns the permutation of members for an entry.
     pub fn permutation(&self, entry: usize, members: u64) -> Permutation {
         let mut generator = self.generator(PERMUTATION_KEYS, 0, entry);
         Permutation::new(members, || generator.next_u64())
     }
 }
 
-/// A number of 53 bits, 0 ≤ u < 1.
+/// Returns a number of 53 bits, 0 ≤ u < 1.
 fn unit(generator: &mut ChaCha8Rng) -> f64 {
     (generator.next_u64() >> 11) as f64 * f64::EPSILON / 2.0
 }

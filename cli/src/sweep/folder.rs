@@ -27,12 +27,12 @@ impl Part {
     /// All shards.
     pub const ALL_SHARDS: Part = Part { number: 1, of: 1 };
 
-    /// Whether a shard belongs to this part.
+    /// Returns whether a shard belongs to this part.
     pub fn has(self, shard: u64) -> bool {
         shard % self.of == self.number - 1
     }
 
-    /// Whether both parts have a shard in common.
+    /// Returns whether both parts have a shard in common.
     fn overlaps(self, other: Part) -> bool {
         let (mut a, mut b) = (self.of, other.of);
         while b > 0 {
@@ -106,7 +106,7 @@ impl Folder {
     }
 }
 
-/// The manifest of a folder, if there is one.
+/// Returns the manifest of a folder, if there is one.
 pub fn read_manifest(path: &Path) -> Result<Option<Manifest>, Failure> {
     let place = path.join(MANIFEST);
     let text = match fs::read_to_string(&place) {
@@ -175,7 +175,7 @@ fn shard_name(shard: u64) -> String {
     format!("shard-{shard:06}.parquet")
 }
 
-/// The numbers of all shards in a folder, sorted.
+/// Returns the numbers of all shards in a folder, sorted.
 fn shards(path: &Path) -> Result<Vec<u64>, Failure> {
     let unreadable =
         |error: std::io::Error| Failure::usage(format!("cannot read {}: {error}", path.display()));

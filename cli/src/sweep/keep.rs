@@ -2,8 +2,8 @@
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
-use hamel_engine::source::added::{self, Added};
-use hamel_engine::text::Piece;
+use hamel_engine::option_text::Piece;
+use hamel_engine::source::added_outputs::{self, AddedOutput};
 
 pub const OPTION: &str = "--keep";
 
@@ -42,12 +42,12 @@ pub enum Item<'a> {
 /// An item with its text.
 pub type KeptItem<'a> = (Piece<'a>, Item<'a>);
 
-/// The outputs to add for the kept items.
-pub fn outputs_to_add<'a>(kept: &[KeptItem<'a>]) -> Vec<Added<'a>> {
+/// Returns the outputs to add for the kept items.
+pub fn outputs_to_add<'a>(kept: &[KeptItem<'a>]) -> Vec<AddedOutput<'a>> {
     let of = |(index, (whole, item)): (usize, &KeptItem<'a>)| match item {
         Item::End => None,
-        Item::Quantity(_, sides) => Some(Added {
-            name: added::name(index),
+        Item::Quantity(_, sides) => Some(AddedOutput {
+            name: added_outputs::name(index),
             whole: *whole,
             sides: sides.clone(),
         }),
@@ -159,12 +159,12 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
 mod tests {
     use super::{Item, OPTION, Quantity, read};
     use crate::sweep::distribution::Distribution;
-    use hamel_engine::text::{Piece, refused as refused_text};
+    use hamel_engine::option_text::{Piece, invalid_option};
 
     fn refused(text: &str) -> String {
         let (_, errors) = read(text, 10.0);
         assert!(!errors.is_empty(), "{text}");
-        refused_text(OPTION, text, &errors).to_string()
+        invalid_option(OPTION, text, &errors).to_string()
     }
 
     #[test]
@@ -216,14 +216,14 @@ mod tests {
             if let Ok(piece) = Piece::of(&text) {
                 for entries in [1, 3] {
                     if let Err(errors) = Distribution::read(piece, entries, &numbers) {
-                        refused_text("--vary", &text, &errors);
+                        invalid_option("--vary", &text, &errors);
                     }
                 }
             }
             match read(&text, 10.0).1.as_slice() {
                 [] => good += 1,
                 errors => {
-                    refused_text(OPTION, &text, errors);
+                    invalid_option(OPTION, &text, errors);
                     bad += 1;
                 }
             }

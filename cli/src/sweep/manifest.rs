@@ -22,7 +22,7 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// A manifest with these values to be fixed, in this order.
+    /// Creates a manifest with these values to be fixed, in this order.
     pub fn new(count: u64, size: u64, fixed: Vec<(&str, Json)>) -> Result<Self, String> {
         let own = [
             ("format", Json::Count(FORMAT)),
@@ -61,23 +61,23 @@ impl Manifest {
         })
     }
 
-    /// Number of shards.
+    /// Returns the number of shards.
     pub fn shards(&self) -> u64 {
         self.count.div_ceil(self.size)
     }
 
-    /// The members of a shard.
+    /// Returns the members of a shard.
     pub fn range(&self, shard: u64) -> std::ops::Range<u64> {
         let first = shard * self.size;
         first..(first + self.size).min(self.count)
     }
 
-    /// A string of the manifest.
+    /// Returns a string of the manifest.
     pub fn word(&self, name: &str) -> Option<&str> {
         self.members.get(name)?.as_str()
     }
 
-    /// The differences from the manifest that exists.
+    /// Returns the differences from the manifest that exists.
     pub fn differences(&self, there: &Manifest) -> Vec<String> {
         let names = self.members.keys().chain(there.members.keys());
         let mut names: Vec<&String> = names.collect();

@@ -5,7 +5,7 @@ use super::watch::{KeptColumns, MemberObserver};
 use hamel::{State, StepError};
 use hamel_codegen::generate::Generated;
 use hamel_engine::mechanism::{Instance, Mechanism};
-use hamel_engine::run::{Balance, EarlyEnd, Events, Inputs, Plan, Steady, advance};
+use hamel_engine::run::{EarlyEnd, EnergyBalance, Events, FixedStepRun, Inputs, Plan, advance};
 use hamel_engine::state::StateProblem;
 use hamel_engine::{Error, state};
 use serde_json::{Map, Value};
@@ -52,7 +52,7 @@ pub struct Row {
     pub error: Option<String>,
 }
 
-/// Why a member has no row.
+/// Reason for which a member has no results.
 #[derive(Clone, Debug)]
 pub struct Failed {
     /// Kind of failure, in a word or two.
@@ -73,7 +73,7 @@ struct Member {
 struct Running<'a> {
     member: &'a Member,
     state: State<Instance>,
-    balance: Cell<Balance>,
+    balance: Cell<EnergyBalance>,
     watch: MemberObserver<'a>,
 }
 
@@ -98,7 +98,7 @@ impl Sweep {
         rows
     }
 
-    /// A member at its start, or its row if it cannot start.
+    /// Prepares a member at its start, or its row if it cannot start.
     fn begin(&self, index: u64) -> Result<Member, Row> {
         let varied = self.vary.values(index);
         match self.family.member(&self.vary.state(&varied, &self.base)) {
@@ -124,7 +124,8 @@ impl Sweep {
     fn both(&self, first: &Member, second: &Member) -> [Row; 2] {
         let mut first = Running::new(first, &self.keeping);
         let mut second = Running::new(second, &self.keeping);
-        let [one, other] = Steady::both([first.steady(), second.steady()]);
+        let [one, other] =
+            FixedStepRun::run_pair([first.fixed_step_run(), second.fixed_step_run()]);
         [first.row(one), second.row(other)]
     }
 }
@@ -134,7 +135,7 @@ impl<'a> Running<'a> {
         let Member { system, plan, .. } = member;
         let state = State::start(system);
         Running {
-            balance: Cell::new(Balance::new(system, &state)),
+            balance: Cell::new(EnergyBalance::new(system, &state)),
             watch: MemberObserver::new(keeping, system, &plan.method.stepper),
             state,
             member,
@@ -144,7 +145,7 @@ impl<'a> Running<'a> {
     fn advance(&mut self) -> Result<(), StepError> {
         let Member { system, plan, .. } = self.member;
         let balance = &self.balance;
-        let watches = plan.watches(system);
+        let watches = plan.monitors_energy(system);
         // Kept items detect their events themselves.
         let watched = (balance, &mut Events::default());
         let watch = &mut self.watch;
@@ -157,8 +158,8 @@ impl<'a> Running<'a> {
         advance(system, plan, &mut self.state, watched, &mut observe)
     }
 
-    fn steady(&mut self) -> Steady<'_> {
-        Steady {
+    fn fixed_step_run(&mut self) -> FixedStepRun<'_> {
+        FixedStepRun {
             system: &self.member.system,
             plan: &self.member.plan,
             state: &mut self.state,
@@ -203,7 +204,7 @@ impl Row {
 }
 
 impl Family {
-    /// The system of a member with this state: the only place where systems of members are made.
+    /// Creates the system of a member with this state: the only place where systems of members are made.
     pub fn member(&self, state: &Value) -> Result<Instance, Failed> {
         let state =
             state::State::of(&self.generated, &self.text, state).map_err(|errors| Failed {
@@ -224,14 +225,14 @@ impl Family {
     }
 }
 
-/// All that is wrong with a start, in one line.
+/// Joins all errors in a start to one line.
 fn joined(problems: &[StateProblem]) -> String {
     let all: Vec<String> = problems.iter().map(ToString::to_string).collect();
     all.join("; ")
 }
 
 impl Failed {
-    /// An error in one line.
+    /// Writes an error in one line.
     fn of(kind: &'static str, error: &Error) -> Self {
         let why = error.to_string();
         let words: Vec<&str> = why.split_whitespace().collect();
@@ -291,7 +292,7 @@ mod tests {
         )
     }
 
-    /// The rows of members that share lanes, checked to be bitwise equal to those of members that run alone.
+    /// Returns the rows of members that share lanes, checked to be bitwise equal to those of members that run alone.
     fn rows(path: &Path, options: &[&str]) -> Vec<Row> {
         let sweep = sweep(path, options);
         let members = sweep.vary.members();
@@ -344,7 +345,7 @@ mod tests {
         }
     }
 
-    /// Intermediate samples, one of them at the start, and stretches that are too short to be compiled.
+    /// Intermediate samples, one of them at the start, and segments that are too short to be compiled.
     #[test]
     fn samples_are_those_of_members_alone() {
         let options = "--members 5 --until 3 --step 1e-3 --method rkmk4".split(' ');

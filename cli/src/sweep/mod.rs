@@ -35,14 +35,14 @@ use clap::Args;
 use folder::{Folder, Part};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::count;
+use hamel_engine::CancellationToken;
 use hamel_engine::State;
-use hamel_engine::Stop;
 use hamel_engine::mechanism::Mechanism;
 use hamel_engine::method;
+use hamel_engine::option_text;
 use hamel_engine::run::{Inputs, Spacing};
-use hamel_engine::source::added;
+use hamel_engine::source::added_outputs;
 use hamel_engine::state::File;
-use hamel_engine::text;
 use hamel_engine::{Error, Source, Stepping};
 use hamel_files::number::group_thousands;
 use manifest::Manifest;
@@ -76,7 +76,7 @@ const DEFAULT_TASKS: u64 = 16;
   hamel sweep cart_pole.eom --vary \"start theta = grid(-1, 1, 21); start w = grid(-2, 2, 41)\" --until 5 --out map
   hamel sweep --status runs
   hamel sweep drone.eom … --out runs --shard 3/16               one of 16 parts, on this machine
-  hamel sweep drone.eom … --out runs --submit slurm --tasks 16  all of them, on a cluster", after_long_help = format!("{LONG_HELP}\n\n{}", method::described()))]
+  hamel sweep drone.eom … --out runs --submit slurm --tasks 16  all of them, on a cluster", after_long_help = format!("{LONG_HELP}\n\n{}", method::descriptions()))]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE", required_unless_present = "status")]
@@ -174,7 +174,7 @@ it is empty, and `error` says why. Readers take all files of a folder at once:
   pandas.read_parquet(\"runs\")";
 
 /// Runs the command: computes, submits or shows the status. `stop` can cancel the computation.
-pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, stop: Option<&CancellationToken>) -> Result<(), Failure> {
     if let Some(folder) = &arguments.status {
         return status::run(folder);
     }
@@ -290,16 +290,17 @@ fn prepare(
     };
     let (kept, wrong) = keep::read(&arguments.keep, stepping.until);
     let option = (keep::OPTION, arguments.keep.as_str());
-    let generated =
-        added::derive(source, option, &keep::outputs_to_add(&kept), wrong).map_err(|error| {
-            match source.try_derive_all() {
-                Ok(generated) => both(error, &generated),
-                Err(_) => error.into(),
-            }
+    let generated = added_outputs::derive(source, option, &keep::outputs_to_add(&kept), wrong)
+        .map_err(|error| match source.try_derive_all() {
+            Ok(generated) => both(error, &generated),
+            Err(_) => error.into(),
         })?;
     let keeping = KeptColumns::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
-        both(text::refused(option.0, option.1, &[error]), &generated)
+        both(
+            option_text::invalid_option(option.0, option.1, &[error]),
+            &generated,
+        )
     })?;
     let (base, state, vary) = varied(&generated)?;
     let inputs = arguments.inputs.read()?;
@@ -352,7 +353,7 @@ fn prepare(
     Ok((sweep, columns))
 }
 
-/// The start of all members, in JSON as in --at, and in numbers.
+/// Reads the start of all members, in JSON as in --at, and in numbers.
 fn start(
     arguments: &Arguments,
     source: &Source,
@@ -372,7 +373,7 @@ fn start(
     }
 }
 
-/// The manifest: everything on which rows depend.
+/// Collects everything on which rows depend in the manifest.
 fn fix_manifest(
     arguments: &Arguments,
     source: &Source,

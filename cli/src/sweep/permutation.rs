@@ -16,7 +16,7 @@ pub struct Permutation {
 }
 
 impl Permutation {
-    /// The permutation of the numbers below a count, with keys from a generator.
+    /// Creates the permutation of the numbers below a count, with keys from a generator.
     pub fn new(count: u64, mut key: impl FnMut() -> u64) -> Self {
         let bits = u64::BITS - count.saturating_sub(1).leading_zeros();
         Permutation {
@@ -26,7 +26,7 @@ impl Permutation {
         }
     }
 
-    /// The image of a number, which must be below the count.
+    /// Returns the image of a number, which must be below the count.
     pub fn at(&self, index: u64) -> u64 {
         let mut place = index;
         loop {
@@ -47,7 +47,7 @@ impl Permutation {
     }
 }
 
-/// The finaliser of SplitMix64: every bit of the result depends on all bits of z.
+/// Applies the finaliser of SplitMix64: every bit of the result depends on all bits of z.
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

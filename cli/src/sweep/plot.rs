@@ -54,7 +54,7 @@ pub fn run(
     failure::write(place, &figure.standalone())
 }
 
-/// Whether a result varies: the end time does not if all members reach it.
+/// Returns whether a result varies: the end time does not if all members reach it.
 fn differ(values: &[f64]) -> bool {
     let mut finite = values.iter().filter(|value| value.is_finite());
     let first = finite.next();

@@ -34,7 +34,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// A column name that occurs twice.
+    /// Returns a column name that occurs twice.
     pub fn twice(&self) -> Option<&str> {
         let own = [INDEX, ERROR].into_iter();
         let asked = self.varied.iter().chain(&self.kept).map(String::as_str);
@@ -63,7 +63,7 @@ impl Columns {
         root.build().map(Arc::new)
     }
 
-    /// The bytes of a file, a pure function of the arguments.
+    /// Returns the bytes of a file, a pure function of the arguments.
     pub fn bytes(
         &self,
         rows: &[Row],
@@ -137,7 +137,7 @@ fn optional<T>(values: impl Iterator<Item = Option<T>>) -> (Vec<i16>, Vec<T>) {
     (levels, present)
 }
 
-/// The first columns of numbers of a file, after that of the index; missing values are NaN.
+/// Returns the first columns of numbers of a file, after that of the index; missing values are NaN.
 pub fn numbers(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, String> {
     let read = || -> Result<Vec<Vec<f64>>, ParquetError> {
         let reader = SerializedFileReader::new(File::open(path)?)?;

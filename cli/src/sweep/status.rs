@@ -51,7 +51,7 @@ pub fn run(path: &Path) -> Result<(), Failure> {
     ))
 }
 
-/// The missing shards, as ranges.
+/// Returns the missing shards, as ranges.
 fn missing(there: &[u64], all: u64) -> Vec<String> {
     let mut ranges = Vec::new();
     let mut next = 0;

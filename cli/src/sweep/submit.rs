@@ -73,7 +73,7 @@ impl Job<'_> {
         }
     }
 
-    /// The shell script of a task.
+    /// Returns the shell script of a task.
     fn script(&self, words: &[OsString]) -> Result<String, Failure> {
         let mut text = String::from("#!/bin/sh\n# One part of a sweep: hamel sweep --submit\nexec");
         for word in words {
@@ -131,7 +131,7 @@ impl Job<'_> {
     }
 }
 
-/// The arguments without the options of the submission.
+/// Returns the arguments without the options of the submission.
 fn of_task(words: &[OsString]) -> Vec<OsString> {
     let mut task = Vec::new();
     let mut words = words.iter();
@@ -152,7 +152,7 @@ fn of_task(words: &[OsString]) -> Vec<OsString> {
     task
 }
 
-/// A word, quoted for the shell.
+/// Returns a word, quoted for the shell.
 fn quote(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }

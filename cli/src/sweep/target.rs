@@ -23,7 +23,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// The keyword before the name, with a space after it.
+    /// Returns the keyword before the name, with a space after it.
     pub fn word(self) -> &'static str {
         match self {
             Part::Parameter => "",
@@ -49,7 +49,7 @@ pub struct Target {
     form: Form,
 }
 
-/// How values are written in a state.
+/// Form of values in a state.
 #[derive(Clone, Debug, PartialEq)]
 enum Form {
     Scalar,
@@ -117,7 +117,7 @@ impl Target {
         )
     }
 
-    /// All targets of a kind.
+    /// Returns all targets of a kind.
     fn all(part: Part, model: &Model, state: &State) -> Vec<Self> {
         let groups = |part: &'static str, groups: &[Group], numbers: &[f64]| -> Vec<Target> {
             let target = |group: &Group| Target {
@@ -156,7 +156,7 @@ impl Target {
         }
     }
 
-    /// Whether both are the same symbol.
+    /// Returns whether both are the same symbol.
     pub fn is(&self, other: &Target) -> bool {
         let key = |target: &'_ Target| (target.part, target.name.clone(), target.of_pose);
         key(self) == key(other)
@@ -186,7 +186,7 @@ impl Target {
         }
     }
 
-    /// The JSON form of values.
+    /// Returns the JSON form of values.
     fn json(&self, numbers: &[f64]) -> Value {
         let list = |numbers: &[f64]| Value::from(numbers.to_vec());
         match &self.form {
@@ -215,7 +215,7 @@ fn vector(numbers: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0))
 }
 
-/// The targets of a coordinate; for a pose, its position and its rotation.
+/// Returns the targets of a coordinate; for a pose, its position and its rotation.
 fn coordinate(coordinate: &Coordinate, x: &[f64]) -> Vec<Target> {
     let (name, at) = (&coordinate.name, coordinate.offset);
     let target = |of_pose, entries, base, form| Target {

@@ -8,8 +8,8 @@ use crate::failure::Failure;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::Generated;
 use hamel_engine::State;
+use hamel_engine::option_text::{Piece, invalid_option};
 use hamel_engine::run::constant;
-use hamel_engine::text::{Piece, refused};
 use serde_json::{Map, Value};
 
 const OPTION: &str = "--vary";
@@ -36,7 +36,7 @@ pub struct Variations {
     members: u64,
 }
 
-/// The parameter that an item varies.
+/// Returns the parameter that an item varies.
 fn parameter<'a>(item: Piece<'a>) -> Option<&'a str> {
     let (left, _) = item.text.split_once('=')?;
     let name = left.split('[').next()?.trim();
@@ -52,7 +52,7 @@ impl Variations {
         seed: u64,
         members: Option<u64>,
     ) -> Result<Self, Failure> {
-        let wrong = |errors: Vec<Diagnostic>| Failure::from(refused(OPTION, text, &errors));
+        let wrong = |errors: Vec<Diagnostic>| Failure::from(invalid_option(OPTION, text, &errors));
         let whole = Piece::of(text).map_err(|error| wrong(vec![error]))?;
         let mut vary = Variations {
             targets: Vec::new(),
@@ -175,12 +175,12 @@ impl Variations {
         Ok(())
     }
 
-    /// Number of members.
+    /// Returns the number of members.
     pub fn members(&self) -> u64 {
         self.members
     }
 
-    /// Names of the varied numbers, as in the option.
+    /// Returns the names of the varied numbers, as in the option.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.column.as_str())
     }
@@ -198,7 +198,7 @@ impl Variations {
             .collect()
     }
 
-    /// The values for a member, in the order of the columns.
+    /// Returns the values for a member, in the order of the columns.
     pub fn values(&self, member: u64) -> Vec<f64> {
         let value = |(index, entry): (usize, &Entry)| {
             let point = match entry.distribution {
@@ -213,7 +213,7 @@ impl Variations {
         self.entries.iter().enumerate().map(value).collect()
     }
 
-    /// The state in JSON with these values, and otherwise the entries of `base`.
+    /// Returns the state in JSON with these values, and otherwise the entries of `base`.
     pub fn state(&self, values: &[f64], base: &Map<String, Value>) -> Value {
         let mut numbers: Vec<Vec<f64>> = self.targets.iter().map(|t| t.base.clone()).collect();
         for (entry, value) in self.entries.iter().zip(values) {
@@ -226,7 +226,7 @@ impl Variations {
         state.into()
     }
 
-    /// The state with nothing varied.
+    /// Returns the state with nothing varied.
     pub fn nominal_state(&self, base: &Map<String, Value>) -> Value {
         let values: Vec<f64> = self
             .entries

@@ -7,9 +7,9 @@ use hamel_codegen::program::Shape;
 use hamel_engine::mechanism::{Instance, Output};
 use hamel_engine::method::Stepper;
 use hamel_engine::names::{self, Time};
-use hamel_engine::run::first;
-use hamel_engine::run::{Observer, Place};
-use hamel_engine::source::added;
+use hamel_engine::run::locate_event;
+use hamel_engine::run::{ObservationPoint, Observer};
+use hamel_engine::source::added_outputs;
 
 /// The kind of an item, without its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl KeptColumns {
     pub fn new(kept: &[KeptItem], generated: &Generated) -> Result<Self, (usize, String)> {
         let (mut items, mut columns, mut timed) = (Vec::new(), Vec::new(), true);
         for (index, (piece, item)) in kept.iter().enumerate() {
-            let name = added::name(index);
+            let name = added_outputs::name(index);
             let of = match item {
                 Item::End => {
                     let coordinates = names::coordinates(&generated.model);
@@ -63,7 +63,7 @@ impl KeptColumns {
         })
     }
 
-    /// The names of the columns.
+    /// Returns the names of the columns.
     pub fn columns(&self) -> &[String] {
         &self.columns
     }
@@ -83,7 +83,7 @@ impl KeptColumns {
         times
     }
 
-    /// Whether an item depends on states within steps.
+    /// Returns whether an item depends on states within steps.
     pub fn looks_within(&self) -> bool {
         self.items
             .iter()
@@ -114,7 +114,7 @@ pub struct MemberObserver<'a> {
 }
 
 impl<'a> MemberObserver<'a> {
-    /// The observer before the run.
+    /// Prepares the observer of a run.
     pub fn new(keeping: &'a KeptColumns, system: &'a Instance, stepper: &'a Stepper) -> Self {
         let known = keeping.items.iter().filter_map(|(kind, name)| {
             let Kind::Quantity(of) = kind else {
@@ -140,13 +140,13 @@ impl<'a> MemberObserver<'a> {
     }
 
     /// Observes a state.
-    pub fn see(&mut self, state: &State<Instance>, place: Place) {
+    pub fn see(&mut self, state: &State<Instance>, place: ObservationPoint) {
         let value = |output: usize, state: &State<Instance>| match self.system.outputs().get(output)
         {
             Some(output) => value(self.system, output, state),
             None => Vec::new(),
         };
-        if place == Place::Sample {
+        if place == ObservationPoint::Sample {
             let asked = self
                 .known
                 .iter_mut()
@@ -189,7 +189,7 @@ impl<'a> MemberObserver<'a> {
                         && !holds(&known.last)
                     {
                         let at = |state: &State<Instance>| holds(&value(known.output, state));
-                        let first = first(self.system, self.stepper, (before, state), &at);
+                        let first = locate_event(self.system, self.stepper, (before, state), &at);
                         known.values = vec![first.t];
                     }
                 }
@@ -202,7 +202,7 @@ impl<'a> MemberObserver<'a> {
         self.last = Some(state.clone());
     }
 
-    /// The kept results of a member that ended in a state.
+    /// Returns the kept results of a member that ended in a state.
     pub fn finish(self, end: &State<Instance>) -> Vec<Option<f64>> {
         let mut row = Vec::with_capacity(self.keeping.columns.len());
         let mut known = self.known.into_iter();
@@ -227,7 +227,7 @@ impl<'a> MemberObserver<'a> {
 }
 
 impl Observer for MemberObserver<'_> {
-    fn look(&mut self, state: &State<Instance>, place: Place) {
+    fn observe(&mut self, state: &State<Instance>, place: ObservationPoint) {
         self.see(state, place);
     }
 }
@@ -236,7 +236,7 @@ fn value(system: &Instance, output: &Output, state: &State<Instance>) -> Vec<f64
     system.output(output, state.t, &state.x, &state.xi).to_vec()
 }
 
-/// The greater or smaller of each entry; NaN is kept.
+/// Returns the greater or smaller of each entry; NaN is kept.
 fn extreme(values: &mut Vec<f64>, now: &[f64], beyond: impl Fn(f64, f64) -> bool) {
     if values.is_empty() {
         values.extend_from_slice(now);

@@ -6,7 +6,7 @@ use super::member::{Row, Sweep};
 use super::shard::Columns;
 use crate::failure::Failure;
 use crate::progress;
-use hamel_engine::Stop;
+use hamel_engine::CancellationToken;
 use std::collections::BTreeMap;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -48,24 +48,24 @@ pub struct SweepResult {
 /// Cancellation of the work.
 pub struct Cancellation<'a> {
     /// Polled by the thread that started the work.
-    asked: &'a Stop,
+    asked: &'a CancellationToken,
     /// Flag that the members check.
     cancelled: Arc<AtomicBool>,
 }
 
 impl<'a> Cancellation<'a> {
-    /// A cancellation by a program's callback.
-    pub fn new(asked: &'a Stop) -> Self {
+    /// Creates a cancellation by a program's callback.
+    pub fn new(asked: &'a CancellationToken) -> Self {
         Cancellation {
             asked,
             cancelled: Arc::default(),
         }
     }
 
-    /// The cancellation as runs of members check it, on any thread.
-    pub fn of_members(&self) -> Stop {
+    /// Returns the cancellation as runs of members check it, on any thread.
+    pub fn of_members(&self) -> CancellationToken {
         let cancelled = Arc::clone(&self.cancelled);
-        Stop(Arc::new(move || cancelled.load(Ordering::Relaxed)))
+        CancellationToken(Arc::new(move || cancelled.load(Ordering::Relaxed)))
     }
 
     fn is_cancelled(&self) -> bool {
@@ -74,7 +74,7 @@ impl<'a> Cancellation<'a> {
 
     /// Waits until the threads finish or the work is cancelled.
     fn wait(&self, queue: &Mutex<Queue>, threads: &[ScopedJoinHandle<'_, ()>]) {
-        let Stop(asked) = self.asked;
+        let CancellationToken(asked) = self.asked;
         while !threads.iter().all(ScopedJoinHandle::is_finished) {
             if asked() {
                 self.cancelled.store(true, Ordering::Relaxed);
@@ -149,7 +149,7 @@ impl Work<'_> {
         }
     }
 
-    /// The next members to run, and their shard.
+    /// Returns the next members to run, and their shard.
     fn next(&self, queue: &mut Queue, threads: usize) -> Option<(u64, std::ops::Range<u64>)> {
         if queue.failure.is_some() {
             return None;

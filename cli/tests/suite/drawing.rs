@@ -1,7 +1,7 @@
 //! Drawn parts are placed as the mechanism's functions compute them.
 
-use hamel_engine::drawing::{Acts, Scene, Vector};
-use hamel_engine::{Grip, Motion, OpenOptions, Quiet, Session, Simulation, Stepping};
+use hamel_engine::drawing::{LineKind, Scene, Vector};
+use hamel_engine::{Grip, OpenOptions, Quiet, RunArrays, Session, Simulation, Stepping};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -136,9 +136,12 @@ fn a_spring_is_as_long_as_its_potential_says() {
     let potential = value(&session, "potential_energy", &x);
     close(35.0 * (length - 0.4) * (length - 0.4), potential[0]);
     let lower = scene.frames.iter().position(|frame| frame.name == "lower");
-    assert_eq!((spring.acts, spring.frames), (Acts::Spring, [None, lower]));
+    assert_eq!(
+        (spring.acts, spring.frames),
+        (LineKind::Spring, [None, lower])
+    );
     let upper = scene.frames.iter().position(|frame| frame.name == "upper");
-    assert_eq!(scene.lines[1].acts, Acts::Damper);
+    assert_eq!(scene.lines[1].acts, LineKind::Damper);
     assert_eq!(scene.lines[1].frames, [upper, None]);
     assert!(scene.frames.iter().all(|frame| frame.attached));
 }
@@ -273,7 +276,7 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
             Grip::Particle(particle) => scene.particles[particle].position,
         };
         let run = session.simulate(&start, &Simulation::new(Stepping::until(0.1)));
-        let run = Motion::of(&run.unwrap_or_else(|error| panic!("{error}")));
+        let run = RunArrays::of(&run.unwrap_or_else(|error| panic!("{error}")));
         let end = &run.x[run.x.len() - start.x.len()..];
         let target = place(&drawn.scene(end));
         let pulled = session.pulled(&start, grip, (target, None));
@@ -316,7 +319,13 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
 
 #[test]
 fn what_has_no_place_is_named() {
-    let missing = |session: &Session| session.drawing().expect("a drawing").missing().to_vec();
+    let missing = |session: &Session| {
+        session
+            .drawing()
+            .expect("a drawing")
+            .unplaced_parts()
+            .to_vec()
+    };
     assert_eq!(
         missing(&session(
             &models().join("../../examples/gallery/furuta.eom")

@@ -356,7 +356,7 @@ fn sessions_refuse_what_needs_masses() {
     let linear = light.linearize(&start, false).map(drop);
     let error = linear.expect_err("no masses").to_string();
     assert!(error.contains("`linearize`"), "{error}");
-    let stepped = light.stepped(&start, "auto").map(drop);
+    let stepped = light.single_stepper(&start, "auto").map(drop);
     let error = stepped.expect_err("no masses").to_string();
     assert!(error.contains("`accel`"), "{error}");
     let evaluated = light.evaluate(&start);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use hamel_book::gallery::{Exhibit, exhibits, for_all};
 use hamel_book::shell::Shell;
-use hamel_engine::{Motion, OpenOptions, Session, Simulation, Stepping, WarningTexts};
+use hamel_engine::{OpenOptions, RunArrays, Session, Simulation, Stepping, WarningTexts};
 
 /// Smallest number of mechanisms.
 const MIN_MECHANISMS: usize = 24;
@@ -78,7 +78,7 @@ fn run(exhibit: &Exhibit) -> Vec<String> {
     let start = session.start();
     let simulation = Simulation::new(Stepping::until(until));
     let motion = match session.simulate(&start, &simulation) {
-        Ok(run) => Motion::of(&run),
+        Ok(run) => RunArrays::of(&run),
         Err(error) => return vec![error.to_string()],
     };
     wrong.extend(motion.failure.as_ref().map(ToString::to_string));
@@ -98,7 +98,7 @@ fn run(exhibit: &Exhibit) -> Vec<String> {
 }
 
 /// Returns the largest change of a quantity, relative to its largest initial entry, or absolute if that is almost zero.
-fn change(motion: &Motion, name: &str) -> Option<f64> {
+fn change(motion: &RunArrays, name: &str) -> Option<f64> {
     if name == "energy" {
         return Some(motion.energy_deviation);
     }

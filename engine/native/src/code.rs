@@ -4,9 +4,9 @@
 //! - The code of a function is made by [`Lowering`] only, from a tape whose steps read nothing that comes after them.
 //!   It reads whole entries of the constants and the five arguments, and writes to the result and to its own stack. The
 //!   parts of a long function are called by it only, with the address of its stack, which has room for all of them. The
-//!   greatest index that it can access in each of the seven slices is known from the tape (`Reach`) before the code is
-//!   made, and every call compares lengths with it. Indices are less than `LARGEST`, so that no offset is too large for
-//!   an instruction.
+//!   greatest index that it can access in each of the seven slices is known from the tape (`AccessLengths`) before the
+//!   code is made, and every call compares lengths with it. Indices are less than `MAX_ENTRIES`, so that no offset is too
+//!   large for an instruction.
 //! - Frames longer than a page touch the pages of the stack in order: a stack overflow ends the process, as in Rust,
 //!   without access to other memory.
 //! - Code reads 64-bit numbers from slices of `f64`, for which any bits are valid.
@@ -19,7 +19,7 @@
 #![allow(unsafe_code)]
 
 use crate::evaluate::apply;
-use crate::lower::{Callee, UNDONE, WELL, callee, signature};
+use crate::lower::{Callee, STATUS_INTERPRET, STATUS_SUCCESS, callee, signature};
 use crate::parts::{Lowering, signature_of_part};
 use crate::target::{Pool, Target};
 use cranelift_codegen::Context;
@@ -46,39 +46,39 @@ type Entry = unsafe extern "C" fn(
 ) -> i32;
 
 /// Functions with more steps, and slices with more entries, get no code.
-const LARGEST: usize = 1 << 26;
+const MAX_ENTRIES: usize = 1 << 26;
 
-/// The outcome of a call.
+/// Outcome of a call of machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum CallOutcome {
     /// The result is written.
-    Well,
+    Success,
     /// A pivot was not positive.
-    At(Cause),
+    Pivot(Cause),
     /// Nothing meaningful is written: the tape has to be evaluated step by step.
-    Undone,
+    Interpret,
 }
 
 /// A compiled function.
 struct Callable {
     entry: Entry,
-    reach: Reach,
+    reach: AccessLengths,
     causes: Vec<Cause>,
 }
 
 /// Lengths of the slices that a function accesses.
 #[derive(Clone, Copy, Debug, Default)]
-struct Reach {
+struct AccessLengths {
     constants: usize,
     out: usize,
     arguments: [usize; 5],
 }
 
-impl Reach {
+impl AccessLengths {
     fn of(tape: &Tape) -> Self {
-        let mut reach = Reach {
+        let mut reach = AccessLengths {
             out: tape.outputs.len(),
-            ..Reach::default()
+            ..AccessLengths::default()
         };
         let read = tape.steps.iter().flat_map(|step| step.operands());
         for operand in read.chain(tape.outputs.iter().copied()) {
@@ -97,9 +97,9 @@ impl Reach {
         reach
     }
 
-    /// The lengths for slices with `lanes` numbers in place of each.
+    /// Scales the lengths to slices with `lanes` numbers in place of each.
     fn of_lanes(self, lanes: usize) -> Self {
-        Reach {
+        AccessLengths {
             constants: lanes * self.constants,
             out: lanes * self.out,
             arguments: self.arguments.map(|place| lanes * place),
@@ -213,7 +213,7 @@ impl Code {
         for (name, address) in calls.iter().filter_map(|&callee| known(callee)) {
             jit.symbol(name, address);
         }
-        let mut making = Making {
+        let mut code_builder = CodeBuilder {
             module: ManuallyDrop::new(JITModule::new(jit)),
             pool: Pool::behind(tapes.kept()),
             context: FunctionBuilderContext::new(),
@@ -223,16 +223,16 @@ impl Code {
         let made: Result<Vec<(FuncId, Vec<Cause>)>, String> = tapes
             .all()
             .enumerate()
-            .map(|(index, tape)| making.function(index, tape))
+            .map(|(index, tape)| code_builder.function(index, tape))
             .collect();
         let made = made.and_then(|made| {
-            let finished = making.module.finalize_definitions();
+            let finished = code_builder.module.finalize_definitions();
             finished.map_err(|error| error.to_string())?;
             Ok(made)
         });
-        let Making {
+        let CodeBuilder {
             module, pool, size, ..
-        } = making;
+        } = code_builder;
         let made = match made {
             Ok(made) => made,
             Err(why) => {
@@ -248,7 +248,7 @@ impl Code {
                 let address = module.get_finalized_function(id);
                 // SAFETY: the function was declared with `signature`, which has these arguments and this result.
                 let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
-                let mut reach = Reach::of(tape);
+                let mut reach = AccessLengths::of(tape);
                 reach.constants = reach.constants.max(pool.start + pool.numbers.len());
                 let reach = reach.of_lanes(target.lanes());
                 Callable {
@@ -271,7 +271,7 @@ impl Code {
         self.size
     }
 
-    /// Calls a function. Returns [`Ended::Undone`] if a slice is shorter than the function accesses.
+    /// Calls a function. Returns [`CallOutcome::Interpret`] if a slice is shorter than the function accesses.
     #[inline]
     pub fn call(
         &self,
@@ -279,14 +279,14 @@ impl Code {
         constants: &[f64],
         arguments: [&[f64]; 5],
         out: &mut [f64],
-    ) -> Ended {
+    ) -> CallOutcome {
         let Some(Callable {
             entry,
             reach,
             causes,
         }) = self.functions.get(function)
         else {
-            return Ended::Undone;
+            return CallOutcome::Interpret;
         };
         let [x, xi, u, xi_dot, p] = arguments;
         // All comparisons at once: a branch for each would take longer than a small function.
@@ -298,7 +298,7 @@ impl Code {
             | (xi_dot.len() < reach.arguments[3])
             | (p.len() < reach.arguments[4]);
         if short {
-            return Ended::Undone;
+            return CallOutcome::Interpret;
         }
         // SAFETY: `entry` is code of `self.module`, which is alive; all seven slices have the entries that it accesses,
         // as just compared, and `out` is borrowed exclusively.
@@ -313,7 +313,7 @@ impl Code {
                 p.as_ptr(),
             )
         };
-        ended(code, causes)
+        outcome(code, causes)
     }
 }
 
@@ -328,7 +328,7 @@ impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed
     /// Returns a function of x, ξ and u; `None` if it accesses more entries than these lengths, or other arguments.
     pub fn new(code: &'a Code, function: usize, constants: &'a [f64]) -> Option<Self> {
         let callable = code.functions.get(function)?;
-        let Reach {
+        let AccessLengths {
             constants: kept,
             out,
             arguments: [x, xi, u, xi_dot, p],
@@ -342,7 +342,13 @@ impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed
 
     /// Calls the function.
     #[inline]
-    pub fn call(&self, x: &[f64; X], xi: &[f64; V], u: &[f64; U], out: &mut [f64; OUT]) -> Ended {
+    pub fn call(
+        &self,
+        x: &[f64; X],
+        xi: &[f64; V],
+        u: &[f64; U],
+        out: &mut [f64; OUT],
+    ) -> CallOutcome {
         let Callable { entry, causes, .. } = self.callable;
         let none = std::ptr::null();
         // SAFETY: the code lives as long as `'a`. Constants, `out`, x, ξ and u have the entries that it accesses, as
@@ -358,26 +364,26 @@ impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed
                 none,
             )
         };
-        ended(code, causes)
+        outcome(code, causes)
     }
 }
 
 /// Converts the status that a function returned.
 #[inline]
-fn ended(code: i32, causes: &[Cause]) -> Ended {
+fn outcome(code: i32, causes: &[Cause]) -> CallOutcome {
     match code {
-        WELL => Ended::Well,
-        UNDONE => Ended::Undone,
+        STATUS_SUCCESS => CallOutcome::Success,
+        STATUS_INTERPRET => CallOutcome::Interpret,
         code => {
             let place = usize::try_from(code - 1).ok();
             let cause = place.and_then(|place| causes.get(place));
-            cause.map_or(Ended::Undone, |&cause| Ended::At(cause))
+            cause.map_or(CallOutcome::Interpret, |&cause| CallOutcome::Pivot(cause))
         }
     }
 }
 
 /// The compiler with its module and buffers.
-struct Making {
+struct CodeBuilder {
     module: ManuallyDrop<JITModule>,
     pool: Pool,
     context: FunctionBuilderContext,
@@ -385,18 +391,18 @@ struct Making {
     target: Target,
 }
 
-impl Making {
+impl CodeBuilder {
     fn function(&mut self, index: usize, tape: &Tape) -> Result<(FuncId, Vec<Cause>), String> {
         if !tape.is_in_order() {
             return Err(format!("`{}` reads what is not there yet", tape.name));
         }
-        let reach = Reach::of(tape);
+        let reach = AccessLengths::of(tape);
         let lists = reach
             .arguments
             .into_iter()
             .chain([reach.out, reach.constants]);
         let largest = lists.chain([tape.values(), self.pool.start]).max();
-        if largest.is_some_and(|largest| largest > LARGEST) {
+        if largest.is_some_and(|largest| largest > MAX_ENTRIES) {
             return Err(format!("`{}` is too long", tape.name));
         }
         let pointer = self.module.target_config().pointer_type();

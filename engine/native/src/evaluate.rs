@@ -1,4 +1,4 @@
-//! Interprets tapes step by step: where there is no machine code, and for the rare arguments that it does not handle.
+//! Interprets tapes step by step: if there is no machine code, and for the rare arguments that it does not handle.
 
 use hamel::Scalar;
 use hamel::trig::{self, Arithmetic};

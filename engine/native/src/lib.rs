@@ -19,7 +19,7 @@
 //! | `lower` | the steps in Cranelift's intermediate code |
 //! | `parts` | a tape as one function or, if it is long, as several called by one more |
 //! | `code` | executable memory and calls into it: everything that is `unsafe` |
-//! | `absent` | the replacement without the feature `machine`: no code can be made |
+//! | `no_code` | the replacement without the feature `machine`: no code can be made |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
 //! | `evaluate` | the interpreter of tapes |
 //! | `traced` | algorithms in Rust as tapes |
@@ -32,13 +32,13 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-#[cfg(not(feature = "machine"))]
-mod absent;
 #[cfg(feature = "machine")]
 mod code;
 mod evaluate;
 #[cfg(feature = "machine")]
 mod lower;
+#[cfg(not(feature = "machine"))]
+mod no_code;
 #[cfg(feature = "machine")]
 mod parts;
 mod repeat;
@@ -53,14 +53,14 @@ pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
 pub use repeat::Paired;
 pub use traced::{Traced, inlined, traced};
 
-#[cfg(not(feature = "machine"))]
-use absent as code;
-#[cfg(not(feature = "machine"))]
-use absent::{Code, Ended, Fixed, Target};
 #[cfg(feature = "machine")]
-use code::{Code, Ended, Fixed};
+use code::{CallOutcome, Code, Fixed};
 use hamel::Scalar;
 use hamel_codegen::program::{Cause, Function, Program};
+#[cfg(not(feature = "machine"))]
+use no_code as code;
+#[cfg(not(feature = "machine"))]
+use no_code::{CallOutcome, Code, Fixed, Target};
 use std::sync::Arc;
 #[cfg(feature = "machine")]
 use target::Target;
@@ -207,9 +207,9 @@ impl Compiled {
     ) -> Result<(), Cause> {
         if let Ok(code) = &self.0.code {
             match code.call(function, &constants.0, arguments, out) {
-                Ended::Well => return Ok(()),
-                Ended::At(cause) => return Err(cause),
-                Ended::Undone => {}
+                CallOutcome::Success => return Ok(()),
+                CallOutcome::Pivot(cause) => return Err(cause),
+                CallOutcome::Interpret => {}
             }
         }
         self.step(function, constants, arguments, out)
@@ -274,9 +274,9 @@ impl<const X: usize, const V: usize, const U: usize, const OUT: usize> Sized<'_,
         out: &mut [f64; OUT],
     ) -> Result<(), Cause> {
         match self.fixed.as_ref().map(|fixed| fixed.call(x, xi, u, out)) {
-            Some(Ended::Well) => Ok(()),
-            Some(Ended::At(cause)) => Err(cause),
-            Some(Ended::Undone) | None => {
+            Some(CallOutcome::Success) => Ok(()),
+            Some(CallOutcome::Pivot(cause)) => Err(cause),
+            Some(CallOutcome::Interpret) | None => {
                 let arguments: [&[f64]; 5] = [x, xi, u, &[], &[]];
                 self.compiled
                     .step(self.function, self.constants, arguments, out)

@@ -17,15 +17,15 @@ use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step};
 use std::collections::HashMap;
 
 /// The bits of infinity.
-const INFINITE: i64 = f64::INFINITY.to_bits().cast_signed();
+const INFINITY_BITS: i64 = f64::INFINITY.to_bits().cast_signed();
 /// The bits of the smallest number that is not subnormal.
-const NORMAL: i64 = f64::MIN_POSITIVE.to_bits().cast_signed();
+const MIN_NORMAL_BITS: i64 = f64::MIN_POSITIVE.to_bits().cast_signed();
 /// Status of a function that succeeded.
-pub const WELL: i32 = 0;
+pub const STATUS_SUCCESS: i32 = 0;
 /// Status if the tape has to be evaluated step by step. Positive numbers denote causes, from 1.
-pub const UNDONE: i32 = -1;
+pub const STATUS_INTERPRET: i32 = -1;
 /// Smaller arguments of `Inverse` are replaced by this one.
-const SHORTEST: f64 = 1e-100;
+const MIN_INVERSE_ARGUMENT: f64 = 1e-100;
 
 /// References to the functions that code calls.
 pub type Callees = HashMap<Callee, FuncRef>;
@@ -72,7 +72,7 @@ pub enum Frame {
 
 /// Writes a function.
 pub struct Writer<'a, 'b> {
-    /// Where instructions go.
+    /// Builder to which instructions are added.
     pub builder: &'a mut FunctionBuilder<'b>,
     /// The numbers that code reads.
     pub pool: &'a mut Pool,
@@ -104,7 +104,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             true => self.ins().vall_true(near),
             false => near,
         };
-        self.end_unless(near, UNDONE);
+        self.end_unless(near, STATUS_INTERPRET);
         let reduced = trig::reduced(self, x);
         let row = self.row(reduced.shifted);
         trig::turned(self, row, reduced)
@@ -312,7 +312,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             }
             Step::Apply(Function::Inverse, _) => {
                 let a = self.signed(a);
-                let (shortest, one) = (self.constant(SHORTEST), self.constant(1.0));
+                let (shortest, one) = (self.constant(MIN_INVERSE_ARGUMENT), self.constant(1.0));
                 let size = self.ins().fabs(a);
                 let by = self.choose((size, FloatCC::LessThan, shortest), shortest, a);
                 self.ins().fdiv(one, by)
@@ -356,10 +356,15 @@ impl<'a, 'b> Writer<'a, 'b> {
                 for pivot in self.alone(pivot) {
                     // Positive, finite and not subnormal, tested by its bits as in generated code.
                     let bits = self.ins().bitcast(types::I64, MemFlags::new(), pivot);
-                    let bits = self.ins().iadd_imm(bits, -NORMAL);
-                    let limit = self.ins().iconst(types::I64, INFINITE - NORMAL);
+                    let bits = self.ins().iadd_imm(bits, -MIN_NORMAL_BITS);
+                    let limit = self
+                        .ins()
+                        .iconst(types::I64, INFINITY_BITS - MIN_NORMAL_BITS);
                     let positive = self.ins().icmp(IntCC::UnsignedLessThan, bits, limit);
-                    self.end_unless(positive, i32::try_from(place + 1).unwrap_or(UNDONE));
+                    self.end_unless(
+                        positive,
+                        i32::try_from(place + 1).unwrap_or(STATUS_INTERPRET),
+                    );
                 }
                 return None;
             }

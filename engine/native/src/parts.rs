@@ -4,7 +4,7 @@
 //! with the length of a function, by a kilobyte and more for each instruction. Values that pass from one part to the
 //! next are in the frame of the caller.
 
-use crate::lower::{Callee, Callees, Frame, WELL, Writer, callee};
+use crate::lower::{Callee, Callees, Frame, STATUS_SUCCESS, Writer, callee};
 use crate::spill::{Action, Home, Id, Plan, plan};
 use crate::target::{Pool, Target};
 use cranelift_codegen::ir::{
@@ -17,9 +17,9 @@ use hamel_codegen::program::tape::{ARGUMENTS, Source, Tape};
 use std::collections::HashMap;
 
 /// Largest number of steps of a function.
-const LONGEST: usize = 10_000;
+const MAX_STEPS_OF_PART: usize = 10_000;
 
-/// The signature of a part: in addition, it takes the address of the frame.
+/// Returns the signature of a part: in addition, it takes the address of the frame.
 pub fn signature_of_part(mut whole: Signature, pointer: Type) -> Signature {
     whole.params.push(AbiParam::new(pointer));
     whole
@@ -55,7 +55,7 @@ impl<'a> Lowering<'a> {
         });
         Lowering {
             firsts: firsts.collect(),
-            plan: plan(tape, LONGEST),
+            plan: plan(tape, MAX_STEPS_OF_PART),
             tape,
             results,
             target,
@@ -196,7 +196,7 @@ fn begin(builder: &mut FunctionBuilder) -> (Vec<Value>, Block) {
 
 /// Writes the successful end of a function here, and the end with a status in its last block.
 fn end(builder: &mut FunctionBuilder, ends: Block) {
-    let well = builder.ins().iconst(types::I32, i64::from(WELL));
+    let well = builder.ins().iconst(types::I32, i64::from(STATUS_SUCCESS));
     builder.ins().return_(&[well]);
     builder.switch_to_block(ends);
     let code = builder.block_params(ends)[0];

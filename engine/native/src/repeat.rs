@@ -1,7 +1,7 @@
 //! Repeated calls of functions whose result is the next (x, ξ), such as a step of a method: for one state, or for two
 //! in the lanes of one code.
 
-use crate::{Code, Compiled, Constants, Ended, Target};
+use crate::{CallOutcome, Code, Compiled, Constants, Target};
 
 impl Compiled {
     /// Calls a function `times` times, or until it fails or its result is not finite. `state` holds x followed by ξ; u
@@ -89,7 +89,7 @@ impl Paired {
         arguments: [&[f64]; 5],
         out: &mut [f64],
     ) -> bool {
-        self.code.call(function, constants, arguments, out) == Ended::Well
+        self.code.call(function, constants, arguments, out) == CallOutcome::Success
     }
 
     /// Like [`Compiled::repeat`] for two states, with constants of [`Paired::constants`]. Both lanes end when one has
@@ -192,7 +192,7 @@ fn are_finite(numbers: &[f64]) -> bool {
 mod tests {
     use super::{are_finite, repeated};
 
-    /// A state that doubles with every step ends before the next one would overflow, or where there is none.
+    /// A state that doubles with every step ends before the next one would overflow, or if there is none.
     #[test]
     fn the_last_state_that_is_a_number_stays() {
         for (start, last) in [(1.0, 1023), (f64::MAX / 4.0, 2), (-f64::MAX, 0)] {

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 /// Registers for values. Two of sixteen remain for temporaries.
 pub const REGISTERS: usize = 14;
 /// Registers that sine and cosine need during their computation.
-const TURNING: usize = 8;
+const SIN_COS_REGISTERS: usize = 8;
 
 /// Index of a value: first the values of the tape, then those read from memory.
 pub type Id = usize;
@@ -182,7 +182,7 @@ impl Planner {
                 }
             }
             match step {
-                Step::SinCos(_) => self.leave(REGISTERS - TURNING, &[]),
+                Step::SinCos(_) => self.leave(REGISTERS - SIN_COS_REGISTERS, &[]),
                 step if is_call(step) => self.leave(0, &[]),
                 _ => {}
             }

@@ -123,7 +123,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 }
 
-/// A kick of h/2, motion without forces, a kick of h/2: order 2. `force` has the meaning of
+/// Takes a step: a kick of h/2, motion without forces, a kick of h/2. Order 2. `force` has the meaning of
 /// [`Method::step_reusing_force`](hamel::Method::step_reusing_force).
 #[inline(always)]
 pub(super) fn strang<Sys, U>(

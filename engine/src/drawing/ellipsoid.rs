@@ -17,8 +17,8 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// The ellipsoid of a mass and an inertia about the centre of mass. If the inertia is not that of a body, a radius
-    /// whose square would be negative is 0.
+    /// Creates the ellipsoid of a mass and an inertia about the centre of mass. If the inertia is not that of a body, a
+    /// radius whose square would be negative is 0.
     pub fn new(mass: f64, inertia: [Vector; 3]) -> Self {
         let matrix = Matrix3::from_fn(|i, j| inertia[i][j]);
         let eigen = SymmetricEigen::new(matrix);
@@ -42,7 +42,7 @@ impl Ellipsoid {
     }
 }
 
-/// The one of two opposite directions whose largest entry is positive.
+/// Returns the one of two opposite directions whose largest entry is positive.
 fn upright(axis: Vector3<f64>) -> Vector3<f64> {
     if axis[axis.iamax()] < 0.0 {
         -axis

@@ -1,4 +1,4 @@
-//! Draws a mechanism: the places of its frames, bodies, joints, springs and loops at each state.
+//! Drawable parts of a mechanism: the places of its frames, bodies, joints, springs and loops at each state.
 //!
 //! The required functions are compiled once, like those of the description; a scene is then a call of this code:
 //!
@@ -21,14 +21,14 @@
 //! ```
 
 mod ellipsoid;
-mod missing;
 mod points;
 mod scene;
+mod unplaced_parts;
 
-pub use scene::{Acts, Body, Frame, Joint, Line, Particle, Scene, Vector};
+pub use scene::{Body, Frame, Joint, Line, LineKind, Particle, Scene, Vector};
 
 use crate::error::Error;
-use crate::mechanism::{Functions, Place, compiled};
+use crate::mechanism::{FunctionIndex, Functions, compile_functions, find_function};
 use ellipsoid::Ellipsoid;
 use hamel_codegen::algebra::transplant::graft;
 use hamel_codegen::generate::Generated;
@@ -47,13 +47,13 @@ const POINTS_FUNCTION: &str = "drawn_points";
 pub struct Drawing {
     compiled: Compiled,
     /// The functions [`BODIES_FUNCTION`] and [`POINTS_FUNCTION`].
-    places: [Place; 2],
+    places: [FunctionIndex; 2],
     frames: Vec<DrawnFrame>,
     /// The frame of each body.
     bodies: Vec<usize>,
     particles: Vec<Option<usize>>,
     joints: Vec<DrawnJoint>,
-    lines: Vec<(Acts, [Option<usize>; 2])>,
+    lines: Vec<(LineKind, [Option<usize>; 2])>,
     rods: usize,
     loops: usize,
     missing: Vec<String>,
@@ -103,9 +103,9 @@ impl Drawing {
         let fixed = function(BODIES_FUNCTION, &[], &points.masses);
         let moving = function(POINTS_FUNCTION, &[Argument::Coordinates], &points.moving);
         program.functions = vec![fixed, moving];
-        let compiled = compiled(&program, &[BODIES_FUNCTION, POINTS_FUNCTION])?;
+        let compiled = compile_functions(&program, &[BODIES_FUNCTION, POINTS_FUNCTION])?;
         let place = |name: &str| {
-            let place = crate::mechanism::place(&compiled, name);
+            let place = find_function(&compiled, name);
             place.ok_or_else(|| Error::NotDrawable {
                 system: program.name.clone(),
             })
@@ -148,17 +148,17 @@ impl Drawing {
             lines: points.lines,
             rods: points.rods,
             loops: model.closures.len(),
-            missing: missing::missing(&generated.model),
+            missing: unplaced_parts::unplaced_parts(&generated.model),
             compiled,
         })
     }
 
-    /// The parts that are not drawn because the description does not place them: a sentence for each.
-    pub fn missing(&self) -> &[String] {
+    /// Returns a sentence for each part that is not drawn because the description does not place it.
+    pub fn unplaced_parts(&self) -> &[String] {
         &self.missing
     }
 
-    /// The drawing for these parameters; a missing parameter makes everything that depends on it NaN.
+    /// Returns the drawing for these parameters; a missing parameter makes everything that depends on it NaN.
     pub fn with_parameters(&self, params: &[f64]) -> ParametrizedDrawing<'_> {
         let functions = Functions::new(&self.compiled, params);
         let values = call(&functions, self.places[0], &[]);
@@ -178,7 +178,7 @@ impl Drawing {
 }
 
 impl ParametrizedDrawing<'_> {
-    /// The scene at x.
+    /// Returns the scene at x.
     pub fn scene(&self, x: &[f64]) -> Scene {
         let of = self.of;
         let values = call(&self.functions, of.places[1], x);
@@ -254,20 +254,20 @@ impl ParametrizedDrawing<'_> {
 }
 
 impl Frame {
-    /// A direction in the frame's axes, in world axes.
+    /// Returns a direction in the frame's axes, in world axes.
     fn direction(&self, a: Vector) -> Vector {
         self.rotation
             .map(|row| row[0] * a[0] + row[1] * a[1] + row[2] * a[2])
     }
 
-    /// A point of the frame, in world coordinates.
+    /// Returns a point of the frame, in world coordinates.
     pub(crate) fn point(&self, at: Vector) -> Vector {
         let arm = self.direction(at);
         std::array::from_fn(|k| self.position[k] + arm[k])
     }
 }
 
-/// The centre of mass of bodies and particles.
+/// Returns the centre of mass of bodies and particles.
 fn centre(bodies: &[Body], particles: &[Particle]) -> Option<Vector> {
     let bodies = bodies.iter().map(|body| (body.mass, body.centre));
     let particles = particles.iter();
@@ -279,7 +279,7 @@ fn centre(bodies: &[Body], particles: &[Particle]) -> Option<Vector> {
 }
 
 /// These functions have no pivots, and are defined wherever the description is.
-fn call(functions: &Functions, place: Place, x: &[f64]) -> Vec<f64> {
+fn call(functions: &Functions, place: FunctionIndex, x: &[f64]) -> Vec<f64> {
     let value = functions.call(place, [x, &[], &[], &[], &[]]);
     value.map_or_else(|_| vec![f64::NAN; place.length()], |value| value.to_vec())
 }

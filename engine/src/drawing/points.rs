@@ -4,7 +4,7 @@
 //! their distance if the rate of its square vanishes. Both tests are exact, since expressions that are equal on X are
 //! one node of the graph.
 
-use super::scene::Acts;
+use super::scene::LineKind;
 use hamel_codegen::algebra::derivation::Derivation;
 use hamel_codegen::algebra::graph::{Edge, Graph};
 use hamel_codegen::algebra::linear::{Vec3, apply_transposed, sub3, zero3};
@@ -24,7 +24,7 @@ pub(super) struct Points {
     /// The frame that each particle is fixed to.
     pub particles: Vec<Option<usize>>,
     /// Kinds of the lines, with the frames to which their ends are fixed.
-    pub lines: Vec<(Acts, [Option<usize>; 2])>,
+    pub lines: Vec<(LineKind, [Option<usize>; 2])>,
     /// Number of rods.
     pub rods: usize,
 }
@@ -81,18 +81,21 @@ impl Points {
     }
 }
 
-/// Springs, dampers and forces between two points.
-fn along(model: &Model) -> impl Iterator<Item = (Acts, Vec3, Vec3)> {
+/// Lists springs, dampers and forces between two points.
+fn along(model: &Model) -> impl Iterator<Item = (LineKind, Vec3, Vec3)> {
     let elements = &model.elements;
     let springs = elements
         .springs
         .iter()
-        .map(|one| (Acts::Spring, &one.along));
+        .map(|one| (LineKind::Spring, &one.along));
     let dampers = elements
         .dampers
         .iter()
-        .map(|one| (Acts::Damper, &one.along));
-    let forces = elements.pushes.iter().map(|one| (Acts::Force, &one.along));
+        .map(|one| (LineKind::Damper, &one.along));
+    let forces = elements
+        .pushes
+        .iter()
+        .map(|one| (LineKind::Force, &one.along));
     let all = springs.chain(dampers).chain(forces);
     all.filter_map(|(acts, along)| match along {
         Along::Line { from, to, .. } => Some((acts, *from, *to)),
@@ -100,7 +103,7 @@ fn along(model: &Model) -> impl Iterator<Item = (Acts, Vec3, Vec3)> {
     })
 }
 
-/// Rods between particles, and from particles to the origin of the world, where no frame holds both ends.
+/// Lists rods between particles, and from particles to the origin of the world, unless a frame holds both ends.
 fn rods(
     model: &Model,
     graph: &mut Graph,
@@ -127,7 +130,7 @@ fn rods(
     rods
 }
 
-/// The first frame that a point is fixed to.
+/// Returns the first frame that a point is fixed to.
 fn carrier(model: &Model, graph: &mut Graph, point: Vec3) -> Option<usize> {
     if is_constant(model, graph, &point) {
         return None;
@@ -139,7 +142,7 @@ fn carrier(model: &Model, graph: &mut Graph, point: Vec3) -> Option<usize> {
     })
 }
 
-/// Whether the entries are constant along every motion.
+/// Returns whether the entries are constant along every motion.
 fn is_constant(model: &Model, graph: &mut Graph, entries: &[Edge]) -> bool {
     let moves = |entry: &Edge| graph.class(entry.node()) & class::CONFIGURATION != 0;
     if !entries.iter().any(moves) {

@@ -29,7 +29,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Whether the scene is empty: a description may consist of energies alone.
+    /// Returns whether the scene is empty: a description may consist of energies alone.
     pub fn is_empty(&self) -> bool {
         let Scene {
             frames,
@@ -105,10 +105,10 @@ pub struct Joint {
     pub axes: Vec<Vector>,
 }
 
-/// Kind of a line.
+/// Kind of element that acts along a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Acts {
+pub enum LineKind {
     /// A spring.
     Spring,
     /// A damper.
@@ -121,7 +121,7 @@ pub enum Acts {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
     /// Kind.
-    pub acts: Acts,
+    pub acts: LineKind,
     /// End points.
     pub points: [Vector; 2],
     /// The frames to which the end points are fixed; absent for the world.

@@ -1,4 +1,4 @@
-//! Numbers of frames: pose, twist, Jacobian, bias acceleration.
+//! Evaluates frames: pose, twist, Jacobian, bias acceleration.
 
 use super::value::{Value, by_name};
 use crate::error::Error;
@@ -9,15 +9,15 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use serde::{Serialize, Serializer};
 
-/// A frame: its name as requested, and in the description.
+/// Name of a frame as requested, and in the description.
 pub type NamedFrame = (String, String);
 
-/// The numbers of frames, each called as it was asked for, by the names of the functions without the frame's name.
+/// Values for frames by their requested names, each by the names of the functions without that of the frame.
 #[derive(Clone, Debug)]
 pub struct Kinematics(pub Vec<(String, Vec<(String, Value)>)>);
 
 impl Kinematics {
-    /// Whether all numbers are finite.
+    /// Returns whether all numbers are finite.
     pub fn is_finite(&self) -> bool {
         let mut all = self.0.iter().flat_map(|(_, values)| values);
         all.all(|(_, value)| value.is_finite())
@@ -34,7 +34,7 @@ impl Serialize for Kinematics {
     }
 }
 
-/// The Jacobians of a frame, in world axes and in the frame's axes.
+/// Returns the Jacobians of a frame, in world axes and in the frame's axes.
 fn both(frame: &str) -> [Jacobian; 2] {
     [false, true].map(|own| Jacobian {
         frame: frame.into(),
@@ -42,15 +42,15 @@ fn both(frame: &str) -> [Jacobian; 2] {
     })
 }
 
-/// The Jacobians of all requested frames.
+/// Returns the Jacobians of all requested frames.
 pub fn requested_jacobians(frames: &[NamedFrame]) -> Vec<Jacobian> {
     frames.iter().flat_map(|(_, frame)| both(frame)).collect()
 }
 
-/// The numbers of frames at a state; nothing where no frame is asked for.
+/// Evaluates frames at a state; `None` without frames.
 ///
 /// # Errors
-/// Where a function of a frame was not derived.
+/// A function of a frame was not derived.
 pub fn kinematics(
     generated: &Generated,
     state: &State,

@@ -66,13 +66,13 @@ impl Geometry {
     }
 }
 
-/// Values of the symbols of the full model; the tables depend on x alone.
+/// Returns the values of the symbols of the full model; the tables depend on x alone.
 fn numbers(model: &Model, state: &State) -> Vec<f64> {
     let still = vec![0.0; model.n()];
     model.numbers(&state.params, &state.x, &still, &state.u, &still)
 }
 
-/// The i-th column of A, as a direction in all symbols.
+/// Returns the i-th column of A, as a direction in all symbols.
 fn direction(model: &Model, a: &[Vec<f64>], i: usize) -> Vec<f64> {
     let mut direction = vec![0.0; 1 + model.defaults.len()];
     direction.extend(a.iter().map(|row| row[i]));
@@ -168,7 +168,7 @@ fn lower(n: usize, gamma: &[f64], mass: &[ValueWithSlopes]) -> Vec<f64> {
     (0..n).map(product).collect()
 }
 
-/// A sum, rounded to 0 if it is within the rounding error of its terms.
+/// Returns a sum, rounded to 0 if it is within the rounding error of its terms.
 fn sum(terms: &[f64]) -> f64 {
     let (sum, size) = terms.iter().fold((0.0, 0.0), |(sum, size), term| {
         (sum + term, size + term.abs())

@@ -1,4 +1,4 @@
-//! The numbers of everything at a state: tables, forces, rates, energies, frames.
+//! Evaluates everything at a state: tables, forces, rates, energies, frames.
 
 mod frames;
 mod geometry;
@@ -19,7 +19,7 @@ use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
 use serde::Serialize;
 
-/// The numbers of everything at a state. What has no value is NaN, or `None` where there is no such thing.
+/// Values of all quantities at a state. A quantity without a value is NaN; one that does not exist is `None`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Evaluation {
     /// Name of the system.
@@ -37,19 +37,19 @@ pub struct Evaluation {
     pub x: Vec<f64>,
     /// ξ, followed by the states of first order.
     pub xi: Vec<f64>,
-    /// Names of the velocities that constraints leave by their joints, where there are any.
+    /// Names of the velocities that constraints leave by their joints, if there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joints: Option<Vec<String>>,
     /// A, by rows.
     #[serde(rename = "A")]
     pub a: Vec<Vec<f64>>,
-    /// γ, `gamma[i][j][k]` that of lower i, j and upper k, where it was asked for.
+    /// γ, `gamma[i][j][k]` that of lower i, j and upper k, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gamma: Option<Cube>,
     /// M, by rows.
     #[serde(rename = "M")]
     pub mass: Option<Vec<Vec<f64>>>,
-    /// Γ, where it was asked for; `Some(None)` without inertia.
+    /// Γ, if requested; `Some(None)` without inertia.
     #[serde(rename = "Gamma", skip_serializing_if = "Option::is_none")]
     pub connection: Option<Option<Cube>>,
     /// Γ ξ ξ.
@@ -71,18 +71,18 @@ pub struct Evaluation {
     /// Outputs by their names.
     #[serde(serialize_with = "value::by_name")]
     pub outputs: Vec<(String, Value)>,
-    /// Forces of constraints and drives, where there are any.
+    /// Forces of constraints and drives, if there are any.
     #[serde(flatten)]
     pub multipliers: Option<Multipliers>,
-    /// Frames that were asked for.
+    /// Requested frames.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinematics: Option<Kinematics>,
-    /// Which of these have no value, and why.
+    /// Messages about the quantities that have no value.
     #[serde(skip)]
     pub missing: Vec<String>,
 }
 
-/// The forces by which constraints on velocities are kept and drives move.
+/// Forces by which constraints on velocities and drives act.
 #[derive(Clone, Debug, Serialize)]
 pub struct Multipliers {
     /// The constraints as they are written, and the velocities whose rates are given.
@@ -94,11 +94,11 @@ pub struct Multipliers {
     pub undetermined: Vec<String>,
 }
 
-/// The numbers of everything at a state and of frames, γ and Γ among them where they are wanted; `shown` is the text that
-/// messages give lines of.
+/// Evaluates all quantities at a state, those of frames included, and γ and Γ if `with_tables`; `shown` is the text
+/// whose line numbers messages give.
 ///
 /// # Errors
-/// Where a function that is needed is missing or has no numbers.
+/// A function is missing or cannot be evaluated.
 pub fn evaluate(
     (generated, shown): (&Generated, &str),
     state: &State,
@@ -162,7 +162,7 @@ pub fn evaluate(
     Ok(evaluation)
 }
 
-/// The values of all outputs.
+/// Evaluates all outputs.
 fn outputs(system: &Instance, state: &State) -> Vec<(String, Value)> {
     let outputs = system.outputs().iter().map(|output| {
         let values = system.output(output, 0.0, &state.x, &state.xi);
@@ -171,7 +171,7 @@ fn outputs(system: &Instance, state: &State) -> Vec<(String, Value)> {
     outputs.collect()
 }
 
-/// λ of constraints on the velocities and forces of drives; none where there are none.
+/// Evaluates λ of constraints on the velocities and forces of drives; `None` without constraints and drives.
 fn multipliers(
     generated: &Generated,
     vector: &dyn Fn(&str) -> Result<Vec<f64>, Error>,
@@ -203,7 +203,7 @@ fn multipliers(
 }
 
 impl Evaluation {
-    /// The names of the numbers that are not finite, in order.
+    /// Returns the names of the numbers that are not finite, in order.
     fn infinite(&self) -> Vec<&'static str> {
         let list = |list: &[f64]| list.iter().all(|number| number.is_finite());
         let rows = |rows: &[Vec<f64>]| rows.iter().all(|row| list(row));

@@ -3,20 +3,20 @@
 use hamel_codegen::program::Shape;
 use serde::{Serialize, Serializer};
 
-/// A value of a shape.
+/// Value of a function.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Returns a constant law.
+    /// A number.
     Number(f64),
-    /// Its entries.
+    /// Entries of a vector.
     Vector(Vec<f64>),
-    /// Number of rows.
+    /// Rows of a matrix.
     Matrix(Vec<Vec<f64>>),
 }
 
 impl Value {
-    /// The value with these entries, matrices by rows; a number without an entry is NaN.
+    /// Shapes entries to a value, matrices by rows; a number without an entry is NaN.
     pub fn new(shape: Shape, entries: &[f64]) -> Self {
         match shape {
             Shape::Scalar => Value::Number(entries.first().copied().unwrap_or(f64::NAN)),
@@ -28,7 +28,7 @@ impl Value {
         }
     }
 
-    /// Whether all entries are finite.
+    /// Returns whether all entries are finite.
     pub fn is_finite(&self) -> bool {
         match self {
             Value::Number(number) => number.is_finite(),

@@ -28,8 +28,8 @@ struct Strategy<'a> {
     most: &'a [usize],
 }
 
-/// Real and imaginary parts, the fastest growing first; `None` if the QR algorithm does not converge. The entries have
-/// to be finite.
+/// Returns real and imaginary parts of the eigenvalues, the fastest growing first; `None` if the QR algorithm does not
+/// converge. The entries have to be finite.
 pub fn eigenvalues(rows: &[Vec<f64>]) -> Option<Vec<(f64, f64)>> {
     let strategy = Strategy {
         thresholds: &DEFLATION_THRESHOLDS,
@@ -53,7 +53,7 @@ fn eigenvalues_by(rows: &[Vec<f64>], strategy: &Strategy) -> Option<Vec<(f64, f6
     Some(values)
 }
 
-/// The classes of states that influence one another, directly or through others.
+/// Returns the classes of states that influence one another, directly or through others.
 fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
     let n = rows.len();
     let mut reaches: Vec<Vec<bool>> = (0..n)
@@ -283,8 +283,8 @@ mod tests {
         assert!(circles > 0);
     }
 
-    /// The knees and elbows of a robot at rest, on which nalgebra's algorithm cycles: pairs of ±λ, whose squares have
-    /// the traces of −M⁻¹ K and of its square.
+    /// The knees and elbows of a robot at rest, on which nalgebra's algorithm cycles: pairs of ±λ, whose
+    /// squares have the traces of −M⁻¹ K and of its square.
     #[test]
     fn what_goes_in_circles_converges_in_other_axes() {
         let springs = [
@@ -318,8 +318,8 @@ mod tests {
         }
     }
 
-    /// An attempt that does not converge is followed by the next one, which yields the right numbers; if none converges
-    /// there are no eigenvalues. One iteration is never enough here.
+    /// An attempt that does not converge is followed by the next one, which yields the right numbers; if none
+    /// converges there are no eigenvalues. One iteration is never enough here.
     #[test]
     fn what_stalls_is_tried_again() {
         let (n, tilt) = (5, 0.3);

@@ -20,7 +20,7 @@ const PIVOT_TOLERANCE: f64 = 1e-8;
 /// to 1.
 const ROW_TOLERANCE: f64 = 1e-6;
 
-/// The independent part of (h, δξ, δz) under constraints.
+/// Independent part of (h, δξ, δz) under constraints.
 pub struct Tangent {
     /// Indices of η, δζ and δz in (h, δξ, δz).
     pub kept: Vec<usize>,
@@ -28,7 +28,7 @@ pub struct Tangent {
     pub lift: Vec<Vec<f64>>,
 }
 
-/// The independent part at a state; `None` if no constraint acts on displacements or is enforced by multipliers.
+/// Finds the independent part at a state; `None` if no constraint acts on displacements or is enforced by multipliers.
 /// `frame` is A(x) by rows, along whose columns displacements are measured.
 pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Option<Tangent> {
     let (full, active) = (&generated.model, &generated.active);
@@ -136,13 +136,13 @@ pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Opti
 }
 
 impl Tangent {
-    /// The independent rows of a matrix, times L.
+    /// Returns the independent rows of a matrix, times L.
     pub fn of_square(&self, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let kept: Vec<Vec<f64>> = self.kept.iter().map(|&row| rows[row].clone()).collect();
         self.of_columns(&kept)
     }
 
-    /// A matrix times L.
+    /// Returns a matrix times L.
     pub fn of_columns(&self, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let entry = |row: &[f64], column: usize| -> f64 {
             let terms = row.iter().zip(&self.lift);
@@ -155,7 +155,7 @@ impl Tangent {
         lifted.collect()
     }
 
-    /// The independent entries of a list.
+    /// Returns the independent entries of a list.
     pub fn of_list<T: Clone>(&self, list: &[T]) -> Vec<T> {
         self.kept.iter().map(|&place| list[place].clone()).collect()
     }
@@ -212,13 +212,13 @@ impl ReducedRows {
         }
     }
 
-    /// The columns without pivots.
+    /// Returns the columns without pivots.
     fn free(&self, n: usize) -> Vec<usize> {
         let pivot = |column: &usize| self.pivots.iter().any(|(_, pivot)| pivot == column);
         (0..n).filter(|column| !pivot(column)).collect()
     }
 
-    /// The matrix that gives the entries of all columns from those of the free ones, by rows.
+    /// Returns the matrix that gives the entries of all columns from those of the free ones, by rows.
     fn lift(&self, n: usize, free: &[usize]) -> Vec<Vec<f64>> {
         let row = |place: usize| -> Vec<f64> {
             match self.pivots.iter().find(|(_, column)| *column == place) {

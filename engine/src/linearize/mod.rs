@@ -1,4 +1,4 @@
-//! The motion near a state, with its eigenvalues.
+//! Linearises the motion at a state, and computes eigenvalues.
 
 mod eigenvalues;
 mod minimal;
@@ -12,7 +12,7 @@ use hamel_codegen::functions::SLOPES;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 
-/// Numbers of a linearisation.
+/// Linearisation at a state.
 #[derive(Clone, Debug)]
 pub struct Linearization {
     /// Name of the system.
@@ -41,8 +41,8 @@ pub struct Linearization {
     pub xi_dot: Vec<f64>,
 }
 
-/// The linearisation at a state, of all displacements and velocities if `full`; `shown` is the text whose line numbers
-/// messages give.
+/// Linearises the motion at a state, in all displacements and velocities if `full`; `shown` is the text whose line
+/// numbers messages give.
 ///
 /// # Errors
 /// If the motion has no value at the state.

@@ -5,7 +5,7 @@ use crate::error::Error;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_native::{Compiled, Constants};
 
-/// Functions compiled together, with their parameters.
+/// Functions that were compiled together, with their parameters.
 #[derive(Clone, Debug)]
 pub struct Functions {
     compiled: Compiled,
@@ -13,7 +13,7 @@ pub struct Functions {
 }
 
 /// Compiles the functions of the program that have these names.
-pub fn compiled(program: &Program, names: &[&str]) -> Result<Compiled, Error> {
+pub fn compile_functions(program: &Program, names: &[&str]) -> Result<Compiled, Error> {
     let all = names.iter().filter_map(|name| program.function(name));
     let all: Vec<&Function> = all.collect();
     Compiled::new(program, &all).map_err(|foreign| Error::ForeignFunction {
@@ -22,31 +22,31 @@ pub fn compiled(program: &Program, names: &[&str]) -> Result<Compiled, Error> {
     })
 }
 
-/// The place of a function, if it was compiled.
-pub fn place(compiled: &Compiled, name: &str) -> Option<Place> {
+/// Finds a function by its name; `None` if it was not compiled.
+pub fn find_function(compiled: &Compiled, name: &str) -> Option<FunctionIndex> {
     let index = compiled.place(name)?;
     let tape = compiled.tapes().functions.get(index)?;
-    Some(Place {
+    Some(FunctionIndex {
         index,
         length: tape.outputs.len(),
     })
 }
 
-/// The place of one compiled function.
+/// Index of a compiled function, with the length of its result.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct FunctionIndex {
     index: usize,
-    /// Number of entries of its result.
+    /// Returns the number of entries of the result.
     length: usize,
 }
 
-impl Place {
-    /// Index among the tapes.
+impl FunctionIndex {
+    /// Returns the index among the tapes.
     pub fn index(self) -> usize {
         self.index
     }
 
-    /// Number of entries of its result.
+    /// Returns the number of entries of the result.
     pub fn length(self) -> usize {
         self.length
     }
@@ -61,7 +61,7 @@ impl Functions {
         }
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     pub fn params(&self) -> &[f64] {
         let known = self.constants.known();
         known
@@ -69,13 +69,14 @@ impl Functions {
             .unwrap_or(known)
     }
 
-    /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
+    /// Returns whether a mass matrix that is constant in time is not positive definite with these parameters.
     pub fn are_singular(&self) -> bool {
         self.compiled.singular(&self.constants).is_some()
     }
 
-    /// The result for x, ξ and z, u, ξ̇ and p, or the cause of a pivot that is not positive.
-    pub fn call(&self, place: Place, arguments: [&[f64]; 5]) -> Result<Numbers, Cause> {
+    /// Evaluates a function for x, ξ and z, u, ξ̇ and p; returns the result, or the cause of a pivot that is not
+    /// positive.
+    pub fn call(&self, place: FunctionIndex, arguments: [&[f64]; 5]) -> Result<Numbers, Cause> {
         let mut out = Numbers::filled(f64::NAN, place.length);
         let constants = &self.constants;
         self.compiled
@@ -83,8 +84,8 @@ impl Functions {
         Ok(out)
     }
 
-    /// The result of a function with one entry; NaN if it has no value.
-    pub fn number(&self, place: Place, arguments: [&[f64]; 5]) -> f64 {
+    /// Evaluates a function with one entry; NaN if it has no value.
+    pub fn number(&self, place: FunctionIndex, arguments: [&[f64]; 5]) -> f64 {
         let mut out = [f64::NAN];
         if place.length == 1 {
             let constants = &self.constants;

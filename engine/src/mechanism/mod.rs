@@ -1,20 +1,20 @@
 //! A described system as the integrators run it, with its functions compiled to machine code.
 
-mod divided;
+mod compiled_stepper;
 mod functions;
-mod momenta;
+mod momentum_functions;
 mod numbers;
+mod sensitivity_stepper;
 mod singular;
-mod steps;
-mod taped;
-mod varied;
-mod whole;
+mod step_code;
+mod tape_system;
+mod zero_divisors;
 
 use crate::error::Error;
 use crate::run::Inputs;
 use crate::state::State;
-use divided::Divisors;
-pub use functions::{Functions, Place, compiled, place};
+pub use compiled_stepper::{CompiledStepper, StepEnergies};
+pub use functions::{FunctionIndex, Functions, compile_functions, find_function};
 use hamel::rotor::Rotor;
 use hamel::{Block, Energies, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
@@ -23,43 +23,43 @@ use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Argument, Cause, Program, Shape};
 use hamel_native::Compiled;
-use momenta::Momenta;
+use momentum_functions::MomentumFunctions;
 pub use numbers::Numbers;
+pub use sensitivity_stepper::{SensitivityStepper, StepWithSensitivities};
 use singular::Failed;
-pub use singular::{SingularState, cause_message, of};
+pub use singular::{SingularState, cause_message, explain_singular_state};
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
-pub use varied::{End, Varied};
-pub use whole::{Glance, Whole};
+use zero_divisors::Divisors;
 
-/// The compiled functions of a description, shared by its runs for all parameters.
+/// Compiled functions of a description, shared by its runs for all parameters.
 pub struct Mechanism {
     compiled: Compiled,
     /// Compiled steps of methods.
-    steps: steps::Steps,
+    steps: step_code::StepCache,
     blocks: Vec<Block>,
     chart: usize,
-    rate: Place,
-    chart_rate: Place,
+    rate: FunctionIndex,
+    chart_rate: FunctionIndex,
     /// `None` if M is not positive definite.
-    accel: Option<Place>,
-    correction: Place,
+    accel: Option<FunctionIndex>,
+    correction: FunctionIndex,
     /// Index in x of the time that the description declares.
     clock: Option<usize>,
     /// Whether the correction restores constraints that no chart satisfies.
     embedded: bool,
-    project_position: Option<Place>,
-    project_velocity: Option<Place>,
-    constraint: Place,
+    project_position: Option<FunctionIndex>,
+    project_velocity: Option<FunctionIndex>,
+    constraint: FunctionIndex,
     /// `None` if nothing has inertia.
-    momentum: Option<Place>,
-    force: Place,
+    momentum: Option<FunctionIndex>,
+    force: FunctionIndex,
     /// `None` if nothing has inertia.
-    kinetic: Option<Place>,
-    potential: Place,
+    kinetic: Option<FunctionIndex>,
+    potential: FunctionIndex,
     outputs: Vec<Output>,
     invariants: Vec<Output>,
-    momenta: Momenta,
+    momenta: MomentumFunctions,
     velocity_labels: Vec<String>,
     /// The message for dependent constraints.
     dependent: String,
@@ -70,7 +70,7 @@ pub struct Mechanism {
     driven: bool,
 }
 
-/// A mechanism with its parameters set; x, ξ and u are [`Numbers`].
+/// Mechanism with its parameters set, as the integrators run it; x, ξ and u are [`Numbers`].
 pub struct Instance {
     of: Arc<Mechanism>,
     functions: Functions,
@@ -89,13 +89,13 @@ pub struct Instance {
     failed: RefCell<Option<Failed>>,
 }
 
-/// An output of the description, or an invariant.
+/// Output or invariant of the description.
 pub struct Output {
     /// Name.
     pub name: String,
     /// Shape.
     pub shape: Shape,
-    function: Place,
+    function: FunctionIndex,
     accelerated: bool,
 }
 
@@ -109,10 +109,11 @@ impl Mechanism {
         let invariants: Vec<&String> = invariants.filter(|name| *name != "energy").collect();
         let outputs: Vec<&String> = model.outputs.iter().map(|(name, _)| name).collect();
         let described = outputs.iter().chain(&invariants).map(|name| name.as_str());
-        let names = SYSTEM.iter().chain(momenta::NAMES).copied();
+        let names = SYSTEM.iter().chain(momentum_functions::NAMES).copied();
         let names: Vec<&str> = names.chain(described).collect();
-        let compiled = compiled(program, &names)?;
-        let function = |name: &str| place(&compiled, name).ok_or_else(|| missing(program, name));
+        let compiled = compile_functions(program, &names)?;
+        let function =
+            |name: &str| find_function(&compiled, name).ok_or_else(|| missing(program, name));
         let output = |name: &&String| {
             let known = program.function(name.as_str());
             Ok(Output {
@@ -127,7 +128,7 @@ impl Mechanism {
             names.iter().map(output).collect()
         };
         Ok(Mechanism {
-            steps: steps::Steps::default(),
+            steps: step_code::StepCache::default(),
             blocks: program.blocks.iter().copied().map(block).collect(),
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,
@@ -145,7 +146,7 @@ impl Mechanism {
             potential: function("potential_energy")?,
             outputs: list(&outputs)?,
             invariants: list(&invariants)?,
-            momenta: Momenta::new(program, &compiled),
+            momenta: MomentumFunctions::new(program, &compiled),
             velocity_labels: singular::velocity_labels(&generated.active, text),
             dependent: singular::dependent_message(&generated.active, text),
             divisors: Divisors::of(generated, text),
@@ -155,20 +156,20 @@ impl Mechanism {
         })
     }
 
-    /// Whether this machine has a fused multiply-add.
+    /// Returns whether this machine has a fused multiply-add.
     pub fn is_fused(&self) -> bool {
         self.compiled.is_fused()
     }
 }
 
 impl Instance {
-    /// Compiles a complete program for the parameters, start and constant inputs of a state; the text of the description
-    /// is for messages.
+    /// Compiles a complete program for the parameters, start and constant inputs of a state; the text of the
+    /// description is for messages.
     pub fn new(generated: &Generated, state: &State, text: &str) -> Result<Self, Error> {
         Instance::of(&Arc::new(Mechanism::new(generated, text)?), state)
     }
 
-    /// A mechanism with the parameters, start and constant inputs of a state.
+    /// Sets the parameters, start and constant inputs of a mechanism to those of a state.
     pub fn of(mechanism: &Arc<Mechanism>, state: &State) -> Result<Self, Error> {
         let functions = Functions::new(&mechanism.compiled, &state.params);
         let divisors = mechanism.divisors.as_ref();
@@ -188,42 +189,42 @@ impl Instance {
         })
     }
 
-    /// Number of evaluations of ξ̇, of kicks or of ṗ.
+    /// Returns the number of evaluations of ξ̇, of kicks or of ṗ so far.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
     }
 
-    /// Names of the entries of ξ in messages.
+    /// Returns the names of the entries of ξ in messages.
     pub fn velocity_labels(&self) -> &[String] {
         &self.of.velocity_labels
     }
 
-    /// The message for dependent constraints.
+    /// Returns the message for dependent constraints.
     pub fn dependent(&self) -> &str {
         &self.of.dependent
     }
 
-    /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
+    /// Returns whether a mass matrix that is constant in time is not positive definite with these parameters.
     pub fn constant_singular(&self) -> bool {
         self.constant_singular
     }
 
-    /// The message about a constraint that was solved by dividing by 0, if any.
+    /// Returns the message about a constraint that was solved by dividing by 0, if any.
     pub fn divided(&self) -> Option<&str> {
         self.divided.as_deref()
     }
 
-    /// Whether there are constraints on the velocities.
+    /// Returns whether there are constraints on the velocities.
     pub fn is_constrained(&self) -> bool {
         self.of.constrained
     }
 
-    /// Whether energy changes by other causes than loads: with the time, or by drives.
+    /// Returns whether energy changes by other causes than loads: with the time, or by drives.
     pub fn is_driven(&self) -> bool {
         self.of.driven
     }
 
-    /// The function that last had no value, if any.
+    /// Returns the function that last had no value, if any.
     pub fn failed(&self) -> Option<Failed> {
         self.failed.borrow().clone()
     }
@@ -233,13 +234,13 @@ impl Instance {
         singular(cause)
     }
 
-    /// The value of a function that is defined everywhere.
-    fn value(&self, function: Place, x: &[f64], xi: &[f64], u: &[f64]) -> Numbers {
+    /// Evaluates a function that is defined everywhere.
+    fn value(&self, function: FunctionIndex, x: &[f64], xi: &[f64], u: &[f64]) -> Numbers {
         let value = self.functions.call(function, [x, xi, u, &[], &[]]);
         value.unwrap_or_else(|_| Numbers::filled(f64::NAN, function.length()))
     }
 
-    fn scalar(&self, function: Place, x: &[f64], xi: &[f64]) -> f64 {
+    fn scalar(&self, function: FunctionIndex, x: &[f64], xi: &[f64]) -> f64 {
         self.functions.number(function, [x, xi, &[], &[], &[]])
     }
 
@@ -251,17 +252,17 @@ impl Instance {
         self.evaluations.set(self.evaluations.get() + 1);
     }
 
-    /// The same instance with varying inputs.
+    /// Replaces the varying inputs.
     pub fn with(self, given: Option<Inputs>) -> Self {
         Instance { given, ..self }
     }
 
-    /// The varying inputs, if any.
+    /// Returns the varying inputs, if any.
     pub fn given(&self) -> Option<&Inputs> {
         self.given.as_ref()
     }
 
-    /// Times at which inputs jump.
+    /// Returns the times at which inputs jump.
     pub fn jumps(&self) -> &[f64] {
         self.given.as_ref().map_or(&[], Inputs::jumps)
     }
@@ -272,7 +273,7 @@ impl Instance {
         self.before.set(next.copied().unwrap_or(f64::INFINITY));
     }
 
-    /// The inputs u.
+    /// Returns the inputs u at a time and state.
     pub fn inputs(&self, t: f64, x: &[f64], xi: &[f64]) -> Numbers {
         let kept = self.inputs.clone();
         let t = match t >= self.before.get() {
@@ -289,7 +290,7 @@ impl Instance {
         }
     }
 
-    /// p = M ξ; NaN if nothing has inertia.
+    /// Returns p = M ξ; NaN if nothing has inertia.
     pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Numbers {
         match self.of.momentum {
             Some(momentum) => self.value(momentum, x, xi, &[]),
@@ -297,28 +298,28 @@ impl Instance {
         }
     }
 
-    /// The power of the loads, f ξ.
+    /// Returns the power of the loads, f ξ.
     pub fn power(&self, t: f64, x: &[f64], xi: &[f64]) -> f64 {
         let force = self.value(self.of.force, x, xi, &self.inputs(t, x, xi));
         force.iter().zip(xi).map(|(f, v)| f * v).sum()
     }
 
-    /// φ(x).
+    /// Returns φ(x).
     pub fn constraint(&self, x: &[f64]) -> Numbers {
         self.value(self.of.constraint, x, &[], &[])
     }
 
-    /// Names of the outputs of the description.
+    /// Returns the outputs of the description.
     pub fn outputs(&self) -> &[Output] {
         &self.of.outputs
     }
 
-    /// The quantities that the description claims to be constant, except the energy.
+    /// Returns the quantities that the description claims to be constant, except the energy.
     pub fn invariants(&self) -> &[Output] {
         &self.of.invariants
     }
 
-    /// The value of an output, matrices by rows; accelerations are those of the forward dynamics, NaN if they do not
+    /// Evaluates an output, matrices by rows; accelerations are those of the forward dynamics, NaN if they do not
     /// exist.
     pub fn output(&self, output: &Output, t: f64, x: &[f64], xi: &[f64]) -> Numbers {
         let u = self.inputs(t, x, xi);
@@ -363,7 +364,7 @@ fn singular(cause: Cause) -> Singular {
     }
 }
 
-/// Compiles one function.
+/// Prepares one function of a program for interpretation.
 pub fn function(program: &Program, name: &str, params: &[f64]) -> Result<Interpreter, Error> {
     match program.function(name) {
         Some(function) => Ok(Interpreter::new(program, function, params)),
@@ -378,7 +379,7 @@ fn missing(program: &Program, name: &str) -> Error {
     }
 }
 
-/// Whether a mass matrix that is constant in time is not positive definite with these parameters.
+/// Returns whether a mass matrix that is constant in time is not positive definite with these parameters.
 pub fn constant_singular(program: &Program, params: &[f64]) -> bool {
     let mut symbols = vec![std::f64::consts::PI];
     symbols.extend_from_slice(params);
@@ -389,7 +390,7 @@ pub fn constant_singular(program: &Program, params: &[f64]) -> bool {
         .any(|&pivot| !(pivot.is_finite() && pivot > 0.0))
 }
 
-/// The largest absolute value of the entries; NaN if there is one.
+/// Returns the largest absolute value of the entries; NaN if one is NaN.
 fn largest(entries: &[f64]) -> f64 {
     let sizes = entries.iter().map(|entry| entry.abs());
     sizes.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })

@@ -3,10 +3,10 @@
 use hamel::Store;
 use std::ops::Deref;
 
-/// Largest length of a list without allocation: the coordinates of a free body or of a robot's arm.
+/// Largest length of a list that needs no allocation: the coordinates of a free body or of a robot's arm.
 const SHORT: usize = 12;
 
-/// A list of numbers.
+/// List of numbers whose length is known at run time.
 #[derive(Clone, Debug)]
 pub enum Numbers {
     /// A length, and an array that begins with the numbers.

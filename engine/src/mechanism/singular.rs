@@ -1,10 +1,10 @@
-//! Explains singular states in terms of the description: finds the velocity without inertia.
+//! Explains singular states in the terms of the description, such as the velocity without inertia.
 
 use super::Instance;
-use super::divided::Divisors;
+use super::zero_divisors::Divisors;
 use crate::error::Error;
 use crate::names;
-use crate::state::solved::shown;
+use crate::state::dependent_velocities::describe_constraint;
 use hamel::{Singular, StepError, System};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
@@ -20,7 +20,7 @@ const MAX_LISTED: usize = 6;
 const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
 const DEPENDENT_CONSTRAINTS: &str = "the constraints on the velocities depend on one another";
 
-/// The function that had no value, with x.
+/// Function that had no value, with x.
 #[derive(Clone, Debug)]
 pub enum Failed {
     /// ξ̇, or the velocities from momenta.
@@ -29,7 +29,7 @@ pub enum Failed {
     Projection,
 }
 
-/// Names of velocities for messages, with the lines on which they are declared.
+/// Returns the names of velocities for messages, with the lines on which they are declared.
 pub fn velocity_labels(model: &Model, text: &str) -> Vec<String> {
     let names = names::velocities(model).into_iter();
     let label = |(place, name): (usize, String)| {
@@ -43,10 +43,10 @@ pub fn velocity_labels(model: &Model, text: &str) -> Vec<String> {
     names.enumerate().map(label).collect()
 }
 
-/// The message for dependent constraints that multipliers enforce.
+/// Composes the message for dependent constraints that multipliers enforce.
 pub fn dependent_message(model: &Model, text: &str) -> String {
     let rows = model.constraints.iter().take(MAX_LISTED);
-    let rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
+    let rows: Vec<String> = rows.map(|row| describe_constraint(row, text)).collect();
     match model.constraints.len() {
         0 => DEPENDENT_CONSTRAINTS.into(),
         count if count > MAX_LISTED => {
@@ -56,7 +56,7 @@ pub fn dependent_message(model: &Model, text: &str) -> String {
     }
 }
 
-/// Why the motion has no value at a state.
+/// Reason why the motion has no value at a state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SingularState {
     /// A constraint was solved by dividing by a factor that is 0: the sentence says which.
@@ -94,8 +94,8 @@ impl fmt::Display for SingularState {
 
 impl std::error::Error for SingularState {}
 
-/// What is wrong with a mass matrix that is not positive definite, by the labels of its rows.
-fn mass_message(mass: &DMatrix<f64>, names: &[String]) -> Option<SingularState> {
+/// Names the velocity at which a mass matrix fails to be positive definite; `None` if it is positive definite.
+fn explain_mass_matrix(mass: &DMatrix<f64>, names: &[String]) -> Option<SingularState> {
     let (place, part) = weakest(mass)?;
     (part <= PIVOT_TOLERANCE).then(|| at_pivot(place, names))
 }
@@ -107,7 +107,7 @@ fn at_pivot(place: usize, names: &[String]) -> SingularState {
     }
 }
 
-/// The message for a pivot of a function that is not positive.
+/// Composes the message for a pivot of a function that is not positive.
 pub fn cause_message(cause: Cause, model: &Model, text: &str) -> String {
     match cause {
         Cause::Velocity(place) => {
@@ -121,13 +121,19 @@ pub fn cause_message(cause: Cause, model: &Model, text: &str) -> String {
     }
 }
 
-/// Why ξ̇ has no value at a state, from the mass matrix there.
+/// Explains from the mass matrix at a state why ξ̇ has no value there.
 fn state_message(mass: &DMatrix<f64>, names: &[String]) -> SingularState {
-    mass_message(mass, names).unwrap_or(SingularState::Configuration)
+    explain_mass_matrix(mass, names).unwrap_or(SingularState::Configuration)
 }
 
-/// Why ξ̇ of a description has no value with parameters and a mass matrix: what was divided by 0 comes first.
-pub fn of(generated: &Generated, params: &[f64], mass: &DMatrix<f64>, text: &str) -> SingularState {
+/// Explains why ξ̇ of a description has no value with these parameters and this mass matrix; a division by 0 comes
+/// first.
+pub fn explain_singular_state(
+    generated: &Generated,
+    params: &[f64],
+    mass: &DMatrix<f64>,
+    text: &str,
+) -> SingularState {
     let divisors = Divisors::of(generated, text);
     let divided = divisors.as_ref().and_then(|all| all.zero(params));
     match divided {
@@ -136,8 +142,8 @@ pub fn of(generated: &Generated, params: &[f64], mass: &DMatrix<f64>, text: &str
     }
 }
 
-/// The first row whose inertia, after elimination of the rows before it, is not positive, or else the row that keeps
-/// the smallest fraction of its inertia; with that fraction.
+/// Finds the first row whose inertia, after elimination of the rows before it, is not positive, or else the row that
+/// keeps the smallest fraction of its inertia; with that fraction.
 fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
     let mut rest = mass.clone();
     let mut weakest: Option<(usize, f64)> = None;
@@ -162,7 +168,7 @@ fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
 }
 
 impl Instance {
-    /// Fails if the mass matrix is constant in time and not positive definite with the parameters.
+    /// Returns an error if the mass matrix is constant in time and not positive definite with the parameters.
     pub fn check_parameters(&self, x: &[f64]) -> Result<(), Error> {
         match self.constant_singular() {
             true => Err(Error::SingularParameters(self.state_message(x))),
@@ -170,7 +176,7 @@ impl Instance {
         }
     }
 
-    /// ξ̇, or the reason why it has no value.
+    /// Evaluates ξ̇, or explains why it has no value.
     pub fn motion(&self, x: &[f64], xi: &[f64], u: &[f64]) -> Result<Vec<f64>, SingularState> {
         match self.forward_dynamics(&x.into(), &xi.into(), &u.into()) {
             Ok(_) if self.constant_singular() => Err(self.state_message(x)),
@@ -179,7 +185,7 @@ impl Instance {
         }
     }
 
-    /// Why ξ̇, a projection or a change to velocities has failed.
+    /// Explains why ξ̇, a projection or a change to velocities has failed.
     pub fn singular_message(&self, cause: Singular) -> SingularState {
         if let Some(divided) = self.divided() {
             return SingularState::ZeroDivisor(divided.to_owned());
@@ -191,7 +197,10 @@ impl Instance {
         match self.failed() {
             Some(Failed::Motion(x)) => {
                 let mass = self.mass(&x);
-                match (mass_message(&mass, self.velocity_labels()), weakest(&mass)) {
+                match (
+                    explain_mass_matrix(&mass, self.velocity_labels()),
+                    weakest(&mass),
+                ) {
                     (Some(why), _) => why,
                     // Without constraints no other pivot can have failed.
                     (None, Some((place, _))) if !self.is_constrained() => {
@@ -205,7 +214,7 @@ impl Instance {
         }
     }
 
-    /// Why a step was not taken.
+    /// Explains why a step was not taken.
     pub fn step_error(&self, error: &StepError) -> Error {
         match error {
             StepError::Singular { cause, time } => Error::SingularStep {
@@ -216,7 +225,7 @@ impl Instance {
         }
     }
 
-    /// Why ξ̇ has no value at a state.
+    /// Explains why ξ̇ has no value at a state.
     pub fn state_message(&self, x: &[f64]) -> SingularState {
         if let Some(divided) = self.divided() {
             return SingularState::ZeroDivisor(divided.to_owned());
@@ -243,14 +252,14 @@ impl Instance {
 
 #[cfg(test)]
 mod tests {
-    use super::mass_message;
+    use super::explain_mass_matrix;
     use nalgebra::DMatrix;
 
     #[test]
     fn the_velocity_without_inertia_is_named() {
         let names = ["`a`", "`w[1]`, line 3", "`w[2]`"].map(String::from);
         let told = |entries: [f64; 9]| {
-            let state = mass_message(&DMatrix::from_row_slice(3, 3, &entries), &names);
+            let state = explain_mass_matrix(&DMatrix::from_row_slice(3, 3, &entries), &names);
             state.map(|state| state.to_string())
         };
         assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);

@@ -1,12 +1,12 @@
 //! Advances a run from its start to its end, in equal steps or in steps chosen by a tolerance.
 
-use super::balance::Balance;
+use super::energy_balance::EnergyBalance;
 use super::events::Events;
+use super::fixed_step_run::FixedStepRun;
 use super::plan::{Plan, Spacing};
 use super::sample::Sample;
-use super::steady::Steady;
-use crate::mechanism::{Glance, Instance, Numbers};
-use crate::method::{Given, Stepper};
+use crate::mechanism::{Instance, Numbers, StepEnergies};
+use crate::method::{InputFunction, Stepper};
 use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::General;
 use hamel::{Clock, State, StepError};
@@ -14,7 +14,7 @@ use std::cell::Cell;
 
 /// Kind of an observed state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum ObservationPoint {
     /// The start, or the end of a step.
     End,
     /// A state within a step, for plots: steps chosen by their error may be few.
@@ -26,19 +26,19 @@ pub enum Place {
 /// Observer of a run.
 pub trait Observer {
     /// Observes a state.
-    fn look(&mut self, state: &State<Instance>, place: Place);
+    fn observe(&mut self, state: &State<Instance>, place: ObservationPoint);
 
-    /// The number of following steps for which a [`glance`](Self::glance) at their ends suffices.
-    fn leisure(&self) -> u64 {
+    /// Returns the number of following steps at whose ends [`observe_energies`](Self::observe_energies) suffices.
+    fn unobserved_steps(&self) -> u64 {
         0
     }
 
     /// Observes the energies and constraints at the end of a step.
-    fn glance(&mut self, _: Glance) {}
+    fn observe_energies(&mut self, _: StepEnergies) {}
 }
 
-impl<F: FnMut(&State<Instance>, Place)> Observer for F {
-    fn look(&mut self, state: &State<Instance>, place: Place) {
+impl<F: FnMut(&State<Instance>, ObservationPoint)> Observer for F {
+    fn observe(&mut self, state: &State<Instance>, place: ObservationPoint) {
         self(state, place);
     }
 }
@@ -57,47 +57,47 @@ fn show<const D: usize>(
     let parts = ((to - from) / spacing).ceil();
     for part in 1..parts as u64 {
         let t = from + (to - from) * (part as f64 / parts);
-        observer.look(&step.at(t), Place::Within);
+        observer.observe(&step.at(t), ObservationPoint::Within);
     }
     for t in samples.within(from, to) {
-        observer.look(&step.at(t), Place::Sample);
+        observer.observe(&step.at(t), ObservationPoint::Sample);
     }
-    observer.look(step.end(), Place::End);
+    observer.observe(step.end(), ObservationPoint::End);
 }
 
 /// Runs from the start to the end, in equal steps or in steps chosen by a tolerance. If `plan.quiet`, only the start,
-/// samples and the ends of stretches of equal steps are shown.
+/// samples and the ends of segments of equal steps are shown.
 pub fn advance(
     system: &Instance,
     plan: &Plan,
     state: &mut State<Instance>,
-    (balance, watched): (&Cell<Balance>, &mut Events),
+    (balance, watched): (&Cell<EnergyBalance>, &mut Events),
     observer: &mut dyn Observer,
 ) -> Result<(), StepError> {
     // In the form for which methods are compiled.
-    let inputs: Given<Instance> = &|t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+    let inputs: InputFunction<Instance> = &|t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
-        let steady = Steady {
+        let run = FixedStepRun {
             system,
             plan,
             state,
             events: Some(watched),
             observer,
         };
-        return steady.alone();
+        return run.run();
     };
-    observer.look(state, Place::End);
+    observer.observe(state, ObservationPoint::End);
     if let Spacing::Times(times) = &plan.spacing
         && times.first() == Some(&state.t)
     {
-        observer.look(state, Place::Sample);
+        observer.observe(state, ObservationPoint::Sample);
     }
     let until = plan.until;
     let spacing = until / plan.points as f64;
     // The run ends when it has lost the motion, or when it is cancelled.
     let followed = |state: &State<Instance>| {
-        if plan.is_given_up() {
+        if plan.is_cancelled() {
             return f64::NAN;
         }
         let here = balance.get().after(system, state);
@@ -117,7 +117,7 @@ pub fn advance(
     // The event that follows the motion is the last.
     let mut events = Vec::with_capacity(gauges.len() + 1);
     for (event, gauge) in watched.list().iter().zip(&gauges) {
-        events.push(event.looked_for(gauge));
+        events.push(event.to_adaptive(gauge));
     }
     events.push(Event::new(&followed).stopping());
     let clock = Clock::new(system, state);

@@ -9,54 +9,54 @@ use std::cell::Cell;
 use std::fmt;
 use std::sync::Arc;
 
-/// Number of bisections of a step that contains an event: more are below rounding.
-const HALVINGS: usize = 60;
+/// Largest number of bisections of a step that contains an event: more are below rounding.
+const MAX_BISECTIONS: usize = 60;
 
-/// A function of t, x and ξ supplied by another program.
-pub type Gauge = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
+/// Function of t, x and ξ, supplied by another program, whose sign changes are events.
+pub type EventFunction = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
 
-/// The watched quantity.
+/// Quantity whose sign changes are events.
 #[derive(Clone)]
-pub enum Watched {
+pub enum EventQuantity {
     /// An expression in names of the description.
     Expression(String),
     /// A function.
-    Function(Arc<Gauge>),
+    Function(Arc<EventFunction>),
 }
 
-/// A sign change to look for.
+/// Event of a run: a sign change of a quantity.
 #[derive(Clone, Debug)]
 pub struct Event {
     /// Name.
     pub name: String,
-    /// Watched quantity.
-    pub of: Watched,
+    /// The watched quantity.
+    pub of: EventQuantity,
     /// Sign changes that count.
     pub direction: Direction,
     /// Whether the run ends there.
     pub terminal: bool,
 }
 
-impl fmt::Debug for Watched {
+impl fmt::Debug for EventQuantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Watched::Expression(text) => write!(f, "Expression({text:?})"),
-            Watched::Function(_) => f.write_str("Function"),
+            EventQuantity::Expression(text) => write!(f, "Expression({text:?})"),
+            EventQuantity::Function(_) => f.write_str("Function"),
         }
     }
 }
 
 impl Event {
-    /// The watched expression, if it is one.
+    /// Returns the expression, unless the quantity is a function.
     pub fn expression(&self) -> Option<&str> {
         match &self.of {
-            Watched::Expression(text) => Some(text),
-            Watched::Function(_) => None,
+            EventQuantity::Expression(text) => Some(text),
+            EventQuantity::Function(_) => None,
         }
     }
 
-    /// The event for runs with steps chosen by a tolerance.
-    pub fn looked_for<'g>(
+    /// Converts the event for runs with steps chosen by a tolerance.
+    pub fn to_adaptive<'g>(
         &self,
         gauge: &'g dyn Fn(&State<Instance>) -> f64,
     ) -> adaptive::Event<'g, Instance> {
@@ -72,7 +72,7 @@ impl Event {
         }
     }
 
-    /// The sign of a counted change from one value to another; leaving a zero is not an event.
+    /// Returns the sign of a change from one value to another if it counts; leaving a zero is not an event.
     fn sign(&self, from: f64, to: f64) -> Option<f64> {
         let rises = from < 0.0 && to >= 0.0 && self.direction != Direction::Falling;
         let falls = from > 0.0 && to <= 0.0 && self.direction != Direction::Rising;
@@ -84,7 +84,7 @@ impl Event {
     }
 }
 
-/// The events of one run, and their occurrences.
+/// Events of one run, and their occurrences.
 #[derive(Default)]
 pub struct Events {
     list: Vec<Event>,
@@ -101,12 +101,12 @@ pub struct Events {
 }
 
 impl Events {
-    /// Events of a system; expressions are outputs of the system, in this order with the names `name(i)`.
+    /// Prepares the events of a system; expressions are outputs of the system, in this order with the names `name(i)`.
     pub fn new(list: Vec<Event>, system: &Instance, name: impl Fn(usize) -> String) -> Self {
         let mut expressions = 0..;
         let outputs = list.iter().map(|event| match event.of {
-            Watched::Function(_) => None,
-            Watched::Expression(_) => {
+            EventQuantity::Function(_) => None,
+            EventQuantity::Expression(_) => {
                 let name = name(expressions.next().unwrap_or(0));
                 let mut all = system.outputs().iter();
                 all.position(|output| output.name == name)
@@ -120,7 +120,7 @@ impl Events {
         }
     }
 
-    /// All events.
+    /// Returns all events.
     pub fn list(&self) -> &[Event] {
         &self.list
     }
@@ -131,11 +131,11 @@ impl Events {
         Some(&event.name)
     }
 
-    /// The value of the quantity that an event watches.
+    /// Evaluates the quantity of an event.
     pub fn value(&self, index: usize, system: &Instance, state: &State<Instance>) -> f64 {
         let output = self.outputs.get(index).copied().flatten();
         let value = match (self.list.get(index).map(|event| &event.of), output) {
-            (Some(Watched::Function(gauge)), _) => gauge(state.t, &state.x, &state.xi),
+            (Some(EventQuantity::Function(gauge)), _) => gauge(state.t, &state.x, &state.xi),
             (_, Some(output)) => {
                 let output = &system.outputs()[output];
                 let value = system.output(output, state.t, &state.x, &state.xi);
@@ -149,7 +149,7 @@ impl Events {
         value
     }
 
-    /// Begins to watch at a state.
+    /// Begins watching at a state.
     ///
     /// # Errors
     /// If an event has no value there.
@@ -181,7 +181,10 @@ impl Events {
                 continue;
             };
             let holds = |state: &State<Instance>| sign * self.value(index, system, state) >= 0.0;
-            found.push((index, first(system, stepper, (&before, state), &holds)));
+            found.push((
+                index,
+                locate_event(system, stepper, (&before, state), &holds),
+            ));
         }
         if self.undefined.get().is_some() {
             return Err(StepError::NonFinite { time: state.t });
@@ -208,9 +211,9 @@ impl Events {
     }
 }
 
-/// The first state between two others at which a condition holds that is false at the former and true at the latter;
-/// found by bisection with steps of the method.
-pub fn first(
+/// Locates, by bisection with steps of the method, the first state between two others at which a condition begins to
+/// hold; it is false at the former and true at the latter.
+pub fn locate_event(
     system: &Instance,
     stepper: &Stepper,
     (from, end): (&State<Instance>, &State<Instance>),
@@ -218,7 +221,7 @@ pub fn first(
 ) -> State<Instance> {
     let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (mut before, mut after) = (from.t, end.clone());
-    for _ in 0..HALVINGS {
+    for _ in 0..MAX_BISECTIONS {
         let middle = before + 0.5 * (after.t - before);
         if middle <= before || middle >= after.t {
             break;

@@ -1,60 +1,60 @@
-//! Runs in time: what is asked for, the plan, the steps, and what is recorded.
+//! Runs in time: options, plan, steps, events and results.
 
 mod advance;
-mod balance;
-mod early;
+mod cancellation;
+mod early_end;
+mod energy_balance;
 mod events;
+mod fixed_step_run;
 mod inputs;
-mod motion;
 mod plan;
 mod record;
 mod recorder;
+mod run_arrays;
 mod sample;
-mod steady;
+mod segment;
 mod stepping;
-mod stop;
-mod stretch;
 
-pub use advance::{Observer, Place, advance};
-pub use balance::Balance;
-pub use early::EarlyEnd;
-pub use events::{Event, Events, Gauge, Watched, first};
+pub use advance::{ObservationPoint, Observer, advance};
+pub use cancellation::CancellationToken;
+pub use early_end::EarlyEnd;
+pub use energy_balance::EnergyBalance;
+pub use events::{Event, EventFunction, EventQuantity, Events, locate_event};
+pub use fixed_step_run::FixedStepRun;
 pub use inputs::{
-    Control, ExpressionProblem, InputOptions, InputProblem, Inputs, Law, SeriesProblem, TimeSeries,
-    UnknownInput, constant,
+    ControlFunction, ControlLaw, ExpressionProblem, InputOptions, InputProblem, Inputs,
+    SeriesProblem, TimeSeries, UnknownInput, constant,
 };
-pub use motion::{Happened, Motion};
 pub use plan::{Every, Plan, SamplingProblem, Spacing};
 pub use record::Run;
+pub use run_arrays::{EventOccurrences, RunArrays};
 pub use sample::Sample;
-pub use steady::Steady;
 pub use stepping::{Stepping, SteppingProblem};
-pub use stop::Stop;
 
 use crate::error::Error;
 use crate::mechanism::Instance;
 use crate::reporter::Reporter;
-use crate::source::added;
+use crate::source::added_outputs;
 use crate::state::State;
 use hamel_codegen::generate::Generated;
 use std::sync::Arc;
 
-/// A run that is asked for.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    /// Its length, the method, and its steps.
+    /// Length, method and steps.
     pub stepping: Stepping,
     /// Times of samples.
     pub samples: Samples,
-    /// What acts from outside.
-    pub drive: Drive,
-    /// What is looked for on the way, and may end the run.
+    /// Inputs.
+    pub inputs: InputSource,
+    /// Events to look for, which may end the run.
     pub events: Vec<Event>,
-    /// Cancellation, if possible.
-    pub stop: Option<Stop>,
+    /// Cancellation token, if the run can be cancelled.
+    pub stop: Option<CancellationToken>,
 }
 
-/// Where the samples of a run are.
+/// Times of the samples of a run.
 #[derive(Clone, Debug)]
 pub enum Samples {
     /// About a thousand, at ends of steps.
@@ -67,43 +67,46 @@ pub enum Samples {
     Of(TimeSeries),
 }
 
-/// What sets the inputs of a run.
+/// Source of the inputs of a run.
 #[derive(Clone, Debug)]
-pub enum Drive {
+pub enum InputSource {
     /// Time series and expressions; without them all inputs keep the values of the state.
     Options(InputOptions),
     /// A function of time and state.
-    Law(Law),
+    ControlLaw(ControlLaw),
 }
 
 impl Simulation {
-    /// A run with the usual samples, whose inputs keep their values.
+    /// Options for a run with the usual samples, whose inputs keep their values.
     pub fn new(stepping: Stepping) -> Self {
         Simulation {
             stepping,
             samples: Samples::Usual,
-            drive: Drive::Options(InputOptions::default()),
+            inputs: InputSource::Options(InputOptions::default()),
             events: Vec::new(),
             stop: None,
         }
     }
 
-    /// What sets the inputs of a run from a state, where they do not keep their values.
+    /// Prepares the inputs of a run from a state; `None` if they keep their values.
     ///
     /// # Errors
-    /// Inputs that cannot be what is asked for.
-    pub(crate) fn inputs(
+    /// The inputs have an error.
+    pub(crate) fn prepare_inputs(
         &self,
         generated: &Generated,
         state: &State,
     ) -> Result<Option<Inputs>, Error> {
-        match &self.drive {
-            Drive::Law(law) => Ok(Some(law.clone().into())),
-            Drive::Options(asked) => Ok(Inputs::new(asked, self.stepping.until, generated, state)?),
+        match &self.inputs {
+            InputSource::ControlLaw(law) => Ok(Some(law.clone().into())),
+            InputSource::Options(asked) => {
+                Ok(Inputs::new(asked, self.stepping.until, generated, state)?)
+            }
         }
     }
 
-    /// Runs a system, which has the numbers of a state and these inputs, and whose outputs are all that events watch.
+    /// Runs a system that has the values of `state` and its inputs set; expressions of events are outputs of the
+    /// system.
     pub(crate) fn run(
         &self,
         generated: &Arc<Generated>,
@@ -126,7 +129,7 @@ impl Simulation {
             Samples::Usual | Samples::Every(_) => {}
         }
         plan.stop = self.stop.clone();
-        let events = Events::new(self.events.clone(), &system, added::name);
+        let events = Events::new(self.events.clone(), &system, added_outputs::name);
         Run::new(generated, system, plan, events, reporter)
     }
 }

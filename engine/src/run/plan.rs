@@ -1,16 +1,16 @@
-//! The plan of a run: the method, its steps, and the samples.
+//! Plan of a run: the method, its steps, and the samples.
 
+use super::cancellation::CancellationToken;
 use super::inputs::Inputs;
-use super::stop::Stop;
 use crate::mechanism::Instance;
-use crate::method::Chosen;
+use crate::method::ChosenMethod;
 use hamel_files::number::short;
 use std::fmt;
 
 /// Default number of samples.
-const SAMPLES: u64 = 1000;
+const DEFAULT_SAMPLES: u64 = 1000;
 /// Number of points of a plot.
-pub const POINTS: u64 = 4000;
+pub const PLOT_POINTS: u64 = 4000;
 
 /// Interval of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +21,11 @@ pub enum Every {
     Time(f64),
 }
 
-/// The plan of a run.
+/// Plan of a run: everything that is decided before it begins.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The method.
-    pub method: Chosen,
+    pub method: ChosenMethod,
     /// Length of the run.
     pub until: f64,
     /// Length of equal steps.
@@ -45,22 +45,22 @@ pub struct Plan {
     /// Whether the ends of steps are not observed.
     pub quiet: bool,
     /// Cancellation of the run, if steps are observed.
-    pub stop: Option<Stop>,
+    pub stop: Option<CancellationToken>,
 }
 
-/// Why samples cannot be at times that are asked for.
+/// Error in the requested samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SamplingProblem {
     /// A time is outside of the run.
     Outside {
-        /// Returns the time.
+        /// The time.
         time: f64,
         /// The length of the run.
         until: f64,
     },
-    /// A time is not behind the one before it.
+    /// A time is not after the one before it.
     Order {
-        /// Returns the time.
+        /// The time.
         time: f64,
         /// The one before it.
         before: f64,
@@ -69,9 +69,9 @@ pub enum SamplingProblem {
     NoTimes,
     /// There are more samples than are kept.
     TooMany {
-        /// How many there would be.
+        /// Requested number.
         samples: f64,
-        /// How many are kept.
+        /// Largest number.
         most: f64,
     },
 }
@@ -111,10 +111,10 @@ pub enum Spacing {
 }
 
 impl Spacing {
-    /// Samples at these times.
+    /// Takes samples at these times of a run of length `until`.
     ///
     /// # Errors
-    /// Where they do not increase, or are outside of a run until this time.
+    /// The times do not increase, or are outside of the run.
     pub fn at(times: Vec<f64>, until: f64) -> Result<Self, SamplingProblem> {
         let outside = times.iter().find(|time| !(0.0..=until).contains(*time));
         let falling = times.windows(2).find(|pair| pair[0] >= pair[1]);
@@ -129,7 +129,7 @@ impl Spacing {
         }
     }
 
-    /// The times of samples in a step.
+    /// Returns the times of samples in a step.
     pub fn within(&self, from: f64, to: f64) -> Vec<f64> {
         match self {
             Spacing::Steps => Vec::new(),
@@ -149,27 +149,29 @@ impl Spacing {
 }
 
 impl Plan {
-    /// Whether the energy of a run is monitored. Without observed steps the work of loads is unknown, and an external
-    /// controller is called only by the method.
-    pub fn watches(&self, system: &Instance) -> bool {
+    /// Returns whether the energy of a run is monitored. Without observed steps the work of loads is unknown, and an
+    /// external controller is called only by the method.
+    pub fn monitors_energy(&self, system: &Instance) -> bool {
         let is_law = system.given().is_some_and(Inputs::is_law);
         self.tolerance.is_some() || !self.quiet && !is_law
     }
 
-    /// Whether the run is cancelled.
-    pub fn is_given_up(&self) -> bool {
-        self.stop.as_ref().is_some_and(|Stop(asked)| asked())
+    /// Returns whether the run is cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        self.stop
+            .as_ref()
+            .is_some_and(|CancellationToken(asked)| asked())
     }
 
-    /// Whether samples are at multiples of a time.
+    /// Returns whether samples are at multiples of a time.
     pub fn has_multiples(&self) -> bool {
         matches!(self.spacing, Spacing::Every(_))
     }
 
-    /// A plan with about a thousand samples, or as many as requested. Equal steps are shortened so that samples fall on
-    /// their ends: for multiples of a time, a whole number of steps leads from one to the next.
+    /// Plans a run with about a thousand samples, or as many as requested. Equal steps are shortened so that samples
+    /// fall on their ends: for multiples of a time, a whole number of steps leads from one to the next.
     pub fn new(
-        method: Chosen,
+        method: ChosenMethod,
         until: f64,
         mut step: f64,
         every: Option<Every>,
@@ -192,7 +194,7 @@ impl Plan {
         let default = match tolerance {
             // The number of steps is not known in advance.
             Some(_) => 1,
-            None => (steps / SAMPLES).max(1),
+            None => (steps / DEFAULT_SAMPLES).max(1),
         };
         Plan {
             method,
@@ -203,7 +205,7 @@ impl Plan {
             chosen: every.is_none(),
             tolerance,
             spacing,
-            points: POINTS,
+            points: PLOT_POINTS,
             quiet: false,
             stop: None,
         }

@@ -1,8 +1,8 @@
-//! Runs the plan and keeps the results.
+//! Finished runs: executes a plan and keeps its results.
 
 use super::advance::advance;
-use super::balance::Balance;
-use super::early::EarlyEnd;
+use super::early_end::EarlyEnd;
+use super::energy_balance::EnergyBalance;
 use super::events::Events;
 use super::plan::{Plan, Spacing};
 use super::recorder::{Recorded, Recorder};
@@ -16,15 +16,15 @@ use hamel_codegen::generate::Generated;
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// A finished run.
+/// Finished run with its samples.
 pub struct Run {
-    /// What was derived of the description.
+    /// The derived equations.
     pub generated: Arc<Generated>,
     /// The system that was run.
     pub system: Instance,
-    /// How it was run.
+    /// The plan by which it was run.
     pub plan: Plan,
-    /// What time is called.
+    /// The column of the time.
     pub time: Time,
     /// Names of the entries of x.
     pub coordinate_names: Vec<String>,
@@ -51,10 +51,10 @@ pub struct Run {
 }
 
 impl Run {
-    /// Integrates; a numerical failure is part of the run. Expressions of events are outputs of the system.
+    /// Integrates by a plan; a numerical failure is part of the run. Expressions of events are outputs of the system.
     ///
     /// # Errors
-    /// A plan by which nothing can be run.
+    /// The plan is invalid.
     pub fn new(
         generated: &Arc<Generated>,
         system: Instance,
@@ -63,7 +63,7 @@ impl Run {
         reporter: &dyn Reporter,
     ) -> Result<Self, Error> {
         let mut state = State::start(&system);
-        let balance = Cell::new(Balance::new(&system, &state));
+        let balance = Cell::new(EnergyBalance::new(&system, &state));
         let mut recorder = Recorder::new(&system, &plan, &balance, reporter);
         let watched = (&balance, &mut events);
         let outcome = advance(&system, &plan, &mut state, watched, &mut recorder);

@@ -1,26 +1,26 @@
 //! Records a run: the requested samples, and monitored values of all states.
 
-use super::advance::{Observer, Place};
-use super::balance::Balance;
-use super::plan::{POINTS, Plan, Spacing};
+use super::advance::{ObservationPoint, Observer};
+use super::energy_balance::EnergyBalance;
+use super::plan::{PLOT_POINTS, Plan, Spacing};
 use super::sample::Sample;
-use crate::mechanism::{Glance, Instance};
+use crate::mechanism::{Instance, StepEnergies};
 use crate::reporter::Reporter;
 use hamel::{Monitor, State};
 use std::cell::Cell;
 
-/// Largest number of samples kept if their number is not requested.
-const MOST: usize = 20_000;
+/// Largest number of samples that are kept unless they are requested.
+const MAX_SAMPLES: usize = 20_000;
 /// Number of steps from which a run shows progress.
-const LONG: u64 = 20_000;
+const MIN_STEPS_FOR_PROGRESS: u64 = 20_000;
 /// Steps between two reports of progress.
-const TICK: u64 = 500;
+const STEPS_PER_REPORT: u64 = 500;
 
-/// Recorder of a run.
+/// Observer that records the samples of a run and monitors its energy.
 pub struct Recorder<'a> {
     system: &'a Instance,
     plan: &'a Plan,
-    balance: &'a Cell<Balance>,
+    balance: &'a Cell<EnergyBalance>,
     recorded: Recorded,
     /// Numbers of steps between samples, and between points of the finer list.
     every: u64,
@@ -32,7 +32,7 @@ pub struct Recorder<'a> {
     watches: bool,
 }
 
-/// The recorded results.
+/// Recorded results of a run.
 pub struct Recorded {
     pub samples: Vec<Sample>,
     pub track: Vec<Sample>,
@@ -42,15 +42,15 @@ pub struct Recorded {
 }
 
 impl<'a> Recorder<'a> {
-    /// A recorder before the run.
+    /// Prepares to record a run.
     pub fn new(
         system: &'a Instance,
         plan: &'a Plan,
-        balance: &'a Cell<Balance>,
+        balance: &'a Cell<EnergyBalance>,
         reporter: &'a dyn Reporter,
     ) -> Self {
         // How many steps a tolerance takes is not known: progress is shown when they are many.
-        let long = plan.tolerance.is_none() && plan.steps >= LONG;
+        let long = plan.tolerance.is_none() && plan.steps >= MIN_STEPS_FOR_PROGRESS;
         Recorder {
             recorded: Recorded {
                 samples: Vec::new(),
@@ -61,18 +61,18 @@ impl<'a> Recorder<'a> {
             every: plan.every,
             stride: match plan.tolerance {
                 Some(_) => 1,
-                None => (plan.steps / POINTS).max(1),
+                None => (plan.steps / PLOT_POINTS).max(1),
             },
             reporter,
             long,
-            watches: plan.watches(system),
+            watches: plan.monitors_energy(system),
             system,
             plan,
             balance,
         }
     }
 
-    /// The results after the run.
+    /// Returns the results after the run.
     pub fn finish(self) -> Recorded {
         self.reporter.end();
         self.recorded
@@ -87,15 +87,15 @@ impl<'a> Recorder<'a> {
 }
 
 impl Observer for Recorder<'_> {
-    fn look(&mut self, state: &State<Instance>, place: Place) {
+    fn observe(&mut self, state: &State<Instance>, place: ObservationPoint) {
         let (system, plan) = (self.system, self.plan);
         match place {
-            Place::Sample => {
+            ObservationPoint::Sample => {
                 self.recorded.samples.push(Sample::of(system, state));
                 return;
             }
-            Place::Within => return self.point(state),
-            Place::End => {}
+            ObservationPoint::Within => return self.point(state),
+            ObservationPoint::End => {}
         }
         self.recorded.monitor.observe(system, state);
         if self.watches {
@@ -117,7 +117,8 @@ impl Observer for Recorder<'_> {
         if steps.is_multiple_of(self.stride) {
             self.point(state);
         }
-        if steps.is_multiple_of(TICK) && (self.long || steps >= LONG) {
+        if steps.is_multiple_of(STEPS_PER_REPORT) && (self.long || steps >= MIN_STEPS_FOR_PROGRESS)
+        {
             let done = match plan.tolerance {
                 Some(_) => (state.t / plan.until * plan.steps as f64) as u64,
                 None => steps,
@@ -127,7 +128,7 @@ impl Observer for Recorder<'_> {
         self.recorded.steps += 1;
     }
 
-    fn leisure(&self) -> u64 {
+    fn unobserved_steps(&self) -> u64 {
         let steps = self.recorded.steps;
         // Zero if this step itself is to be observed.
         let ahead = |every: u64| (every - steps % every) % every;
@@ -135,11 +136,11 @@ impl Observer for Recorder<'_> {
             Spacing::Steps => ahead(self.every),
             Spacing::Every(_) | Spacing::Times(_) => u64::MAX,
         };
-        asked.min(ahead(self.stride)).min(ahead(TICK))
+        asked.min(ahead(self.stride)).min(ahead(STEPS_PER_REPORT))
     }
 
     #[inline]
-    fn glance(&mut self, of: Glance) {
+    fn observe_energies(&mut self, of: StepEnergies) {
         let monitor = &mut self.recorded.monitor;
         monitor.note(of.kinetic, of.potential, of.constraint);
         self.recorded.steps += 1;
@@ -148,7 +149,7 @@ impl Observer for Recorder<'_> {
 
 /// Drops every second sample if there are more than the limit; returns whether it did.
 fn thin(samples: &mut Vec<Sample>) -> bool {
-    if samples.len() < MOST {
+    if samples.len() < MAX_SAMPLES {
         return false;
     }
     let mut place = 0;
@@ -174,8 +175,8 @@ mod tests {
     struct Watchful<'a>(Recorder<'a>);
 
     impl Observer for Watchful<'_> {
-        fn look(&mut self, state: &State<Instance>, place: Place) {
-            self.0.look(state, place);
+        fn observe(&mut self, state: &State<Instance>, place: ObservationPoint) {
+            self.0.observe(state, place);
         }
     }
 
@@ -205,8 +206,8 @@ mod tests {
         (run, bits, system.evaluations() - before, monitored)
     }
 
-    /// The record of a run with unobserved steps is bitwise equal to that of a run observed step by step, even if a
-    /// step has no end.
+    /// The record of a run with unobserved steps is bitwise equal to that of a run observed step by step, even
+    /// if a step has no end.
     #[test]
     fn a_glance_sees_what_a_look_sees() {
         let mut failed = 0;
@@ -243,7 +244,7 @@ mod tests {
                     lambda: None,
                 };
                 let plan = stepping.plan(&generated, &system, None).expect("a plan");
-                let balance = Cell::new(Balance::new(&system, &State::start(&system)));
+                let balance = Cell::new(EnergyBalance::new(&system, &State::start(&system)));
                 let mut all = Vec::new();
                 for glances in [true, false] {
                     let mut state = State::start(&system);

@@ -1,9 +1,9 @@
-//! The state of a run at one time, and derived quantities.
+//! Samples of runs: the state at one time, with derived quantities.
 
 use crate::mechanism::{Instance, Output};
 use hamel::{Energies, State};
 
-/// The state at one time, and derived quantities.
+/// State of a run at one time, with derived quantities.
 #[derive(Clone, Debug)]
 pub struct Sample {
     /// The time since the start of the run.
@@ -18,12 +18,12 @@ pub struct Sample {
     pub invariants: Vec<f64>,
     /// M ξ.
     pub momentum: Vec<f64>,
-    /// Returns T + V.
+    /// T + V.
     pub energy: f64,
 }
 
 impl Sample {
-    /// The sample of a state.
+    /// Evaluates the sample of a state.
     pub fn of(system: &Instance, state: &State<Instance>) -> Self {
         let (x, xi) = (&state.x, &state.xi);
         let values = |list: &[Output]| -> Vec<f64> {

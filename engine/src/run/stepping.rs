@@ -3,23 +3,23 @@
 use super::plan::{Every, Plan, SamplingProblem};
 use crate::error::Error;
 use crate::mechanism::Instance;
-use crate::method::{AUTO, Chosen, Stepper};
+use crate::method::{AUTO, ChosenMethod, Stepper};
 use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 use std::fmt;
 
-/// Default of --step, adjusted so that a run takes a number of steps between these limits.
-const STEP: f64 = 1e-3;
-const FEWEST: f64 = 1e3;
-const MOST: f64 = 1e6;
+/// Default of --step (s), adjusted so that a run takes a number of steps between the following limits.
+const DEFAULT_STEP: f64 = 1e-3;
+const MIN_DEFAULT_STEPS: f64 = 1e3;
+const MAX_DEFAULT_STEPS: f64 = 1e6;
 /// Largest number of samples: more would be a mistake, and fill the memory.
-const SAMPLES: f64 = 1e8;
+const MAX_SAMPLES: f64 = 1e8;
 /// Default of --lambda.
-const LAMBDA: f64 = 10.0;
+const DEFAULT_LAMBDA: f64 = 10.0;
 /// Tolerance if `auto` takes a method that chooses its steps.
-const TOLERANCE: f64 = 1e-9;
+const AUTO_TOLERANCE: f64 = 1e-9;
 /// Choice of `auto` if a tolerance is given and the best method has equal steps.
-const BY_TOLERANCE: &str = "rkmk8";
+const AUTO_METHOD_BY_TOLERANCE: &str = "rkmk8";
 
 /// Length, method and steps of a run.
 #[derive(Clone, Debug)]
@@ -28,7 +28,8 @@ pub struct Stepping {
     pub until: f64,
     /// Length of a step; by default 0.001, adjusted so that a run takes 10³ to 10⁶ steps.
     pub step: Option<f64>,
-    /// The name of the method; `auto` takes what fits the system, one that chooses its steps where a tolerance is given.
+    /// The name of the method; `auto` takes what fits the system, one that chooses its steps where a tolerance is
+    /// given.
     pub method: String,
     /// Permitted error per step, for methods that choose their steps.
     pub tol: Option<f64>,
@@ -36,16 +37,16 @@ pub struct Stepping {
     pub lambda: Option<f64>,
 }
 
-/// Why a run cannot be stepped as it is asked for.
+/// Error in length, method and steps of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SteppingProblem {
-    /// A length or a tolerance is no number greater than zero.
+    /// A length or a tolerance is not a number greater than zero.
     NotPositive(&'static str),
     /// The run is too short to be divided into steps.
     TooShort,
     /// Both a step and a tolerance are given.
     StepAndTolerance,
-    /// The rate at which `rk4` leads back is no number, zero or greater.
+    /// The rate at which `rk4` leads back is not a number, zero or greater.
     Rate,
     /// The rate at which `rk4` leads back is given for another method.
     RateWithoutRk4,
@@ -87,7 +88,7 @@ impl fmt::Display for SteppingProblem {
 impl std::error::Error for SteppingProblem {}
 
 impl Stepping {
-    /// A run of a length, by the method that fits, in steps of the usual length.
+    /// Options for a run of this length, by the method that fits the system, in steps of the usual length.
     pub fn until(until: f64) -> Self {
         Stepping {
             until,
@@ -98,7 +99,7 @@ impl Stepping {
         }
     }
 
-    /// Checks what can be said before anything is derived.
+    /// Checks everything that does not depend on the system.
     pub fn check(&self) -> Result<(), SteppingProblem> {
         let lengths = [
             ("the length of a run", Some(self.until)),
@@ -126,23 +127,26 @@ impl Stepping {
         }
     }
 
-    /// The plan of a run of a system, with the requested or the best method.
+    /// Plans a run of a system, with the requested or the best method.
     pub fn plan(
         &self,
         generated: &Generated,
         system: &Instance,
         every: Option<Every>,
     ) -> Result<Plan, Error> {
-        let step = self
-            .step
-            .unwrap_or_else(|| STEP.clamp(self.until / MOST, self.until / FEWEST));
+        let step = self.step.unwrap_or_else(|| {
+            DEFAULT_STEP.clamp(
+                self.until / MAX_DEFAULT_STEPS,
+                self.until / MIN_DEFAULT_STEPS,
+            )
+        });
         let samples = match every {
             Some(Every::Time(time)) => self.until / time,
             Some(Every::Steps(steps)) => self.until / step / steps as f64,
             None => 0.0,
         };
-        if samples > SAMPLES {
-            let most = SAMPLES;
+        if samples > MAX_SAMPLES {
+            let most = MAX_SAMPLES;
             return Err(SamplingProblem::TooMany { samples, most }.into());
         }
         let steps = (self.until / step).ceil() as u64;
@@ -151,44 +155,44 @@ impl Stepping {
         Ok(Plan::new(method, self.until, step, every, tolerance))
     }
 
-    /// The requested or the best method, checked against the structure of the system.
+    /// Returns the requested or the best method, checked against the structure of the system.
     fn chosen(
         &self,
         generated: &Generated,
         system: &Instance,
         steps: u64,
-    ) -> Result<Chosen, Error> {
+    ) -> Result<ChosenMethod, Error> {
         let structure = match self.method == AUTO {
             true => system.cautious(&generated.program),
             false => system.structure(&generated.program),
         };
-        let mut chosen = Chosen::new(&self.method, system, &structure, steps)?;
+        let mut chosen = ChosenMethod::new(&self.method, system, &structure, steps)?;
         if self.method == AUTO && self.tol.is_some() && !adapts(&chosen) {
-            chosen = Chosen::new(BY_TOLERANCE, system, &structure, steps)?;
+            chosen = ChosenMethod::new(AUTO_METHOD_BY_TOLERANCE, system, &structure, steps)?;
             chosen.reason = Some("a tolerance was given");
         }
         if let Stepper::General(General::Rk4 { lambda }) = &mut chosen.stepper {
-            *lambda = self.lambda.unwrap_or(LAMBDA);
+            *lambda = self.lambda.unwrap_or(DEFAULT_LAMBDA);
         }
         Ok(chosen)
     }
 
-    /// The tolerance of a run that chooses its steps; `None` for equal steps.
-    fn tolerance(&self, chosen: &Chosen) -> Result<Option<f64>, SteppingProblem> {
+    /// Returns the tolerance of a run that chooses its steps; `None` for equal steps.
+    fn tolerance(&self, chosen: &ChosenMethod) -> Result<Option<f64>, SteppingProblem> {
         match self.tol {
             Some(_) if !adapts(chosen) => Err(SteppingProblem::Tolerance {
                 method: chosen.name,
             }),
             None if adapts(chosen) && chosen.reason.is_some() && self.step.is_none() => {
-                Ok(Some(TOLERANCE))
+                Ok(Some(AUTO_TOLERANCE))
             }
             tol => Ok(tol),
         }
     }
 }
 
-/// Whether a method can choose its steps.
-fn adapts(chosen: &Chosen) -> bool {
+/// Returns whether a method can choose its steps.
+fn adapts(chosen: &ChosenMethod) -> bool {
     matches!(
         chosen.stepper,
         Stepper::General(General::Rkmk54 | General::Rkmk8)

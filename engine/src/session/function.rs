@@ -1,4 +1,4 @@
-//! A single function of a description, compiled to machine code.
+//! Single functions of a description, compiled to machine code.
 
 use crate::error::Error;
 use crate::mechanism;
@@ -9,9 +9,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 /// Number of states whose evaluation takes about as long as compiling code for two states at once.
-const MANY: u64 = 1 << 15;
+const MIN_STATES_TO_PAIR: u64 = 1 << 15;
 
-/// A function of the description, compiled to machine code.
+/// Function of the description, compiled to machine code.
 #[derive(Clone, Debug)]
 pub struct Function {
     /// Name.
@@ -23,18 +23,18 @@ pub struct Function {
     /// Shape of the result.
     pub shape: Shape,
     compiled: Compiled,
-    lanes: Arc<Lanes>,
+    lanes: Arc<PairedCode>,
 }
 
 /// Code for two states at once, and the number of states requested before it existed.
 #[derive(Debug, Default)]
-struct Lanes {
+struct PairedCode {
     states: AtomicU64,
     code: OnceLock<Option<Paired>>,
 }
 
 impl Function {
-    /// Number of entries of an argument.
+    /// Returns the number of entries of an argument.
     pub fn length(&self, argument: Argument) -> usize {
         let all = hamel_native::ARGUMENTS.iter();
         let lengths = all.zip(self.compiled.tapes().lengths);
@@ -44,10 +44,10 @@ impl Function {
             .sum()
     }
 
-    /// The parameters, with all values that depend on them alone.
+    /// Computes all values that depend on parameters alone.
     ///
     /// # Errors
-    /// If M is constant, and not positive definite with these parameters.
+    /// M is constant, and not positive definite with these parameters.
     pub fn constants(&self, params: &[f64]) -> Result<Constants, Cause> {
         let constants = self.compiled.constants(params);
         match self.compiled.singular(&constants) {
@@ -56,7 +56,7 @@ impl Function {
         }
     }
 
-    /// The result for x, ξ and z, u, ξ̇ and p; only the arguments of the function are read.
+    /// Evaluates the function for x, ξ and z, u, ξ̇ and p; only the arguments of the function are read.
     ///
     /// # Errors
     /// The cause of a pivot that is not positive.
@@ -69,8 +69,8 @@ impl Function {
         self.compiled.call(0, constants, arguments, out)
     }
 
-    /// The results for two states at once: all lists contain pairs, constants are those of [`Paired::constants`].
-    /// Returns whether both exist; otherwise `out` is unspecified.
+    /// Evaluates the function at two states at once: all lists contain pairs, constants are those of
+    /// [`Paired::constants`]. Returns whether both exist; otherwise `out` is unspecified.
     pub fn both(
         &self,
         paired: &Paired,
@@ -81,11 +81,12 @@ impl Function {
         paired.call(0, constants, arguments, out)
     }
 
-    /// Code for two states at once, if this many more states are worth it and the machine supports it.
+    /// Returns code for two states at once, if this many more states are worth compiling it and the machine supports
+    /// it.
     pub fn paired(&self, states: u64) -> Option<&Paired> {
         if self.lanes.code.get().is_none() {
             let before = self.lanes.states.fetch_add(states, Ordering::Relaxed);
-            if before.saturating_add(states) < MANY {
+            if before.saturating_add(states) < MIN_STATES_TO_PAIR {
                 return None;
             }
         }
@@ -95,7 +96,7 @@ impl Function {
 }
 
 /// Compiles a function of a program by its name.
-pub(super) fn compiled(generated: &Generated, name: &str) -> Result<Function, Error> {
+pub(super) fn compile(generated: &Generated, name: &str) -> Result<Function, Error> {
     let program = &generated.program;
     let Some(function) = program.function(name) else {
         return Err(Error::UnavailableFunction {
@@ -103,7 +104,7 @@ pub(super) fn compiled(generated: &Generated, name: &str) -> Result<Function, Er
             name: name.into(),
         });
     };
-    let compiled = mechanism::compiled(program, &[name])?;
+    let compiled = mechanism::compile_functions(program, &[name])?;
     Ok(Function {
         name: function.name.clone(),
         docs: function.docs.join("\n"),

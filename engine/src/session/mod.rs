@@ -1,7 +1,7 @@
-//! The commands for use by other programs: a description as an object, with numbers instead of text.
+//! A description with everything that can be asked of it, as numbers: the interface for front ends and other programs.
 
+mod event_systems;
 mod function;
-mod observed;
 mod pull;
 
 pub use function::Function;
@@ -11,14 +11,15 @@ use crate::drawing::Drawing;
 use crate::error::Error;
 use crate::evaluate::{Evaluation, evaluate};
 use crate::linearize::{Linearization, linearize};
-use crate::mechanism::{self, Instance, Mechanism, Varied};
-use crate::method::{self, AUTO, Chosen, Stepper};
+use crate::mechanism::{self, Instance, Mechanism, SensitivityStepper};
+use crate::method::{self, AUTO, ChosenMethod, Stepper};
 use crate::names;
 use crate::reporter::Reporter;
 use crate::run::{Run, Simulation};
 use crate::source::{OpenOptions, Source};
 use crate::state::{File, State, joints};
-use function::compiled;
+use event_systems::EventSystemCache;
+use function::compile;
 use hamel::methods::General;
 use hamel::step;
 use hamel_codegen::derive::regressor::regressor;
@@ -31,12 +32,11 @@ use hamel_codegen::syntax::ast::CoordKind;
 use hamel_codegen::syntax::suggest::closest;
 use hamel_codegen::tables::regressor::BaseParameters;
 use hamel_codegen::tables::{Table, Tables};
-use observed::AllObserved;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// A derived description with its compiled functions.
+/// Derived description with its compiled functions.
 pub struct Session {
     source: Source,
     generated: Arc<Generated>,
@@ -44,10 +44,10 @@ pub struct Session {
     linearized: OnceLock<Generated>,
     mechanism: OnceLock<Arc<Mechanism>>,
     /// Steps with derivatives, for the last requested parameters.
-    varied: Mutex<Option<Arc<Varied>>>,
+    varied: Mutex<Option<Arc<SensitivityStepper>>>,
     functions: Mutex<BTreeMap<String, Function>>,
     /// Systems extended by the expressions of recent events.
-    observed: AllObserved,
+    observed: EventSystemCache,
     drawing: OnceLock<Drawing>,
 }
 
@@ -60,17 +60,17 @@ pub struct Names {
     pub groups: Vec<(String, usize, usize)>,
 }
 
-/// A method with a system, for single steps.
-pub struct Stepped {
+/// Method with a system, for single steps.
+pub struct SingleStepper {
     instance: Instance,
     stepper: Stepper,
 }
 
-impl Stepped {
+impl SingleStepper {
     /// Replaces x and ξ by their values after a step of length h.
     ///
     /// # Errors
-    /// Why there is no such step.
+    /// The step fails.
     pub fn step(&self, x: &mut [f64], xi: &mut [f64], u: &[f64], h: f64) -> Result<(), Error> {
         let mut state = hamel::State::<Instance> {
             t: 0.0,
@@ -88,10 +88,10 @@ impl Stepped {
 }
 
 impl Session {
-    /// A description or a robot in URDF from a file.
+    /// Opens the file of a description, or of a robot in URDF.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The text cannot be read, or has errors.
     pub fn open(
         path: &Path,
         options: &OpenOptions,
@@ -100,10 +100,10 @@ impl Session {
         Session::of(Source::open(path, options, reporter)?)
     }
 
-    /// A description or a robot in URDF from its text, which messages call `name`.
+    /// Reads the text of a description, or of a robot in URDF, which messages call `name`.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The text cannot be read, or has errors.
     pub fn read(
         text: String,
         name: &str,
@@ -113,31 +113,31 @@ impl Session {
         Session::of(Source::new(name.into(), text, reporter).given(options)?)
     }
 
-    /// All functions of a description that exist: those with M⁻¹ in them are left out, with a warning, where M is not
-    /// positive definite.
+    /// Derives all functions of a description that exist: those that contain M⁻¹ are left out, with a warning, if M is
+    /// not positive definite.
     ///
     /// # Errors
-    /// What is wrong with the description.
+    /// The description has errors.
     pub fn of(source: Source) -> Result<Self, Error> {
         let source = source.in_numbers();
         let generated = source.derive_available(&[])?;
         Ok(Session::derived(source, generated))
     }
 
-    /// All functions of a description.
+    /// Derives all functions of a description.
     ///
     /// # Errors
-    /// What is wrong with the description, or why it lacks a function.
+    /// The description has errors, or lacks a function.
     pub fn complete(source: Source) -> Result<Self, Error> {
         let source = source.in_numbers();
         let generated = source.derive_all()?;
         Ok(Session::derived(source, generated))
     }
 
-    /// The places of a description, for pictures: nothing can be run.
+    /// Derives only positions and poses, for pictures: nothing can be run.
     ///
     /// # Errors
-    /// What is wrong with the description.
+    /// The description has errors.
     pub fn of_places(source: Source) -> Result<Self, Error> {
         let source = source.in_numbers();
         let generated = source.derive_places()?;
@@ -152,27 +152,27 @@ impl Session {
             mechanism: OnceLock::new(),
             varied: Mutex::default(),
             functions: Mutex::default(),
-            observed: AllObserved::default(),
+            observed: EventSystemCache::default(),
             drawing: OnceLock::new(),
         }
     }
 
-    /// The description.
+    /// Returns the description.
     pub fn source(&self) -> &Source {
         &self.source
     }
 
-    /// What was derived of it.
+    /// Returns the derived equations.
     pub fn generated(&self) -> &Generated {
         &self.generated
     }
 
-    /// The name of the system.
+    /// Returns the name of the system.
     pub fn name(&self) -> &str {
         &self.generated.model.name
     }
 
-    /// The text of the description; for a robot, that of the importer.
+    /// Returns the text of the description; for a robot, that of the importer.
     pub fn text(&self) -> &str {
         &self.source.text
     }
@@ -181,7 +181,7 @@ impl Session {
         &self.generated.active
     }
 
-    /// Names of the entries of x.
+    /// Returns the names of the entries of x.
     pub fn coordinates(&self) -> Names {
         let coordinates = &self.generated.model.coordinates;
         let groups = coordinates.iter().map(|coordinate| {
@@ -194,7 +194,7 @@ impl Session {
         }
     }
 
-    /// Names of the entries of ξ, followed by those of the states of first order.
+    /// Returns the names of the entries of ξ, followed by those of the states of first order.
     pub fn velocities(&self) -> Names {
         Names {
             entries: names::moving(self.active()),
@@ -202,7 +202,7 @@ impl Session {
         }
     }
 
-    /// Names of the entries of u.
+    /// Returns the names of the entries of u.
     pub fn inputs(&self) -> Names {
         let inputs = &self.active().inputs;
         Names {
@@ -211,7 +211,7 @@ impl Session {
         }
     }
 
-    /// Names of the parameters.
+    /// Returns the names of the parameters.
     pub fn parameters(&self) -> Names {
         let params = &self.generated.program.params;
         Names {
@@ -220,7 +220,7 @@ impl Session {
         }
     }
 
-    /// Joints, each with the index of its first velocity in ξ and the number of its velocities.
+    /// Returns the joints, each with the index of its first velocity in ξ and the number of its velocities.
     pub fn joints(&self) -> Vec<(String, usize, usize)> {
         let joints = joints(self.active(), self.source.joints()).into_iter();
         joints
@@ -228,28 +228,28 @@ impl Session {
             .collect()
     }
 
-    /// Names of the frames of the description.
+    /// Returns the names of the frames of the description.
     pub fn frames(&self) -> Vec<String> {
         let frames = self.active().frames.iter();
         frames.map(|frame| frame.name.clone()).collect()
     }
 
-    /// Names of the outputs of the description.
+    /// Returns the names of the outputs of the description.
     pub fn outputs(&self) -> Vec<String> {
         let outputs = self.active().outputs.iter();
         outputs.map(|(name, _)| name.clone()).collect()
     }
 
-    /// Default parameters, start and zero inputs.
+    /// Returns the start, with default parameters and zero inputs.
     pub fn start(&self) -> State {
         State::start(self.active())
     }
 
-    /// The start with these parameters, changed by a JSON text, which messages call `name`; see `hamel eval --help` for
-    /// its form.
+    /// Returns the start with these parameters, changed by a JSON text, which messages call `name`; see `hamel eval
+    /// --help` for its form.
     ///
     /// # Errors
-    /// All that is wrong with it.
+    /// All errors in the text.
     pub fn state(&self, params: &[f64], json: &str, name: &str) -> Result<State, Error> {
         let start = State {
             params: params.to_vec(),
@@ -258,15 +258,15 @@ impl Session {
         self.changed(start, json, name)
     }
 
-    /// The start, changed by a JSON file where there is one.
+    /// Returns the start, changed by a JSON file if there is one.
     ///
     /// # Errors
-    /// A file that cannot be read, and all that is wrong with it.
+    /// The file cannot be read, or has errors.
     pub fn state_of(&self, path: Option<&Path>) -> Result<State, Error> {
         State::read(&self.source, &self.generated, path)
     }
 
-    /// A state, changed by a JSON text.
+    /// Changes a state by a JSON text.
     ///
     /// # Errors
     /// All errors in the text.
@@ -274,7 +274,7 @@ impl Session {
         File::of(name.into(), json, &self.source)?.changes(from, &self.source, &self.generated)
     }
 
-    /// Names of all available functions, including those that are derived on request.
+    /// Returns the names of all available functions, including those that are derived on request.
     pub fn functions(&self) -> Vec<String> {
         let program = &self.generated.program;
         let is_public = |id: Option<FunctionId>| id.is_none_or(|id| id.row().named);
@@ -299,7 +299,7 @@ impl Session {
     /// Compiles a function by its name.
     ///
     /// # Errors
-    /// Where there is none of this name, or where it does not exist for this system.
+    /// No function has this name, or it does not exist for this system.
     pub fn function(&self, name: &str) -> Result<Function, Error> {
         let known = || {
             self.functions
@@ -310,8 +310,8 @@ impl Session {
             return Ok(function.clone());
         }
         let function = match self.generated.program.function(name) {
-            Some(_) => compiled(&self.generated, name)?,
-            None => compiled(&self.asked(name)?, name)?,
+            Some(_) => compile(&self.generated, name)?,
+            None => compile(&self.asked(name)?, name)?,
         };
         known().insert(name.into(), function.clone());
         Ok(function)
@@ -374,13 +374,13 @@ impl Session {
         Ok(instance)
     }
 
-    /// A run from a state, which may end at an event, or be given up.
+    /// Runs the system from a state; the run may end at an event, or be cancelled.
     ///
     /// # Errors
-    /// What cannot be run; a run that ends early has its reason in [`Run::failure`].
+    /// The run cannot begin. The reason of a run that ends early is in [`Run::failure`].
     pub fn simulate(&self, state: &State, simulation: &Simulation) -> Result<Run, Error> {
         simulation.stepping.check()?;
-        let given = simulation.inputs(&self.generated, state)?;
+        let given = simulation.prepare_inputs(&self.generated, state)?;
         let observed = self.observed.of(&self.source, &simulation.events)?;
         let (generated, system) = match &observed {
             None => (&self.generated, self.instance(state)?),
@@ -392,25 +392,25 @@ impl Session {
     /// Prepares single steps of a method, given by its name or `auto`, with the parameters of a state.
     ///
     /// # Errors
-    /// Where the method does not fit.
-    pub fn stepped(&self, state: &State, method: &str) -> Result<Stepped, Error> {
+    /// The method does not fit the system.
+    pub fn single_stepper(&self, state: &State, method: &str) -> Result<SingleStepper, Error> {
         let instance = self.instance(state)?;
         let structure = instance.structure(&self.generated.program);
-        let mut chosen = Chosen::new(method, &instance, &structure, 1)?;
+        let mut chosen = ChosenMethod::new(method, &instance, &structure, 1)?;
         if method == AUTO && matches!(chosen.stepper, Stepper::Closed { .. }) {
             // The closed form always moves from the start.
-            chosen = Chosen::new("rkmk4", &instance, &structure, 1)?;
+            chosen = ChosenMethod::new("rkmk4", &instance, &structure, 1)?;
         }
-        Ok(Stepped {
+        Ok(SingleStepper {
             instance,
             stepper: chosen.stepper,
         })
     }
 
-    /// The linearisation at a state, of all displacements and velocities if `full`.
+    /// Linearises the motion at a state, in all displacements and velocities if `full`.
     ///
     /// # Errors
-    /// Where the motion has no value there.
+    /// The motion has no value there.
     pub fn linearize(&self, state: &State, full: bool) -> Result<Linearization, Error> {
         linearize(self.linearized()?, state, self.source.shown(), full)
     }
@@ -426,8 +426,12 @@ impl Session {
     /// Prepares steps with derivatives, with the parameters of a state, by one of the methods for any system.
     ///
     /// # Errors
-    /// Where there is no linearisation, or the method has no slopes.
-    pub fn varied(&self, state: &State, method: &str) -> Result<(Arc<Varied>, General), Error> {
+    /// There is no linearisation, or steps of the method have no derivatives.
+    pub fn sensitivity_stepper(
+        &self,
+        state: &State,
+        method: &str,
+    ) -> Result<(Arc<SensitivityStepper>, General), Error> {
         let found = method::with_step_slopes().find(|one| one.name() == method);
         let Some(found) = found else {
             return Err(Error::NoStepSlopes {
@@ -439,38 +443,38 @@ impl Session {
             return Ok((Arc::clone(varied), found));
         }
         self.instance(state)?;
-        let varied = Arc::new(Varied::new(self.linearized()?, &state.params)?);
+        let varied = Arc::new(SensitivityStepper::new(self.linearized()?, &state.params)?);
         *known = Some(Arc::clone(&varied));
         Ok((varied, found))
     }
 
-    /// The numbers of everything at a state, with all of γ and Γ.
+    /// Evaluates everything at a state, including γ and Γ.
     ///
     /// # Errors
-    /// Where functions in Rust have no numbers.
+    /// Functions in Rust have no values.
     pub fn evaluate(&self, state: &State) -> Result<Evaluation, Error> {
         evaluate((&self.generated, self.source.shown()), state, &[], true)
     }
 
-    /// The base parameters.
+    /// Derives the base parameters.
     ///
     /// # Errors
-    /// If the system has none.
+    /// The system has none.
     pub fn base_parameters(&self) -> Result<BaseParameters, Error> {
         base_parameters(&self.source)
     }
 
-    /// Tables by their names, those that matter where none is named.
+    /// Derives tables by their names; without names, those that matter.
     ///
     /// # Errors
-    /// Where a table is not known, or cannot be had.
+    /// A table is unknown, or does not exist for the system.
     pub fn tables(&self, of: &[String]) -> Result<Tables, Error> {
         let named: Result<Vec<Table>, _> = of.iter().map(|name| Table::parse(name)).collect();
         let tables = named.and_then(|of| self.generated.tables(&of));
         tables.map_err(Error::Table)
     }
 
-    /// Kinds of the coordinates, as the language writes them: `real`, `R3`, `S1`, `S3`, `SO3` or `SE3`.
+    /// Returns the kinds of the coordinates, as the language writes them: `real`, `R3`, `S1`, `S3`, `SO3` or `SE3`.
     pub fn kinds(&self) -> Vec<String> {
         let coordinates = self.generated.model.coordinates.iter();
         let named = coordinates.map(|coordinate| match coordinate.kind {
@@ -484,10 +488,10 @@ impl Session {
         named.collect()
     }
 
-    /// The drawable parts of the mechanism, compiled for any parameters and states.
+    /// Returns the drawable parts of the mechanism, compiled for any parameters and states.
     ///
     /// # Errors
-    /// Where a frame depends on a function in Rust.
+    /// A frame depends on a function in Rust.
     pub fn drawing(&self) -> Result<&Drawing, Error> {
         if let Some(drawing) = self.drawing.get() {
             return Ok(drawing);
@@ -496,16 +500,16 @@ impl Session {
         Ok(self.drawing.get_or_init(|| made))
     }
 
-    /// The names of the methods.
+    /// Returns the names of the methods.
     pub fn methods() -> Vec<&'static str> {
         method::names()
     }
 }
 
-/// The base parameters of a description.
+/// Derives the base parameters of a description.
 ///
 /// # Errors
-/// If the system has constraints, or forces that robots do not have.
+/// The system has constraints, or forces that robots do not have.
 pub fn base_parameters(source: &Source) -> Result<BaseParameters, Error> {
     let model = source.model()?;
     let refused = |why: String| Error::NoRegressor {

@@ -1,9 +1,9 @@
 //! Pulls a mechanism by one of its points, as by hand: it moves along its velocities, within its constraints.
 //!
 //! A picture does not show depth: dragging in it specifies the line of sight through a place, and only the distance
-//! from that line counts. With p(x) the point and J its derivative along δx = A h, each round moves by
-//! h = Jᵀ (J Jᵀ + λ² I)⁻¹ (target − p), where λ keeps h small near singular positions. Directions that violate constraints
-//! are projected out, so that loops stay closed and wheels roll. Derivatives are finite differences, whose accuracy
+//! from that line counts. With p(x) the point and J its derivative along δx = A h, each round moves by h = Jᵀ (J Jᵀ +
+//! λ² I)⁻¹ (target − p), where λ keeps h small near singular positions. Directions that violate constraints are
+//! projected out, so that loops stay closed and wheels roll. Derivatives are finite differences, whose accuracy
 //! suffices for dragging by hand.
 
 use super::Session;
@@ -14,18 +14,18 @@ use crate::state::State;
 use hamel::{System, manifold};
 use nalgebra::{Matrix3, Vector3};
 
-/// Largest number of rounds of one pull.
-const ROUNDS: usize = 6;
+/// Largest number of moves of one pull, and of reductions of one move.
+const MAX_ROUNDS: usize = 6;
 /// Step of the finite differences, in units of velocity times time.
-const STEP: f64 = 1e-6;
+const DIFFERENCE_STEP: f64 = 1e-6;
 /// The longest move of a round, in the same units: a third of a turn about a joint.
-const FAR: f64 = 2.0;
+const MAX_MOVE: f64 = 2.0;
 /// λ² relative to the mean square of the derivatives.
-const DAMPED: f64 = 1e-4;
+const RELATIVE_DAMPING: f64 = 1e-4;
 /// Largest residual of constraints after a move.
-const CLOSED: f64 = 1e-10;
+const CONSTRAINT_TOLERANCE: f64 = 1e-10;
 
-/// A point by which a mechanism is pulled.
+/// Point by which a mechanism is pulled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
     /// A point of a frame, by the index of the frame in [`Scene::frames`], in its axes (m).
@@ -35,7 +35,7 @@ pub enum Grip {
 }
 
 impl Grip {
-    /// Position of the point.
+    /// Returns the position of the point.
     fn of(self, scene: &Scene) -> Option<Vector3<f64>> {
         match self {
             Grip::Frame(frame, at) => {
@@ -51,12 +51,12 @@ impl Grip {
 }
 
 impl Session {
-    /// The state reached when a mechanism is pulled by a point towards a place in the world (m), as near as its joints,
-    /// loops and constraints permit; with a line of sight, as near to that line through the place. Velocities are kept
-    /// as far as constraints permit.
+    /// Returns the state reached when the mechanism is pulled by a point towards a place in the world (m), as near as
+    /// its joints, loops and constraints permit; with a line of sight, as near to that line through the place.
+    /// Velocities are kept as far as constraints permit.
     ///
     /// # Errors
-    /// If there is no such point, or the kinematics are singular.
+    /// There is no such point, or the kinematics are singular.
     pub fn pulled(
         &self,
         state: &State,
@@ -66,7 +66,7 @@ impl Session {
         let drawn = self.drawing()?.with_parameters(&state.params);
         let instance = self.instance(state)?;
         let n = self.active().n();
-        let mut pulled = Pulled {
+        let mut pulled = Pull {
             instance: &instance,
             drawn,
             grip,
@@ -74,7 +74,7 @@ impl Session {
             x: Numbers::from(state.x.as_slice()),
         };
         let target = Vector3::from(target);
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             if !pulled.round(n, target)? {
                 break;
             }
@@ -90,8 +90,8 @@ impl Session {
     }
 }
 
-/// A mechanism during a pull.
-struct Pulled<'a> {
+/// Mechanism while it is pulled.
+struct Pull<'a> {
     instance: &'a Instance,
     drawn: ParametrizedDrawing<'a>,
     grip: Grip,
@@ -100,21 +100,21 @@ struct Pulled<'a> {
     x: Numbers,
 }
 
-impl Pulled<'_> {
-    /// Moves once; returns whether the point came nearer.
+impl Pull<'_> {
+    /// Moves the mechanism once; returns whether the point came nearer.
     fn round(&mut self, n: usize, target: Vector3<f64>) -> Result<bool, Error> {
         let from = self.point(&self.x)?;
         let away = self.seen * (target - from);
         let directions: Result<Vec<Numbers>, Error> = (0..n).map(|i| self.direction(i)).collect();
         let directions = directions?;
         let slope = |direction: &Numbers| -> Result<Vector3<f64>, Error> {
-            let there = self.point(&self.moved(&self.x, direction, STEP))?;
-            Ok(self.seen * (there - from) / STEP)
+            let there = self.point(&self.moved(&self.x, direction, DIFFERENCE_STEP))?;
+            Ok(self.seen * (there - from) / DIFFERENCE_STEP)
         };
         let slopes: Result<Vec<Vector3<f64>>, Error> = directions.iter().map(slope).collect();
         let slopes = slopes?;
         let squares: Matrix3<f64> = slopes.iter().map(|slope| slope * slope.transpose()).sum();
-        let damping = DAMPED * squares.trace() / 3.0;
+        let damping = RELATIVE_DAMPING * squares.trace() / 3.0;
         let inverse = (squares + Matrix3::identity() * damping).try_inverse();
         let Some(inverse) = inverse.filter(|_| damping > 0.0) else {
             return Ok(false);
@@ -127,8 +127,8 @@ impl Pulled<'_> {
             entries.for_each(|(entry, direction)| *entry += part * direction);
         }
         let length = h.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
-        let mut share = (FAR / length).min(1.0);
-        for _ in 0..ROUNDS {
+        let mut share = (MAX_MOVE / length).min(1.0);
+        for _ in 0..MAX_ROUNDS {
             if let Some(next) = self.closed(self.moved(&self.x, &h, share))
                 && (self.seen * (target - self.point(&next)?)).norm() < away.norm()
             {
@@ -145,7 +145,7 @@ impl Pulled<'_> {
         point.ok_or(Error::NoSuchPoint)
     }
 
-    /// The projection of the velocity ξⁱ = 1 on the constraints.
+    /// Returns the projection of the velocity ξⁱ = 1 on the constraints.
     fn direction(&self, i: usize) -> Result<Numbers, Error> {
         let projected = |xi: &Numbers| -> Result<Option<Numbers>, Error> {
             let kept = self.instance.project_velocity(&self.x, xi);
@@ -180,7 +180,7 @@ impl Pulled<'_> {
     /// Restores the constraints by Newton's method; `None` if it does not converge.
     fn closed(&self, x: Numbers) -> Option<Numbers> {
         let mut x = x;
-        for _ in 0..2 * ROUNDS {
+        for _ in 0..2 * MAX_ROUNDS {
             let correction = self.instance.correction(&x);
             let entries = x.as_mut().iter_mut().zip(correction.iter());
             entries.for_each(|(entry, change)| *entry += change);
@@ -193,7 +193,9 @@ impl Pulled<'_> {
             if let Some(step) = step {
                 x = self.moved(&x, &step, 1.0);
             }
-            if open < CLOSED && self.instance.constraint_norm(&x) < CLOSED {
+            if open < CONSTRAINT_TOLERANCE
+                && self.instance.constraint_norm(&x) < CONSTRAINT_TOLERANCE
+            {
                 return Some(x);
             }
         }
@@ -201,7 +203,7 @@ impl Pulled<'_> {
     }
 }
 
-/// The projection along a line of sight; the identity without one.
+/// Returns the projection along a line of sight; the identity without one.
 fn seen(sight: Option<Vector>) -> Matrix3<f64> {
     let sight = sight.and_then(|sight| Vector3::from(sight).try_normalize(0.0));
     sight.map_or_else(Matrix3::identity, |sight| {

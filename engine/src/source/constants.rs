@@ -5,7 +5,7 @@ use hamel_codegen::syntax::parse_text;
 use hamel_codegen::syntax::suggest::closest;
 use std::fmt;
 
-/// Why a constant cannot have another value.
+/// Error in a new value of a constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ConstantProblem {
     /// The value is no expression.
@@ -38,7 +38,7 @@ impl fmt::Display for ConstantProblem {
 
 impl std::error::Error for ConstantProblem {}
 
-/// The description with another value of a constant, or the reason why it cannot have one. A description that cannot be
+/// Returns the description with another value of a constant. A description that cannot be
 /// parsed is left unchanged: its errors are reported later.
 pub fn given(text: &str, name: &str, value: &str) -> Result<String, ConstantProblem> {
     let Ok(system) = parse_text(text) else {
@@ -66,7 +66,7 @@ pub fn given(text: &str, name: &str, value: &str) -> Result<String, ConstantProb
     ))
 }
 
-/// The constants of the description itself, without those of its components.
+/// Returns the constants of the description itself, without those of its components.
 fn constants(system: &System) -> impl Iterator<Item = &Declaration> {
     let lists = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Const(list) => Some(list),

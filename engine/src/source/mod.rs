@@ -1,6 +1,6 @@
-//! A description's file: reading and deriving it, with errors and warnings at their places in its text.
+//! Reads and derives descriptions and robots, with errors and warnings at their places in the text.
 
-pub mod added;
+pub mod added_outputs;
 mod constants;
 mod options;
 mod robot;
@@ -31,7 +31,7 @@ const STDIN: &str = "<stdin>";
 /// Text of the spinner during a derivation.
 const DERIVING: &str = "deriving";
 
-/// A text and its origin.
+/// Text of a description, or of a robot in URDF, with its origin.
 pub struct Source {
     /// The path as given, or `<stdin>`.
     pub path: String,
@@ -45,12 +45,12 @@ pub struct Source {
     evaluated: bool,
     /// Whether all frames count as results.
     shows_frames: bool,
-    /// Who is told of warnings and of progress.
+    /// Receiver of warnings and progress.
     reporter: Arc<dyn Reporter>,
 }
 
 impl Source {
-    /// A text with its name for messages.
+    /// Takes a text, with its name for messages.
     pub fn new(path: String, text: String, reporter: Arc<dyn Reporter>) -> Self {
         Source {
             reporter,
@@ -95,17 +95,18 @@ impl Source {
         Source::read(path, Arc::clone(&self.reporter))
     }
 
-    /// Who is told of warnings and of progress.
+    /// Returns the receiver of warnings and progress.
     pub fn reporter(&self) -> &dyn Reporter {
         &*self.reporter
     }
 
-    /// Whether the text was read from standard input.
+    /// Returns whether the text was read from standard input.
     pub fn is_stdin(&self) -> bool {
         self.path == STDIN
     }
 
-    /// The text whose line numbers messages give: empty for a robot, whose description was not written by the user.
+    /// Returns the text whose line numbers messages give: empty for a robot, whose description was not written by the
+    /// user.
     pub fn shown(&self) -> &str {
         match &self.robot {
             Some(_) => "",
@@ -113,7 +114,7 @@ impl Source {
         }
     }
 
-    /// Whether the text is a robot in URDF, judging by the file name or the beginning of the text.
+    /// Returns whether the text is a robot in URDF, judging by the file name or the beginning of the text.
     pub fn is_urdf(&self) -> bool {
         urdf::is_urdf(Path::new(&self.path))
             || self
@@ -122,7 +123,7 @@ impl Source {
                 .starts_with('<')
     }
 
-    /// The joints of a robot by their names in its file and in the description; empty for a description.
+    /// Returns the joints of a robot by their names in its file and in the description; empty for a description.
     pub fn joints(&self) -> &[(String, String)] {
         match &self.robot {
             Some(robot) => &robot.imported.joints,
@@ -162,7 +163,7 @@ impl Source {
         Ok(source)
     }
 
-    /// The same source for evaluation: functions in Rust get their stand-ins.
+    /// Prepares the source for evaluation: functions in Rust get their stand-ins.
     pub fn in_numbers(self) -> Self {
         Source {
             evaluated: true,
@@ -170,7 +171,7 @@ impl Source {
         }
     }
 
-    /// The same source with frames as results: unused frames are not warned about.
+    /// Treats frames as results, so that there are no warnings of unused frames.
     pub fn showing_frames(self) -> Self {
         Source {
             shows_frames: true,
@@ -178,8 +179,9 @@ impl Source {
         }
     }
 
-    /// The requested frames, each with its name in the description; for a robot they are its links, by their names in
-    /// its file or in the description, and a link that is fixed in the world becomes a frame if it is requested.
+    /// Returns the requested frames, each with its name in the description; for a robot they are its links, by their
+    /// names in its file or in the description, and a link that is fixed in the world becomes a frame if it is
+    /// requested.
     pub fn frames(&mut self, asked: &[String]) -> Result<Vec<(String, String)>, Error> {
         let Some(robot) = &mut self.robot else {
             let both = asked.iter().map(|name| (name.clone(), plain(name)));
@@ -216,13 +218,13 @@ impl Source {
         })
     }
 
-    /// The text of a file that the description refers to, relative to the description.
+    /// Returns the text of a file that the description refers to, relative to the description.
     fn file(&self, name: &str) -> std::io::Result<String> {
         let folder = Path::new(&self.path).parent();
         text_of(&folder.unwrap_or(Path::new("")).join(name))
     }
 
-    /// The other files from which the description takes statements or numbers.
+    /// Returns the other files from which the description takes statements or numbers.
     pub fn files(&self) -> Result<Vec<PathBuf>, Error> {
         let mut files = Vec::new();
         if self.robot.is_some() {
@@ -239,7 +241,7 @@ impl Source {
         Ok(files)
     }
 
-    /// The parsed description including its other files, and the texts of these.
+    /// Returns the parsed description including its other files, and the texts of these.
     fn parsed(&self) -> Result<(System, Vec<String>), Vec<Diagnostic>> {
         let (mut system, texts) = match &self.robot {
             Some(robot) => (robot.imported.system.clone(), Vec::new()),
@@ -261,13 +263,13 @@ impl Source {
         Ok(parsed.0)
     }
 
-    /// The texts of the other files from which the description takes statements or numbers.
+    /// Returns the texts of the other files from which the description takes statements or numbers.
     pub fn texts(&self) -> Result<Vec<String>, Error> {
         let parsed = self.parsed().map_err(|errors| self.refused(&errors))?;
         Ok(parsed.1)
     }
 
-    /// The same source with an extended text.
+    /// Replaces the text by an extended one.
     pub fn saying(&self, text: String) -> Self {
         Source {
             path: self.path.clone(),
@@ -280,7 +282,7 @@ impl Source {
         }
     }
 
-    /// The model of the description, before derivation.
+    /// Returns the model of the description, before derivation.
     pub fn model(&self) -> Result<Model, Error> {
         let model = lower::build(&self.system()?);
         let model = model.map_err(|errors| self.refused(&errors))?;
@@ -321,7 +323,7 @@ impl Source {
         Ok(generated)
     }
 
-    /// Fails, with help, if no part of the system has inertia.
+    /// Returns an error, with help, if no part of the system has inertia.
     pub fn moves(&self, generated: &Generated) -> Result<(), Error> {
         match generated.model.has_inertia {
             true => Ok(()),
@@ -332,7 +334,7 @@ impl Source {
         }
     }
 
-    /// Derives, which may take its time.
+    /// Reports the beginning and the end of a derivation.
     fn during<T>(&self, derive: impl FnOnce() -> T) -> T {
         self.reporter.begin(DERIVING);
         let done = derive();
@@ -376,7 +378,7 @@ impl Source {
         }
     }
 
-    /// Whether the source is a description or a robot with masses.
+    /// Returns whether the source is a description or a robot with masses.
     fn has_masses(&self) -> bool {
         let robot = self.robot.as_ref();
         robot.is_none_or(|robot| robot.imported.has_masses)
@@ -479,7 +481,7 @@ impl Source {
         }
     }
 
-    /// The error of a description that is refused.
+    /// Creates the error of a description with these errors.
     pub fn refused(&self, errors: &[Diagnostic]) -> Error {
         let (path, diagnostics) = (self.path.clone(), errors.to_vec());
         match &self.robot {
@@ -505,7 +507,7 @@ pub fn decoded(name: &str, bytes: Vec<u8>) -> Result<String, Error> {
     })
 }
 
-/// An error for each unknown frame.
+/// Returns an error for each unknown frame.
 fn unknown_frames(model: &Model, asked: &[Jacobian]) -> Vec<Diagnostic> {
     let known = |name: &str| model.frames.iter().any(|frame| frame.name == name);
     let mut names: Vec<&str> = asked.iter().map(|one| one.frame.as_str()).collect();

@@ -1,4 +1,4 @@
-//! How a description or a robot is read.
+//! Options for reading descriptions and robots.
 
 use hamel_codegen::urdf::{Mimic, Options, TOLERANCE};
 use std::path::Path;
@@ -12,7 +12,7 @@ pub struct OpenOptions {
     pub locks: Vec<(String, String)>,
     /// Whether masses, centres of mass and inertias of a robot are run-time parameters.
     pub params: bool,
-    /// How joints of a robot move that mimic another one.
+    /// Motion of a robot's joints that mimic another one.
     pub mimic: Option<Mimic>,
     /// Name of the system of a robot; by default the robot's.
     pub name: Option<String>,
@@ -23,7 +23,7 @@ pub struct OpenOptions {
 }
 
 impl OpenOptions {
-    /// Whether anything was asked for that is for robots.
+    /// Returns whether an option for robots is set.
     pub(super) fn are_for_robots(&self) -> bool {
         self.floating
             || !self.locks.is_empty()
@@ -33,7 +33,7 @@ impl OpenOptions {
             || self.rounding.is_some()
     }
 
-    /// The options of an import.
+    /// Returns the options of an import.
     pub(super) fn import(&self, path: &str) -> Options {
         let file = Path::new(path).file_name();
         Options {

@@ -7,7 +7,7 @@ use hamel_codegen::syntax::suggest::closest;
 use hamel_codegen::urdf::{self, Imported};
 use std::fmt;
 
-/// A robot, with the text that it was read from.
+/// Imported robot, with the text from which it was read.
 pub struct Robot {
     /// The URDF.
     pub urdf: String,
@@ -15,10 +15,10 @@ pub struct Robot {
     pub imported: Imported,
 }
 
-/// A link that a robot does not have.
+/// Name that no link of a robot has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownLink {
-    /// The name that was asked for.
+    /// The requested name.
     pub name: String,
     /// The link whose name is closest to it.
     pub closest: Option<String>,
@@ -63,8 +63,8 @@ impl Robot {
         }
     }
 
-    /// The frame of a link, by the link's name in the file or else in the description; a link that is fixed in the
-    /// world becomes a frame.
+    /// Finds the frame of a link, by the link's name in the file or else in the description; a link that is fixed in
+    /// the world becomes a frame.
     pub fn frame(&mut self, link: &str) -> Result<String, UnknownLink> {
         let Imported { links, ground, .. } = &self.imported;
         let all: Vec<&(String, String)> = links.iter().chain(ground).collect();

@@ -1,12 +1,12 @@
 //! Completes a partially given state, as if the description had the given values for its parameters and starts: exact
 //! starts of the description stay, prescribed motion is followed, loops are closed, constraints on velocities are
-//! satisfied. If the given values contradict exact starts, those starts are released that violated equations tie to one
-//! another, and move to the nearest values that satisfy these.
+//! satisfied. If the given values contradict exact starts, those starts are released that violated equations couple,
+//! and move to the nearest values that satisfy these.
 
 use super::State;
-use super::given::{Given, places};
+use super::coupling::{Coupling, symbols};
+use super::given_entries::{GivenEntries, places};
 use super::problem::StateProblem;
-use super::ties::{Ties, symbols};
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::nearest_solution::find_nearest;
 use hamel_codegen::algebra::numeric::evaluate;
@@ -19,14 +19,14 @@ use hamel_codegen::model::pfaffian::Kind;
 use hamel_codegen::model::twists::Moving;
 
 /// Values of |φ(x)| up to this are not corrected.
-const EXACT: f64 = 1e-12;
+const EXACT_RESIDUAL: f64 = 1e-12;
 /// Largest rate of a constraint that counts as rounding.
-const KEPT: f64 = 1e-9;
+const RATE_TOLERANCE: f64 = 1e-9;
 
-/// A state being completed.
+/// Completion of a state.
 struct Completion<'a> {
     generated: &'a Generated,
-    given: &'a Given,
+    given: &'a GivenEntries,
     state: &'a State,
 }
 
@@ -36,7 +36,7 @@ impl State {
     pub(super) fn complete(
         &mut self,
         generated: &Generated,
-        given: &Given,
+        given: &GivenEntries,
         from: &State,
     ) -> Result<(), Vec<StateProblem>> {
         let opening = opening(generated, self, given, from);
@@ -47,7 +47,7 @@ impl State {
         };
         let x = match completion.as_written(&opening) {
             Ok(x) => x,
-            Err(_) => completion.giving_way(&opening)?,
+            Err(_) => completion.release_exact_starts(&opening)?,
         };
         let xi = completion.velocities(opening.clone(), &x, from)?;
         self.x = x;
@@ -66,9 +66,14 @@ impl State {
     }
 }
 
-/// The start of the description with the parameters of a state, in which given values replace those of the text; if
-/// `from` is not the start, its values replace those of the start.
-fn opening(generated: &Generated, state: &State, given: &Given, from: &State) -> InitialConditions {
+/// Returns the start of the description with the parameters of a state, in which given values replace those of the
+/// text; if `from` is not the start, its values replace those of the start.
+fn opening(
+    generated: &Generated,
+    state: &State,
+    given: &GivenEntries,
+    from: &State,
+) -> InitialConditions {
     let (model, active) = (&generated.model, &generated.active);
     let mut opening = model.initial_conditions.at(&state.params);
     if from.x != active.start_x {
@@ -113,7 +118,10 @@ impl Completion<'_> {
 
     /// x if given values contradict those of the description: nearest to its start, first with all exact starts, then
     /// without the exact starts that are tied to violated equations.
-    fn giving_way(&self, opening: &InitialConditions) -> Result<Vec<f64>, Vec<StateProblem>> {
+    fn release_exact_starts(
+        &self,
+        opening: &InitialConditions,
+    ) -> Result<Vec<f64>, Vec<StateProblem>> {
         let mut from = self.state.x.clone();
         let all = 0..from.len();
         // Exact starts may depend on parameters.
@@ -133,7 +141,8 @@ impl Completion<'_> {
         self.near(from, &given)
     }
 
-    /// The x nearest to another one that satisfies the constraints and closes the loops, with the given entries fixed.
+    /// Returns the x nearest to another one that satisfies the constraints and closes the loops, with the given entries
+    /// fixed.
     fn near(&self, mut x: Vec<f64>, given: &[bool]) -> Result<Vec<f64>, Vec<StateProblem>> {
         let model = &self.generated.model;
         let free = given.contains(&false);
@@ -179,12 +188,13 @@ impl Completion<'_> {
         }
         let (b, rates) = self.rates(x, &opening.xi);
         let time = model.clock.map(|clock| clock.xi);
-        let ties = Ties::new(b.iter().map(|row| {
+        let coupling = Coupling::new(b.iter().map(|row| {
             let moving = row.iter().enumerate();
             let moving = moving.filter(|(i, factor)| **factor != 0.0 && Some(*i) != time);
             moving.map(|(i, _)| i).collect()
         }));
-        let tied = ties.of(|row| rates[row].is_nan() || rates[row].abs() > KEPT);
+        let tied =
+            coupling.coupled_to(|row| rates[row].is_nan() || rates[row].abs() > RATE_TOLERANCE);
         let mut kept = vec![true; xi.len()];
         for (i, value) in self.given.xi.iter().enumerate() {
             match value {
@@ -221,7 +231,7 @@ impl Completion<'_> {
             *x = mend(x, violations)?;
             residuals = self.with(x).residuals(active);
         }
-        if residuals.iter().any(|size| size.abs() > EXACT) {
+        if residuals.iter().any(|size| size.abs() > EXACT_RESIDUAL) {
             normalise(&active.blocks, x);
         }
         Ok(())
@@ -250,7 +260,7 @@ impl Completion<'_> {
         closure.with_inputs(&self.state.u)
     }
 
-    /// The coordinates tied to one another by equations that x violates.
+    /// Returns the coordinates tied to one another by equations that x violates.
     fn tied(&self, x: &[f64]) -> std::collections::BTreeSet<usize> {
         let model = &self.generated.model;
         let numbers = self.numbers(x);
@@ -267,11 +277,11 @@ impl Completion<'_> {
             .iter()
             .map(|&edge| symbols(&model.graph, edge, places, time));
         let phi = phi.iter().map(|&edge| symbols(free, edge, places, time));
-        let ties = Ties::new(loops.chain(phi));
-        ties.of(|row| open[row].is_nan() || open[row].abs() > EXACT)
+        let coupling = Coupling::new(loops.chain(phi));
+        coupling.coupled_to(|row| open[row].is_nan() || open[row].abs() > EXACT_RESIDUAL)
     }
 
-    /// The rows of B, and their residuals relative to 1 or their terms.
+    /// Returns the rows of B, and their residuals relative to 1 or their terms.
     fn rates(&self, x: &[f64], xi: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let model = &self.generated.model;
         let numbers = self.numbers(x);
@@ -293,7 +303,7 @@ impl Completion<'_> {
         model.numbers(&self.state.params, x, &still, &self.state.u, &still)
     }
 
-    /// The nearest x that satisfies the description's constraints, with the given entries fixed.
+    /// Returns the nearest x that satisfies the description's constraints, with the given entries fixed.
     fn satisfied(&self, x: &[f64], given: &[bool]) -> Option<Vec<f64>> {
         let full = &self.generated.model;
         let numbers = self.numbers(x);
@@ -340,7 +350,7 @@ impl Completion<'_> {
         StateProblem::new("coord", message)
     }
 
-    /// A constraint as written.
+    /// Returns a constraint as written.
     fn text(&self, open: Open) -> String {
         let number = open.constraint + 1;
         match self.generated.model.constraints.get(open.constraint) {

@@ -1,18 +1,18 @@
 //! Reads the file of a state, in either of its forms: by coordinates, or by joints.
 
+use super::State;
+use super::joint_state::{JointState, is_sample};
+use super::json;
+use super::last_sample;
+use super::plain_names::with_plain_names;
 use super::problem::StateProblem;
-use super::sample::{Sample, is_sample};
-use super::samples;
-use super::strict;
-use super::values::State;
-use super::written::plainly;
 use crate::error::Error;
 use crate::source::Source;
 use hamel_codegen::generate::Generated;
 use serde_json::Value;
 use std::path::Path;
 
-/// Members that only `hamel eval` takes, with the errors of other commands.
+/// Members that only `hamel eval` accepts, with the messages of other commands.
 const OF_EVAL: [(&str, &str); 2] = [
     (
         "force",
@@ -24,7 +24,7 @@ const OF_EVAL: [(&str, &str); 2] = [
     ),
 ];
 
-/// A file that was parsed as JSON.
+/// File of a state, parsed as JSON.
 pub struct File {
     /// Path as given, or `<stdin>`.
     pub path: String,
@@ -42,8 +42,8 @@ impl File {
     /// Parses a text for a description; messages call it `path`.
     pub fn of(path: String, text: &str, description: &Source) -> Result<Self, Error> {
         // Joints of a robot may have any names.
-        let json = strict::parse(text).and_then(|json| match description.robot {
-            None => plainly(json),
+        let json = json::parse(text).and_then(|json| match description.robot {
+            None => with_plain_names(json),
             Some(_) => Ok(json),
         });
         match json {
@@ -55,17 +55,17 @@ impl File {
         }
     }
 
-    /// Whether the state is given by joints.
+    /// Returns whether the state is given by joints.
     pub fn is_by_joints(&self) -> bool {
         is_sample(&self.json)
     }
 
-    /// The state, in either form; a force, or a list of states, is refused.
+    /// Reads the state, in either form; a force, or a list of states, is refused.
     pub fn state(&self, source: &Source, generated: &Generated) -> Result<State, Error> {
         self.changes(State::start(&generated.active), source, generated)
     }
 
-    /// Another state, changed by the file.
+    /// Changes another state by the file.
     pub fn changes(
         &self,
         start: State,
@@ -74,7 +74,9 @@ impl File {
     ) -> Result<State, Error> {
         let state = match (self.is_by_joints(), &self.json) {
             (true, _) => self.by_joints(start, source, generated),
-            (false, Value::Array(list)) => samples::last(start, list, (generated, &source.text)),
+            (false, Value::Array(list)) => {
+                last_sample::read_last_sample(start, list, (generated, &source.text))
+            }
             (false, _) => start.changed((generated, &source.text), source.joints(), &self.json),
         };
         state.map_err(|problems| Error::State {
@@ -96,7 +98,7 @@ impl File {
             .map(|(part, why)| StateProblem::new(*part, *why))
             .collect();
         match refused.is_empty() {
-            true => Sample::parse(
+            true => JointState::parse(
                 start,
                 &self.json,
                 None,

@@ -1,4 +1,4 @@
-//! Coordinates and velocities of the same name, for files of joint angles.
+//! Joints of a description, recognised by the names of coordinates and velocities, for states by joints.
 //!
 //! | velocity | coordinate | as a joint |
 //! |---|---|---|
@@ -16,9 +16,9 @@ use crate::names;
 use hamel_codegen::model::{Coordinate, Group, Model};
 use hamel_codegen::syntax::ast::{CoordKind, JointKind, ShapeKind};
 
-/// The form of a joint's coordinates, with their indices in x.
+/// Form of a joint's coordinates, with their indices in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum JointCoordinates {
     /// Plain numbers.
     Plain(usize),
     /// Cosine and sine.
@@ -33,30 +33,30 @@ pub enum Place {
     Planar(usize, usize),
 }
 
-impl Place {
-    /// Number of the `linear` velocities, if the others are `angular`.
+impl JointCoordinates {
+    /// Returns the number of the `linear` velocities, if the others are `angular`.
     pub fn linear(self) -> Option<usize> {
         match self {
-            Place::Free(..) => Some(3),
-            Place::Planar(..) => Some(2),
+            JointCoordinates::Free(..) => Some(3),
+            JointCoordinates::Planar(..) => Some(2),
             _ => None,
         }
     }
 }
 
-/// A joint.
+/// Joint with its coordinates and velocities.
 #[derive(Clone, Debug)]
 pub struct Joint {
     /// Name; for a robot, that in its file.
     pub name: String,
     /// Coordinates.
-    pub place: Place,
+    pub place: JointCoordinates,
     /// Index of its first velocity in ξ, and the number of velocities.
     pub velocities: (usize, usize),
 }
 
-/// The joints of a model in the order of their velocities; `names` are pairs of a joint's name in
-/// the robot's file and in the description.
+/// Returns the joints of a model in the order of their velocities; `names` are pairs of a joint's name in the robot's
+/// file and in the description.
 pub fn joints(model: &Model, names: &[(String, String)]) -> Vec<Joint> {
     let mut joints = Vec::new();
     let mut groups = model.velocities.iter().peekable();
@@ -82,7 +82,7 @@ pub fn joints(model: &Model, names: &[(String, String)]) -> Vec<Joint> {
     joints
 }
 
-/// The name of the joint for each row of M; rows without a joint have the names of their velocities.
+/// Returns the name of the joint for each row of M; rows without a joint have the names of their velocities.
 pub fn rows(model: &Model, joints: &[Joint]) -> Vec<String> {
     let mut rows = names::velocities(model);
     for joint in joints {
@@ -94,7 +94,7 @@ pub fn rows(model: &Model, joints: &[Joint]) -> Vec<String> {
     rows
 }
 
-type Found = (String, Place, (usize, usize));
+type Found = (String, JointCoordinates, (usize, usize));
 
 fn coordinate<'a>(model: &'a Model, name: &str) -> Option<&'a Coordinate> {
     model
@@ -113,7 +113,7 @@ fn free(model: &Model, first: &Group, second: &Group) -> Option<Found> {
     let rotation = coordinate(model, &format!("{name}_R"))?;
     let pose = position.kind == CoordKind::Euclidean(3) && rotation.kind == CoordKind::SO3;
     (twist && pose).then(|| {
-        let place = Place::Free(position.offset, rotation.offset);
+        let place = JointCoordinates::Free(position.offset, rotation.offset);
         (name.to_string(), place, (first.offset, 6))
     })
 }
@@ -126,7 +126,7 @@ fn planar(model: &Model, first: &Group, second: &Group) -> Option<Found> {
         .find(|joint| joint.kind == JointKind::Planar && joint.velocities.iter().eq(of_both))?;
     let position = coordinate(model, joint.coordinates.first()?)?;
     let angle = coordinate(model, joint.coordinates.get(1)?)?;
-    let place = Place::Planar(position.offset, angle.offset);
+    let place = JointCoordinates::Planar(position.offset, angle.offset);
     Some((joint.name.clone(), place, (first.offset, 3)))
 }
 
@@ -135,11 +135,11 @@ fn single(model: &Model, group: &Group) -> Option<Found> {
     let found = coordinate(model, name)?;
     let at = found.offset;
     let place = match (found.kind, group.shape) {
-        (CoordKind::Real, ShapeKind::Scalar) => Place::Plain(at),
-        (CoordKind::S1, ShapeKind::Scalar) => Place::Circle(at),
-        (CoordKind::Euclidean(n), ShapeKind::Vector(m)) if n == m => Place::Plain(at),
-        (CoordKind::S3, ShapeKind::Vector(3)) => Place::Quaternion(at),
-        (CoordKind::SO3, ShapeKind::Vector(3)) => Place::Rotation(at),
+        (CoordKind::Real, ShapeKind::Scalar) => JointCoordinates::Plain(at),
+        (CoordKind::S1, ShapeKind::Scalar) => JointCoordinates::Circle(at),
+        (CoordKind::Euclidean(n), ShapeKind::Vector(m)) if n == m => JointCoordinates::Plain(at),
+        (CoordKind::S3, ShapeKind::Vector(3)) => JointCoordinates::Quaternion(at),
+        (CoordKind::SO3, ShapeKind::Vector(3)) => JointCoordinates::Rotation(at),
         _ => return None,
     };
     Some((name.to_string(), place, (group.offset, group.len)))

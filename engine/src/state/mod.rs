@@ -1,33 +1,32 @@
-//! The values of a state: those of the description, changed by a JSON file.
+//! States: those of a description, changed by a JSON file.
 //!
 //! `{"param": {…}, "coord": {…}, "velocity": {…}, "state": {…}, "input": {…}}`, all optional, or, by joints,
-//! `{"configuration": {…}, "velocity": {…}, "param": {…}}`; or a list of samples, of which the last counts. Every mistake is reported with its path in the file, all at
-//! once. Values that a file does not give are completed like the start of a description, so that loops are closed and
-//! constraints on velocities are satisfied; given values are kept, and refused if they contradict these.
+//! `{"configuration": {…}, "velocity": {…}, "param": {…}}`; or a list of samples, of which the last counts. All errors
+//! are reported at once, each with its path in the file. Values that a file does not give are completed like the start
+//! of a description, so that loops are closed and constraints on velocities are satisfied; given values are kept, and
+//! refused if they contradict these.
 
 mod complete;
+mod coupling;
+pub(crate) mod dependent_velocities;
 mod file;
-mod given;
+mod given_entries;
+mod joint_state;
 mod joints;
+mod json;
+mod last_sample;
+mod plain_names;
 mod problem;
 mod read;
-mod sample;
-mod samples;
-pub(crate) mod solved;
-mod strict;
 #[cfg(test)]
 mod tests;
-mod ties;
-mod values;
-mod written;
 
+pub use dependent_velocities::constraint_lines;
 pub use file::File;
+pub use joint_state::{JointState, VELOCITY_ORDER};
 pub use joints::{Joint, joints, rows};
+pub use json::{JsonError, parse};
 pub use problem::StateProblem;
-pub use sample::{ORDER, Sample};
-pub use solved::lines as constraint_lines;
-pub use strict::{JsonError, parse};
-pub use values::State;
 
 use crate::error::Error;
 use crate::source::Source;
@@ -41,11 +40,24 @@ use read::Reader;
 use serde_json::Value;
 use std::path::Path;
 
+/// State of a system, with its parameters and inputs.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Parameters, in order of their symbols.
+    pub params: Vec<f64>,
+    /// x.
+    pub x: Vec<f64>,
+    /// ξ, followed by the states of first order.
+    pub xi: Vec<f64>,
+    /// The inputs u.
+    pub u: Vec<f64>,
+}
+
 /// Largest |φ(x)| that counts as rounding in a state that was written down.
-const OFF: f64 = 1e-6;
+const MANIFOLD_TOLERANCE: f64 = 1e-6;
 
 impl State {
-    /// Default parameters, start and zero input.
+    /// Returns the start of a description, with default parameters and zero inputs.
     pub fn start(model: &Model) -> Self {
         State {
             params: model.defaults.clone(),
@@ -55,7 +67,7 @@ impl State {
         }
     }
 
-    /// The start of a description, changed by a file if one is given.
+    /// Reads the start of a description, changed by a file if one is given.
     pub fn read(source: &Source, generated: &Generated, at: Option<&Path>) -> Result<Self, Error> {
         match at {
             Some(path) => File::read(path, source)?.state(source, generated),
@@ -63,7 +75,7 @@ impl State {
         }
     }
 
-    /// The start, changed by a JSON value with coordinates; `text` is that of the description.
+    /// Changes the start by a JSON value with coordinates; `text` is that of the description.
     pub fn of(generated: &Generated, text: &str, json: &Value) -> Result<Self, Vec<StateProblem>> {
         State::start(&generated.active).changed((generated, text), &[], json)
     }
@@ -83,14 +95,14 @@ impl State {
         Ok(state)
     }
 
-    /// The violations of the configuration manifold, from the residuals.
+    /// Returns the violations of the configuration manifold, from the residuals.
     fn violations(&self, model: &Model, residuals: &[f64]) -> Vec<StateProblem> {
         let mut errors: Vec<StateProblem> = Vec::new();
         let differences = self.phi(model, evaluate);
         for (((_, text), residual), difference) in model.phi.iter().zip(residuals).zip(differences)
         {
             // NaN is a violation, too.
-            if residual.is_nan() || residual.abs() > OFF {
+            if residual.is_nan() || residual.abs() > MANIFOLD_TOLERANCE {
                 errors.push(StateProblem::new(
                     self.place(model, text),
                     format!("violates {text}, the difference is {difference:.2e}"),
@@ -131,7 +143,7 @@ impl State {
         of(&model.points.free, &rows, &numbers)
     }
 
-    /// The coordinates that a constraint mentions, as paths.
+    /// Returns the coordinates that a constraint mentions, as paths.
     fn place(&self, model: &Model, text: &str) -> String {
         let words: Vec<&str> = text
             .split(|c: char| !(c.is_alphanumeric() || c == '_'))

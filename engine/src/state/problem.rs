@@ -1,18 +1,18 @@
-//! What is wrong with a state, with its place.
+//! Errors in states, with their places.
 
 use std::fmt;
 
-/// Something that is wrong with a state.
+/// Error in a state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StateProblem {
-    /// Where it is in the file, as `coord.q[1]`; empty where it is about all of it.
+    /// Path in the file, as `coord.q[1]`; empty for an error of the whole file.
     pub place: String,
     /// The message.
     pub message: String,
 }
 
 impl StateProblem {
-    /// A problem at a place.
+    /// Creates an error at a place.
     pub fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
         StateProblem {
             place: place.into(),

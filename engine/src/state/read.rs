@@ -1,9 +1,9 @@
-//! Reads JSON values as numbers, and reports every error with its path.
+//! Reads JSON values as numbers of a state, and collects all errors with their paths.
 
-use super::given::{Given, joints, velocities};
+use super::State;
+use super::dependent_velocities::dependent_velocities;
+use super::given_entries::{GivenEntries, joints, velocities};
 use super::problem::StateProblem;
-use super::solved::solved;
-use super::values::State;
 use crate::names::{advice_on_rate, rates};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Group;
@@ -12,15 +12,15 @@ use hamel_codegen::syntax::suggest::closest;
 use serde_json::{Map, Value};
 
 /// Largest relative difference of the entries (i, j) and (j, i) of a symmetric matrix.
-const SYMMETRY: f64 = 1e-12;
+const SYMMETRY_TOLERANCE: f64 = 1e-12;
 
-/// The errors found so far, and the given entries.
+/// Reader of a state: the entries given so far, and the errors found so far.
 #[derive(Debug)]
 pub struct Reader {
     /// Each with its path.
     errors: Vec<StateProblem>,
     /// Given entries.
-    given: Given,
+    given: GivenEntries,
     /// Velocities that are not part of states, with the reason.
     solved: Vec<(String, String)>,
     /// Coordinates whose rate is a velocity, each with the name of that velocity.
@@ -28,12 +28,12 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// A reader before any entry; `text` is that of the description.
+    /// Prepares to read; `text` is that of the description.
     pub fn new(generated: &Generated, text: &str) -> Self {
         Reader {
             errors: Vec::new(),
-            given: Given::nothing(generated),
-            solved: solved(generated, text),
+            given: GivenEntries::none(generated),
+            solved: dependent_velocities(generated, text),
             rates: rates(&generated.model),
         }
     }
@@ -217,7 +217,7 @@ impl Reader {
         }
     }
 
-    /// Numbers of a coordinate, with the index in it at which they begin.
+    /// Reads the numbers of a coordinate, with the index in it at which they begin.
     fn coordinate(&mut self, at: &str, value: &Value, kind: CoordKind) -> Vec<(usize, Vec<f64>)> {
         let whole = match kind {
             CoordKind::Real => self.number(at, value).map(|number| vec![number]),
@@ -280,7 +280,7 @@ impl Reader {
                 for i in 0..n {
                     for j in 0..i {
                         let scale = rows[i][j].abs().max(rows[j][i].abs());
-                        if (rows[i][j] - rows[j][i]).abs() > SYMMETRY * scale {
+                        if (rows[i][j] - rows[j][i]).abs() > SYMMETRY_TOLERANCE * scale {
                             let message = format!(
                                 "has to be symmetric: {} here, {} at [{j}][{i}]",
                                 rows[i][j], rows[j][i]
@@ -363,7 +363,7 @@ pub(super) fn put(target: &mut [f64], offset: usize, values: &[f64]) {
     }
 }
 
-/// The type of a JSON value, for messages.
+/// Names the type of a JSON value, for messages.
 pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",

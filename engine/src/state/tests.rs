@@ -23,7 +23,7 @@ fn read(text: &str) -> Result<State, Vec<String>> {
     of(&model(), "", text)
 }
 
-/// The state that a text gives, or the lines of what is wrong with it.
+/// Reads a state from a text, or returns its errors as lines.
 fn of(generated: &Generated, description: &str, text: &str) -> Result<State, Vec<String>> {
     let state = State::of(generated, description, &parse(text).expect("JSON"));
     state.map_err(|problems| problems.iter().map(ToString::to_string).collect())

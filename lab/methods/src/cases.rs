@@ -8,7 +8,7 @@ use hamel_cases::case::Inputs;
 use hamel_cases::models::CHOICES;
 use hamel_cases::{Case, Measure, bodies, mechanisms};
 use hamel_report::auto;
-use hamel_report::counted::Counted;
+use hamel_report::counted_system::CountedSystem;
 use hamel_report::data::{self, Choice, Drift};
 use hamel_report::problem::{Problem, Quantities};
 use hamel_report::solution::Solution;
@@ -63,10 +63,10 @@ pub const ALL: &[Job] = jobs! {
 fn problem<'a, Sys: System<Scalar = f64>>(
     runner: &mut Runner,
     case: &'a Case<Sys>,
-    system: &'a Counted<'a, Sys>,
+    system: &'a CountedSystem<'a, Sys>,
     momenta: Quantities<'a>,
     conservative: bool,
-) -> Problem<'a, Counted<'a, Sys>, &'a Inputs<Sys>> {
+) -> Problem<'a, CountedSystem<'a, Sys>, &'a Inputs<Sys>> {
     runner.case.until = case.until;
     runner.case.error = match case.measure {
         Measure::Attitude => "‖R − R*‖, Frobenius",
@@ -115,7 +115,7 @@ where
 {
     let momentum = angular(case);
     let vertical = Box::new(move |x: &[f64], xi: &[f64]| vec![momentum(x, xi)[2]]);
-    let system = Counted::new(&case.system);
+    let system = CountedSystem::new(&case.system);
     let problem = problem(runner, case, &system, vertical, true);
     let mut entries = methods::general(&problem);
     entries.extend(methods::split(&problem));
@@ -134,7 +134,7 @@ where
 {
     let momentum = angular(case);
     let all = Box::new(move |x: &[f64], xi: &[f64]| momentum(x, xi).to_vec());
-    let system = Counted::new(&case.system);
+    let system = CountedSystem::new(&case.system);
     let problem = problem(runner, case, &system, all, true);
     let mut entries = methods::general(&problem);
     entries.extend(methods::split(&problem));
@@ -149,7 +149,7 @@ fn flight<Sys>(runner: &mut Runner, case: &Case<Sys>, conservative: bool) -> Res
 where
     Sys: Split<Scalar = f64> + Canonical + Energies,
 {
-    let system = Counted::new(&case.system);
+    let system = CountedSystem::new(&case.system);
     let problem = problem(
         runner,
         case,
@@ -169,7 +169,7 @@ fn chain<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
     Sys: Canonical<Scalar = f64> + Energies,
 {
-    let system = Counted::new(&case.system);
+    let system = CountedSystem::new(&case.system);
     let problem = problem(runner, case, &system, Box::new(|_, _| Vec::new()), true);
     let mut entries = methods::general(&problem);
     entries.extend(methods::canonical(&problem));
@@ -182,7 +182,7 @@ fn rolling<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
 where
     Sys: Energies<Scalar = f64>,
 {
-    let system = Counted::new(&case.system);
+    let system = CountedSystem::new(&case.system);
     let problem = problem(runner, case, &system, Box::new(|_, _| Vec::new()), true);
     runner.entries(&methods::general(&problem), None);
     Ok(())

@@ -8,7 +8,7 @@ use hamel_report::data::{Case, Drift, Report};
 use hamel_report::page::{self, Picture};
 use hamel_report::plot::{Figure, PlotError, drifts, precision};
 use hamel_report::summary::summary;
-use hamel_report::{excerpt, json, markdown};
+use hamel_report::{book_excerpt, json, markdown};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -95,7 +95,7 @@ pub const CHAPTER: &str = "docs/book/src/integrators.md";
 pub fn keep(report: &Report, root: &Path) -> Result<(), BenchError> {
     let path = root.join(CHAPTER);
     let text = fs::read_to_string(&path).map_err(|error| unwritten(&path, &error))?;
-    let new = excerpt::replace_block(&text, &excerpt::block(report))
+    let new = book_excerpt::replace_block(&text, &book_excerpt::block(report))
         .ok_or_else(|| BenchError(format!("{}: no block of the report", path.display())))?;
     let kept = json::write(&summary(report)).map_err(|error| BenchError(error.to_string()))?;
     written(&root.join(SUMMARY), &kept)?;

@@ -5,7 +5,7 @@ use hamel_bench::cases::ALL;
 use hamel_bench::output::{CHAPTER, SUMMARY};
 use hamel_report::data::Report;
 use hamel_report::summary::summary;
-use hamel_report::{excerpt, json};
+use hamel_report::{book_excerpt, json};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -25,10 +25,10 @@ fn measured() -> Report {
 fn the_table_of_the_book_is_what_was_measured() {
     let report = measured();
     let chapter = read(CHAPTER);
-    let present = excerpt::present(&chapter).expect("a block");
+    let present = book_excerpt::present(&chapter).expect("a block");
     assert_eq!(
         present,
-        excerpt::block(&report),
+        book_excerpt::block(&report),
         "run the command of the report"
     );
     assert!(present.lines().count() > 10, "{present}");

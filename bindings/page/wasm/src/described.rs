@@ -25,9 +25,9 @@ pub fn described(session: &Session) -> Value {
     })
 }
 
-/// Keeps what is said of a description.
+/// Collects the warnings of a description.
 #[derive(Default)]
-pub struct Said {
+pub struct DescriptionWarnings {
     kept: Mutex<Kept>,
 }
 
@@ -38,7 +38,7 @@ struct Kept {
     warnings: Vec<Diagnostic>,
 }
 
-impl Reporter for Said {
+impl Reporter for DescriptionWarnings {
     fn warn(&self, warning: &Warning<'_>) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.text.push_str(&warning.to_string());
@@ -48,13 +48,13 @@ impl Reporter for Said {
     }
 }
 
-impl Said {
+impl DescriptionWarnings {
     fn kept(&self) -> Kept {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.clone()
     }
 
-    /// The warnings as a text.
+    /// Returns the warnings as a text.
     pub fn text(&self) -> String {
         self.kept().text
     }

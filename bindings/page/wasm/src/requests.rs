@@ -1,14 +1,14 @@
 //! Requests and their answers. A description is opened once; later requests derive or run it with the code behind the
 //! commands of `hamel`.
 
-use crate::described::{Said, described};
+use crate::described::{DescriptionWarnings, described};
 use crate::scenes::scenes;
 use hamel_cli::{Comparison, Failure, reports};
 use hamel_codegen::program::Shape;
 use hamel_codegen::tables;
 use hamel_engine::{
-    Drive, Error, Grip, InputOptions, Motion, OpenOptions, Samples, Session, Simulation, Source,
-    State, Stepping,
+    Error, Grip, InputOptions, InputSource, OpenOptions, RunArrays, Samples, Session, Simulation,
+    Source, State, Stepping,
 };
 use serde_json::{Value, json};
 use std::cell::RefCell;
@@ -35,7 +35,7 @@ pub fn answer(request: &str) -> (String, Vec<f32>) {
     (text.to_string(), numbers)
 }
 
-/// Why a request has no answer, as the page shows it.
+/// Reason for which a request has no answer, as the page shows it.
 struct Refused(String);
 
 impl From<Error> for Refused {
@@ -68,7 +68,7 @@ impl fmt::Display for Refused {
     }
 }
 
-/// An error as the command line shows it, without colours.
+/// Renders an error as the command line shows it, without colours.
 fn shown(error: &Error) -> String {
     format!("error: {error}\n")
 }
@@ -91,7 +91,7 @@ fn open(request: &Value) -> Value {
     let (text, name) = (text(request, "text"), text(request, "name"));
     // The memory of the old description is freed first.
     OPEN.replace(None);
-    let said = Arc::new(Said::default());
+    let said = Arc::new(DescriptionWarnings::default());
     let read = Session::read(text.clone(), &name, &OpenOptions::default(), said.clone());
     match read {
         Ok(session) => {
@@ -112,7 +112,7 @@ fn import(request: &Value) -> Value {
         floating: request["floating"] == true,
         ..OpenOptions::default()
     };
-    let said = Arc::new(Said::default());
+    let said = Arc::new(DescriptionWarnings::default());
     let source = Source::new(text(request, "name"), text(request, "text"), said.clone());
     match source.robot(&options) {
         Ok(source) => json!({ "text": source.text, "said": said.text() }),
@@ -233,15 +233,15 @@ fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Resul
     };
     let drawn = request["scenes"] == true;
     let mut simulation = Simulation {
-        drive: Drive::Options(inputs),
+        inputs: InputSource::Options(inputs),
         ..Simulation::new(stepping)
     };
-    let mut run = Motion::of(&session.simulate(&state, &simulation)?);
+    let mut run = RunArrays::of(&session.simulate(&state, &simulation)?);
     // Adaptive steps may be too long to be drawn; the dense output between them is as accurate.
     let stepping = &simulation.stepping;
     if drawn && stepping.step.is_none() && run.t.len() < MOMENTS && run.failure.is_none() {
         simulation.samples = Samples::At(moments(stepping.until));
-        run = Motion::of(&session.simulate(&state, &simulation)?);
+        run = RunArrays::of(&session.simulate(&state, &simulation)?);
     }
     let named = |list: &[(String, Shape, Vec<f64>)]| -> Vec<Value> {
         let parts = list.iter();
@@ -260,7 +260,7 @@ fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Resul
         None => (Value::Null, 0),
     };
     let missing = match session.drawing() {
-        Ok(drawing) if drawn => drawing.missing(),
+        Ok(drawing) if drawn => drawing.unplaced_parts(),
         _ => &[],
     };
     Ok(json!({

@@ -13,12 +13,26 @@ velocities followed by the first-order states, u the inputs. `System.coordinates
 """
 
 from ._hamel import Function, HamelError, SingularError, __version__
-from ._system import BaseParameters, Event, Happened, Linearization, Names, Run, RunError, State, StepSlopes, System, Tables
+from ._system import (
+    BaseParameters,
+    Event,
+    EventOccurrences,
+    Happened,
+    Linearization,
+    Names,
+    Run,
+    RunError,
+    State,
+    StepSlopes,
+    System,
+    Tables,
+)
 from ._sweep import sweep
 
 __all__ = [
     "BaseParameters",
     "Event",
+    "EventOccurrences",
     "Function",
     "HamelError",
     "Happened",

@@ -25,9 +25,9 @@ Inputs = Union[
 
 
 # The largest finite number.
-LARGEST = float(np.finfo(np.float64).max)
+_MAX_FLOAT = float(np.finfo(np.float64).max)
 
-Watched = Union[str, Callable[[float, Array, Array], float]]
+EventQuantity = Union[str, Callable[[float, Array, Array], float]]
 
 
 class RunError(HamelError):
@@ -121,13 +121,13 @@ class Event:
         Whether the run ends at the event.
     """
 
-    of: Watched
+    of: EventQuantity
     direction: int = 0
     terminal: bool = False
 
 
 @dataclass(frozen=True)
-class Happened:
+class EventOccurrences:
     """Occurrences of an event: times t (k,) in s, and the states x (k, coordinates) and xi (k, velocities) at them."""
 
     t: Array
@@ -136,6 +136,10 @@ class Happened:
 
     def __len__(self) -> int:
         return len(self.t)
+
+
+#: Former name of `EventOccurrences`.
+Happened = EventOccurrences
 
 
 @dataclass(frozen=True)
@@ -180,7 +184,7 @@ class Run:
     #: Reason of an early end.
     failure: str | None
     #: Occurrences of the events, by name.
-    events: dict[str, Happened]
+    events: dict[str, EventOccurrences]
     #: Name of the event that ended the run.
     stopped_by: str | None
     coordinates: Names = field(repr=False)
@@ -294,7 +298,7 @@ def _plain(value: Any, place: str = "state") -> Any:
         return _plain(value.tolist(), place)
     if isinstance(value, list | tuple):
         return [_plain(part, place) for part in value]
-    if isinstance(value, int | float) and not abs(value) <= LARGEST:
+    if isinstance(value, int | float) and not abs(value) <= _MAX_FLOAT:
         raise HamelError(f"{place}: a finite number is needed, {value} was given")
     if not isinstance(value, str | int | float | None):
         raise HamelError(f"{place}: a number, a list or a dictionary of numbers is needed, {value!r} was given")
@@ -610,7 +614,7 @@ class System:
         times: ArrayLike | None = None,
         inputs: Inputs = None,
         hold: bool = False,
-        events: Mapping[str, Event | Watched] | None = None,
+        events: Mapping[str, Event | EventQuantity] | None = None,
     ) -> Run:
         """Integrate the motion from a state.
 
@@ -707,9 +711,9 @@ class System:
             options["hold"] = True if hold else None
         if not isinstance(events, Mapping | None):
             raise HamelError(f"events have names: a dictionary is needed, as in {{'top': 'w[1]'}}, not {events!r}")
-        options["events"] = [_watched(name, event) for name, event in (events or {}).items()]
+        options["events"] = [_event_arguments(name, event) for name, event in (events or {}).items()]
         found = self._session.simulate(state, options)
-        found["events"] = {name: Happened(*parts) for name, parts in found["events"].items()}
+        found["events"] = {name: EventOccurrences(*parts) for name, parts in found["events"].items()}
         run = Run(**found, coordinates=self.coordinates, velocities=self.velocities)
         if run.failure is not None:
             raise RunError(run.failure, run)
@@ -790,7 +794,7 @@ class System:
         return BaseParameters(json.loads(found["json"]), found["text"], found["latex"], found["markdown"])
 
 
-def _watched(name: str, event: Event | Watched) -> tuple[str, Watched, int, bool]:
+def _event_arguments(name: str, event: Event | EventQuantity) -> tuple[str, EventQuantity, int, bool]:
     """Convert an event to the arguments of the session: name, quantity, direction and whether it is terminal."""
     if not isinstance(event, Event):
         event = Event(event, getattr(event, "direction", 0), getattr(event, "terminal", False))

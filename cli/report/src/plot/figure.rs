@@ -3,7 +3,7 @@
 use super::line::Point;
 use super::theme;
 use super::width::fit;
-use crate::code::plain;
+use crate::code_markup::plain;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};

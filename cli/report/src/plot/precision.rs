@@ -51,7 +51,7 @@ const LEGEND_ROW_HEIGHT: f64 = 17.0;
 const NAME_OFFSET: f64 = 29.0;
 const MIN_NAME_WIDTH: f64 = 105.0;
 
-/// Draws error against evaluations, and error against time where it was measured.
+/// Draws error against evaluations, and error against time if it was measured.
 ///
 /// # Errors
 /// If the drawing library fails; no case is known.

@@ -15,7 +15,7 @@ use hamel_codegen::syntax::path::plain;
 use std::error;
 use std::fmt;
 
-/// What is wrong with the expression of an input.
+/// Error in the expression of an input.
 #[derive(Clone, Debug)]
 pub enum ExpressionProblem {
     /// There is no name with `=` in front of it.
@@ -29,7 +29,7 @@ pub enum ExpressionProblem {
     },
     /// There are several expressions, or none.
     NotOne,
-    /// It is no expression of the description's names.
+    /// It is not an expression in names of the description.
     Refused(Box<Diagnostic>),
     /// It has another number of entries than the input.
     Entries {
@@ -159,14 +159,14 @@ impl Expressions {
         }))
     }
 
-    /// The entries of u that expressions set.
+    /// Returns the entries of u that expressions set.
     pub fn places(&self) -> impl Iterator<Item = usize> {
         self.all
             .iter()
             .flat_map(|(places, _)| places.iter().copied())
     }
 
-    /// The first input that depends on velocities or on states of first order.
+    /// Returns the first input that depends on velocities or on states of first order.
     pub fn moving(&self) -> Option<&str> {
         self.moving.as_deref()
     }
@@ -191,7 +191,7 @@ impl Expressions {
     }
 }
 
-/// The value of an expression in parameters alone.
+/// Evaluates an expression that depends on parameters alone.
 pub fn constant(
     expression: &str,
     model: &Model,
@@ -212,7 +212,7 @@ pub fn constant(
     Ok(values.unwrap_or_else(|_| vec![f64::NAN; count]))
 }
 
-/// The declaration of a group with its shape.
+/// Returns the declaration of a group with its shape.
 fn declared(group: &Group) -> String {
     match group.shape {
         ShapeKind::Scalar => group.name.clone(),
@@ -347,7 +347,7 @@ fn refused(errors: Vec<Diagnostic>, text: &str, rates: &[(String, String)]) -> E
 }
 
 impl ExpressionProblem {
-    /// The same with the name of the input in place of the one that its expression is compiled by.
+    /// Replaces the name by which the expression is compiled by that of the input.
     fn about(self, name: &str) -> Self {
         let named = |text: &String| text.replace(COMPILED, name);
         match self {

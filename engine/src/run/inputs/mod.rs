@@ -107,7 +107,7 @@ impl error::Error for UnknownInput {}
 pub struct Inputs {
     columns: Option<InputColumns>,
     expressions: Option<Expressions>,
-    law: Option<Law>,
+    law: Option<ControlLaw>,
     /// Index in x of the time that the description declares.
     clock: Option<usize>,
     /// The description's time at the start of a run.
@@ -116,19 +116,19 @@ pub struct Inputs {
 
 /// A function of t, x and ξ that sets entries of u: an external controller.
 #[derive(Clone)]
-pub struct Law(pub Arc<Control>);
+pub struct ControlLaw(pub Arc<ControlFunction>);
 
 /// Signature of a controller.
-pub type Control = dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync;
+pub type ControlFunction = dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync;
 
-impl fmt::Debug for Law {
+impl fmt::Debug for ControlLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Law")
+        f.write_str("ControlLaw")
     }
 }
 
-impl From<Law> for Inputs {
-    fn from(law: Law) -> Self {
+impl From<ControlLaw> for Inputs {
+    fn from(law: ControlLaw) -> Self {
         Inputs {
             columns: None,
             expressions: None,
@@ -225,7 +225,7 @@ impl Inputs {
         if let Some(expressions) = &self.expressions {
             expressions.set(self.begin + t, x, xi, u);
         }
-        if let Some(Law(law)) = &self.law {
+        if let Some(ControlLaw(law)) = &self.law {
             law(t, x, xi, u);
         }
     }

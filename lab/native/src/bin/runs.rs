@@ -7,7 +7,7 @@ use cpu_time::ProcessTime;
 use hamel::methods::{Method, Rkmk4, Rkmk8, Scheme, Splitting};
 use hamel::wide::f64x8;
 use hamel::{State, System, ensemble, integrate};
-use hamel_engine::{Motion, OpenOptions, Quiet, Session, Simulation, Stepping};
+use hamel_engine::{OpenOptions, Quiet, RunArrays, Session, Simulation, Stepping};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -69,7 +69,7 @@ fn runs() {
         });
         let simulate = || {
             let run = session.simulate(&start, &simulation);
-            Motion::of(&run.expect("a run"))
+            RunArrays::of(&run.expect("a run"))
         };
         let first = simulate();
         let own = || match first.method {

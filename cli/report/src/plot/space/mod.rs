@@ -20,7 +20,7 @@ use super::figure::{Figure, escape, unit};
 use super::line::Point;
 use super::theme;
 use super::width::fit;
-use crate::code::plain;
+use crate::code_markup::plain;
 use element::Sheet;
 use floor::Floor;
 use shape::MIN_SPLIT_WIDTH;
@@ -54,8 +54,8 @@ const HEIGHT_RANGE: (f64, f64) = (240.0, 460.0);
 /// Margins: at the top and on the other sides.
 const TOP_MARGIN: f64 = 58.0;
 const SIDE_MARGIN: f64 = 26.0;
-/// Longest piece of a bar, each of which has a separate depth, and largest number of pieces; bars thinner than `MIN_SPLIT_WIDTH`
-/// have one piece (pixels).
+/// Longest piece of a bar, each of which has a separate depth, and largest number of pieces; bars thinner than
+/// `MIN_SPLIT_WIDTH` have one piece (pixels).
 const MAX_PIECE_LENGTH: f64 = 40.0;
 const MAX_BAR_PIECES: f64 = 5.0;
 /// Opacities of the faintest and the strongest of the faint poses.

@@ -1,17 +1,17 @@
 //! Finds zero divisors in constraints that were solved by dividing by parameters.
 
 use crate::names;
-use crate::state::solved::shown;
+use crate::state::dependent_velocities::describe_constraint;
 use hamel_codegen::algebra::graph::{Edge, Graph};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::text::short;
 use hamel_codegen::generate::Generated;
 
-/// Maximal length of a factor in a message.
+/// Largest length of a factor in a message.
 const MAX_SHOWN_LENGTH: usize = 40;
 
-/// The factors by which constraints were divided to solve them for velocities, if they are not plain numbers, each with
-/// the message for the case that it is 0.
+/// Factors by which constraints were divided to solve them for velocities, unless they are plain numbers, each with the
+/// message for the case that it is 0.
 pub struct Divisors {
     graph: Graph,
     factors: Vec<(Edge, String)>,
@@ -29,7 +29,7 @@ impl Divisors {
             if model.graph.class(edge.node()) == 0 {
                 return None;
             }
-            let (row, name) = (shown(constraint, text), names.get(velocity)?);
+            let (row, name) = (describe_constraint(constraint, text), names.get(velocity)?);
             let factor = short(&model.graph, edge, MAX_SHOWN_LENGTH);
             let factor = factor.map_or(String::new(), |factor| format!(" `{factor}`"));
             let said = format!("{row}, gives `{name}` by others, but its factor{factor} is 0");
@@ -42,7 +42,7 @@ impl Divisors {
         })
     }
 
-    /// The message of the first divisor that is 0 with these parameters, if any.
+    /// Returns the message of the first divisor that is 0 with these parameters, if any.
     pub fn zero(&self, params: &[f64]) -> Option<&str> {
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend_from_slice(params);

@@ -1,12 +1,12 @@
-//! The given entries of a state, by the velocities of the full frame.
+//! Entries of a state that a file gives, by the velocities of the full frame.
 
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::{Group, Model};
 use hamel_codegen::syntax::ast::JointKind;
 
-/// The given entries of x, and the given values of ξ.
+/// Given entries of x and z, and given values of ξ.
 #[derive(Clone, Debug)]
-pub struct Given {
+pub struct GivenEntries {
     /// Given entries of x.
     pub x: Vec<bool>,
     /// Given values of ξ of the full frame.
@@ -15,11 +15,11 @@ pub struct Given {
     pub z: Vec<bool>,
 }
 
-impl Given {
-    /// No given entries.
-    pub fn nothing(generated: &Generated) -> Self {
+impl GivenEntries {
+    /// Returns that no entries are given.
+    pub fn none(generated: &Generated) -> Self {
         let model = &generated.model;
-        Given {
+        GivenEntries {
             x: vec![false; model.nu()],
             xi: vec![None; model.n()],
             z: vec![false; model.start_z.len()],
@@ -27,7 +27,7 @@ impl Given {
     }
 }
 
-/// Indices of the velocities of states in ξ of the full frame.
+/// Returns the indices of the velocities of states in ξ of the full frame.
 pub fn places(generated: &Generated) -> Vec<usize> {
     let full = &generated.model;
     let solved = |place: &usize| generated.solved.iter().any(|(solved, _)| solved == place);
@@ -39,8 +39,8 @@ pub fn places(generated: &Generated) -> Vec<usize> {
     all.collect()
 }
 
-/// Velocities that a state may contain, by their indices in ξ of the full frame: all of the description except the rate
-/// of time, and the entries that constraints leave of them.
+/// Returns the velocities that a state may contain, by their indices in ξ of the full frame: all of the description
+/// except the rate of time, and the entries that constraints leave of them.
 pub fn velocities(generated: &Generated) -> Vec<Group> {
     let (full, active) = (&generated.model, &generated.active);
     let places = places(generated);
@@ -63,8 +63,8 @@ pub fn velocities(generated: &Generated) -> Vec<Group> {
     all
 }
 
-/// A joint with velocities, by one of its names.
-pub struct Moving<'a> {
+/// Velocities of a joint, by one of its names.
+pub struct JointVelocities<'a> {
     /// Name.
     pub name: &'a str,
     /// Indices of its velocities in ξ.
@@ -73,9 +73,9 @@ pub struct Moving<'a> {
     pub linear: Option<usize>,
 }
 
-/// The joints with velocities, by their names in the robot's file and by those in the description unless another joint
-/// has that name in the file; `names` are pairs of these.
-pub fn joints<'a>(model: &'a Model, names: &'a [(String, String)]) -> Vec<Moving<'a>> {
+/// Returns the joints with velocities, by their names in the robot's file and by those in the description unless
+/// another joint has that name in the file; `names` are pairs of these.
+pub fn joints<'a>(model: &'a Model, names: &'a [(String, String)]) -> Vec<JointVelocities<'a>> {
     let mut all = Vec::new();
     for joint in &model.joints {
         let groups = joint.velocities.iter().filter_map(|name| {
@@ -96,11 +96,15 @@ pub fn joints<'a>(model: &'a Model, names: &'a [(String, String)]) -> Vec<Moving
         let own = Some(joint.name.as_str());
         let own = own.filter(|own| names.iter().all(|(written, _)| written != own));
         let called = written.into_iter().chain(own);
-        all.extend(called.filter(|_| !places.is_empty()).map(|name| Moving {
-            name,
-            places: places.clone(),
-            linear,
-        }));
+        all.extend(
+            called
+                .filter(|_| !places.is_empty())
+                .map(|name| JointVelocities {
+                    name,
+                    places: places.clone(),
+                    linear,
+                }),
+        );
     }
     all
 }

@@ -1,7 +1,7 @@
-//! Steps of methods as machine code: the method runs once on numbers that record its operations.
+//! Compiles whole steps of methods to machine code: the method runs once on numbers that record its operations.
 
 use super::Mechanism;
-use super::taped::{Places, Taped, Tapes};
+use super::tape_system::{TapeEvaluator, TapeIndices, TapeSystem};
 use hamel::State;
 use hamel::methods::{General, Method};
 use hamel_codegen::program::tape::{Source, Tape};
@@ -10,13 +10,13 @@ use hamel_native::{Compiled, Paired, Traced, inlined, traced};
 use std::cell::Cell;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Number of statements from which a step is not worth compiling.
-const MOST: usize = 20_000;
-/// Number of compiled steps that are kept.
-const KEPT: usize = 64;
+/// Largest number of statements of a step; longer steps are not worth compiling.
+const MAX_STATEMENTS: usize = 20_000;
+/// Largest number of compiled steps that a mechanism keeps.
+const MAX_CACHED_STEPS: usize = 64;
 
 /// A step of a method with a fixed length, as machine code.
-pub struct Code {
+pub struct StepCode {
     method: General,
     /// The length of the step.
     pub h: f64,
@@ -25,13 +25,13 @@ pub struct Code {
     /// The step for two states at once, compiled on first use.
     paired: OnceLock<Option<Paired>>,
     /// The step followed by T, V and the entries of φ at its end, compiled on first use.
-    watched: OnceLock<Option<Compiled>>,
+    with_energies: OnceLock<Option<Compiled>>,
     /// Number of evaluations of ξ̇ in the step.
     pub evaluations: u64,
 }
 
-impl Code {
-    /// The step for two states at once, if the single step was compiled.
+impl StepCode {
+    /// Returns the step for two states at once, if the single step was compiled.
     pub fn paired(&self) -> Option<&Paired> {
         let make = || self.compiled.as_ref().and_then(Paired::new);
         self.paired.get_or_init(make).as_ref()
@@ -39,40 +39,40 @@ impl Code {
 }
 
 impl Mechanism {
-    /// A step of a method as machine code, compiled on first use.
-    pub fn step(&self, method: General, h: f64) -> Arc<Code> {
+    /// Returns a step of a method as machine code, compiled on first use.
+    pub fn compiled_step(&self, method: General, h: f64) -> Arc<StepCode> {
         let mut known = self.steps.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |code: &&Arc<Code>| code.method == method && code.h == h;
+        let same = |code: &&Arc<StepCode>| code.method == method && code.h == h;
         if let Some(code) = known.iter().find(same) {
             return Arc::clone(code);
         }
-        let tape = self.tape(&method, h, false);
-        let code = Arc::new(Code {
+        let tape = self.record(&method, h, false);
+        let code = Arc::new(StepCode {
             method,
             h,
             paired: OnceLock::new(),
-            watched: OnceLock::new(),
+            with_energies: OnceLock::new(),
             evaluations: tape.as_ref().map_or(0, |(_, evaluations)| *evaluations),
-            compiled: tape.and_then(|(tape, _)| self.alone(tape)),
+            compiled: tape.and_then(|(tape, _)| self.compile(tape)),
         });
-        if known.len() >= KEPT {
+        if known.len() >= MAX_CACHED_STEPS {
             known.clear();
         }
         known.push(Arc::clone(&code));
         code
     }
 
-    /// The step with T, V and the entries of φ appended to the state at its end.
-    pub fn watched<'c>(&self, code: &'c Code) -> Option<&'c Compiled> {
+    /// Returns the step with T, V and the entries of φ appended to the state at its end.
+    pub fn compiled_step_with_energies<'c>(&self, code: &'c StepCode) -> Option<&'c Compiled> {
         let make = || {
-            let (tape, _) = self.tape(&code.method, code.h, true)?;
-            self.alone(tape)
+            let (tape, _) = self.record(&code.method, code.h, true)?;
+            self.compile(tape)
         };
-        code.watched.get_or_init(make).as_ref()
+        code.with_energies.get_or_init(make).as_ref()
     }
 
     /// Compiles a tape to machine code.
-    fn alone(&self, tape: Tape) -> Option<Compiled> {
+    fn compile(&self, tape: Tape) -> Option<Compiled> {
         let tapes = hamel_native::Tapes {
             functions: vec![tape],
             ..self.compiled.tapes().clone()
@@ -83,9 +83,9 @@ impl Mechanism {
     }
 
     /// Records a step, and counts its evaluations of ξ̇. If the description declares a time, its value at the end is an
-    /// argument, in place of accelerations, so that a run does not accumulate the lengths of steps. With `watched`, T,
-    /// V and φ at the end are appended.
-    fn tape(&self, method: &General, h: f64, watched: bool) -> Option<(Tape, u64)> {
+    /// argument, in place of accelerations, so that a run does not accumulate the lengths of steps. With
+    /// `with_energies`, T, V and φ at the end are appended.
+    fn record(&self, method: &General, h: f64, with_energies: bool) -> Option<(Tape, u64)> {
         // Only machine code is of use here, which some builds do not have.
         if cfg!(not(feature = "machine")) {
             return None;
@@ -102,7 +102,7 @@ impl Mechanism {
         let accel = self.accel.filter(|_| explicit)?;
         let tapes = self.compiled.tapes();
         // Check the size before recording: a step has a few evaluations.
-        if tapes.functions.get(accel.index())?.steps.len() > MOST {
+        if tapes.functions.get(accel.index())?.steps.len() > MAX_STATEMENTS {
             return None;
         }
         let [x, xi, u, ..] = tapes.lengths;
@@ -110,9 +110,9 @@ impl Mechanism {
             let entries = (0..count).map(|index| Source::Argument(argument, index));
             entries.map(Traced::argument).collect()
         };
-        let written = Taped(Written {
+        let recording = TapeSystem(RecordingMechanism {
             of: self,
-            places: Places {
+            indices: TapeIndices {
                 blocks: self.blocks.clone(),
                 chart: self.chart,
                 lengths: [x, xi, u],
@@ -130,7 +130,7 @@ impl Mechanism {
             },
             evaluations: Cell::new(0),
         });
-        let state = State::<Taped<Written>> {
+        let state = State::<TapeSystem<RecordingMechanism>> {
             t: 0.0,
             x: entries(Argument::Coordinates, x),
             xi: entries(Argument::Velocities, xi),
@@ -138,52 +138,54 @@ impl Mechanism {
         let held = entries(Argument::Inputs, u);
         let inputs = |_, _: &Vec<Traced>, _: &Vec<Traced>| held.clone();
         let mut failed = false;
-        let tape = traced("step", || match method.step(&written, &state, h, &inputs) {
-            Ok(mut end) => {
-                if let Some(time) = self.clock.and_then(|place| end.x.get_mut(place)) {
-                    *time = Traced::argument(Source::Argument(Argument::Accelerations, 0));
-                }
-                let mut all = [&end.x[..], &end.xi].concat();
-                if watched {
-                    let Places {
-                        kinetic,
-                        potential,
-                        constraint,
-                        ..
-                    } = written.0.places;
-                    for function in [kinetic, potential, constraint] {
-                        let value = written.0.call(function, [&end.x, &end.xi, &[]]);
-                        all.extend(value.unwrap_or_default());
+        let tape = traced("step", || {
+            match method.step(&recording, &state, h, &inputs) {
+                Ok(mut end) => {
+                    if let Some(time) = self.clock.and_then(|place| end.x.get_mut(place)) {
+                        *time = Traced::argument(Source::Argument(Argument::Accelerations, 0));
                     }
+                    let mut all = [&end.x[..], &end.xi].concat();
+                    if with_energies {
+                        let TapeIndices {
+                            kinetic,
+                            potential,
+                            constraint,
+                            ..
+                        } = recording.0.indices;
+                        for function in [kinetic, potential, constraint] {
+                            let value = recording.0.call(function, [&end.x, &end.xi, &[]]);
+                            all.extend(value.unwrap_or_default());
+                        }
+                    }
+                    all
                 }
-                all
-            }
-            Err(_) => {
-                failed = true;
-                Vec::new()
+                Err(_) => {
+                    failed = true;
+                    Vec::new()
+                }
             }
         });
-        let tape = tape.filter(|tape| !failed && tape.steps.len() <= MOST)?;
-        Some((tape, written.0.evaluations.get()))
+        let tape = tape.filter(|tape| !failed && tape.steps.len() <= MAX_STATEMENTS)?;
+        Some((tape, recording.0.evaluations.get()))
     }
 }
 
-/// A mechanism whose numbers record the operations on them.
-struct Written<'a> {
+/// Mechanism over numbers that record the operations on them.
+struct RecordingMechanism<'a> {
     of: &'a Mechanism,
-    places: Places,
+    indices: TapeIndices,
     evaluations: Cell<u64>,
 }
 
-impl Tapes for Written<'_> {
+impl TapeEvaluator for RecordingMechanism<'_> {
     type Number = Traced;
 
-    fn places(&self) -> &Places {
-        &self.places
+    fn indices(&self) -> &TapeIndices {
+        &self.indices
     }
 
     fn call(&self, function: usize, [x, xi, u]: [&[Traced]; 3]) -> Result<Vec<Traced>, Cause> {
-        if function == self.places.accel {
+        if function == self.indices.accel {
             self.evaluations.set(self.evaluations.get() + 1);
         }
         let tape = self.of.compiled.tapes().functions.get(function);
@@ -191,6 +193,6 @@ impl Tapes for Written<'_> {
     }
 }
 
-/// The compiled steps of a mechanism.
+/// Cache of the compiled steps of a mechanism.
 #[derive(Default)]
-pub struct Steps(Mutex<Vec<Arc<Code>>>);
+pub struct StepCache(Mutex<Vec<Arc<StepCode>>>);

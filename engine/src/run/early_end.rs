@@ -1,6 +1,6 @@
-//! Why a run ends before its time.
+//! Reasons for which runs end early.
 
-use super::balance::Balance;
+use super::energy_balance::EnergyBalance;
 use super::plan::Plan;
 use crate::error::Error;
 use crate::mechanism::{Instance, SingularState};
@@ -8,7 +8,7 @@ use hamel::{State, StepError};
 use hamel_files::number::short;
 use std::fmt;
 
-/// Why a run has ended before its time.
+/// Reason for which a run ended early.
 #[derive(Clone, Debug)]
 pub enum EarlyEnd {
     /// The energy has changed by more than loads account for: the run does not follow the motion any more.
@@ -30,7 +30,7 @@ pub enum EarlyEnd {
         rate: f64,
         /// The length of the steps.
         step: f64,
-        /// How many such steps are ahead.
+        /// Number of such steps to the end.
         ahead: f64,
     },
     /// The motion has no value.
@@ -59,7 +59,7 @@ pub enum EarlyEnd {
 }
 
 impl EarlyEnd {
-    /// What has happened, in a word or two.
+    /// Names the reason in a word or two.
     pub fn kind(&self) -> &'static str {
         match self {
             EarlyEnd::Lost { .. } => "lost",
@@ -71,20 +71,20 @@ impl EarlyEnd {
         }
     }
 
-    /// What has become of a run that has come to a state: nothing, where it has come to its end.
+    /// Explains the outcome of a run that reached `state`; `None` if it reached its end and followed the motion.
     ///
     /// # Errors
-    /// A plan by which nothing can be run.
+    /// The plan is invalid.
     pub fn of(
         system: &Instance,
         plan: &Plan,
         outcome: Result<(), StepError>,
         state: &State<Instance>,
-        balance: Balance,
+        balance: EnergyBalance,
     ) -> Result<Option<Self>, Error> {
         let early = match outcome {
             Ok(()) => {
-                if !plan.watches(system) {
+                if !plan.monitors_energy(system) {
                     return Ok(None);
                 }
                 let Some(change) = balance.after(system, state).lost(plan.tolerance) else {

@@ -1,8 +1,9 @@
-//! The traits for methods that step momenta; a system without their functions is refused before a run begins.
+//! Functions and trait implementations for methods that step momenta. A system without these functions is refused
+//! before a run begins.
 
-use super::functions::place;
+use super::functions::find_function;
 use super::singular::Failed;
-use super::{Functions, Instance, Numbers, Place};
+use super::{FunctionIndex, Functions, Instance, Numbers};
 use crate::error::Error;
 use crate::run::Inputs;
 use hamel::rotor::{Rotor, Symmetry};
@@ -11,20 +12,20 @@ use hamel_codegen::program::Program;
 use hamel_codegen::program::structure::{self, Inertia, Reason, Structure};
 use hamel_native::Compiled;
 
-/// The functions of a system that splits, and those of generalised momenta.
+/// Functions for splitting methods and for generalised momenta.
 #[derive(Default)]
-pub struct Momenta {
+pub struct MomentumFunctions {
     forms: Vec<Inertia>,
     /// Whether kicks are ever nonzero.
     has_forces: bool,
-    inertia: Option<Place>,
-    centre: Option<Place>,
-    uncentre: Option<Place>,
-    momenta: Option<Place>,
-    velocities: Option<Place>,
-    kick: Option<Place>,
-    rate: Option<Place>,
-    velocity: Option<Place>,
+    inertia: Option<FunctionIndex>,
+    centre: Option<FunctionIndex>,
+    uncentre: Option<FunctionIndex>,
+    momenta: Option<FunctionIndex>,
+    velocities: Option<FunctionIndex>,
+    kick: Option<FunctionIndex>,
+    rate: Option<FunctionIndex>,
+    velocity: Option<FunctionIndex>,
 }
 
 /// Names of these functions.
@@ -39,12 +40,12 @@ pub const NAMES: &[&str] = &[
     "velocity_from_momentum",
 ];
 
-impl Momenta {
+impl MomentumFunctions {
     /// Finds the functions that a program has.
     pub fn new(program: &Program, compiled: &Compiled) -> Self {
-        let known = |name: &str| place(compiled, name);
+        let known = |name: &str| find_function(compiled, name);
         let split = program.structure.split.as_ref().ok();
-        Momenta {
+        MomentumFunctions {
             forms: split.map_or_else(Vec::new, |splitting| {
                 splitting.rotors.iter().map(|form| form.inertia).collect()
             }),
@@ -60,7 +61,7 @@ impl Momenta {
         }
     }
 
-    /// The rotors for the parameters of the functions.
+    /// Returns the rotors for the parameters of the functions.
     pub fn rotors(&self, functions: &Functions) -> Result<Vec<Rotor<f64>>, Error> {
         let Some(inertia) = self.inertia else {
             return Ok(Vec::new());
@@ -93,14 +94,19 @@ fn rotor(inertia: Inertia, numbers: &[f64]) -> Result<Rotor<f64>, Error> {
 }
 
 impl Instance {
-    /// The value of a function; NaN, which ends a run with an error, if there is none.
-    fn found(&self, function: Option<Place>, arguments: [&[f64]; 5], length: usize) -> Numbers {
+    /// Evaluates a function; NaN, which ends a run with an error, if it does not exist.
+    fn found(
+        &self,
+        function: Option<FunctionIndex>,
+        arguments: [&[f64]; 5],
+        length: usize,
+    ) -> Numbers {
         let value = function.map(|function| self.functions.call(function, arguments));
         let value = value.and_then(Result::ok);
         value.unwrap_or_else(|| Numbers::filled(f64::NAN, length))
     }
 
-    /// The structure, including the symmetries of the inertias for these parameters.
+    /// Returns the structure of the system, including the symmetries of the inertias for these parameters.
     pub fn structure(&self, program: &Program) -> Structure {
         let mut structure = program.structure.clone();
         if let Ok(splitting) = &mut structure.split {
@@ -118,7 +124,7 @@ impl Instance {
         structure
     }
 
-    /// The structure for choosing a method: an external controller is assumed to depend on velocities.
+    /// Returns the structure for choosing a method: an external controller is assumed to depend on velocities.
     pub fn cautious(&self, program: &Program) -> Structure {
         let mut structure = self.structure(program);
         if structure.split.is_ok() && self.given().is_some_and(Inputs::is_law) {

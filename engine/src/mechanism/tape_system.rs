@@ -1,4 +1,4 @@
-//! A mechanism over another number type: its functions are tapes, which the implementor of [`Tapes`] evaluates.
+//! Mechanisms over other number types: their functions are tapes, which a [`TapeEvaluator`] evaluates.
 
 use super::singular;
 use hamel::{Block, Energies, Scalar, Singular, System};
@@ -6,7 +6,7 @@ use hamel_codegen::program::Cause;
 
 /// Indices of functions among the tapes, and the shapes of their arguments.
 #[derive(Clone, Debug)]
-pub struct Places {
+pub struct TapeIndices {
     pub blocks: Vec<Block>,
     pub chart: usize,
     /// Numbers of entries of x, of ξ with z, and of u.
@@ -24,15 +24,15 @@ pub struct Places {
     pub project_velocity: Option<usize>,
 }
 
-/// Tapes evaluated in a number type.
-pub trait Tapes {
+/// Evaluates the functions of a mechanism, given as tapes, in a number type.
+pub trait TapeEvaluator {
     /// The number type.
     type Number: Scalar;
 
-    /// The indices of the functions.
-    fn places(&self) -> &Places;
+    /// Returns the indices of the functions among the tapes.
+    fn indices(&self) -> &TapeIndices;
 
-    /// The result of a function for x, ξ and u.
+    /// Evaluates a function for x, ξ and u.
     fn call(
         &self,
         function: usize,
@@ -40,11 +40,11 @@ pub trait Tapes {
     ) -> Result<Vec<Self::Number>, Cause>;
 }
 
-/// A system made of tapes.
-pub struct Taped<T>(pub T);
+/// System whose functions are tapes, so that methods can step it in any number type.
+pub struct TapeSystem<T>(pub T);
 
-impl<T: Tapes> Taped<T> {
-    /// The value of a function with `length` entries; NaN if it has no value.
+impl<T: TapeEvaluator> TapeSystem<T> {
+    /// Evaluates a function with `length` entries; NaN if it has no value.
     fn value(
         &self,
         function: usize,
@@ -66,7 +66,7 @@ impl<T: Tapes> Taped<T> {
     }
 }
 
-impl<T: Tapes> System for Taped<T> {
+impl<T: TapeEvaluator> System for TapeSystem<T> {
     type Scalar = T::Number;
     type Coordinates = Vec<T::Number>;
     type Velocities = Vec<T::Number>;
@@ -74,25 +74,25 @@ impl<T: Tapes> System for Taped<T> {
     type Inputs = Vec<T::Number>;
 
     fn blocks(&self) -> &[Block] {
-        &self.0.places().blocks
+        &self.0.indices().blocks
     }
 
     fn zero_velocities(&self) -> Self::Velocities {
-        Self::zeros(self.0.places().lengths[1])
+        Self::zeros(self.0.indices().lengths[1])
     }
 
     fn zero_inputs(&self) -> Self::Inputs {
-        Self::zeros(self.0.places().lengths[2])
+        Self::zeros(self.0.indices().lengths[2])
     }
 
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates {
-        let places = self.0.places();
-        self.value(places.rate, places.lengths[0], x, xi)
+        let indices = self.0.indices();
+        self.value(indices.rate, indices.lengths[0], x, xi)
     }
 
     fn chart_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
-        let places = self.0.places();
-        self.value(places.chart_rate, places.chart, x, xi)
+        let indices = self.0.indices();
+        self.value(indices.chart_rate, indices.chart, x, xi)
     }
 
     fn forward_dynamics(
@@ -101,24 +101,24 @@ impl<T: Tapes> System for Taped<T> {
         xi: &Self::Velocities,
         u: &Self::Inputs,
     ) -> Result<Self::Velocities, Singular> {
-        let accel = self.0.places().accel;
+        let accel = self.0.indices().accel;
         self.0.call(accel, [x, xi, u]).map_err(singular)
     }
 
     fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates {
-        let places = self.0.places();
-        self.value(places.correction, places.lengths[0], x, &[])
+        let indices = self.0.indices();
+        self.value(indices.correction, indices.lengths[0], x, &[])
     }
 
     fn project_coordinates(&self, x: &Self::Coordinates) -> Option<Self::Coordinates> {
-        self.0.places().embedded.then(|| self.correction(x))
+        self.0.indices().embedded.then(|| self.correction(x))
     }
 
     fn project_position(
         &self,
         x: &Self::Coordinates,
     ) -> Result<Option<Self::Velocities>, Singular> {
-        let step = self.0.places().project_position;
+        let step = self.0.indices().project_position;
         let step = step.map(|function| self.0.call(function, [x, &[], &[]]));
         step.transpose().map_err(singular)
     }
@@ -128,24 +128,24 @@ impl<T: Tapes> System for Taped<T> {
         x: &Self::Coordinates,
         xi: &Self::Velocities,
     ) -> Result<Option<Self::Velocities>, Singular> {
-        let projected = self.0.places().project_velocity;
+        let projected = self.0.indices().project_velocity;
         let projected = projected.map(|function| self.0.call(function, [x, xi, &[]]));
         projected.transpose().map_err(singular)
     }
 
     fn constraint_norm(&self, x: &Self::Coordinates) -> T::Number {
-        let residuals = self.value(self.0.places().constraint, 1, x, &[]);
+        let residuals = self.value(self.0.indices().constraint, 1, x, &[]);
         let sizes = residuals.into_iter().map(Scalar::abs);
         sizes.fold(T::Number::default(), Scalar::max)
     }
 }
 
-impl<T: Tapes> Energies for Taped<T> {
+impl<T: TapeEvaluator> Energies for TapeSystem<T> {
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> T::Number {
-        self.number(self.0.places().kinetic, x, xi)
+        self.number(self.0.indices().kinetic, x, xi)
     }
 
     fn potential_energy(&self, x: &Self::Coordinates) -> T::Number {
-        self.number(self.0.places().potential, x, &[])
+        self.number(self.0.indices().potential, x, &[])
     }
 }

@@ -1,6 +1,6 @@
-//! Runs steps as machine code: one by one, many in one call, or those of two systems together.
+//! Takes steps as machine code: one by one, many in one call, or those of two systems together.
 
-use super::steps::Code;
+use super::step_code::StepCode;
 use super::{Instance, largest};
 use crate::method::Stepper;
 use hamel::methods::Method;
@@ -9,21 +9,21 @@ use hamel_native::{Compiled, Constants};
 use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 
-/// Least number of equal steps that is worth a compilation.
-const FEWEST: f64 = 1000.0;
+/// Least number of equal steps for which a step is compiled.
+const MIN_STEPS_TO_COMPILE: f64 = 1000.0;
 
 /// A compiled step with the parameters of one system.
-struct Ready {
-    code: Arc<Code>,
+struct ParametrizedStep {
+    code: Arc<StepCode>,
     compiled: Compiled,
     constants: Constants,
     /// The step with energies at its end.
-    watched: OnceCell<Option<(Compiled, Constants)>>,
+    with_energies: OnceCell<Option<(Compiled, Constants)>>,
 }
 
-/// Energies and constraints at the end of a step.
+/// Energies and constraint violation at the end of a step.
 #[derive(Clone, Copy, Debug)]
-pub struct Glance {
+pub struct StepEnergies {
     /// T.
     pub kinetic: f64,
     /// V.
@@ -32,30 +32,30 @@ pub struct Glance {
     pub constraint: f64,
 }
 
-/// A method that runs as machine code if all steps have the same length and inputs are constant.
-pub struct Whole<'a> {
+/// Method whose steps run as machine code if all have the same length and inputs are constant.
+pub struct CompiledStepper<'a> {
     stepper: &'a Stepper,
     /// The code for the length of the first step.
-    code: OnceCell<Option<Ready>>,
+    code: OnceCell<Option<ParametrizedStep>>,
     /// Buffer for x and ξ at the end of a step.
     end: RefCell<Vec<f64>>,
     worthwhile: bool,
     length: f64,
 }
 
-impl<'a> Whole<'a> {
-    /// A method for steps of this length over a total time.
+impl<'a> CompiledStepper<'a> {
+    /// Prepares a method for steps of this length over a total time; the step is compiled on first use.
     pub fn new(system: &Instance, stepper: &'a Stepper, length: f64, time: f64) -> Self {
-        Whole {
+        CompiledStepper {
             stepper,
             code: OnceCell::new(),
             end: RefCell::default(),
-            worthwhile: time / length >= FEWEST && system.given.is_none(),
+            worthwhile: time / length >= MIN_STEPS_TO_COMPILE && system.given.is_none(),
             length,
         }
     }
 
-    fn code(&self, system: &Instance, h: f64) -> Option<&Ready> {
+    fn code(&self, system: &Instance, h: f64) -> Option<&ParametrizedStep> {
         if !self.worthwhile {
             return None;
         }
@@ -63,21 +63,26 @@ impl<'a> Whole<'a> {
             let Stepper::General(method) = self.stepper else {
                 return None;
             };
-            let code = system.of.step(*method, h);
+            let code = system.of.compiled_step(*method, h);
             let compiled = code.compiled.clone()?;
             let constants = compiled.constants(system.functions.params());
-            Some(Ready {
+            Some(ParametrizedStep {
                 code,
                 compiled,
                 constants,
-                watched: OnceCell::new(),
+                with_energies: OnceCell::new(),
             })
         });
         ready.as_ref().filter(|ready| ready.code.h == h)
     }
 
-    /// The code of all steps to a time and their grid, if they can be taken at once.
-    fn at_once(&self, system: &Instance, from: f64, until: f64) -> Option<(&Ready, Grid)> {
+    /// Returns the code of the steps to a time and their grid, if they can be taken in one call.
+    fn at_once(
+        &self,
+        system: &Instance,
+        from: f64,
+        until: f64,
+    ) -> Option<(&ParametrizedStep, Grid)> {
         // The code contains neither projections after a step nor varying inputs.
         let of = &system.of;
         if of.embedded || of.project_position.is_some() || of.project_velocity.is_some() {
@@ -87,8 +92,9 @@ impl<'a> Whole<'a> {
         Some((self.code(system, grid.step())?, grid))
     }
 
-    /// Takes all steps to a time at once if they are compiled and no intermediate state is observed; returns whether it
-    /// did. If a step fails, the state is unchanged, and single steps report the reason.
+    /// Takes all steps to a time in one call, without observing intermediate states; returns whether it did, which
+    /// requires that the step can be compiled. If a step fails, the state is unchanged, and single steps report the
+    /// reason.
     pub fn run(&self, system: &Instance, state: &mut State<Instance>, until: f64) -> bool {
         let Some((ready, grid)) = self.at_once(system, state.t, until) else {
             return false;
@@ -97,7 +103,7 @@ impl<'a> Whole<'a> {
         let given = |number| at(clock, grid.time(number));
         let u = system.inputs(state.t, &state.x, &state.xi);
         let mut all = [&*state.x, &*state.xi].concat();
-        let Ready {
+        let ParametrizedStep {
             compiled,
             constants,
             ..
@@ -105,30 +111,30 @@ impl<'a> Whole<'a> {
         if compiled.repeat(0, constants, &mut all, &u, given, count) < count {
             return false;
         }
-        ready.end(system, state, &all, (until, count));
+        ready.finish(system, state, &all, (until, count));
         true
     }
 
-    /// Whether all of the equal steps to a time can be taken by [`glide`](Self::glide).
-    pub fn glides(&self, system: &Instance, from: f64, until: f64) -> bool {
+    /// Returns whether all of the equal steps to a time can be taken by [`run_monitored`](Self::run_monitored).
+    pub fn can_run_monitored(&self, system: &Instance, from: f64, until: f64) -> bool {
         let ready = self.at_once(system, from, until);
-        ready.is_some_and(|(ready, _)| ready.watched(system).is_some())
+        ready.is_some_and(|(ready, _)| ready.with_energies(system).is_some())
     }
 
     /// Takes `count` steps of a grid from one of its times on, with the clock of its start, while only energies and
     /// constraints at their ends are observed; returns the number of steps taken. If it is smaller, the code failed at
     /// the next step.
-    pub fn glide(
+    pub fn run_monitored(
         &self,
         system: &Instance,
         state: &mut State<Instance>,
         (grid, from, count): (&Grid, u64, u64),
         clock: Option<Clock<f64>>,
-        mut see: impl FnMut(Glance),
+        mut see: impl FnMut(StepEnergies),
     ) -> u64 {
         let ready = self.code(system, grid.step());
         let Some((ready, (compiled, constants))) =
-            ready.and_then(|ready| Some((ready, ready.watched(system)?)))
+            ready.and_then(|ready| Some((ready, ready.with_energies(system)?)))
         else {
             return 0;
         };
@@ -138,7 +144,7 @@ impl<'a> Whole<'a> {
         let all_of = (&mut all[..], &u[..]);
         let done = compiled.repeat_watched(0, constants, all_of, given, count, |more| {
             if let [kinetic, potential, residuals @ ..] = more {
-                see(Glance {
+                see(StepEnergies {
                     kinetic: *kinetic,
                     potential: *potential,
                     constraint: largest(residuals),
@@ -146,15 +152,15 @@ impl<'a> Whole<'a> {
             }
         });
         if done > 0 {
-            ready.end(system, state, &all, (grid.time(from + done), done));
+            ready.finish(system, state, &all, (grid.time(from + done), done));
         }
         done
     }
 
     /// Like [`run`](Self::run) for two systems of one mechanism, by code that takes both of their steps at once. If a
     /// step of either fails, both states are unchanged.
-    pub fn run_both(
-        of: &[Whole; 2],
+    pub fn run_pair(
+        of: &[CompiledStepper; 2],
         systems: [&Instance; 2],
         states: [&mut State<Instance>; 2],
         until: f64,
@@ -187,29 +193,29 @@ impl<'a> Whole<'a> {
             return false;
         }
         let [state, another] = states;
-        first.end(systems[0], state, &one, (until, count));
-        second.end(systems[1], another, &other, (until, count));
+        first.finish(systems[0], state, &one, (until, count));
+        second.finish(systems[1], another, &other, (until, count));
         true
     }
 }
 
-/// The description's time at a time of a run; an arbitrary number if it declares none.
+/// Returns the description's time at a time of a run; an arbitrary number if it declares none.
 fn at(clock: Option<Clock<f64>>, t: f64) -> f64 {
     clock.map_or(0.0, |clock| clock.at(t))
 }
 
-impl Ready {
-    fn watched(&self, system: &Instance) -> Option<&(Compiled, Constants)> {
+impl ParametrizedStep {
+    fn with_energies(&self, system: &Instance) -> Option<&(Compiled, Constants)> {
         let make = || {
-            let compiled = system.of.watched(&self.code)?.clone();
+            let compiled = system.of.compiled_step_with_energies(&self.code)?.clone();
             let constants = compiled.constants(system.functions.params());
             Some((compiled, constants))
         };
-        self.watched.get_or_init(make).as_ref()
+        self.with_energies.get_or_init(make).as_ref()
     }
 
     /// Sets the state to that after `count` steps.
-    fn end(
+    fn finish(
         &self,
         system: &Instance,
         state: &mut State<Instance>,
@@ -227,7 +233,7 @@ impl Ready {
     }
 }
 
-impl Method<Instance> for Whole<'_> {
+impl Method<Instance> for CompiledStepper<'_> {
     fn order(&self) -> u32 {
         Method::<Instance>::order(self.stepper)
     }
@@ -268,7 +274,7 @@ impl Method<Instance> for Whole<'_> {
             &<Instance as System>::Velocities,
         ) -> <Instance as System>::Inputs,
     {
-        if let Some(Ready {
+        if let Some(ParametrizedStep {
             code,
             compiled,
             constants,

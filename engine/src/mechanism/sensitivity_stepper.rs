@@ -1,7 +1,7 @@
 //! Steps with their derivatives: tapes evaluated in dual numbers, with as many directions at a time as such a number
 //! has.
 
-use super::taped::{Places, Taped, Tapes};
+use super::tape_system::{TapeEvaluator, TapeIndices, TapeSystem};
 use super::{block, missing};
 use crate::error::Error;
 use hamel::methods::General;
@@ -28,24 +28,24 @@ const NEEDED: &[&str] = &[
     "project_velocity",
 ];
 
-/// A number with its derivatives.
+/// Number with its derivatives.
 type Number = Dual<f64, WIDTH>;
 
-/// A system whose steps have derivatives.
-pub struct Varied {
+/// Stepper that also computes the derivatives of a step by state and inputs.
+pub struct SensitivityStepper {
     compiled: Compiled,
     params: Vec<f64>,
     constants: Constants,
-    places: Places,
+    indices: TapeIndices,
     frame: usize,
     coframe: usize,
 }
 
-/// x and ξ at the end of a step, and its derivatives by rows of (η, ξ, z) and columns of (η, ξ, z, u).
-pub type End = (Vec<f64>, Vec<f64>, Vec<Vec<f64>>);
+/// x and ξ at the end of a step, and the derivatives of the step, by rows of (η, ξ, z) and columns of (η, ξ, z, u).
+pub type StepWithSensitivities = (Vec<f64>, Vec<f64>, Vec<Vec<f64>>);
 
-impl Varied {
-    /// A system that was derived with its linearisation, for these parameters.
+impl SensitivityStepper {
+    /// Prepares a system that was derived with its linearisation, for these parameters.
     pub fn new(generated: &Generated, params: &[f64]) -> Result<Self, Error> {
         let program = &generated.program;
         let all = NEEDED.iter().filter_map(|name| program.function(name));
@@ -61,10 +61,10 @@ impl Varied {
         let find = |name: &str| known.iter().position(|known| known == name);
         let place = |name: &str| find(name).ok_or_else(|| missing(program, name));
         let [x, xi, u, ..] = compiled.tapes().lengths;
-        Ok(Varied {
+        Ok(SensitivityStepper {
             params: params.to_vec(),
             constants: compiled.constants(params),
-            places: Places {
+            indices: TapeIndices {
                 blocks: program.blocks.iter().copied().map(block).collect(),
                 chart: program.blocks.iter().map(|block| block.dimension()).sum(),
                 lengths: [x, xi, u],
@@ -85,22 +85,22 @@ impl Varied {
         })
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     pub fn params(&self) -> &[f64] {
         &self.params
     }
 
-    /// A step of length h from a state with inputs held constant, with its derivatives.
+    /// Takes a step of length h from a state with inputs held constant; returns its end and its derivatives.
     ///
     /// # Errors
-    /// The errors of the step.
+    /// The step fails.
     pub fn step(
         &self,
         method: &General,
         [x, xi, u]: [&[f64]; 3],
         h: f64,
-    ) -> Result<End, StepError> {
-        let [nu, moving, inputs] = self.places.lengths;
+    ) -> Result<StepWithSensitivities, StepError> {
+        let [nu, moving, inputs] = self.indices.lengths;
         let frame = self.matrix(self.frame, x, nu);
         let displacements = frame.first().map_or(0, Vec::len);
         let rows = displacements + moving;
@@ -117,14 +117,14 @@ impl Varied {
                 value,
                 slopes: std::array::from_fn(|d| row.get(first + d).copied().unwrap_or(0.0)),
             });
-            let mut state = State::<Taped<&Varied>> {
+            let mut state = State::<TapeSystem<&SensitivityStepper>> {
                 t: 0.0,
                 x: varied.collect(),
                 xi: list(xi, |i, value| along(value, displacements + i)),
             };
             let held = list(u, |i, value| along(value, rows + i));
             let given = |_, _: &_, _: &_| held.clone();
-            step(&Taped(self), method, &mut state, h, &given)?;
+            step(&TapeSystem(self), method, &mut state, h, &given)?;
             end_x = state.x.iter().map(|number| number.value).collect();
             end_xi = state.xi.iter().map(|number| number.value).collect();
             let coframe = self.matrix(self.coframe, &end_x, displacements);
@@ -142,7 +142,7 @@ impl Varied {
         Ok((end_x, end_xi, slopes))
     }
 
-    /// A matrix with `rows` rows that depends on x.
+    /// Evaluates a matrix with `rows` rows that depends on x.
     fn matrix(&self, function: usize, x: &[f64], rows: usize) -> Vec<Vec<f64>> {
         let tapes = self.compiled.tapes();
         let mut flat = vec![f64::NAN; tapes.functions[function].outputs.len()];
@@ -163,11 +163,11 @@ fn list(values: &[f64], number: impl Fn(usize, f64) -> Number) -> Vec<Number> {
     values.map(|(i, &value)| number(i, value)).collect()
 }
 
-impl Tapes for &Varied {
+impl TapeEvaluator for &SensitivityStepper {
     type Number = Number;
 
-    fn places(&self) -> &Places {
-        &self.places
+    fn indices(&self) -> &TapeIndices {
+        &self.indices
     }
 
     fn call(&self, function: usize, [x, xi, u]: [&[Number]; 3]) -> Result<Vec<Number>, Cause> {

@@ -1,11 +1,11 @@
-//! Stretches of a run in equal steps, between two times at which steps have to end.
+//! Divides a run in equal steps into segments between times at which steps have to end.
 
 use super::plan::Spacing;
 use hamel::{Grid, StepError};
 
-/// Equal steps to a time, with samples at the ends of some of them.
+/// Equal steps up to a time, with samples at the ends of some of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct Segment {
     /// End time.
     pub end: f64,
     /// Grid of the steps.
@@ -17,10 +17,10 @@ pub struct Stretch {
     time: f64,
 }
 
-impl Stretch {
-    /// A stretch without samples between two times.
-    fn bare(from: f64, end: f64, step: f64) -> Result<Self, StepError> {
-        Ok(Stretch {
+impl Segment {
+    /// Creates a segment without samples between two times.
+    fn without_samples(from: f64, end: f64, step: f64) -> Result<Self, StepError> {
+        Ok(Segment {
             end,
             grid: Grid::new(from, end, step)?,
             every: u64::MAX,
@@ -29,8 +29,8 @@ impl Stretch {
         })
     }
 
-    /// The time of the sample after `index` steps, if there is one.
-    pub fn sample(&self, index: u64) -> Option<f64> {
+    /// Returns the time of the sample after `index` steps, if there is one.
+    pub fn sample_time(&self, index: u64) -> Option<f64> {
         let at = match index == self.grid.count() {
             true => self.end,
             false => (self.first + (index / self.every) as f64) * self.time,
@@ -38,23 +38,23 @@ impl Stretch {
         index.is_multiple_of(self.every).then_some(at)
     }
 
-    /// Number of steps from the end of step `done` to the next sample, or to the end.
-    pub fn ahead(&self, done: u64) -> u64 {
+    /// Returns the number of steps from the end of step `done` to the next sample, or to the end.
+    pub fn steps_to_sample(&self, done: u64) -> u64 {
         (self.grid.count() - done).min(self.every - done % self.every)
     }
 }
 
-/// The stretches between two times, in steps no longer than `step`. For samples at multiples of a time, all steps
-/// between the first and the last of these multiples are equal, with the same number from one to the next; the parts
-/// before and after are covered by steps that are no longer.
-pub fn stretches(
+/// Divides the time between two times into segments, in steps no longer than `step`. For samples at multiples of a
+/// time, all steps between the first and the last of these multiples are equal, with the same number from one to the
+/// next; the parts before and after are covered by steps that are no longer.
+pub fn segments(
     spacing: &Spacing,
     step: f64,
     from: f64,
     end: f64,
-) -> Result<Vec<Stretch>, StepError> {
+) -> Result<Vec<Segment>, StepError> {
     let Spacing::Every(time) = *spacing else {
-        return Ok(vec![Stretch::bare(from, end, step)?]);
+        return Ok(vec![Segment::without_samples(from, end, step)?]);
     };
     // A time that is a multiple up to rounding is that multiple.
     let is_near = |multiple: f64, t: f64| (multiple * time - t).abs() <= 4.0 * f64::EPSILON * t;
@@ -64,7 +64,7 @@ pub fn stretches(
     let last = behind.unwrap_or_else(|| (end / time).floor());
     let is_none = last < first || last == first && before.is_some();
     if is_none {
-        return Ok(vec![Stretch::bare(from, end, step)?]);
+        return Ok(vec![Segment::without_samples(from, end, step)?]);
     }
     let mut all = Vec::new();
     let to = |multiple: f64| match behind {
@@ -74,14 +74,14 @@ pub fn stretches(
     let mut here = from;
     if before.is_none() {
         here = to(first);
-        let mut head = Stretch::bare(from, here, step)?;
+        let mut head = Segment::without_samples(from, here, step)?;
         head.every = head.grid.count();
         all.push(head);
     }
     if last > first {
-        let body = Stretch::bare(here, to(last), step)?;
+        let body = Segment::without_samples(here, to(last), step)?;
         here = body.end;
-        all.push(Stretch {
+        all.push(Segment {
             every: (body.grid.count() / (last - first) as u64).max(1),
             first,
             time,
@@ -89,7 +89,7 @@ pub fn stretches(
         });
     }
     if behind.is_none() {
-        all.push(Stretch::bare(here, end, step)?);
+        all.push(Segment::without_samples(here, end, step)?);
     }
     Ok(all)
 }
@@ -98,13 +98,13 @@ pub fn stretches(
 mod tests {
     use super::*;
 
-    /// The times of samples, and the lengths of steps, of all stretches between two times.
+    /// Returns the times of samples, and the lengths of steps, of all segments between two times.
     fn cut(time: f64, step: f64, from: f64, end: f64) -> (Vec<f64>, Vec<(u64, f64)>) {
-        let all = stretches(&Spacing::Every(time), step, from, end).expect("stretches");
-        assert_eq!(all.last().map(|stretch| stretch.end), Some(end));
-        let samples = all.iter().flat_map(|stretch| {
-            let steps = 1..=stretch.grid.count();
-            steps.filter_map(|index| stretch.sample(index))
+        let all = segments(&Spacing::Every(time), step, from, end).expect("segments");
+        assert_eq!(all.last().map(|segment| segment.end), Some(end));
+        let samples = all.iter().flat_map(|segment| {
+            let steps = 1..=segment.grid.count();
+            steps.filter_map(|index| segment.sample_time(index))
         });
         let steps = all.iter().map(|s| (s.grid.count(), s.grid.step()));
         (samples.collect(), steps.collect())
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(cut(1.0, 0.25, 0.0, 0.5), (vec![], vec![(2, 0.25)]));
         assert_eq!(cut(1.0, 0.25, 0.5, 1.0), (vec![1.0], vec![(2, 0.25)]));
         assert_eq!(cut(1.0, 0.25, 0.5, 1.25).0, [1.0]);
-        // A step longer than the whole stretch.
+        // A step longer than the whole segment.
         assert_eq!(cut(1.0, 0.25, 0.0, 0.125), (vec![], vec![(1, 0.125)]));
     }
 

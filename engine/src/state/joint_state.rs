@@ -1,16 +1,16 @@
 //! Reads states by the names of joints: `{"configuration": {…}, "velocity": {…}, "force": […]}`.
 
-use super::joints::{Joint, Place, joints};
+use super::State;
+use super::joints::{Joint, JointCoordinates, joints};
 use super::problem::StateProblem;
 use super::read::{Reader, kind, put};
-use super::values::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use serde_json::{Map, Value};
 
-/// Members of a sample that are read.
+/// Members of a file that are read.
 const READ: [&str; 4] = ["configuration", "velocity", "force", "param"];
-/// Results that accompany them in files of reference values; they are ignored.
+/// Members with results in files of reference values; they are ignored.
 const RESULTS: [&str; 6] = [
     "mass_matrix",
     "bias",
@@ -19,21 +19,21 @@ const RESULTS: [&str; 6] = [
     "kinetic_energy",
     "potential_energy",
 ];
-/// Member for the order of a list of forces, by joint.
-pub const ORDER: &str = "velocity_order";
+/// Member with the order of a list of forces, by joint.
+pub const VELOCITY_ORDER: &str = "velocity_order";
 
-/// A state with the generalised force that acts on it.
+/// State by joints, with the generalised force that acts on it.
 #[derive(Clone, Debug)]
-pub struct Sample {
+pub struct JointState {
     /// The state; its inputs are zero.
     pub state: State,
-    /// Number of joints.
+    /// The joints.
     pub joints: Vec<Joint>,
     /// The whole generalised force, in the order of ξ; `None` for that of the description.
     pub force: Option<Vec<f64>>,
 }
 
-/// Whether a file is given by joints.
+/// Returns whether a file is given by joints.
 pub fn is_sample(json: &Value) -> bool {
     let Value::Object(parts) = json else {
         return false;
@@ -43,9 +43,9 @@ pub fn is_sample(json: &Value) -> bool {
         .any(|part| parts.contains_key(*part))
 }
 
-impl Sample {
-    /// Reads a sample as changes of a start, and collects all errors. `order` is the order of lists of forces, unless
-    /// the sample contains one.
+impl JointState {
+    /// Reads a state as changes of a start, and collects all errors. `order` is the order of lists of forces, unless
+    /// the state contains one.
     pub fn parse(
         start: State,
         json: &Value,
@@ -54,7 +54,7 @@ impl Sample {
         names: &[(String, String)],
     ) -> Result<Self, Vec<StateProblem>> {
         let model = &generated.active;
-        let mut sample = Sample {
+        let mut sample = JointState {
             state: start.clone(),
             joints: joints(model, names),
             force: None,
@@ -85,13 +85,13 @@ impl Reader {
         (parts, order): (&Map<String, Value>, Option<&Value>),
         all: &[Joint],
         model: &Model,
-        sample: &mut Sample,
+        sample: &mut JointState,
     ) {
         let known: Vec<&str> = READ
             .iter()
             .chain(&RESULTS)
             .copied()
-            .chain([ORDER])
+            .chain([VELOCITY_ORDER])
             .collect();
         self.known("", parts, &known);
         let groups = model.params.iter();
@@ -132,7 +132,7 @@ impl Reader {
         match parts.get("force") {
             None => return,
             Some(Value::Array(_)) => {
-                let order = parts.get(ORDER).or(order);
+                let order = parts.get(VELOCITY_ORDER).or(order);
                 self.forces(parts, order, &joints, &mut force);
             }
             Some(_) => {
@@ -190,35 +190,35 @@ impl Reader {
         if placed != force.len() || order.len() != force.len() {
             let message =
                 "expected each row by the name of its joint, as in `velocities` of the output";
-            self.error(ORDER, message.into());
+            self.error(VELOCITY_ORDER, message.into());
         }
     }
 
     fn configuration(&mut self, at: &str, value: &Value, joint: &Joint, x: &mut [f64]) {
         let count = joint.velocities.1;
         match joint.place {
-            Place::Plain(offset) if count == 1 => {
+            JointCoordinates::Plain(offset) if count == 1 => {
                 let number = self.number(at, value);
                 self.put_x(x, offset, &number.into_iter().collect::<Vec<_>>());
             }
-            Place::Plain(offset) => {
+            JointCoordinates::Plain(offset) => {
                 let read = self.vector(at, value, count).unwrap_or_default();
                 self.put_x(x, offset, &read);
             }
-            Place::Circle(offset) => {
+            JointCoordinates::Circle(offset) => {
                 if let Some(angle) = self.number(at, value) {
                     self.put_x(x, offset, &[angle.cos(), angle.sin()]);
                 }
             }
-            Place::Quaternion(offset) => {
+            JointCoordinates::Quaternion(offset) => {
                 let read = self.vector(at, value, 4).unwrap_or_default();
                 self.put_x(x, offset, &read);
             }
-            Place::Rotation(offset) => {
+            JointCoordinates::Rotation(offset) => {
                 let read = self.matrix(at, value, 3).unwrap_or_default();
                 self.put_x(x, offset, &read.concat());
             }
-            Place::Free(position, rotation) => {
+            JointCoordinates::Free(position, rotation) => {
                 let Some(given) = self.members(at, value, &["position", "rotation"]) else {
                     return;
                 };
@@ -231,7 +231,7 @@ impl Reader {
                     self.put_x(x, rotation, &read.unwrap_or_default().concat());
                 }
             }
-            Place::Planar(position, angle) => {
+            JointCoordinates::Planar(position, angle) => {
                 let Some(given) = self.members(at, value, &["position", "angle"]) else {
                     return;
                 };

@@ -1,9 +1,9 @@
 //! Reads the last of the samples that `hamel simulate --out` writes as JSON, as a state.
 
-use super::given::places;
+use super::State;
+use super::given_entries::places;
 use super::problem::StateProblem;
 use super::read::{Reader, kind};
-use super::values::State;
 use crate::names;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::syntax::path::plain;
@@ -11,7 +11,7 @@ use serde_json::Value;
 
 /// Changes all coordinates, velocities and states of first order to those of the last sample; `text` is that of the
 /// description.
-pub fn last(
+pub fn read_last_sample(
     start: State,
     list: &[Value],
     (generated, text): (&Generated, &str),

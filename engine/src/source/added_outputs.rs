@@ -3,7 +3,7 @@
 
 use super::Source;
 use crate::error::Error;
-use crate::text::{Piece, refused};
+use crate::option_text::{Piece, invalid_option};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::syntax::ast::{ItemKind, Span};
@@ -13,8 +13,8 @@ use std::ops::Range;
 /// Prefix of the names of added outputs.
 const PREFIX: &str = "hamel_keep_";
 
-/// An added output.
-pub struct Added<'a> {
+/// Output that is added to a description.
+pub struct AddedOutput<'a> {
     /// Name.
     pub name: String,
     /// The part of the option's text that requests the output.
@@ -23,8 +23,8 @@ pub struct Added<'a> {
     pub sides: Vec<Piece<'a>>,
 }
 
-impl Added<'_> {
-    /// Whether an error lies in the text of this output.
+impl AddedOutput<'_> {
+    /// Returns whether an error lies in the text of this output.
     fn has(&self, error: &Diagnostic) -> bool {
         let whole = self.whole.start..self.whole.start + self.whole.text.len();
         let range = error.span.range();
@@ -32,12 +32,12 @@ impl Added<'_> {
     }
 }
 
-/// The name of the output of an item, by the item's index.
+/// Returns the name of the output that is added for an item, by the item's index.
 pub fn name(item: usize) -> String {
     format!("{PREFIX}{}", item + 1)
 }
 
-/// Whether an output was added, by its name.
+/// Returns whether an output was added, by its name.
 pub fn is_added(name: &str) -> bool {
     name.starts_with(PREFIX)
 }
@@ -47,12 +47,12 @@ pub fn is_added(name: &str) -> bool {
 pub fn derive(
     source: &Source,
     (option, said): (&str, &str),
-    added: &[Added],
+    added: &[AddedOutput],
     mut wrong: Vec<Diagnostic>,
 ) -> Result<Generated, Error> {
     // Report errors and warnings of the description itself first.
     source.model()?;
-    let of = |added: &[&Added]| {
+    let of = |added: &[&AddedOutput]| {
         let extended = Extended::of(source, added);
         let errors = match source.saying(extended.text.clone()).try_derive_all() {
             Ok(generated) => return Ok(generated),
@@ -64,7 +64,7 @@ pub fn derive(
             .collect();
         Err((own, errors))
     };
-    let mut left: Vec<&Added> = added.iter().collect();
+    let mut left: Vec<&AddedOutput> = added.iter().collect();
     let (own, errors) = match of(&left) {
         Ok(generated) if wrong.is_empty() => return Ok(generated),
         Ok(_) => Default::default(),
@@ -85,25 +85,25 @@ pub fn derive(
         return Err(source.refused(&errors));
     }
     wrong.sort_by_key(|error| error.span.range().map(|range| range.start));
-    Err(refused(option, said, &wrong))
+    Err(invalid_option(option, said, &wrong))
 }
 
-/// A description with more outputs at its end.
+/// Description with more outputs at its end.
 struct Extended {
     text: String,
-    /// Where the added outputs begin.
+    /// Offset at which the added outputs begin.
     end: usize,
     /// Ranges of the expressions, and of the statements around them, each with its range in the option.
     places: Vec<(Range<usize>, Range<usize>)>,
 }
 
 impl Extended {
-    fn of(source: &Source, added: &[&Added]) -> Self {
+    fn of(source: &Source, added: &[&AddedOutput]) -> Self {
         let mut more = String::from("\n");
         let mut places: Vec<(Range<usize>, Range<usize>)> = Vec::new();
         let mut statements = Vec::new();
         let outputs = Outputs::of(&source.text);
-        for Added { name, whole, sides } in added {
+        for AddedOutput { name, whole, sides } in added {
             let begin = more.len();
             more.push_str(&format!("output {name} = "));
             for (number, side) in sides.iter().enumerate() {
@@ -128,7 +128,7 @@ impl Extended {
         Extended { text, end, places }
     }
 
-    /// An error of the option, moved to its place there.
+    /// Moves an error in the extended description to its place in the option; `None` if it is elsewhere.
     fn relocate_error(&self, error: &Diagnostic) -> Option<Diagnostic> {
         let notes = error.notes.iter();
         let notes = notes.filter_map(|(span, label)| Some((self.relocate(*span)?, label.clone())));
@@ -171,7 +171,7 @@ impl Outputs {
         Outputs(outputs.collect())
     }
 
-    /// The expression with the names of outputs replaced; `None` where it contains none.
+    /// Replaces the names of outputs in an expression; `None` if it contains none.
     fn substitute(&self, expression: &str) -> Option<String> {
         let is_of_word = |letter: char| letter.is_alphanumeric() || letter == '_';
         let (mut text, mut rest, mut changed) = (String::new(), expression, false);
@@ -195,7 +195,7 @@ impl Outputs {
     }
 }
 
-/// The description with more statements at its end, and their offset.
+/// Returns the description with more statements at its end, and their offset.
 fn with(text: &str, more: &str) -> Option<(usize, String)> {
     let statements = |text: &str| parse_text(text).ok().map(|system| system.items.len());
     let known = statements(text)?;

@@ -1,10 +1,10 @@
-//! JSON without repeated names in an object, whose meaning would be ambiguous.
+//! Parses JSON, and refuses repeated names in an object, whose meaning would be ambiguous.
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::fmt;
 
-/// What is wrong with a text that should be JSON.
+/// Error in a JSON text.
 #[derive(Debug)]
 pub enum JsonError {
     /// It is not JSON, or a name stands twice in an object.
@@ -39,7 +39,7 @@ impl std::error::Error for JsonError {
     }
 }
 
-/// Parses a text, with or without a byte order mark; the error contains its place.
+/// Parses a JSON text, with or without a byte order mark; the error contains its place.
 pub fn parse(text: &str) -> Result<Value, JsonError> {
     match serde_json::from_str::<Strict>(text.strip_prefix('\u{feff}').unwrap_or(text)) {
         Ok(Strict(value)) => Ok(value),
@@ -47,7 +47,7 @@ pub fn parse(text: &str) -> Result<Value, JsonError> {
     }
 }
 
-/// A value without repeated names.
+/// JSON value without repeated names.
 struct Strict(Value);
 
 impl<'de> Deserialize<'de> for Strict {

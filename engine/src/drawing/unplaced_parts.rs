@@ -4,8 +4,9 @@ use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::model::Model;
 use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 
-/// A sentence for each part of a description that has no place in space, with the statement that would give it one.
-pub(super) fn missing(model: &Model) -> Vec<String> {
+/// Returns a sentence for each part of a description that has no place in space, with the statement that would give it
+/// one.
+pub(super) fn unplaced_parts(model: &Model) -> Vec<String> {
     let mut all = Vec::new();
     if has_energy(model) {
         all.push(
@@ -32,7 +33,7 @@ pub(super) fn missing(model: &Model) -> Vec<String> {
     all
 }
 
-/// Whether the kinetic energy has a part beyond bodies, particles and the armatures of joints.
+/// Returns whether the kinetic energy has a part beyond bodies, particles and the armatures of joints.
 fn has_energy(model: &Model) -> bool {
     let mut graph = model.graph.clone();
     let half = graph.ratio(1, 2);

@@ -1,15 +1,15 @@
-//! Results of runs, as lists of numbers.
+//! Results of runs as flat lists of numbers, for front ends with arrays.
 
-use super::early::EarlyEnd;
+use super::early_end::EarlyEnd;
 use super::record::Run;
 use super::sample::Sample;
 use crate::mechanism::Output;
-use crate::source::added;
+use crate::source::added_outputs;
 use hamel_codegen::program::Shape;
 
-/// A run. Lists contain one sample after another, and entries correspond to the times.
+/// Results of a run. Each list holds one sample after another, in the order of the times.
 #[derive(Clone, Debug)]
-pub struct Motion {
+pub struct RunArrays {
     /// Times of the samples.
     pub t: Vec<f64>,
     /// x of each sample.
@@ -34,17 +34,17 @@ pub struct Motion {
     pub energy_deviation: f64,
     /// The largest |φ|.
     pub constraint: f64,
-    /// Reason of an early end.
+    /// Reason for which the run ended early.
     pub failure: Option<EarlyEnd>,
     /// Events in the order of the request: times, and x and ξ at them.
-    pub events: Vec<Happened>,
+    pub events: Vec<EventOccurrences>,
     /// The event that ended the run.
     pub stopped_by: Option<String>,
 }
 
-/// Occurrences of an event.
+/// Occurrences of an event during a run.
 #[derive(Clone, Debug)]
-pub struct Happened {
+pub struct EventOccurrences {
     /// Name.
     pub name: String,
     /// Times, in increasing order.
@@ -55,7 +55,7 @@ pub struct Happened {
     pub xi: Vec<f64>,
 }
 
-impl Motion {
+impl RunArrays {
     /// Collects the results of a run.
     pub fn of(run: &Run) -> Self {
         let system = &run.system;
@@ -70,7 +70,7 @@ impl Motion {
                 let place = first..first + output.shape.entries();
                 first = place.end;
                 // Expressions of events are not outputs of the description.
-                if added::is_added(&output.name) {
+                if added_outputs::is_added(&output.name) {
                     continue;
                 }
                 let entries = run
@@ -87,7 +87,7 @@ impl Motion {
         };
         let named = |event: usize| run.events.list()[event].name.clone();
         let happened = run.events.happened.iter().enumerate();
-        let happened = happened.map(|(event, samples)| Happened {
+        let happened = happened.map(|(event, samples)| EventOccurrences {
             name: named(event),
             t: samples.iter().map(|sample| sample.t).collect(),
             x: samples
@@ -101,7 +101,7 @@ impl Motion {
                 .copied()
                 .collect(),
         });
-        Motion {
+        RunArrays {
             t: run.samples.iter().map(|sample| sample.t).collect(),
             x: all(|sample| &sample.x),
             xi: all(|sample| &sample.xi),

@@ -66,13 +66,13 @@ fn steps_as_code_are_those_of_the_method() {
         let system = instance(model);
         for method in some(place) {
             let stepper = Stepper::General(method);
-            let whole = Whole::new(&system, &stepper, H, 1e3);
+            let compiled = CompiledStepper::new(&system, &stepper, H, 1e3);
             let mut state = State::<Instance>::start(&system);
             for _ in 0..20 {
                 let before = system.evaluations();
                 let slow = end(&system, &stepper, &state);
                 let between = system.evaluations();
-                let fast = end(&system, &whole, &state);
+                let fast = end(&system, &compiled, &state);
                 assert_eq!(system.evaluations() - between, between - before);
                 let pairs = fast.x.iter().chain(&*fast.xi);
                 let pairs = pairs.zip(slow.x.iter().chain(&*slow.xi));
@@ -83,7 +83,7 @@ fn steps_as_code_are_those_of_the_method() {
                 assert_eq!(fast.t, slow.t);
                 state = slow;
             }
-            let code = whole.code.get().and_then(Option::as_ref);
+            let code = compiled.code.get().and_then(Option::as_ref);
             assert!(code.is_some(), "{model} {method:?} is no code");
         }
     }
@@ -94,14 +94,14 @@ fn steps_as_code_are_those_of_the_method() {
 fn steps_without_an_end_say_why() {
     let system = instance("heavy_top.eom");
     let stepper = Stepper::General(General::Rkmk4);
-    let whole = Whole::new(&system, &stepper, H, 1e3);
+    let compiled = CompiledStepper::new(&system, &stepper, H, 1e3);
     let mut state = State::<Instance>::start(&system);
     // A rotation too large for the series in one step, and a speed that overflows.
     for speed in [1e4, f64::MAX] {
         state.xi.as_mut().fill(speed);
         let held = |_, _: &Numbers, _: &Numbers| Numbers::filled(0.0, 0);
         let slow = stepper.step(&system, &state, H, &held);
-        let fast = whole.step(&system, &state, H, &held);
+        let fast = compiled.step(&system, &state, H, &held);
         assert_eq!(format!("{slow:?}"), format!("{fast:?}"));
     }
 }
@@ -119,20 +119,20 @@ fn steps_at_once_are_the_steps() {
         let system = instance(model);
         let stepper = Stepper::General(General::Rkmk4);
         let until = 1234.0 * H;
-        let whole = Whole::new(&system, &stepper, H, until);
+        let compiled = CompiledStepper::new(&system, &stepper, H, until);
         let mut fast = State::<Instance>::start(&system);
         let mut slow = fast.clone();
         let held = |t: f64, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
-        hamel::integrate(&system, &whole, &mut slow, H, until, held, |_| ()).expect("a run");
+        hamel::integrate(&system, &compiled, &mut slow, H, until, held, |_| ()).expect("a run");
         let between = system.evaluations();
-        assert!(whole.run(&system, &mut fast, until), "{model}");
+        assert!(compiled.run(&system, &mut fast, until), "{model}");
         assert_eq!(system.evaluations(), 2 * between, "{model}");
         assert_eq!(bits(&fast), bits(&slow), "{model}");
         assert_eq!(fast.t, slow.t);
 
         fast.xi.as_mut().fill(f64::MAX);
         let before = fast.clone();
-        assert!(!whole.run(&system, &mut fast, 2.0 * until), "{model}");
+        assert!(!compiled.run(&system, &mut fast, 2.0 * until), "{model}");
         assert_eq!((bits(&fast), fast.t), (bits(&before), before.t), "{model}");
     }
 }
@@ -165,20 +165,20 @@ fn two_at_once_are_each_alone() {
         let systems = [&first, &second];
         for method in some(place) {
             let stepper = Stepper::General(method);
-            let wholes = systems.map(|system| Whole::new(system, &stepper, H, until));
+            let steppers = systems.map(|system| CompiledStepper::new(system, &stepper, H, until));
             let starts = systems.map(State::<Instance>::start);
             let [mut one, mut two] = starts.clone();
             let both = [&mut one, &mut two];
             assert!(
-                Whole::run_both(&wholes, systems, both, until),
+                CompiledStepper::run_pair(&steppers, systems, both, until),
                 "{model} {method:?}"
             );
             for ((system, mut alone), found) in
                 systems.into_iter().zip(starts.clone()).zip([&one, &two])
             {
-                let whole = Whole::new(system, &stepper, H, until);
+                let compiled = CompiledStepper::new(system, &stepper, H, until);
                 let evaluations = system.evaluations();
-                assert!(whole.run(system, &mut alone, until));
+                assert!(compiled.run(system, &mut alone, until));
                 assert_eq!(system.evaluations(), 2 * evaluations);
                 assert_eq!(bits(&alone), bits(found), "{model} {method:?}");
                 assert_eq!(alone.t, found.t);
@@ -190,7 +190,12 @@ fn two_at_once_are_each_alone() {
                 states[broken].xi.as_mut().fill(f64::MAX);
                 let before = states.clone();
                 let [one, two] = &mut states;
-                assert!(!Whole::run_both(&wholes, systems, [one, two], until));
+                assert!(!CompiledStepper::run_pair(
+                    &steppers,
+                    systems,
+                    [one, two],
+                    until
+                ));
                 for (before, after) in before.iter().zip(&states) {
                     assert_eq!((bits(before), before.t), (bits(after), after.t));
                 }
@@ -204,9 +209,9 @@ fn two_at_once_are_each_alone() {
 fn loops_are_stepped_one_by_one() {
     let system = instance("four_bar_loop.eom");
     let stepper = Stepper::General(General::Rkmk4);
-    let whole = Whole::new(&system, &stepper, H, 1e3);
+    let compiled = CompiledStepper::new(&system, &stepper, H, 1e3);
     let mut state = State::<Instance>::start(&system);
-    assert!(!whole.run(&system, &mut state, 20.0));
+    assert!(!compiled.run(&system, &mut state, 20.0));
     assert_eq!(state.t, 0.0);
 }
 
@@ -218,8 +223,8 @@ fn what_is_no_code() {
     let implicit = Stepper::General(General::BackwardEuler);
     let few = Stepper::General(General::Rkmk4);
     for (stepper, time) in [(implicit, 1e3), (few, 1.0)] {
-        let whole = Whole::new(&system, &stepper, H, time);
-        end(&system, &whole, &state);
-        assert!(whole.code.get().and_then(Option::as_ref).is_none());
+        let compiled = CompiledStepper::new(&system, &stepper, H, time);
+        end(&system, &compiled, &state);
+        assert!(compiled.code.get().and_then(Option::as_ref).is_none());
     }
 }

@@ -7,15 +7,15 @@
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::Tapes;
 
-/// The outcome of a call of machine code.
+/// Outcome of a call of machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum CallOutcome {
     /// The result is written.
-    Well,
+    Success,
     /// A pivot was not positive.
-    At(Cause),
+    Pivot(Cause),
     /// The tape has to be evaluated step by step.
-    Undone,
+    Interpret,
 }
 
 /// The instructions to generate code for.
@@ -46,7 +46,7 @@ impl Code {
         match *self {}
     }
 
-    pub fn call(&self, _: usize, _: &[f64], _: [&[f64]; 5], _: &mut [f64]) -> Ended {
+    pub fn call(&self, _: usize, _: &[f64], _: [&[f64]; 5], _: &mut [f64]) -> CallOutcome {
         match *self {}
     }
 }
@@ -60,12 +60,18 @@ impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed
         Some(Fixed(code))
     }
 
-    pub fn call(&self, _: &[f64; X], _: &[f64; V], _: &[f64; U], _: &mut [f64; OUT]) -> Ended {
+    pub fn call(
+        &self,
+        _: &[f64; X],
+        _: &[f64; V],
+        _: &[f64; U],
+        _: &mut [f64; OUT],
+    ) -> CallOutcome {
         match *self.0 {}
     }
 }
 
-/// Whether a b + c is rounded once. Always false: a fused product in software would be slow.
+/// Returns whether a b + c is rounded once. Always false: a fused product in software would be slow.
 pub fn is_fused() -> bool {
     false
 }

@@ -3,7 +3,7 @@
 use hamel::adaptive::Adaptive;
 use hamel::methods::{General, Rkmk4};
 use hamel::{Block, Canonical, Energies, Singular, Split, State, System, integrate, s1};
-use hamel_report::counted::Counted;
+use hamel_report::counted_system::CountedSystem;
 use hamel_report::data::Kind;
 use hamel_report::entry::{Division, Worst};
 use hamel_report::problem::Problem;
@@ -88,7 +88,7 @@ const PENDULUM: Pendulum = Pendulum { g: 9.81, l: 0.5 };
 
 #[test]
 fn each_kind_of_force_counts_once() {
-    let counted = Counted::new(&PENDULUM);
+    let counted = CountedSystem::new(&PENDULUM);
     let (x, xi) = counted.start();
     assert_eq!(counted.evaluations(), 0);
     assert_eq!(
@@ -130,7 +130,7 @@ fn runs_are_those_of_the_system_itself() {
         |_| {},
     )
     .expect("a run");
-    let counted = Counted::new(&PENDULUM);
+    let counted = CountedSystem::new(&PENDULUM);
     let mut other = State::start(&counted);
     integrate(&counted, Rkmk4, &mut other, 0.02, 2.0, |_, _, _| [], |_| {}).expect("a run");
     assert_eq!((state.x, state.xi), (other.x, other.xi));
@@ -144,7 +144,9 @@ fn none(_: f64, _: &[f64; 2], _: &[f64; 1]) -> [f64; 0] {
 type Inputs = fn(f64, &[f64; 2], &[f64; 1]) -> [f64; 0];
 
 /// The pendulum up to t = 1, with the error |ξ − 7|.
-fn problem<'a>(system: &'a Counted<'a, Pendulum>) -> Problem<'a, Counted<'a, Pendulum>, Inputs> {
+fn problem<'a>(
+    system: &'a CountedSystem<'a, Pendulum>,
+) -> Problem<'a, CountedSystem<'a, Pendulum>, Inputs> {
     let (x, xi) = PENDULUM.start();
     Problem {
         system,
@@ -162,7 +164,7 @@ fn problem<'a>(system: &'a Counted<'a, Pendulum>) -> Problem<'a, Counted<'a, Pen
 
 #[test]
 fn a_problem_gives_error_drift_and_count() {
-    let counted = Counted::new(&PENDULUM);
+    let counted = CountedSystem::new(&PENDULUM);
     let problem = problem(&counted);
     let entry = problem.by("rkmk4", Kind::Method, General::Rkmk4);
     let (_, end) = problem.end(&Rkmk4, 50).expect("a run");
@@ -186,7 +188,7 @@ fn a_problem_gives_error_drift_and_count() {
 #[test]
 fn runs_by_error_control_count_what_they_evaluate_and_refuse() {
     const TOLERANCE: f64 = 1e-10;
-    let counted = Counted::new(&PENDULUM);
+    let counted = CountedSystem::new(&PENDULUM);
     let problem = problem(&counted);
     let (order, controlled) = (8, problem.controlled("rkmk8", 8, Adaptive::rkmk8));
     let mut state = State::start(&PENDULUM);

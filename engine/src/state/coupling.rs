@@ -1,19 +1,20 @@
-//! Coordinates or velocities that equations tie to one another, and that may have to follow when others are given.
+//! Finds the coordinates or velocities that are coupled by violated equations, and that have to change with one
+//! another.
 
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
 use std::collections::BTreeSet;
 
-/// The indices that occur in each equation.
-pub struct Ties(Vec<BTreeSet<usize>>);
+/// Coupling of unknowns by equations: the indices of the unknowns in each equation.
+pub struct Coupling(Vec<BTreeSet<usize>>);
 
-impl Ties {
-    /// Equations, each given by the indices that occur in it.
+impl Coupling {
+    /// Collects equations, each given by the indices of its unknowns.
     pub fn new(equations: impl IntoIterator<Item = BTreeSet<usize>>) -> Self {
-        Ties(equations.into_iter().collect())
+        Coupling(equations.into_iter().collect())
     }
 
-    /// The indices that violated equations tie together, directly and through other equations.
-    pub fn of(&self, wrong: impl Fn(usize) -> bool) -> BTreeSet<usize> {
+    /// Returns the unknowns that violated equations couple, directly and through other equations.
+    pub fn coupled_to(&self, wrong: impl Fn(usize) -> bool) -> BTreeSet<usize> {
         let start = (0..self.0.len()).filter(|&row| wrong(row));
         let mut tied: BTreeSet<usize> = start.flat_map(|row| self.0[row].clone()).collect();
         loop {
@@ -30,7 +31,7 @@ impl Ties {
     }
 }
 
-/// The indices of the symbols in an expression, relative to `first` and below `count`, except `but`.
+/// Returns the indices of the symbols in an expression, relative to `first` and below `count`, except `but`.
 pub fn symbols(
     graph: &Graph,
     edge: Edge,

@@ -6,19 +6,19 @@ use hamel::{Energies, State};
 
 /// Largest unexplained change of energy relative to the mean kinetic energy, and the same in multiples of the
 /// tolerance.
-const LOST: f64 = 1e-2;
-const TOLERANCES: f64 = 100.0;
+const MAX_RELATIVE_CHANGE: f64 = 1e-2;
+const MAX_CHANGE_IN_TOLERANCES: f64 = 100.0;
 /// Likewise for equal steps, where no tolerance is known and methods of low order gain or lose energy: the motion is
 /// lost only if the change exceeds the energy by this factor.
-const GROSS: f64 = 10.0;
+const MAX_RELATIVE_CHANGE_EQUAL_STEPS: f64 = 10.0;
 /// Absolute limit for a mechanism at rest without energy: rounding errors are not a loss.
-const ROUNDING: f64 = 1e-13;
+const ROUNDING_ERROR: f64 = 1e-13;
 /// Safety factor for the work of loads, which is estimated from the ends of steps.
-const WORK: f64 = 10.0;
+const WORK_SAFETY_FACTOR: f64 = 10.0;
 
-/// The energy balance so far.
+/// Energy balance of a run so far.
 #[derive(Clone, Copy, Debug)]
-pub struct Balance {
+pub struct EnergyBalance {
     start: f64,
     initial: f64,
     time: f64,
@@ -34,10 +34,10 @@ pub struct Balance {
     change: f64,
 }
 
-impl Balance {
-    /// The balance at the start.
+impl EnergyBalance {
+    /// Begins the balance at the start of a run.
     pub fn new(system: &Instance, state: &State<Instance>) -> Self {
-        Balance {
+        EnergyBalance {
             start: state.t,
             initial: energy(system, state),
             time: state.t,
@@ -50,7 +50,7 @@ impl Balance {
         }
     }
 
-    /// The balance after one more state.
+    /// Returns the balance after one more state.
     pub fn after(mut self, system: &Instance, state: &State<Instance>) -> Self {
         let h = (state.t - self.time).abs();
         let power = system.power(state.t, &state.x, &state.xi).abs();
@@ -65,7 +65,7 @@ impl Balance {
         self
     }
 
-    /// The change of energy at this state if no load accounts for it; `tolerance` is `None` for equal steps.
+    /// Returns the change of energy at this state if no load accounts for it; `tolerance` is `None` for equal steps.
     pub fn lost(&self, tolerance: Option<f64>) -> Option<f64> {
         if self.driven {
             return None;
@@ -79,13 +79,13 @@ impl Balance {
         let scale = mean.max(self.initial.abs());
         let allowed = match tolerance {
             Some(tolerance) => {
-                let rough = TOLERANCES * tolerance;
-                LOST.max(rough) * scale + rough * self.kinetic
+                let rough = MAX_CHANGE_IN_TOLERANCES * tolerance;
+                MAX_RELATIVE_CHANGE.max(rough) * scale + rough * self.kinetic
             }
-            None => GROSS * scale + ROUNDING,
+            None => MAX_RELATIVE_CHANGE_EQUAL_STEPS * scale + ROUNDING_ERROR,
         };
         // The method itself reports NaN.
-        let lost = self.change.abs() > allowed + WORK * self.work;
+        let lost = self.change.abs() > allowed + WORK_SAFETY_FACTOR * self.work;
         lost.then_some(self.change)
     }
 }

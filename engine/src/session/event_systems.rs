@@ -1,29 +1,29 @@
-//! Derives and compiles a description with the expressions of events as additional outputs.
+//! Systems whose outputs include the expressions of events.
 
 use crate::error::Error;
 use crate::mechanism::{Instance, Mechanism};
+use crate::option_text::{Piece, invalid_option};
 use crate::run::Event;
 use crate::source::Source;
-use crate::source::added::{self, Added};
+use crate::source::added_outputs::{self, AddedOutput};
 use crate::state::State;
-use crate::text::{Piece, refused};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Number of sets of expressions that are kept.
-const KEPT: usize = 8;
+/// Largest number of systems that are kept.
+const MAX_CACHED_SYSTEMS: usize = 8;
 
 /// Name of the texts of all events in messages.
 const EVENTS: &str = "events";
 
-/// The recent systems, by the texts of their events.
+/// Cache of the most recent systems, by the texts of their events.
 #[derive(Default)]
-pub struct AllObserved(Mutex<Vec<(Vec<String>, Arc<Observed>)>>);
+pub struct EventSystemCache(Mutex<Vec<(Vec<String>, Arc<EventSystem>)>>);
 
-impl AllObserved {
-    /// The system for these events; `None` if no event is an expression.
-    pub fn of(&self, source: &Source, events: &[Event]) -> Result<Option<Arc<Observed>>, Error> {
+impl EventSystemCache {
+    /// Returns the system for these events, derived on first use; `None` if no event is an expression.
+    pub fn of(&self, source: &Source, events: &[Event]) -> Result<Option<Arc<EventSystem>>, Error> {
         let texts: Vec<&str> = events.iter().filter_map(Event::expression).collect();
         if texts.is_empty() {
             return Ok(None);
@@ -32,9 +32,9 @@ impl AllObserved {
         if let Some((_, found)) = known().iter().find(|(of, _)| *of == texts) {
             return Ok(Some(Arc::clone(found)));
         }
-        let made = Arc::new(Observed::new(source, &texts.join("; "), &texts)?);
+        let made = Arc::new(EventSystem::new(source, &texts.join("; "), &texts)?);
         let mut all = known();
-        if all.len() >= KEPT {
+        if all.len() >= MAX_CACHED_SYSTEMS {
             all.remove(0);
         }
         let own = texts.into_iter().map(str::to_owned).collect();
@@ -43,14 +43,14 @@ impl AllObserved {
     }
 }
 
-/// A description extended by expressions.
-pub struct Observed {
+/// Compiled description with the expressions of events as additional outputs.
+pub struct EventSystem {
     pub generated: Arc<Generated>,
     mechanism: Arc<Mechanism>,
 }
 
-impl Observed {
-    /// Adds these expressions, which follow one another in the text `said`.
+impl EventSystem {
+    /// Adds these expressions as outputs; they follow one another in the text `said`.
     pub fn new(source: &Source, said: &str, expressions: &[&str]) -> Result<Self, Error> {
         let mut errors = Vec::new();
         let (mut outputs, mut start) = (Vec::new(), 0);
@@ -65,32 +65,32 @@ impl Observed {
                 Ok(_) if whole.split(';').len() > 1 => {
                     errors.push(whole.wrong("expected one expression"));
                 }
-                Ok(_) => outputs.push(Added {
-                    name: added::name(index),
+                Ok(_) => outputs.push(AddedOutput {
+                    name: added_outputs::name(index),
                     whole,
                     sides: vec![whole],
                 }),
             }
         }
-        let generated = added::derive(source, (EVENTS, said), &outputs, errors)?;
+        let generated = added_outputs::derive(source, (EVENTS, said), &outputs, errors)?;
         let mut errors = Vec::new();
-        for Added { name, whole, .. } in &outputs {
+        for AddedOutput { name, whole, .. } in &outputs {
             let function = generated.program.function(name);
             if function.is_none_or(|function| function.shape != Shape::Scalar) {
                 errors.push(whole.wrong("an event is a zero of one number"));
             }
         }
         if !errors.is_empty() {
-            return Err(refused(EVENTS, said, &errors));
+            return Err(invalid_option(EVENTS, said, &errors));
         }
         let mechanism = Arc::new(Mechanism::new(&generated, source.shown())?);
-        Ok(Observed {
+        Ok(EventSystem {
             generated: Arc::new(generated),
             mechanism,
         })
     }
 
-    /// The system of a run, with the values of a state.
+    /// Creates the system of a run from a state.
     pub fn instance(&self, state: &State) -> Result<Instance, Error> {
         let instance = Instance::of(&self.mechanism, state)?;
         instance.check_parameters(&state.x)?;

@@ -1,4 +1,4 @@
-//! Velocities determined by constraints, which are not part of states.
+//! Velocities that constraints determine, and that states therefore do not contain.
 
 use crate::names;
 use hamel_codegen::derive::undetermined::undetermined_multipliers;
@@ -6,10 +6,10 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 
 /// Largest number of names listed.
-const LISTED: usize = 12;
+const MAX_LISTED: usize = 12;
 
-/// A constraint with its place in the text of the description.
-pub fn shown(constraint: &Pfaffian, text: &str) -> String {
+/// Describes a constraint by its text and its line in the description.
+pub fn describe_constraint(constraint: &Pfaffian, text: &str) -> String {
     let before = constraint
         .span
         .range()
@@ -29,8 +29,8 @@ pub fn shown(constraint: &Pfaffian, text: &str) -> String {
     }
 }
 
-/// The velocities determined by constraints, each with its constraint, and the remaining ones.
-pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
+/// Lists the velocities that constraints determine, each with its constraint, and the remaining ones.
+pub fn constraint_lines(generated: &Generated, text: &str) -> Vec<String> {
     let (full, active) = (&generated.model, &generated.active);
     if full.constraints.is_empty() {
         return Vec::new();
@@ -52,7 +52,10 @@ pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
         let clock = full.clock.is_some_and(|clock| clock.xi == place);
         lines.push(
             match row(place).and_then(|(_, row)| full.constraints.get(*row)) {
-                Some(row) => format!("velocity {name:width$}  follows from {}", shown(row, text)),
+                Some(row) => format!(
+                    "velocity {name:width$}  follows from {}",
+                    describe_constraint(row, text)
+                ),
                 None if clock => format!("velocity {name:width$}  is 1, the rate of time"),
                 None => format!("velocity {name:width$}  stays in the state"),
             },
@@ -65,7 +68,7 @@ pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
         .map(|(row, _)| (row.label(), row.span.range()))
         .collect();
     for row in &active.constraints {
-        let shown = shown(row, text);
+        let shown = describe_constraint(row, text);
         let place = (row.label(), row.span.range());
         let which = match free.contains(&place) {
             true => ": not determined, as rows depend on it",
@@ -76,9 +79,9 @@ pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
     lines
 }
 
-/// The names of velocities that were solved for, and of joints without other velocities, each with the help for a
-/// state that gives it.
-pub fn solved(generated: &Generated, text: &str) -> Vec<(String, String)> {
+/// Returns the names of velocities that constraints determine, and of joints without other velocities, each with the
+/// message for a state that contains it.
+pub fn dependent_velocities(generated: &Generated, text: &str) -> Vec<(String, String)> {
     let full = &generated.model;
     let stay: Vec<String> = {
         let groups = generated.active.velocities.iter();
@@ -99,7 +102,7 @@ pub fn solved(generated: &Generated, text: &str) -> Vec<(String, String)> {
             .iter()
             .filter(|(velocity, _)| (group.offset..group.offset + group.len).contains(velocity));
         let rows = of_group.filter_map(|(_, row)| full.constraints.get(*row));
-        let mut rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
+        let mut rows: Vec<String> = rows.map(|row| describe_constraint(row, text)).collect();
         rows.dedup();
         let rows = listed(&rows, " and ");
         let why = match entries[..] {
@@ -122,8 +125,8 @@ pub fn solved(generated: &Generated, text: &str) -> Vec<(String, String)> {
 }
 
 fn listed(names: &[String], between: &str) -> String {
-    match names.get(..LISTED) {
-        Some(first) if names.len() > LISTED => format!("{} and others", first.join(between)),
+    match names.get(..MAX_LISTED) {
+        Some(first) if names.len() > MAX_LISTED => format!("{} and others", first.join(between)),
         _ => names.join(between),
     }
 }

@@ -5,7 +5,7 @@ use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::ast::Span;
 use std::ops::Range;
 
-/// A part of an option's text, without surrounding spaces.
+/// Part of an option's text, without surrounding spaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece<'a> {
     /// Text of the part.
@@ -15,7 +15,7 @@ pub struct Piece<'a> {
 }
 
 impl<'a> Piece<'a> {
-    /// The whole text of an option; fails if its brackets do not match.
+    /// Takes the whole text of an option; fails if its brackets do not match.
     pub fn of(text: &'a str) -> Result<Self, Diagnostic> {
         let mut open: Vec<(char, usize)> = Vec::new();
         for (place, letter) in text.char_indices() {
@@ -46,12 +46,12 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// The range of the part.
+    /// Returns the range of the part.
     pub fn span(&self) -> Span {
         Span::new(self.start..self.start + self.text.len())
     }
 
-    /// An error at this part.
+    /// Creates an error at this part.
     pub fn wrong(&self, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(self.span(), message)
     }
@@ -66,7 +66,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// A part of this part.
+    /// Takes a range of this part, without surrounding spaces.
     pub fn part(&self, range: Range<usize>) -> Self {
         let start = self.start + range.start;
         let text = self.text.get(range).unwrap_or("");
@@ -81,7 +81,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// The parts between separators outside brackets.
+    /// Returns the parts between separators outside brackets.
     pub fn split(&self, separator: char) -> Vec<Self> {
         let mut from = 0;
         let mut parts = Vec::new();
@@ -95,7 +95,7 @@ impl<'a> Piece<'a> {
         parts
     }
 
-    /// The byte offsets of characters outside brackets.
+    /// Returns the byte offsets of characters outside brackets.
     pub fn outside(&self) -> Vec<usize> {
         let mut depth = 0_usize;
         let mut places = Vec::new();
@@ -143,8 +143,8 @@ fn closing(letter: char) -> char {
     }
 }
 
-/// The error of an argument with all that is wrong in its text.
-pub fn refused(option: &str, text: &str, errors: &[Diagnostic]) -> Error {
+/// Creates the error of an option from all errors in its text.
+pub fn invalid_option(option: &str, text: &str, errors: &[Diagnostic]) -> Error {
     Error::Argument {
         option: option.into(),
         text: text.into(),

@@ -1,16 +1,16 @@
-//! Runs in equal steps between the times that matter, one alone or two together.
+//! Runs in equal steps, one system alone or two together.
 
-use super::advance::{Observer, Place};
+use super::advance::{ObservationPoint, Observer};
 use super::events::Events;
 use super::plan::{Plan, Spacing};
-use super::stretch::{Stretch, stretches};
-use crate::mechanism::{Instance, Numbers, Whole};
+use super::segment::{Segment, segments};
+use crate::mechanism::{CompiledStepper, Instance, Numbers};
 use hamel::methods::Method;
 use hamel::{Clock, State, StepError, integrate_while};
 use std::ops::ControlFlow;
 
-/// A run in equal steps, with its observer and current state.
-pub struct Steady<'a> {
+/// Run in equal steps, with its observer and current state.
+pub struct FixedStepRun<'a> {
     /// System.
     pub system: &'a Instance,
     /// Plan.
@@ -19,23 +19,23 @@ pub struct Steady<'a> {
     pub state: &'a mut State<Instance>,
     /// Events that may end the run early.
     pub events: Option<&'a mut Events>,
-    /// Observer of the start, of the ends of steps or unobserved stretches, and of samples.
+    /// Observer of the start, of the ends of steps or unobserved segments, and of samples.
     pub observer: &'a mut dyn Observer,
 }
 
-impl<'a> Steady<'a> {
-    /// Runs to the end, alone.
+impl<'a> FixedStepRun<'a> {
+    /// Runs to the end.
     ///
     /// # Errors
-    /// The reason of an early end; the state is then the last one reached.
-    pub fn alone(mut self) -> Result<(), StepError> {
-        self.observer.look(self.state, Place::End);
+    /// The run ends early; the state is then the last one reached.
+    pub fn run(mut self) -> Result<(), StepError> {
+        self.observer.observe(self.state, ObservationPoint::End);
         if let Some(events) = &mut self.events {
             events.begin(self.system, self.state)?;
         }
         let clock = Clock::new(self.system, self.state);
         for end in self.ends() {
-            self.go(end, clock)?;
+            self.run_to(end, clock)?;
             if self.is_stopped() {
                 break;
             }
@@ -43,30 +43,30 @@ impl<'a> Steady<'a> {
         Ok(())
     }
 
-    /// Whether an event has ended the run, or it is cancelled.
+    /// Returns whether an event has ended the run, or it is cancelled.
     fn is_stopped(&self) -> bool {
         let events = self.events.as_ref();
-        events.is_some_and(|events| events.stopped_by.is_some()) || self.plan.is_given_up()
+        events.is_some_and(|events| events.stopped_by.is_some()) || self.plan.is_cancelled()
     }
 
-    /// Runs two systems of one mechanism to their ends. While both take the same steps, machine code takes two of these
-    /// in one call. Each run is bitwise equal to that alone.
-    pub fn both([mut first, mut second]: [Self; 2]) -> [Result<(), StepError>; 2] {
+    /// Runs two instances of one mechanism to their ends. While both take the same steps, machine code takes two of
+    /// these in one call. Each run is bitwise equal to that alone.
+    pub fn run_pair([mut first, mut second]: [Self; 2]) -> [Result<(), StepError>; 2] {
         let ends = first.ends();
         if ends != second.ends() {
-            return [first.alone(), second.alone()];
+            return [first.run(), second.run()];
         }
-        first.observer.look(first.state, Place::End);
-        second.observer.look(second.state, Place::End);
+        first.observer.observe(first.state, ObservationPoint::End);
+        second.observer.observe(second.state, ObservationPoint::End);
         let mut outcomes = [Ok(()), Ok(())];
         let clocks = [&first, &second].map(|run| Clock::new(run.system, run.state));
         for end in ends {
             let [one, other] = &mut outcomes;
-            if one.is_ok() && other.is_ok() && first.go_with(&mut second, end, clocks) {
+            if one.is_ok() && other.is_ok() && first.run_pair_to(&mut second, end, clocks) {
                 continue;
             }
-            *one = one.and_then(|()| first.go(end, clocks[0]));
-            *other = other.and_then(|()| second.go(end, clocks[1]));
+            *one = one.and_then(|()| first.run_to(end, clocks[0]));
+            *other = other.and_then(|()| second.run_to(end, clocks[1]));
         }
         outcomes
     }
@@ -88,19 +88,19 @@ impl<'a> Steady<'a> {
         }
     }
 
-    fn whole(&self, end: f64) -> Whole<'a> {
+    fn compiled_stepper(&self, end: f64) -> CompiledStepper<'a> {
         let Plan { method, step, .. } = self.plan;
-        Whole::new(self.system, &method.stepper, *step, end - self.state.t)
+        CompiledStepper::new(self.system, &method.stepper, *step, end - self.state.t)
     }
 
     /// Runs to a time, with the clock of the run.
-    fn go(&mut self, end: f64, clock: Option<Clock<f64>>) -> Result<(), StepError> {
+    fn run_to(&mut self, end: f64, clock: Option<Clock<f64>>) -> Result<(), StepError> {
         let from = self.state.t;
         if end > from {
             self.system.go_from(from);
-            for stretch in stretches(&self.plan.spacing, self.plan.step, from, end)? {
-                self.cover(&stretch)?;
-                self.set(clock);
+            for segment in segments(&self.plan.spacing, self.plan.step, from, end)? {
+                self.run_segment(&segment)?;
+                self.set_clock(clock);
                 if self.is_stopped() {
                     break;
                 }
@@ -112,19 +112,19 @@ impl<'a> Steady<'a> {
         Ok(())
     }
 
-    /// Runs to the end of a stretch.
-    fn cover(&mut self, stretch: &Stretch) -> Result<(), StepError> {
-        let (from, end) = (self.state.t, stretch.end);
-        let whole = self.whole(end);
+    /// Runs to the end of a segment.
+    fn run_segment(&mut self, segment: &Segment) -> Result<(), StepError> {
+        let (from, end) = (self.state.t, segment.end);
+        let compiled = self.compiled_stepper(end);
         let (system, plan, step) = (self.system, self.plan, self.plan.step);
         let watches = self.events.as_ref().is_some_and(|e| !e.list().is_empty());
         let skips = self.plan.quiet && !watches && !self.plan.has_multiples();
-        if skips && whole.run(system, self.state, end) {
-            self.observer.look(self.state, Place::End);
+        if skips && compiled.run(system, self.state, end) {
+            self.observer.observe(self.state, ObservationPoint::End);
             return Ok(());
         }
-        if self.glides(&whole, watches, end) {
-            return self.glide(&whole, stretch);
+        if self.can_run_monitored(&compiled, watches, end) {
+            return self.run_monitored(&compiled, segment);
         }
         let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
         let (stepper, observer) = (&self.plan.method.stepper, &mut self.observer);
@@ -144,100 +144,106 @@ impl<'a> Steady<'a> {
             };
             match seen {
                 Ok(None) => {
-                    observer.look(state, Place::End);
-                    show(*observer, (stretch, clock), index, state);
-                    match plan.is_given_up() {
+                    observer.observe(state, ObservationPoint::End);
+                    show(*observer, (segment, clock), index, state);
+                    match plan.is_cancelled() {
                         true => ControlFlow::Break(()),
                         false => ControlFlow::Continue(()),
                     }
                 }
                 Ok(Some(at)) => {
-                    observer.look(&at, Place::End);
+                    observer.observe(&at, ObservationPoint::End);
                     stop = Some(Ok(at));
                     ControlFlow::Break(())
                 }
                 Err(error) => {
-                    observer.look(state, Place::End);
+                    observer.observe(state, ObservationPoint::End);
                     stop = Some(Err(error));
                     ControlFlow::Break(())
                 }
             }
         };
-        integrate_while(system, &whole, self.state, step, end, inputs, look)?;
+        integrate_while(system, &compiled, self.state, step, end, inputs, look)?;
         if let Some(stop) = stop {
             *self.state = stop?;
         }
         Ok(())
     }
 
-    /// Whether most steps to a time may be taken without observing their ends.
-    fn glides(&self, whole: &Whole, watches: bool, end: f64) -> bool {
-        let free = !watches && self.observer.leisure() > 0 && self.state.is_finite();
-        free && whole.glides(self.system, self.state.t, end)
+    /// Returns whether most steps to a time may be taken without observing their ends.
+    fn can_run_monitored(&self, compiled: &CompiledStepper, watches: bool, end: f64) -> bool {
+        let free = !watches && self.observer.unobserved_steps() > 0 && self.state.is_finite();
+        free && compiled.can_run_monitored(self.system, self.state.t, end)
     }
 
-    /// Takes the steps of a stretch: unobserved steps many at once, the others one by one.
-    fn glide(&mut self, whole: &Whole, stretch: &Stretch) -> Result<(), StepError> {
-        let (system, grid) = (self.system, &stretch.grid);
+    /// Takes the steps of a segment: unobserved steps many at once, the others one by one.
+    fn run_monitored(
+        &mut self,
+        compiled: &CompiledStepper,
+        segment: &Segment,
+    ) -> Result<(), StepError> {
+        let (system, grid) = (self.system, &segment.grid);
         let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
         let clock = Clock::new(system, self.state);
         let mut done = 0;
-        while done < grid.count() && !self.plan.is_given_up() {
+        while done < grid.count() && !self.plan.is_cancelled() {
             let observer = &mut *self.observer;
-            let free = observer.leisure().min(stretch.ahead(done));
+            let free = observer
+                .unobserved_steps()
+                .min(segment.steps_to_sample(done));
             if free > 0 {
                 let steps = (grid, done, free);
-                let taken = whole.glide(system, self.state, steps, clock, |glance| {
-                    observer.glance(glance);
+                let taken = compiled.run_monitored(system, self.state, steps, clock, |glance| {
+                    observer.observe_energies(glance);
                 });
                 done += taken;
                 if taken == free {
-                    show(observer, (stretch, clock), done, self.state);
+                    show(observer, (segment, clock), done, self.state);
                     continue;
                 }
             }
             // If the code fails, the method reports the reason.
             let mut next =
-                whole.step_reusing_force(system, self.state, grid.step(), &inputs, &mut None)?;
+                compiled.step_reusing_force(system, self.state, grid.step(), &inputs, &mut None)?;
             if !next.is_finite() {
                 return Err(StepError::NonFinite { time: next.t });
             }
             done += 1;
             next.t = grid.time(done);
             *self.state = next;
-            self.set(clock);
+            self.set_clock(clock);
             let observer = &mut *self.observer;
-            observer.look(self.state, Place::End);
-            show(observer, (stretch, clock), done, self.state);
+            observer.observe(self.state, ObservationPoint::End);
+            show(observer, (segment, clock), done, self.state);
         }
         Ok(())
     }
 
-    /// Sets the description's time, which equals that of the run up to rounding at the end of a stretch, to the time of
+    /// Sets the description's time, which equals that of the run up to rounding at the end of a segment, to the time of
     /// the run.
-    fn set(&mut self, clock: Option<Clock<f64>>) {
+    fn set_clock(&mut self, clock: Option<Clock<f64>>) {
         if let Some(clock) = clock {
             clock.set(self.state);
         }
     }
 
     /// Runs to a time together with another run; returns whether both did, otherwise both are unchanged.
-    fn go_with(&mut self, other: &mut Self, end: f64, clocks: [Option<Clock<f64>>; 2]) -> bool {
+    fn run_pair_to(&mut self, other: &mut Self, end: f64, clocks: [Option<Clock<f64>>; 2]) -> bool {
         let quiet = self.plan.quiet && other.plan.quiet;
         if !quiet || self.plan.has_multiples() || end <= self.state.t {
             return false;
         }
         self.system.go_from(self.state.t);
         other.system.go_from(other.state.t);
-        let wholes = [self.whole(end), other.whole(end)];
+        let steppers = [self.compiled_stepper(end), other.compiled_stepper(end)];
         let systems = [self.system, other.system];
         let states = [&mut *self.state, &mut *other.state];
-        if !Whole::run_both(&wholes, systems, states, end) {
+        if !CompiledStepper::run_pair(&steppers, systems, states, end) {
             return false;
         }
         for (run, clock) in [self, other].into_iter().zip(clocks) {
-            run.observer.look(run.state, Place::End);
-            run.set(clock);
+            run.observer.observe(run.state, ObservationPoint::End);
+            run.set_clock(clock);
             run.sample(end);
         }
         true
@@ -246,23 +252,23 @@ impl<'a> Steady<'a> {
     /// Shows a sample if one is requested at this time.
     fn sample(&mut self, end: f64) {
         if self.samples().contains(&end) {
-            self.observer.look(self.state, Place::Sample);
+            self.observer.observe(self.state, ObservationPoint::Sample);
         }
     }
 }
 
-/// Shows the sample after `index` steps of a stretch, if there is one.
+/// Shows the sample after `index` steps of a segment, if there is one.
 fn show(
     observer: &mut dyn Observer,
-    (stretch, clock): (&Stretch, Option<Clock<f64>>),
+    (segment, clock): (&Segment, Option<Clock<f64>>),
     index: u64,
     state: &State<Instance>,
 ) {
-    if let Some(t) = stretch.sample(index) {
+    if let Some(t) = segment.sample_time(index) {
         let mut state = State { t, ..state.clone() };
         if let Some(clock) = clock {
             clock.set(&mut state);
         }
-        observer.look(&state, Place::Sample);
+        observer.observe(&state, ObservationPoint::Sample);
     }
 }

@@ -8,12 +8,12 @@ use std::cell::Cell;
 ///
 /// All calls are forwarded; counting costs well below a nanosecond a call.
 #[derive(Debug)]
-pub struct Counted<'a, Sys: ?Sized> {
+pub struct CountedSystem<'a, Sys: ?Sized> {
     system: &'a Sys,
     evaluations: Cell<u64>,
 }
 
-impl<'a, Sys: ?Sized> Counted<'a, Sys> {
+impl<'a, Sys: ?Sized> CountedSystem<'a, Sys> {
     /// Wraps a system, with a count of zero.
     pub fn new(system: &'a Sys) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl<'a, Sys: ?Sized> Counted<'a, Sys> {
     }
 }
 
-impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
+impl<Sys: System + ?Sized> System for CountedSystem<'_, Sys> {
     type Scalar = Sys::Scalar;
     type Coordinates = Sys::Coordinates;
     type Velocities = Sys::Velocities;
@@ -139,7 +139,7 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     }
 }
 
-impl<Sys: Energies + ?Sized> Energies for Counted<'_, Sys> {
+impl<Sys: Energies + ?Sized> Energies for CountedSystem<'_, Sys> {
     #[inline]
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar {
         self.system.kinetic_energy(x, xi)
@@ -151,7 +151,7 @@ impl<Sys: Energies + ?Sized> Energies for Counted<'_, Sys> {
     }
 }
 
-impl<Sys: Split + ?Sized> Split for Counted<'_, Sys> {
+impl<Sys: Split + ?Sized> Split for CountedSystem<'_, Sys> {
     type Rotors = Sys::Rotors;
 
     const FREE: bool = Sys::FREE;
@@ -188,7 +188,7 @@ impl<Sys: Split + ?Sized> Split for Counted<'_, Sys> {
     }
 }
 
-impl<Sys: Canonical + ?Sized> Canonical for Counted<'_, Sys> {
+impl<Sys: Canonical + ?Sized> Canonical for CountedSystem<'_, Sys> {
     #[inline]
     fn momentum(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Velocities {
         self.system.momentum(x, xi)
