@@ -114,8 +114,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     match arguments.language {
         Language::Rust => {
-            let code =
-                builder::written(&generated, &name).map_err(|errors| source.refused(&errors))?;
+            let code = builder::written(&generated, &name)
+                .map_err(|errors| source.description_error(&errors))?;
             match &arguments.out {
                 Some(out) => write(arguments, out, &code),
                 None => print(&code),
@@ -124,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Language::C => {
             let precision = arguments.precision.unwrap_or_default();
             let files = builder::written_in_c(&generated, &name, stem.as_deref(), precision)
-                .map_err(|errors| source.refused(&errors))?;
+                .map_err(|errors| source.description_error(&errors))?;
             write_c(arguments, &files, stem.as_deref())
         }
     }

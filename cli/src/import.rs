@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             source.path
         )));
     }
-    let source = source.given(&(&arguments.robot).into())?;
+    let source = source.interpret(&(&arguments.robot).into())?;
     let cleaned = source
         .robot
         .iter()

@@ -37,7 +37,7 @@ pub fn advice(session: &Session) -> Result<String, Failure> {
 /// Errors of the derivation or of the generated code.
 pub fn rust(session: &Session, name: &str) -> Result<String, Error> {
     let generated = session.source().derive()?;
-    builder::written(&generated, name).map_err(|errors| session.source().refused(&errors))
+    builder::written(&generated, name).map_err(|errors| session.source().description_error(&errors))
 }
 
 /// Returns the generated C99, as for a description in a file of this name.
@@ -47,7 +47,7 @@ pub fn rust(session: &Session, name: &str) -> Result<String, Error> {
 pub fn c(session: &Session, name: &str, stem: &str) -> Result<Files, Error> {
     let generated = session.source().derive()?;
     builder::written_in_c(&generated, name, Some(stem), Precision::default())
-        .map_err(|errors| session.source().refused(&errors))
+        .map_err(|errors| session.source().description_error(&errors))
 }
 
 /// Tables by name, the most important ones if none is named; with `all`, every entry.

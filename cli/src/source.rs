@@ -17,5 +17,5 @@ pub fn read(path: &Path) -> Result<Source, Failure> {
 
 /// Reads a description, or a robot in URDF.
 pub fn open(path: &Path, options: &RobotOptions) -> Result<Source, Failure> {
-    Ok(read(path)?.given(&options.into())?)
+    Ok(read(path)?.interpret(&options.into())?)
 }

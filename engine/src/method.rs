@@ -143,7 +143,7 @@ impl ChosenMethod {
     }
 
     /// Adapts the method to another system of the same structure: with other parameters or another start.
-    pub fn of_another(&self, system: &Instance) -> Self {
+    pub fn adapt(&self, system: &Instance) -> Self {
         let entry = METHODS.iter().find(|entry| entry.name == self.name);
         let stepper = match (&self.stepper, entry) {
             // Keep settings other than the name.

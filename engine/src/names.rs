@@ -44,7 +44,7 @@ pub fn advice_on_rate(rates: &[(String, String)], name: &str) -> Option<String> 
 }
 
 /// Returns the names of the entries of ξ, followed by those of the states of first order.
-pub fn moving(model: &Model) -> Vec<String> {
+pub fn velocities_and_states(model: &Model) -> Vec<String> {
     let groups = model.velocities.iter().chain(&model.states);
     groups.flat_map(group).collect()
 }
@@ -87,9 +87,9 @@ impl Time {
 pub fn group(group: &Group) -> Vec<String> {
     let name = &group.name;
     match group.shape {
-        ShapeKind::Scalar => shaped(name, Shape::Scalar),
-        ShapeKind::Vector(n) => shaped(name, Shape::Vector(n)),
-        ShapeKind::Matrix(n) => shaped(name, Shape::Matrix(n, n)),
+        ShapeKind::Scalar => entries(name, Shape::Scalar),
+        ShapeKind::Vector(n) => entries(name, Shape::Vector(n)),
+        ShapeKind::Matrix(n) => entries(name, Shape::Matrix(n, n)),
         ShapeKind::Symmetric(n) => (1..=n)
             .flat_map(|i| (i..=n).map(move |j| format!("{name}[{i},{j}]")))
             .collect(),
@@ -97,7 +97,7 @@ pub fn group(group: &Group) -> Vec<String> {
 }
 
 /// Returns the names of the entries of a value, matrices by rows.
-pub fn shaped(name: &str, shape: Shape) -> Vec<String> {
+pub fn entries(name: &str, shape: Shape) -> Vec<String> {
     match shape {
         Shape::Scalar => vec![name.to_string()],
         Shape::Vector(n) => (1..=n).map(|i| format!("{name}[{i}]")).collect(),

@@ -166,7 +166,7 @@ fn compare(
     arguments: &Arguments,
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
-    let source = source::open(file, &arguments.robot)?.in_numbers();
+    let source = source::open(file, &arguments.robot)?.for_evaluation();
     let generated = source.derive_all()?;
     let mut state = State::read(&source, &generated, arguments.at.as_deref())?;
     let fields = solution

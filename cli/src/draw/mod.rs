@@ -83,10 +83,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     let source = source::open(&arguments.file, &arguments.robot)?.showing_frames();
     let session = match until > 0.0 {
-        true => Session::complete(source)?,
-        false => Session::of_places(source)?,
+        true => Session::with_all_functions(source)?,
+        false => Session::for_drawing(source)?,
     };
-    let state = session.state_of(at)?;
+    let state = session.read_state(at)?;
     let traced_frames = traced_frames(session.generated(), &arguments.trace)?;
     let drawing = session.drawing()?;
     let moments = match until > 0.0 {

@@ -64,7 +64,7 @@ pub struct Arguments {
 
 /// Evaluates and prints; values that do not exist are `null`, and make the command fail.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut source = source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    let mut source = source::open(&arguments.file, &arguments.robot)?.for_evaluation();
     if !arguments.frame.is_empty() {
         source = source.showing_frames();
     }

@@ -60,7 +60,7 @@ const EIGENVALUE_TOLERANCE: f64 = 1e-7;
 
 /// Linearises and prints the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    let source = source::open(&arguments.file, &arguments.robot)?.for_evaluation();
     let generated = source.derive_linearized()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let linear = linearize(&generated, &state, source.shown(), arguments.full)?;

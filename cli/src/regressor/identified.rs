@@ -21,7 +21,7 @@ pub fn print_bodies(
         let message = "--identified is written as text, as Markdown or as JSON, not as LaTeX";
         return Err(Failure::usage(message));
     }
-    let Source { path, text, .. } = description.beside(file, "base parameters")?;
+    let Source { path, text, .. } = description.read_related(file, "base parameters")?;
     let beta = read(all, &path, &text)?;
     let found = nearest(all.values(), all.links().len(), &all.map(), &beta);
     let found = found.map_err(|why| {

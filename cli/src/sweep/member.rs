@@ -104,7 +104,7 @@ impl Sweep {
         match self.family.member(&self.vary.state(&varied, &self.base)) {
             Ok(system) => Ok(Member {
                 plan: Plan {
-                    method: self.plan.method.of_another(&system),
+                    method: self.plan.method.adapt(&system),
                     ..self.plan.clone()
                 },
                 index,
@@ -175,7 +175,7 @@ impl<'a> Running<'a> {
             system,
             plan,
         } = self.member;
-        let early = EarlyEnd::of(system, plan, outcome, &self.state, self.balance.get());
+        let early = EarlyEnd::explain(system, plan, outcome, &self.state, self.balance.get());
         let kept = match early {
             Ok(None) => Ok(self.watch.finish(&self.state)),
             Ok(Some(early)) => Err(Failed {
@@ -218,7 +218,7 @@ impl Family {
             kind: "start",
             why: format!("--inputs: {problem}"),
         })?;
-        let system = system.with(given);
+        let system = system.with_inputs(given);
         let checked = system.check_parameters(&state.x);
         checked.map_err(|error| Failed::of("singular", &error))?;
         Ok(system)
@@ -266,7 +266,7 @@ mod tests {
         let (Some(vary), Some(stepping)) = (&arguments.vary, &arguments.stepping) else {
             panic!("--vary and --until are needed");
         };
-        let sweep = prepare(&arguments, &source.in_numbers(), vary, &stepping.into());
+        let sweep = prepare(&arguments, &source.for_evaluation(), vary, &stepping.into());
         sweep.expect("a sweep").0
     }
 

@@ -200,7 +200,7 @@ pub fn run(arguments: &Arguments, stop: Option<&CancellationToken>) -> Result<()
             arguments.inputs.inputs.as_deref(),
         ],
     )?;
-    let source = source::open(file, &arguments.robot)?.in_numbers();
+    let source = source::open(file, &arguments.robot)?.for_evaluation();
     if arguments.submit.is_some() && source.is_stdin() {
         return Err(Failure::usage(
             "--submit takes a description in a file: the tasks also read it",

@@ -36,7 +36,7 @@ impl KeptColumns {
             let of = match item {
                 Item::End => {
                     let coordinates = names::coordinates(&generated.model);
-                    let moving = names::moving(&generated.active);
+                    let moving = names::velocities_and_states(&generated.active);
                     let all: Vec<String> = coordinates.into_iter().chain(moving).collect();
                     let time = Time::of(&generated.model, &[&all]);
                     timed = time.place.is_none();
@@ -53,7 +53,7 @@ impl KeptColumns {
             if matches!(of, Quantity::Event { .. }) && shape != Shape::Scalar {
                 return Err((index, "an event compares numbers".into()));
             }
-            columns.extend(names::shaped(piece.text, shape));
+            columns.extend(names::entries(piece.text, shape));
             items.push((Kind::Quantity(of), name));
         }
         Ok(KeptColumns {

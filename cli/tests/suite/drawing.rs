@@ -279,7 +279,7 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
         let run = RunArrays::of(&run.unwrap_or_else(|error| panic!("{error}")));
         let end = &run.x[run.x.len() - start.x.len()..];
         let target = place(&drawn.scene(end));
-        let pulled = session.pulled(&start, grip, (target, None));
+        let pulled = session.pull(&start, grip, (target, None));
         let pulled = pulled.unwrap_or_else(|error| panic!("{error}"));
         let there = drawn.scene(&pulled.x);
         let before = distance(place(&scene), target);
@@ -300,12 +300,12 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
         .with_parameters(&start.params);
     let from = drawn.scene(&start.x).frames[0].position;
     let target = [from[0] + 0.3, from[1] + 0.2, from[2] + 1.0];
-    let pulled = session.pulled(&start, Grip::Frame(0, [0.0; 3]), (target, None));
+    let pulled = session.pull(&start, Grip::Frame(0, [0.0; 3]), (target, None));
     let to = drawn.scene(&pulled.expect("a state").x).frames[0].position;
     close(to[2], from[2]);
     assert!(distance(to, target) < 1.02, "{to:?}");
     // Seen from above it moves as far as it can roll: the height of the target does not count.
-    let seen = session.pulled(
+    let seen = session.pull(
         &start,
         Grip::Frame(0, [0.0; 3]),
         (target, Some([0.0, 0.0, 1.0])),

@@ -71,7 +71,7 @@ pub fn linearize(
         // The time is not displaced.
         frame.remove(clock.xi);
     }
-    let velocities = names::moving(&generated.active);
+    let velocities = names::velocities_and_states(&generated.active);
     let displacements = frame.iter().map(|name| format!("h({name})"));
     let changes = velocities.iter().map(|name| format!("d({name})"));
     let states: Vec<String> = displacements.chain(changes).collect();
@@ -98,7 +98,7 @@ pub fn linearize(
                 .map_err(|_| Error::NoLinearization(system.state_message(x)))?,
         );
         let shape = program.function(name).map_or(Shape::Scalar, |f| f.shape);
-        outputs.extend(names::shaped(name, shape));
+        outputs.extend(names::entries(name, shape));
     }
     let (c, d) = split(&slopes);
     let mut linear = Linearization {

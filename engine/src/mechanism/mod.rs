@@ -26,7 +26,7 @@ use hamel_native::Compiled;
 use momentum_functions::MomentumFunctions;
 pub use numbers::Numbers;
 pub use sensitivity_stepper::{SensitivityStepper, StepWithSensitivities};
-use singular::Failed;
+use singular::FailedFunction;
 pub use singular::{SingularState, cause_message, explain_singular_state};
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
@@ -86,7 +86,7 @@ pub struct Instance {
     /// The message about a constraint that was divided by 0.
     divided: Option<String>,
     /// The function that last had no value.
-    failed: RefCell<Option<Failed>>,
+    failed: RefCell<Option<FailedFunction>>,
 }
 
 /// Output or invariant of the description.
@@ -200,7 +200,7 @@ impl Instance {
     }
 
     /// Returns the message for dependent constraints.
-    pub fn dependent(&self) -> &str {
+    pub fn dependent_constraints_message(&self) -> &str {
         &self.of.dependent
     }
 
@@ -210,7 +210,7 @@ impl Instance {
     }
 
     /// Returns the message about a constraint that was solved by dividing by 0, if any.
-    pub fn divided(&self) -> Option<&str> {
+    pub fn zero_divisor_message(&self) -> Option<&str> {
         self.divided.as_deref()
     }
 
@@ -225,12 +225,12 @@ impl Instance {
     }
 
     /// Returns the function that last had no value, if any.
-    pub fn failed(&self) -> Option<Failed> {
+    pub fn last_failure(&self) -> Option<FailedFunction> {
         self.failed.borrow().clone()
     }
 
     fn projection(&self, cause: Cause) -> Singular {
-        self.fails(Failed::Projection);
+        self.record_failure(FailedFunction::Projection);
         singular(cause)
     }
 
@@ -244,7 +244,7 @@ impl Instance {
         self.functions.number(function, [x, xi, &[], &[], &[]])
     }
 
-    fn fails(&self, what: Failed) {
+    fn record_failure(&self, what: FailedFunction) {
         self.failed.replace(Some(what));
     }
 
@@ -253,12 +253,12 @@ impl Instance {
     }
 
     /// Replaces the varying inputs.
-    pub fn with(self, given: Option<Inputs>) -> Self {
+    pub fn with_inputs(self, given: Option<Inputs>) -> Self {
         Instance { given, ..self }
     }
 
     /// Returns the varying inputs, if any.
-    pub fn given(&self) -> Option<&Inputs> {
+    pub fn varying_inputs(&self) -> Option<&Inputs> {
         self.given.as_ref()
     }
 
@@ -268,7 +268,7 @@ impl Instance {
     }
 
     /// Tells the inputs that a run proceeds from this time to their next jump, before which they keep their values.
-    pub fn go_from(&self, t: f64) {
+    pub fn begin_interval(&self, t: f64) {
         let next = self.jumps().iter().find(|jump| **jump > t);
         self.before.set(next.copied().unwrap_or(f64::INFINITY));
     }
@@ -452,7 +452,7 @@ impl System for Instance {
         };
         let value = self.functions.call(accel, [x, xi, u, &[], &[]]);
         value.map_err(|cause| {
-            self.fails(Failed::Motion(x.to_vec()));
+            self.record_failure(FailedFunction::Motion(x.to_vec()));
             singular(cause)
         })
     }

@@ -2,7 +2,7 @@
 //! before a run begins.
 
 use super::functions::find_function;
-use super::singular::Failed;
+use super::singular::FailedFunction;
 use super::{FunctionIndex, Functions, Instance, Numbers};
 use crate::error::Error;
 use crate::run::Inputs;
@@ -118,7 +118,7 @@ impl Instance {
                 });
             }
         }
-        if let Some(what) = self.given().and_then(Inputs::moving) {
+        if let Some(what) = self.varying_inputs().and_then(Inputs::moving) {
             moved(&mut structure, what);
         }
         structure
@@ -127,7 +127,7 @@ impl Instance {
     /// Returns the structure for choosing a method: an external controller is assumed to depend on velocities.
     pub fn cautious(&self, program: &Program) -> Structure {
         let mut structure = self.structure(program);
-        if structure.split.is_ok() && self.given().is_some_and(Inputs::is_law) {
+        if structure.split.is_ok() && self.varying_inputs().is_some_and(Inputs::is_law) {
             moved(&mut structure, "a controller".into());
         }
         structure
@@ -203,7 +203,7 @@ impl Canonical for Instance {
         let arguments = [&**x, &[], &[], &[], p];
         match self.of.momenta.velocity {
             Some(velocity) => self.functions.call(velocity, arguments).map_err(|_| {
-                self.fails(Failed::Motion(x.to_vec()));
+                self.record_failure(FailedFunction::Motion(x.to_vec()));
                 Singular::Mass
             }),
             None => Ok(Numbers::filled(f64::NAN, p.len())),

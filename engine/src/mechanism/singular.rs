@@ -22,7 +22,7 @@ const DEPENDENT_CONSTRAINTS: &str = "the constraints on the velocities depend on
 
 /// Function that had no value, with x.
 #[derive(Clone, Debug)]
-pub enum Failed {
+pub enum FailedFunction {
     /// ξ̇, or the velocities from momenta.
     Motion(Vec<f64>),
     /// The projection that closes loops, or that enforces constraints on velocities.
@@ -187,15 +187,16 @@ impl Instance {
 
     /// Explains why ξ̇, a projection or a change to velocities has failed.
     pub fn singular_message(&self, cause: Singular) -> SingularState {
-        if let Some(divided) = self.divided() {
+        if let Some(divided) = self.zero_divisor_message() {
             return SingularState::ZeroDivisor(divided.to_owned());
         }
         if let Singular::Kinematics { .. } = cause {
             return SingularState::Configuration;
         }
-        let dependent = || SingularState::DependentConstraints(self.dependent().into());
-        match self.failed() {
-            Some(Failed::Motion(x)) => {
+        let dependent =
+            || SingularState::DependentConstraints(self.dependent_constraints_message().into());
+        match self.last_failure() {
+            Some(FailedFunction::Motion(x)) => {
                 let mass = self.mass(&x);
                 match (
                     explain_mass_matrix(&mass, self.velocity_labels()),
@@ -209,7 +210,7 @@ impl Instance {
                     _ => dependent(),
                 }
             }
-            Some(Failed::Projection) => dependent(),
+            Some(FailedFunction::Projection) => dependent(),
             None => SingularState::Other(cause),
         }
     }
@@ -227,7 +228,7 @@ impl Instance {
 
     /// Explains why ξ̇ has no value at a state.
     pub fn state_message(&self, x: &[f64]) -> SingularState {
-        if let Some(divided) = self.divided() {
+        if let Some(divided) = self.zero_divisor_message() {
             return SingularState::ZeroDivisor(divided.to_owned());
         }
         state_message(&self.mass(x), self.velocity_labels())

@@ -125,7 +125,7 @@ pub fn advance(
     let mut outcome = Ok(());
     let jumps = system.jumps().iter().filter(|jump| **jump < until);
     for end in jumps.copied().chain([until]) {
-        system.go_from(state.t);
+        system.begin_interval(state.t);
         let run = match general {
             General::Rkmk8 => {
                 let method = Adaptive::rkmk8(tolerance);

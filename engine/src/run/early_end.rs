@@ -75,7 +75,7 @@ impl EarlyEnd {
     ///
     /// # Errors
     /// The plan is invalid.
-    pub fn of(
+    pub fn explain(
         system: &Instance,
         plan: &Plan,
         outcome: Result<(), StepError>,

@@ -97,7 +97,7 @@ impl<'a> FixedStepRun<'a> {
     fn run_to(&mut self, end: f64, clock: Option<Clock<f64>>) -> Result<(), StepError> {
         let from = self.state.t;
         if end > from {
-            self.system.go_from(from);
+            self.system.begin_interval(from);
             for segment in segments(&self.plan.spacing, self.plan.step, from, end)? {
                 self.run_segment(&segment)?;
                 self.set_clock(clock);
@@ -233,8 +233,8 @@ impl<'a> FixedStepRun<'a> {
         if !quiet || self.plan.has_multiples() || end <= self.state.t {
             return false;
         }
-        self.system.go_from(self.state.t);
-        other.system.go_from(other.state.t);
+        self.system.begin_interval(self.state.t);
+        other.system.begin_interval(other.state.t);
         let steppers = [self.compiled_stepper(end), other.compiled_stepper(end)];
         let systems = [self.system, other.system];
         let states = [&mut *self.state, &mut *other.state];

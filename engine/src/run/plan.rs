@@ -152,7 +152,7 @@ impl Plan {
     /// Returns whether the energy of a run is monitored. Without observed steps the work of loads is unknown, and an
     /// external controller is called only by the method.
     pub fn monitors_energy(&self, system: &Instance) -> bool {
-        let is_law = system.given().is_some_and(Inputs::is_law);
+        let is_law = system.varying_inputs().is_some_and(Inputs::is_law);
         self.tolerance.is_some() || !self.quiet && !is_law
     }
 

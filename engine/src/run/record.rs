@@ -78,7 +78,7 @@ impl Run {
                 time: state.t,
                 event: name.into(),
             }),
-            None => EarlyEnd::of(&system, &plan, outcome, &state, balance.get())?,
+            None => EarlyEnd::explain(&system, &plan, outcome, &state, balance.get())?,
         };
         let listed = matches!(plan.spacing, Spacing::Times(_));
         let lists = [(&mut samples, listed), (&mut track, false)];
@@ -92,11 +92,11 @@ impl Run {
         }
         let entries = |list: &[Output]| -> Vec<String> {
             list.iter()
-                .flat_map(|output| names::shaped(&output.name, output.shape))
+                .flat_map(|output| names::entries(&output.name, output.shape))
                 .collect()
         };
         let coordinate_names = names::coordinates(&generated.model);
-        let velocity_names = names::moving(&generated.active);
+        let velocity_names = names::velocities_and_states(&generated.active);
         let output_names = entries(system.outputs());
         let taken = [&coordinate_names[..], &velocity_names, &output_names];
         Ok(Run {

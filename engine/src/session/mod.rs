@@ -97,7 +97,7 @@ impl Session {
         options: &OpenOptions,
         reporter: Arc<dyn Reporter>,
     ) -> Result<Self, Error> {
-        Session::of(Source::open(path, options, reporter)?)
+        Session::from_source(Source::open(path, options, reporter)?)
     }
 
     /// Reads the text of a description, or of a robot in URDF, which messages call `name`.
@@ -110,7 +110,7 @@ impl Session {
         options: &OpenOptions,
         reporter: Arc<dyn Reporter>,
     ) -> Result<Self, Error> {
-        Session::of(Source::new(name.into(), text, reporter).given(options)?)
+        Session::from_source(Source::new(name.into(), text, reporter).interpret(options)?)
     }
 
     /// Derives all functions of a description that exist: those that contain M⁻¹ are left out, with a warning, if M is
@@ -118,8 +118,8 @@ impl Session {
     ///
     /// # Errors
     /// The description has errors.
-    pub fn of(source: Source) -> Result<Self, Error> {
-        let source = source.in_numbers();
+    pub fn from_source(source: Source) -> Result<Self, Error> {
+        let source = source.for_evaluation();
         let generated = source.derive_available(&[])?;
         Ok(Session::derived(source, generated))
     }
@@ -128,8 +128,8 @@ impl Session {
     ///
     /// # Errors
     /// The description has errors, or lacks a function.
-    pub fn complete(source: Source) -> Result<Self, Error> {
-        let source = source.in_numbers();
+    pub fn with_all_functions(source: Source) -> Result<Self, Error> {
+        let source = source.for_evaluation();
         let generated = source.derive_all()?;
         Ok(Session::derived(source, generated))
     }
@@ -138,8 +138,8 @@ impl Session {
     ///
     /// # Errors
     /// The description has errors.
-    pub fn of_places(source: Source) -> Result<Self, Error> {
-        let source = source.in_numbers();
+    pub fn for_drawing(source: Source) -> Result<Self, Error> {
+        let source = source.for_evaluation();
         let generated = source.derive_places()?;
         Ok(Session::derived(source, generated))
     }
@@ -197,7 +197,7 @@ impl Session {
     /// Returns the names of the entries of ξ, followed by those of the states of first order.
     pub fn velocities(&self) -> Names {
         Names {
-            entries: names::moving(self.active()),
+            entries: names::velocities_and_states(self.active()),
             groups: groups(&self.generated.program.moving()),
         }
     }
@@ -255,14 +255,14 @@ impl Session {
             params: params.to_vec(),
             ..self.start()
         };
-        self.changed(start, json, name)
+        self.change_state(start, json, name)
     }
 
     /// Returns the start, changed by a JSON file if there is one.
     ///
     /// # Errors
     /// The file cannot be read, or has errors.
-    pub fn state_of(&self, path: Option<&Path>) -> Result<State, Error> {
+    pub fn read_state(&self, path: Option<&Path>) -> Result<State, Error> {
         State::read(&self.source, &self.generated, path)
     }
 
@@ -270,7 +270,7 @@ impl Session {
     ///
     /// # Errors
     /// All errors in the text.
-    pub fn changed(&self, from: State, json: &str, name: &str) -> Result<State, Error> {
+    pub fn change_state(&self, from: State, json: &str, name: &str) -> Result<State, Error> {
         File::of(name.into(), json, &self.source)?.changes(from, &self.source, &self.generated)
     }
 
@@ -354,7 +354,7 @@ impl Session {
     }
 
     /// Explains a pivot that is not positive, in the names of the description.
-    pub fn meaning(&self, cause: Cause) -> String {
+    pub fn explain_pivot(&self, cause: Cause) -> String {
         let shown = self.source.shown();
         mechanism::cause_message(cause, self.active(), shown)
     }
@@ -368,7 +368,7 @@ impl Session {
     }
 
     fn instance(&self, state: &State) -> Result<Instance, Error> {
-        self.source.moves(&self.generated)?;
+        self.source.check_inertia(&self.generated)?;
         let instance = Instance::of(self.mechanism()?, state)?;
         instance.check_parameters(&state.x)?;
         Ok(instance)
@@ -386,7 +386,12 @@ impl Session {
             None => (&self.generated, self.instance(state)?),
             Some(observed) => (&observed.generated, observed.instance(state)?),
         };
-        simulation.run(generated, system.with(given), state, self.source.reporter())
+        simulation.run(
+            generated,
+            system.with_inputs(given),
+            state,
+            self.source.reporter(),
+        )
     }
 
     /// Prepares single steps of a method, given by its name or `auto`, with the parameters of a state.

@@ -57,7 +57,7 @@ impl Session {
     ///
     /// # Errors
     /// There is no such point, or the kinematics are singular.
-    pub fn pulled(
+    pub fn pull(
         &self,
         state: &State,
         grip: Grip,

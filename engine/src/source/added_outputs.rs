@@ -54,7 +54,7 @@ pub fn derive(
     source.model()?;
     let of = |added: &[&AddedOutput]| {
         let extended = Extended::of(source, added);
-        let errors = match source.saying(extended.text.clone()).try_derive_all() {
+        let errors = match source.with_text(extended.text.clone()).try_derive_all() {
             Ok(generated) => return Ok(generated),
             Err(errors) => errors,
         };
@@ -82,7 +82,7 @@ pub fn derive(
     }
     if wrong.is_empty() {
         source.derive_all()?;
-        return Err(source.refused(&errors));
+        return Err(source.description_error(&errors));
     }
     wrong.sort_by_key(|error| error.span.range().map(|range| range.start));
     Err(invalid_option(option, said, &wrong))

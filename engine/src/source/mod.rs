@@ -88,7 +88,7 @@ impl Source {
     }
 
     /// Reads another file; `what` describes it in the error if both are standard input.
-    pub fn beside(&self, path: &Path, what: &'static str) -> Result<Source, Error> {
+    pub fn read_related(&self, path: &Path, what: &'static str) -> Result<Source, Error> {
         if path.as_os_str() == "-" && self.is_stdin() {
             return Err(Error::StandardInputTwice(what));
         }
@@ -137,11 +137,11 @@ impl Source {
         options: &OpenOptions,
         reporter: Arc<dyn Reporter>,
     ) -> Result<Self, Error> {
-        Source::read(path, reporter)?.given(options)
+        Source::read(path, reporter)?.interpret(options)
     }
 
     /// Interprets the text as a description or as a robot in URDF.
-    pub fn given(self, options: &OpenOptions) -> Result<Self, Error> {
+    pub fn interpret(self, options: &OpenOptions) -> Result<Self, Error> {
         let mut source = self;
         if source.is_urdf() {
             if !options.constants.is_empty() {
@@ -164,7 +164,7 @@ impl Source {
     }
 
     /// Prepares the source for evaluation: functions in Rust get their stand-ins.
-    pub fn in_numbers(self) -> Self {
+    pub fn for_evaluation(self) -> Self {
         Source {
             evaluated: true,
             ..self
@@ -237,7 +237,7 @@ impl Source {
                 self.file(name)
             })
         });
-        read.map_err(|errors| self.refused(&errors))?;
+        read.map_err(|errors| self.description_error(&errors))?;
         Ok(files)
     }
 
@@ -259,18 +259,22 @@ impl Source {
     }
 
     fn system(&self) -> Result<System, Error> {
-        let parsed = self.parsed().map_err(|errors| self.refused(&errors))?;
+        let parsed = self
+            .parsed()
+            .map_err(|errors| self.description_error(&errors))?;
         Ok(parsed.0)
     }
 
     /// Returns the texts of the other files from which the description takes statements or numbers.
     pub fn texts(&self) -> Result<Vec<String>, Error> {
-        let parsed = self.parsed().map_err(|errors| self.refused(&errors))?;
+        let parsed = self
+            .parsed()
+            .map_err(|errors| self.description_error(&errors))?;
         Ok(parsed.1)
     }
 
     /// Replaces the text by an extended one.
-    pub fn saying(&self, text: String) -> Self {
+    pub fn with_text(&self, text: String) -> Self {
         Source {
             path: self.path.clone(),
             text,
@@ -285,7 +289,7 @@ impl Source {
     /// Returns the model of the description, before derivation.
     pub fn model(&self) -> Result<Model, Error> {
         let model = lower::build(&self.system()?);
-        let model = model.map_err(|errors| self.refused(&errors))?;
+        let model = model.map_err(|errors| self.description_error(&errors))?;
         self.warn(&model);
         Ok(model)
     }
@@ -324,7 +328,7 @@ impl Source {
     }
 
     /// Returns an error, with help, if no part of the system has inertia.
-    pub fn moves(&self, generated: &Generated) -> Result<(), Error> {
+    pub fn check_inertia(&self, generated: &Generated) -> Result<(), Error> {
         match generated.model.has_inertia {
             true => Ok(()),
             false => {
@@ -351,7 +355,7 @@ impl Source {
                 derive(model)
             })
         });
-        derived.map_err(|errors| self.refused(&errors))
+        derived.map_err(|errors| self.description_error(&errors))
     }
 
     fn available(&self, asked: Asked) -> Result<Generated, Error> {
@@ -388,12 +392,13 @@ impl Source {
     pub fn derive(&self) -> Result<Generated, Error> {
         if let Some(robot) = &self.robot {
             let derived = self.during(|| available_in(&robot.imported.system));
-            let (generated, left_out) = derived.map_err(|errors| self.refused(&errors))?;
+            let (generated, left_out) =
+                derived.map_err(|errors| self.description_error(&errors))?;
             self.warn_of(left_out);
             return Ok(generated);
         }
         let derived = self.during(|| from_file(&self.text, &mut |name| self.file(name)));
-        let derived = derived.map_err(|errors| self.refused(&errors))?;
+        let derived = derived.map_err(|errors| self.description_error(&errors))?;
         self.warn(&derived.model);
         Ok(derived)
     }
@@ -482,7 +487,7 @@ impl Source {
     }
 
     /// Creates the error of a description with these errors.
-    pub fn refused(&self, errors: &[Diagnostic]) -> Error {
+    pub fn description_error(&self, errors: &[Diagnostic]) -> Error {
         let (path, diagnostics) = (self.path.clone(), errors.to_vec());
         match &self.robot {
             Some(robot) => Error::Robot {

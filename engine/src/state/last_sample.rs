@@ -42,7 +42,10 @@ pub fn read_last_sample(
         }
     };
     let x: Vec<Option<f64>> = names::coordinates(model).iter().map(&mut number).collect();
-    let xi: Vec<Option<f64>> = names::moving(model).iter().map(&mut number).collect();
+    let xi: Vec<Option<f64>> = names::velocities_and_states(model)
+        .iter()
+        .map(&mut number)
+        .collect();
     for (place, value) in x.into_iter().enumerate() {
         if let Some(value) = value {
             reader.put_x(&mut state.x, place, &[value]);

@@ -185,7 +185,7 @@ fn state(session: &Session, request: &Value) -> Result<State, Refused> {
         Value::Null => Ok(start),
         changes => {
             let changes = changes.to_string();
-            Ok(session.changed(start, &changes, "the start")?)
+            Ok(session.change_state(start, &changes, "the start")?)
         }
     }
 }
@@ -208,7 +208,7 @@ fn pull(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Va
     };
     let state = state(session, request)?;
     let sight = vector("sight").ok();
-    let pulled = session.pulled(&state, grip, (vector("target")?, sight))?;
+    let pulled = session.pull(&state, grip, (vector("target")?, sight))?;
     if let Some(drawn) = scenes(session, &pulled.params, &pulled.x) {
         *numbers = drawn.numbers;
     }
