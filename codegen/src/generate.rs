@@ -14,6 +14,7 @@ use crate::model::Model;
 use crate::program::Program;
 use crate::proof;
 use crate::syntax::{self, Places, ast};
+#[cfg(feature = "files")]
 use crate::tables::{self, Derivation, Table, Tables};
 use proc_macro2::TokenStream;
 use std::path::Path;
@@ -233,6 +234,7 @@ impl Generated {
     ///
     /// # Errors
     /// If a table is not available; the message says which, and why.
+    #[cfg(feature = "files")]
     pub fn tables(&self, asked: &[Table]) -> Result<Tables, String> {
         let derivation = Derivation {
             model: &self.model,

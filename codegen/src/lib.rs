@@ -23,7 +23,7 @@
 //!
 //! | feature | default | what it adds |
 //! |---|---|---|
-//! | `files` | yes | `.eom` files in and formatted `.rs` files out: source positions, underlined errors, the [`Builder`] for build scripts, and `scene` |
+//! | `files` | yes | `.eom` files in and formatted `.rs` files out: source positions, underlined errors, the [`Builder`] for build scripts, `scene`, and `tables` |
 //! | `urdf` | no | robots in URDF in place of descriptions |
 //!
 //! The formalism is that of M. Konz and J. Rudolph, *Redundant configuration coordinates and nonholonomic velocity
@@ -38,6 +38,7 @@ pub use hamel_language::{
     diagnostics, functions, inertia, lower, model, render, reuse, syntax, vocabulary,
 };
 pub use hamel_program as program;
+#[cfg(feature = "files")]
 pub use hamel_tables as tables;
 pub use hamel_verify as proof;
 
