@@ -1,8 +1,12 @@
 //! The command line: its subcommands and their dispatch.
 
+#[cfg(not(feature = "sweep"))]
+use crate::absent as sweep;
 use crate::failure::{self, Failure};
+#[cfg(feature = "sweep")]
+use crate::sweep;
 use crate::{
-    check, compare, draw, emit, eval, import, linearize, ops, regressor, simulate, sweep, tables,
+    check, compare, draw, emit, eval, import, linearize, ops, regressor, simulate, tables,
 };
 use clap::{Parser, Subcommand};
 use hamel_engine::CancellationToken;

@@ -10,6 +10,7 @@
 //! | `command` | the command line, with the feature of that name |
 //! | `source`, `robot` | descriptions as the command line opens them, and the options for that |
 //! | `reports` | reports of the commands, for other front ends |
+//! | `absent` | messages of commands where a feature is missing |
 //! | `parse` | numbers on the command line |
 //! | `json`, `columns`, `outputs` | how results are written; pictures are those of `hamel-report` |
 //! | `progress` | progress of long work |
@@ -19,13 +20,16 @@
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `command` | the program `hamel`, its sweeps, its pictures and its progress bars |
+//! | `command` | the program `hamel`, its pictures and its progress bars |
+//! | `sweep` | `hamel sweep`; without it this command says how to get it |
 //! | `machine` | runs as machine code; without it functions are interpreted, on any target |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Without the command line, code that only it calls is kept and unused.
-#![cfg_attr(not(feature = "command"), allow(dead_code, unused_imports))]
+// Without the command line or sweeps, code that only they call is kept and unused.
+#![cfg_attr(not(feature = "sweep"), allow(dead_code, unused_imports))]
 
+#[cfg(feature = "command")]
+mod absent;
 mod check;
 mod columns;
 #[cfg(feature = "command")]
@@ -56,7 +60,7 @@ mod robot;
 #[cfg(feature = "command")]
 mod simulate;
 mod source;
-#[cfg(feature = "command")]
+#[cfg(feature = "sweep")]
 mod sweep;
 mod tables;
 

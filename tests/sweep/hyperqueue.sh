@@ -11,7 +11,7 @@ wheels hyperqueue hyperqueue==0.27.0
 # Reuses the program built with the tests: built alone, its dependencies have other features and are compiled again.
 hamel="$target/debug/hamel"
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then
-    cargo build --quiet --locked -p hamel-cli
+    cargo build --quiet --locked -p hamel-cli --all-features
 fi
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT

@@ -10,7 +10,7 @@ if [ ! -f "$target/sweep-readers/installed" ]; then
 fi
 hamel="${HAMEL:-$target/release/hamel}"
 if [ -z "${HAMEL:-}" ]; then
-    cargo build --quiet --release --locked -p hamel-cli
+    cargo build --quiet --release --locked -p hamel-cli --all-features
 fi
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT

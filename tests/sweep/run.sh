@@ -10,7 +10,7 @@ wheels sweep-readers polars==2.1.0 duckdb==2.0.0 pandas==3.1.1 pyarrow==26.0.1
 # Reuses the program built with the tests: built alone, its dependencies have other features and are compiled again.
 hamel="$target/debug/hamel"
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then
-    cargo build --quiet --locked -p hamel-cli
+    cargo build --quiet --locked -p hamel-cli --all-features
 fi
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT

@@ -17,7 +17,7 @@ target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
 # Reuses the program built with the tests: built alone, its dependencies have other features and are compiled again.
 hamel="$target/debug/hamel"
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then
-    cargo build --quiet --locked -p hamel-cli
+    cargo build --quiet --locked -p hamel-cli --all-features
 fi
 folder="$(mktemp -d)"
 node="$(hostname -s)"

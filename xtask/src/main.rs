@@ -37,6 +37,8 @@ const CI_TASKS: Task = &[
     "HAMEL_LINT=1 cargo check -p hamel --no-default-features --locked",
     "HAMEL_LINT=1 cargo check -p hamel --no-default-features --features wide --locked",
     "HAMEL_LINT=1 cargo check --manifest-path tests/nostd/Cargo.toml --locked",
+    // The command as README builds it: without sweeps.
+    "HAMEL_LINT=1 cargo check -p hamel-cli --locked",
     // Licences of all that is depended on, and notices of what is shipped.
     "bash tests/licences/run.sh",
     // The URDF files of the robots in tests/reference/robots.

@@ -103,13 +103,17 @@ enum Format {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     method::check_names(&arguments.methods)?;
     let solution = arguments.reference.as_deref().map(read).transpose()?;
+    crate::absent::warn_of_interpretation();
     let mut report = Report {
         title: "Speed against error".into(),
         command: command(arguments),
         machine: Machine {
             processor: "the machine of the command".into(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
-            code: "compiled to machine code at once".into(),
+            code: match cfg!(feature = "machine") {
+                true => "compiled to machine code at once".into(),
+                false => "interpreted".into(),
+            },
             repeats: TIMING_REPEATS,
         },
         ..Report::default()

@@ -8,6 +8,7 @@ mod series;
 mod summary;
 mod write;
 
+use crate::absent::warn_of_interpretation;
 use crate::failure::{Failure, print};
 use crate::outputs;
 use crate::parse::positive;
@@ -92,6 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     let session = Session::with_all_functions(source::open(&arguments.file, &arguments.robot)?)?;
     let state = session.read_state(arguments.at.as_deref())?;
+    warn_of_interpretation();
     let step_is_chosen = stepping.step.is_none();
     let run = session.simulate(&state, &arguments.simulation(stepping)?)?;
 

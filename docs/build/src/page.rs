@@ -30,7 +30,9 @@ pub fn own(block: &str) -> String {
     let mut script = String::new();
     let (mut file, mut goes_on) = (false, false);
     for line in block.lines() {
-        let line = line.replace("cargo run --release -- ", "hamel ");
+        let line = line
+            .replace("cargo run --release -- ", "hamel ")
+            .replace("cargo run --release --all-features -- ", "hamel ");
         let begins = line.starts_with("hamel ") || line.starts_with("cat > ");
         if begins || file || goes_on {
             script.push_str(&line);

@@ -1,0 +1,76 @@
+//! Messages about features that this build was made without, with what to install.
+
+// With sweeps, their replacement is unused.
+#![cfg_attr(feature = "sweep", allow(dead_code))]
+
+use crate::failure::{Failure, warn};
+use clap::Args;
+use hamel_engine::CancellationToken;
+use std::ffi::OsString;
+
+const SWEEP: &str =
+    "this `hamel` was built without sweeps, whose tables take long to compile; to have them, run
+  cargo install --locked --path cli --all-features        in a clone of the repository
+  cargo run --release --all-features -- sweep …           in a clone, without installing anything
+  cargo install --locked hamel-cli --all-features         anywhere
+or use the Python package, which has them: `hamel.sweep`, and the command `hamel` that it installs";
+
+const MACHINE: &str = "note: this `hamel` was built without machine code, and interprets functions: long runs take several times longer than
+with `cargo install --locked --path cli --all-features`
+";
+
+/// Runs a system many times, with parameters, starts and inputs that differ from run to run; needs the feature `sweep`.
+#[derive(Args)]
+#[command(disable_help_flag = true)]
+pub struct Arguments {
+    /// All words of the request, which are not read.
+    #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<OsString>,
+}
+
+/// Fails with the commands that install sweeps.
+pub fn run(_: &Arguments, _: Option<&CancellationToken>) -> Result<(), Failure> {
+    Err(Failure::usage(SWEEP))
+}
+
+/// Says that runs are interpreted, where they are.
+pub fn warn_of_interpretation() {
+    if cfg!(not(feature = "machine")) {
+        warn(MACHINE);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    /// Every request is answered by the remedy, not by an error of the parser.
+    #[test]
+    fn every_sweep_is_answered_by_the_remedy() {
+        for words in [
+            "sweep",
+            "sweep --help",
+            "sweep --status runs",
+            "sweep top.eom --vary m=grid(1,2,3) --out runs",
+        ] {
+            let line = Line::try_parse_from(words.split(' ')).expect("any words are accepted");
+            let failure = run(&line.arguments, None).expect_err("there are no sweeps");
+            let shown = failure.render(false);
+            assert!(
+                shown.starts_with("error: this `hamel` was built without sweeps"),
+                "{shown}"
+            );
+            assert!(
+                shown.contains("cargo install --locked --path cli --all-features"),
+                "{shown}"
+            );
+        }
+    }
+}
