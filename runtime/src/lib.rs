@@ -32,7 +32,7 @@
 //! |---|---|---|
 //! | `std` | yes | mathematical functions of the standard library, `Vec` as a [`Store`], and differences in [`BackwardEuler`](methods::BackwardEuler). Without it the crate is `no_std` and takes them from `libm` |
 //! | `macros` | yes | [`rigid_eom!`] |
-//! | `nalgebra` | yes | conversions of states to nalgebra types, in `nalgebra_interop` |
+//! | `nalgebra` | no | conversions of states to nalgebra types, in `nalgebra_interop` |
 //! | `wide` | no | SIMD lanes as scalars, in `wide` |
 //! | `ensemble` | no | many states at once on SIMD lanes and threads, in `ensemble`; implies `std` and `wide` |
 //!
