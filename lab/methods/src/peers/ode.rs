@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method of the crate `ode_solvers` on the entries of (R, ω), with the
 //! generated ẋ and ξ̇.
 
-use hamel::{Energies, System};
+use hamel::Energies;
 use hamel_report::data::Kind;
 use hamel_report::entry::{Deviation, Entry, Outcome};
 use hamel_report::problem::Problem;
