@@ -120,11 +120,7 @@ fn programs_read_no_text() {
 fn derivation_reads_and_prints_nothing() {
     forbid(
         "codegen/dynamics/src",
-        &[
-            "hamel_language::lower",
-            "hamel_language::render",
-            "println!",
-        ],
+        &["hamel_language::lower", "println!"],
     );
 }
 
@@ -512,7 +508,7 @@ fn no_test_is_left_out() {
     assert_eq!((without, later), (9, 14));
 }
 
-/// Snapshots stay below 25,000 lines, so that people can review them.
+/// Snapshots stay below 16,000 lines, so that people can review them.
 #[test]
 fn snapshots_can_be_read() {
     let (mut lines, mut files) = (0, 0);
@@ -529,8 +525,8 @@ fn snapshots_can_be_read() {
             files += 1;
         }
     }
-    assert!(files > 200, "the snapshots have gone");
-    assert!(lines < 25_000, "{lines} lines of snapshots");
+    assert!(files > 100, "the snapshots have gone");
+    assert!(lines < 16_000, "{lines} lines of snapshots");
 }
 
 /// Each published crate documents what its features add, and docs.rs marks the items that need one.

@@ -1,17 +1,18 @@
-//! Wrong descriptions, `wrong/*.eom`, with their exact messages: every message has a place in the text and a help. Also
-//! similar descriptions that are correct.
+//! Wrong descriptions, `wrong/*/*.eom`, which state their errors in comments: every message has a place in the text and
+//! a help. Also similar descriptions that are correct.
+//!
+//! Below the line of an error, comments that begin with `//~` contain its column, the text there, the message, other
+//! places with their labels, and the help. `cargo xtask bless` writes them.
 
-#[path = "../../codegen/tests/suite/common/models.rs"]
-#[allow(dead_code, reason = "the files of a folder alone are asked for")]
-mod models;
+#[path = "../../codegen/tests/suite/common/wrong_descriptions.rs"]
+mod wrong_descriptions;
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
-use models::models;
-use std::fmt::Write;
 use std::ops::Range;
 use std::path::Path;
+use wrong_descriptions::{EXPECTED, without_expected, wrong_descriptions};
 
 /// Returns the errors of a description that must have some.
 fn errors(text: &str) -> Vec<Diagnostic> {
@@ -23,84 +24,101 @@ fn errors(text: &str) -> Vec<Diagnostic> {
 
 #[test]
 fn messages() {
-    let paths = models(&Path::new(env!("CARGO_MANIFEST_DIR")).join("wrong"));
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("wrong");
+    let paths = wrong_descriptions(&folder);
     assert!(!paths.is_empty());
+    let bless = std::env::var_os("INSTA_UPDATE").is_some_and(|update| update == "always");
+    let mut outdated = Vec::new();
     for path in paths {
-        let text = std::fs::read_to_string(&path).expect("readable");
-        let name = path.file_name().expect("a name").to_string_lossy();
-        let errors = errors(&text);
+        let written = std::fs::read_to_string(&path).expect("readable");
+        let text = without_expected(&written);
+        let name = path.strip_prefix(&folder).expect("below").to_string_lossy();
+        let mut errors = errors(&text);
+        errors.sort_by_key(|error| {
+            let range = error.span.range().unwrap_or_default();
+            (range.start, range.end)
+        });
+        let rendered = render(&errors, &name, &text, false);
         for error in &errors {
             let range = error.span.range();
-            let placed = range.is_some_and(|range| !range.is_empty() && range.end <= text.len());
+            let placed = range
+                .as_ref()
+                .is_some_and(|range| !range.is_empty() && range.end <= text.len());
             assert!(
                 placed || text.trim().is_empty(),
                 "{name}: no place: {}",
                 error.message
             );
             assert!(error.help.is_some(), "{name}: no help: {}", error.message);
+            let (line, column) = place(&text, range.unwrap_or_default().start);
+            let shown = format!("{name}:{}:{column}\n", line + 1);
+            assert!(rendered.contains(&shown), "{rendered}\nhas no {shown}");
         }
-        let rendered = render(&errors, &name, &text, false);
-        let mut listed = String::new();
-        for (error, range) in in_order(&errors) {
-            list(&mut listed, error, &range, &text);
-            let place = format!("{name}:{}\n", place(&range, &text));
-            assert!(rendered.contains(&place), "{rendered}\nhas no {place}");
+        let expected = annotated(&text, &errors);
+        if expected != written && bless {
+            std::fs::write(&path, &expected).expect("writable");
+        } else if expected != written {
+            outdated.push(format!("--- {name}\n{expected}"));
         }
-        let whole = RENDERED_DESCRIPTIONS.contains(&&*name);
-        insta::with_settings!({omit_expression => true, snapshot_suffix => &*name, input_file => &path}, {
-            insta::assert_snapshot!(if whole { rendered } else { listed });
-        });
     }
+    assert!(
+        outdated.is_empty(),
+        "`cargo xtask bless` would change {} descriptions:\n{}",
+        outdated.len(),
+        outdated.join("\n")
+    );
 }
 
-/// Descriptions whose messages are locked in rendered form, underlined in the text: single and multiple errors, on one
-/// line and on several, with notes. The snapshots of all others contain places and texts.
-const RENDERED_DESCRIPTIONS: [&str; 8] = [
-    "01-unknown-name.eom",
-    "08-shapes-of-statements.eom",
-    "13-entries.eom",
-    "28-rate-leaves-constraint.eom",
-    "100-springs.eom",
-    "176-claims-that-mean-nothing.eom",
-    "210-states.eom",
-    "245-unfinished-repetition.eom",
-];
-
-/// Sorts errors in the order of the text, each with its range.
-fn in_order(errors: &[Diagnostic]) -> Vec<(&Diagnostic, Range<usize>)> {
-    let mut all: Vec<_> = errors
-        .iter()
-        .map(|error| (error, error.span.range().unwrap_or_default()))
-        .collect();
-    all.sort_by_key(|(_, range)| (range.start, range.end));
-    all
-}
-
-/// Returns line and column of the start of a range.
-fn place(range: &Range<usize>, text: &str) -> String {
-    let before = &text[..range.start];
-    let line = before.rsplit('\n').next().unwrap_or_default();
-    let lines = before.matches('\n').count() + 1;
-    format!("{lines}:{}", line.chars().count() + 1)
-}
-
-/// Lists a message: its place, the text there, and the error; then notes and the help.
-fn list(to: &mut String, error: &Diagnostic, range: &Range<usize>, text: &str) {
-    let at = |range: &Range<usize>| {
-        let there = text[range.clone()].split_whitespace();
-        let there = there.collect::<Vec<_>>().join(" ");
-        format!("{} «{there}»", place(range, text))
+/// Inserts comments with errors, which are in the order of the text, below their lines.
+fn annotated(text: &str, errors: &[Diagnostic]) -> String {
+    let start = |error: &Diagnostic| error.span.range().unwrap_or_default().start;
+    // Number of comments above each line of the text, and so the number of the line in the result.
+    let comments = |error: &Diagnostic| 2 + error.notes.len();
+    let moved = |line: usize| {
+        let above = errors
+            .iter()
+            .filter(|error| place(text, start(error)).0 < line);
+        1 + line + above.map(comments).sum::<usize>()
     };
-    let _ = writeln!(to, "{}: {}", at(range), error.message);
-    for (span, label) in &error.notes {
-        let _ = writeln!(
-            to,
-            "    note: {}: {label}",
-            at(&span.range().unwrap_or_default())
-        );
+    let there = |range: &Range<usize>| {
+        let words = text[range.clone()].split_whitespace();
+        words.collect::<Vec<_>>().join(" ")
+    };
+    let mut lines: Vec<String> = text.lines().map(|line| format!("{line}\n")).collect();
+    for error in errors {
+        let range = error.span.range().unwrap_or_default();
+        let (line, column) = place(text, range.start);
+        let indent: String = text
+            .lines()
+            .nth(line)
+            .unwrap_or_default()
+            .chars()
+            .take_while(|letter| *letter == ' ')
+            .collect();
+        let mut comment = |words: String| {
+            lines.resize(lines.len().max(line + 1), String::new());
+            lines[line] += &format!("{indent}{EXPECTED} {words}\n");
+        };
+        comment(format!("{column} «{}» {}", there(&range), error.message));
+        for (span, label) in &error.notes {
+            let range = span.range().unwrap_or_default();
+            let (line, column) = place(text, range.start);
+            let line = moved(line);
+            comment(format!("note: {line}:{column} «{}» {label}", there(&range)));
+        }
+        comment(format!(
+            "help: {}",
+            error.help.as_deref().unwrap_or_default()
+        ));
     }
-    let help = error.help.as_deref().unwrap_or_default();
-    let _ = writeln!(to, "    help: {help}");
+    lines.concat()
+}
+
+/// Returns the line of a byte, from 0, and its column, from 1.
+fn place(text: &str, byte: usize) -> (usize, usize) {
+    let before = &text[..byte];
+    let line = before.rsplit('\n').next().unwrap_or_default();
+    (before.matches('\n').count(), line.chars().count() + 1)
 }
 
 /// Returns a system of one coordinate, with further statements.

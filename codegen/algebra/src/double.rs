@@ -91,7 +91,8 @@ impl Double {
         }
     }
 
-    /// 1/a, or 1/`MIN_DIVISOR` if |a| is below `MIN_DIVISOR`.
+    /// 1/a of a length a, or 1/`MIN_DIVISOR` if a is below `MIN_DIVISOR`. A length is not negative; for other numbers
+    /// below `MIN_DIVISOR` the law 1/(−a) = −1/a, which the graph uses, does not hold.
     pub fn inverse_of_length(self) -> Self {
         let short = self.high.abs() < MIN_DIVISOR;
         Double::ONE

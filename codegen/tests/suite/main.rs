@@ -64,5 +64,7 @@ mod trees;
 mod urdf;
 mod velocity_definitions;
 mod work;
+#[path = "common/wrong_descriptions.rs"]
+mod wrong_descriptions;
 
 use common::Random;

@@ -3,12 +3,13 @@
 
 use crate::common::{Random, attack};
 use crate::models::models;
+use crate::wrong_descriptions::{without_expected, wrong_descriptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::vocabulary;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// Shorter names are placeholders in proposals, such as `rate q = v;`.
@@ -90,15 +91,12 @@ fn faults(name: &str, text: &str) -> Vec<String> {
     foreign.map(|what| format!("{name}: {what}")).collect()
 }
 
-fn texts(folder: &str) -> Vec<(String, String)> {
-    let paths = models(
-        &Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("../..")
-            .join(folder),
-    );
-    let read = |path: &std::path::PathBuf| {
+fn texts(folder: &str, list: fn(&Path) -> Vec<PathBuf>) -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let paths = list(&root.join(folder));
+    let read = |path: &PathBuf| {
         let name = path.file_name()?.to_string_lossy().into_owned();
-        Some((name, std::fs::read_to_string(path).ok()?))
+        Some((name, without_expected(&std::fs::read_to_string(path).ok()?)))
     };
     paths.iter().filter_map(read).collect()
 }
@@ -106,10 +104,9 @@ fn texts(folder: &str) -> Vec<(String, String)> {
 #[test]
 fn messages_name_what_was_written() {
     let mut all = Vec::new();
-    for folder in ["tests/wrong", "docs/book/errors"] {
-        for (name, text) in texts(folder) {
-            all.extend(faults(&name, &text));
-        }
+    let wrong = texts("tests/wrong", wrong_descriptions);
+    for (name, text) in [wrong, texts("docs/book/errors", models)].concat() {
+        all.extend(faults(&name, &text));
     }
     assert!(all.is_empty(), "{}:\n{}", all.len(), all.join("\n"));
 }
@@ -131,7 +128,7 @@ fn misspelt(text: &str, random: &mut Random) -> String {
 
 #[test]
 fn misspelt_names_are_answered_by_those_that_were_written() {
-    let all: Vec<(String, String)> = texts("tests/models")
+    let all: Vec<(String, String)> = texts("tests/models", models)
         .into_iter()
         .filter(|(_, text)| text.len() < 1500)
         .collect();

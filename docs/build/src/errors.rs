@@ -34,21 +34,26 @@ pub struct Example {
     pub shown: String,
 }
 
-/// The folders with examples.
-const EXAMPLE_FOLDERS: [&str; 2] = ["tests/wrong", "docs/book/errors"];
-
 /// Returns all examples, in the order of their files.
 pub fn examples(root: &Path) -> Vec<Example> {
     let mut files: Vec<PathBuf> = Vec::new();
-    for folder in EXAMPLE_FOLDERS {
-        let entries = fs::read_dir(root.join(folder)).into_iter().flatten();
-        files.extend(entries.filter_map(|entry| Some(entry.ok()?.path())));
+    let entries = |folder: PathBuf| {
+        let entries = fs::read_dir(folder).into_iter().flatten();
+        entries.filter_map(|entry| Some(entry.ok()?.path()))
+    };
+    for folder in entries(root.join("tests/wrong")).chain([root.join("docs/book/errors")]) {
+        files.extend(entries(folder));
     }
     files.retain(|path| path.extension().is_some_and(|end| end == "eom"));
     files.sort();
     let mut found = Vec::new();
     for path in files {
         let text = fs::read_to_string(&path).unwrap_or_default();
+        // Comments that begin with `//~` state the errors for a test.
+        let lines = text.split_inclusive('\n');
+        let text: String = lines
+            .filter(|line| !line.trim_start().starts_with("//~"))
+            .collect();
         let folder = path.parent().unwrap_or(root).to_owned();
         let open = &mut |name: &str| fs::read_to_string(folder.join(name));
         match from_file(&text, open) {

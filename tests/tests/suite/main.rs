@@ -13,6 +13,7 @@ mod functions;
 mod import_cycles;
 mod invariants;
 mod lanes;
+mod lengths;
 mod linear_differences;
 mod linearization;
 mod loads;
@@ -49,3 +50,5 @@ mod time;
 mod trace;
 mod views;
 mod warnings;
+#[path = "../../../codegen/tests/suite/common/wrong_descriptions.rs"]
+mod wrong_descriptions;

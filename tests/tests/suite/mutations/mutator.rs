@@ -1,5 +1,7 @@
 //! Mutations of descriptions, token by token and statement by statement.
 
+use crate::models::models;
+use crate::wrong_descriptions::{without_expected, wrong_descriptions};
 use hamel_codegen::algebra::residue_pair;
 use std::path::Path;
 
@@ -197,16 +199,13 @@ impl Corpus {
         let mut right = 0;
         for folder in ["models", "models/external", "models/reuse", "wrong"] {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-            let entries = std::fs::read_dir(path).expect("a folder");
-            let mut paths: Vec<_> = entries
-                .map(|entry| entry.expect("an entry").path())
-                .collect();
-            paths.sort();
-            for path in paths
-                .iter()
-                .filter(|path| path.extension().is_some_and(|e| e == "eom"))
-            {
-                texts.push(std::fs::read_to_string(path).expect("readable"));
+            let paths = match folder {
+                "wrong" => wrong_descriptions(&path),
+                _ => models(&path),
+            };
+            for path in paths {
+                let text = std::fs::read_to_string(path).expect("readable");
+                texts.push(without_expected(&text));
             }
             if folder != "wrong" {
                 right = texts.len();
