@@ -1,7 +1,7 @@
 //! Generates models of the tests and robots below `HAMEL_ROBOTS`, and keeps their descriptions in the build folder.
 
 use hamel_codegen::Builder;
-use hamel_codegen::urdf::Options;
+use hamel_codegen::urdf::{self, Options};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -43,8 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             ..Options::default()
         };
         let text = std::fs::read_to_string(&path)?;
-        let imported =
-            hamel_codegen::urdf::import(&text, &options, &path.to_string_lossy(), false)?;
+        let imported = urdf::import(&text, &options)
+            .map_err(|problems| urdf::errors(&problems, &path.to_string_lossy(), &text, false))?;
         let text = imported.text();
         let body = text.trim_end().strip_suffix('}').ok_or("no end")?;
         let text = format!("{body}    generate {wanted};\n}}\n");

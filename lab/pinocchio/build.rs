@@ -2,7 +2,7 @@
 //! of each, from a description that requests nothing else.
 
 use hamel_codegen::Builder;
-use hamel_codegen::urdf::Options;
+use hamel_codegen::urdf::{self, Options};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -45,7 +45,8 @@ fn imported(folder: &Path, robot: &robots::Robot) -> Result<String, Box<dyn Erro
         ..Options::default()
     };
     let text = std::fs::read_to_string(folder.join(robot.urdf))?;
-    let imported = hamel_codegen::urdf::import(&text, &options, robot.urdf, false)?;
+    let imported = urdf::import(&text, &options)
+        .map_err(|problems| urdf::errors(&problems, robot.urdf, &text, false))?;
     let text = imported.text();
     let body = text.trim_end().strip_suffix('}').ok_or("no end")?;
     let lines = body.split_inclusive('\n').filter(|line| {

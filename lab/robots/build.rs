@@ -1,18 +1,13 @@
 //! Generates the robots below `HAMEL_ROBOTS` that are in the folder `HAMEL_CONTROL_REFERENCE`, with their
 //! linearisation, and writes the samples of their discrete steps as constants.
 
-#[path = "../../cli/tests/suite/common/pinocchio.rs"]
-mod pinocchio;
-#[path = "../../cli/tests/suite/common/undamped.rs"]
-mod undamped;
-
 use hamel_codegen::Builder;
 use hamel_codegen::generate::from_text;
-use pinocchio::{control, coordinates, list, velocities};
+use hamel_lab::pinocchio::{control, coordinates, list, velocities};
+use hamel_lab::undamped::undamped;
 use serde_json::Value;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use undamped::undamped;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed=HAMEL_CONTROL_REFERENCE");

@@ -29,7 +29,7 @@ mod linearize;
 mod massless;
 mod methods;
 mod misspelt;
-#[path = "common/pinocchio.rs"]
+#[path = "../../../lab/common/src/pinocchio.rs"]
 mod pinocchio;
 mod redundant;
 mod regressor;
@@ -50,7 +50,7 @@ mod sweep_submit;
 mod swept;
 #[path = "common/table.rs"]
 mod table;
-#[path = "common/undamped.rs"]
+#[path = "../../../lab/common/src/undamped.rs"]
 mod undamped;
 mod urdf;
 mod warnings;

@@ -7,8 +7,6 @@ use hamel_tests_big::quadruped::Quadruped;
 
 #[path = "../../../codegen/tests/suite/common/mod.rs"]
 mod common;
-#[path = "../src/quadruped.rs"]
-mod quadruped;
 
 /// Number of coordinates: position and rotation of the trunk, and the hinges.
 const X: usize = 24;
@@ -37,7 +35,7 @@ fn slopes_are_those_of_dual_numbers() {
         parts > 50 && statements > 10_000,
         "{parts} parts, {statements} statements"
     );
-    let blocks = generated(&quadruped::quadruped()).program.blocks;
+    let blocks = generated(include_str!("../models/quadruped.eom")).program.blocks;
     let system = Quadruped::<f64>::new().expect("masses are positive");
     let dual = Quadruped::<Slope>::new().expect("masses are positive");
     let mut random = Random::new(0x4e6);

@@ -1,6 +1,6 @@
 //! Descriptions that request their linearisation, for build scripts of benches.
 
-use hamel_codegen::urdf::Options;
+use hamel_codegen::urdf::{self, Options};
 use std::error::Error;
 use std::path::Path;
 
@@ -11,7 +11,8 @@ pub fn imported(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> 
         ..Options::default()
     };
     let text = std::fs::read_to_string(robot)?;
-    let imported = hamel_codegen::urdf::import(&text, &options, &robot.to_string_lossy(), false)?;
+    let imported = urdf::import(&text, &options)
+        .map_err(|problems| urdf::errors(&problems, &robot.to_string_lossy(), &text, false))?;
     Ok(imported.text())
 }
 

@@ -4,4 +4,8 @@
 pub mod described;
 pub mod input;
 pub mod measure;
+#[cfg(feature = "describe")]
+pub mod pinocchio;
 pub mod robots;
+#[cfg(feature = "describe")]
+pub mod undamped;

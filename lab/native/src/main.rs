@@ -102,7 +102,7 @@ impl Case {
         let mut all: Vec<(f64, Compiled)> = (0..5).map(|_| compile()).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (compiling, compiled) = all.swap_remove(0);
-        assert_eq!(compiled.interpreted_because(), None, "{name}");
+        assert!(compiled.interpreted_because().is_none(), "{name}");
         Case {
             constants: compiled.constants(&program.defaults),
             compiled,
@@ -232,7 +232,7 @@ fn humanoid() {
     let compiled = Compiled::of(tapes);
     let taken = start.elapsed().as_secs_f64();
     let most = HEAP.peak_usage().saturating_sub(before) as f64 / 1e6;
-    assert_eq!(compiled.interpreted_because(), None);
+    assert!(compiled.interpreted_because().is_none());
     println!(
         "\nTalos, [A B], {steps} steps: made in {taken:.2} s, with at most {most:.0} MB of the heap"
     );

@@ -16,8 +16,6 @@ mod describe;
 mod models;
 #[path = "c/names.rs"]
 mod names;
-#[path = "../../../lab/big/src/quadruped.rs"]
-mod quadruped;
 #[path = "../../../codegen/tests/suite/common/thinning.rs"]
 mod thinning;
 
@@ -97,7 +95,8 @@ fn models_give_what_the_interpreter_gives() {
 /// A function that is split into parts.
 #[test]
 fn a_quadruped_gives_what_the_interpreter_gives() {
-    let generated = from_text(&quadruped::quadruped()).expect("it is right");
+    let generated =
+        from_text(include_str!("../../../lab/big/models/quadruped.eom")).expect("it is right");
     let files = c::files(&generated.program, &c::Options::default());
     assert!(files.source.matches("\nPART ").count() > 100);
     attack("quadruped", vec![Case::new(generated, None, 1.0)]);

@@ -13,7 +13,7 @@ pub fn undamped(folder: &Path, reference: &Value) -> (String, Vec<(String, Strin
         tolerance: 0.0,
         ..Options::default()
     };
-    let imported = import(&urdf, &options, "robot.urdf", false).expect("a robot");
+    let imported = import(&urdf, &options).expect("a robot");
     let text = imported.text();
     let statements = text.split(';');
     let kept: Vec<&str> = statements
