@@ -12,10 +12,11 @@ use crate::inertia;
 use crate::lower;
 use crate::model::Model;
 use crate::program::Program;
+use crate::program::provenance::label_quantities;
 use crate::proof;
 use crate::syntax::{self, Places, ast};
 #[cfg(feature = "files")]
-use crate::tables::{self, Derivation, Table, Tables};
+use crate::tables::{self, Derivation, Table, TableError, Tables};
 use proc_macro2::TokenStream;
 use std::path::Path;
 
@@ -233,9 +234,9 @@ impl Generated {
     /// Derives tables of coefficients. If none is requested: all of [`Table::DEFAULT`] that the system has.
     ///
     /// # Errors
-    /// If a table is not available; the message says which, and why.
+    /// If a table is not available, with the reason.
     #[cfg(feature = "files")]
-    pub fn tables(&self, asked: &[Table]) -> Result<Tables, String> {
+    pub fn tables(&self, asked: &[Table]) -> Result<Tables, TableError> {
         let derivation = Derivation {
             model: &self.model,
             active: &self.active,
@@ -260,6 +261,7 @@ impl Generated {
     }
 
     fn proved(mut model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
+        label_quantities(&mut model);
         let claims = model.invariants.iter().map(|claim| claim.name.as_str());
         let lacking = inertia::lacking(model.span, model.has_inertia, &model.asked, claims);
         lacking.map_or(Ok(()), |error| Err(vec![error]))?;

@@ -35,7 +35,7 @@ pub use hamel_algebra as algebra;
 pub use hamel_dynamics as derive;
 pub use hamel_emit as emit;
 pub use hamel_language::{
-    diagnostics, functions, inertia, lower, model, render, reuse, syntax, vocabulary,
+    diagnostics, functions, inertia, lower, model, reuse, syntax, vocabulary,
 };
 pub use hamel_program as program;
 #[cfg(feature = "files")]
@@ -46,6 +46,7 @@ pub use hamel_verify as proof;
 pub mod builder;
 mod expand;
 pub mod generate;
+pub mod render;
 #[cfg(feature = "files")]
 pub mod scene;
 #[cfg(feature = "files")]
@@ -54,5 +55,5 @@ pub mod trace;
 pub mod urdf;
 
 #[cfg(feature = "files")]
-pub use builder::{BuildError, Builder};
+pub use builder::{BuildError, BuildProblem, Builder};
 pub use expand::{MACRO_STATEMENTS, expand};

@@ -2,7 +2,7 @@
 
 use crate::emit::trace::{Trace, Traced, trace};
 use crate::generate::Generated;
-use crate::model::provenance::Origin;
+use crate::program::provenance::Origin;
 use std::collections::HashMap;
 use std::rc::Rc;
 

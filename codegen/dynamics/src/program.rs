@@ -7,8 +7,8 @@ use super::numerical_loss::NumericalLoss;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
-use hamel_language::model::provenance::Quantity;
 use hamel_language::model::value::Value;
+use hamel_program::provenance::Quantity;
 use hamel_program::{Cause, Function, FunctionId, Shape};
 
 /// Largest number of velocities for which the literal M is used to detect missing inertia.

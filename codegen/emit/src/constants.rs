@@ -3,8 +3,8 @@
 use super::Emitter;
 use hamel_algebra::graph::NodeId;
 use hamel_algebra::text::{short, short_with};
-use hamel_language::model::provenance::Origin;
 use hamel_program::origins::served;
+use hamel_program::provenance::Origin;
 use hamel_program::statements::Body;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;

@@ -1,7 +1,8 @@
 //! Errors and warnings with their places in the source. Errors are collected so that one build reports all of them.
 
 use crate::functions::Needs;
-use crate::syntax::ast::{Span, Texts};
+pub use crate::syntax::ast::Span;
+use crate::syntax::ast::Texts;
 use std::panic::Location;
 
 /// One error or warning: its place, the problem, and a suggestion.

@@ -18,7 +18,7 @@
 //! | [`functions`] | the functions that can be generated |
 //! | [`inertia`] | the error for systems that lack the inertia they need |
 //! | [`vocabulary`] | the words of the language, for references and editors |
-//! | [`diagnostics`], [`render`] | errors, and how they are shown |
+//! | [`diagnostics`] | errors with their places |
 //!
 //! Expressions are built with [`algebra`]; `hamel-codegen` derives equations of motion from a model.
 //!
@@ -26,7 +26,7 @@
 //!
 //! | feature | default | effect |
 //! |---|---|---|
-//! | `files` | yes | parsing of text in addition to tokens: source positions, and errors with underlined source |
+//! | `files` | yes | parsing of text in addition to tokens: source positions |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -38,7 +38,6 @@ pub mod functions;
 pub mod inertia;
 pub mod lower;
 pub mod model;
-pub mod render;
 pub mod reuse;
 mod shapes;
 mod symbols;

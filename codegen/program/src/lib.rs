@@ -6,6 +6,7 @@ pub mod count;
 pub mod interpret;
 pub mod origins;
 pub mod places;
+pub mod provenance;
 pub mod rounding;
 pub mod schedule;
 mod seeds;
@@ -19,8 +20,8 @@ pub mod together;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_language::model::joints::Joint;
 use hamel_language::model::layout::Block;
-use hamel_language::model::provenance::Provenance;
 use hamel_language::model::{Coordinate, Group, behind, entry};
+use provenance::Provenance;
 use structure::Structure;
 
 use hamel_language::functions::Returns;

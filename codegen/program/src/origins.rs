@@ -3,10 +3,10 @@
 //! A statement that computes an entry of a quantity serves that quantity. Any other statement serves a quantity that its
 //! result is needed for.
 
+use super::provenance::Origin;
 use super::statements::{Body, Operation};
 use super::{Function, Program, Shape};
 use hamel_algebra::graph::{Label, NodeId};
-use hamel_language::model::provenance::Origin;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 

@@ -1,5 +1,5 @@
 //! Laws of the language, one module for each file of `src`. To run a single module:
-//! `cargo test -p hamel-language --test suite syntax::`.
+//! `cargo test -p hamel-codegen-tests --test language syntax::`.
 
 mod axes;
 mod chart_difference;

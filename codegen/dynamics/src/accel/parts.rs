@@ -12,9 +12,9 @@ use crate::{energy, kinematics, loads};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
 use hamel_algebra::transplant::{graft, rebuild};
-use hamel_language::model::provenance::Quantity;
 use hamel_language::model::{Body, Model};
 use hamel_language::syntax::ast::Axes;
+use hamel_program::provenance::Quantity;
 
 /// Reference point of a body whose motion is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

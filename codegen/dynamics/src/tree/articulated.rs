@@ -12,8 +12,8 @@ use super::wrench::Wrench;
 use crate::accel::solve::Solution;
 use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, identity3, scale3, zero3};
-use hamel_language::model::provenance::Quantity;
 use hamel_language::model::rotations::hat;
+use hamel_program::provenance::Quantity;
 
 /// Articulated inertia: torque = J α + H a, force = Hᵀ α + M a.
 #[derive(Clone, Copy, Debug)]

@@ -9,8 +9,8 @@ use super::mass::LinkInertia;
 use super::wrench::Wrench;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::resubstitute::resubstitute;
-use hamel_language::model::provenance::Quantity;
 use hamel_program::count::count;
+use hamel_program::provenance::Quantity;
 
 /// How inertias about hinges are computed.
 ///

@@ -11,7 +11,7 @@ use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, identity3, multiply3, zero3,
 };
 use hamel_language::model::Model;
-use hamel_language::model::provenance::Quantity;
+use hamel_program::provenance::Quantity;
 
 /// A link whose frame can still be moved.
 #[derive(Clone, Debug)]

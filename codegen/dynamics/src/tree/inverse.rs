@@ -14,8 +14,8 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{
     Mat3, Vec3, add3, apply3, cross, identity3, multiply3, scale3, transpose3, zero3,
 };
-use hamel_language::model::provenance::Quantity;
 use hamel_program::count::count;
+use hamel_program::provenance::Quantity;
 
 /// Motion of a link in its own axes.
 #[derive(Clone, Copy, Debug)]

@@ -289,7 +289,7 @@ fn read_at(
     } = statics;
     let (motion, called) = (scope.motion, scope.called.into_inner());
     let zero = graph.zero();
-    let mut model = Model {
+    let model = Model {
         name: system.name.name.clone(),
         public: system.public,
         docs: system.docs.clone(),
@@ -357,7 +357,6 @@ fn read_at(
         origins: Origins::default(),
         warnings: idle,
     };
-    model.label_quantities();
     match externals::misplaced(&model, &called) {
         Some(error) => Err((vec![error], None)),
         None => Ok(model),

@@ -31,6 +31,25 @@ impl Block {
         }
     }
 
+    /// Returns a point whose entries are numbers of `number`, or in the direction of such numbers.
+    pub fn point(self, mut number: impl FnMut() -> f64) -> Vec<f64> {
+        let mut list = |n: usize| -> Vec<f64> { (0..n).map(|_| number()).collect() };
+        let mut unit = |n: usize| -> Vec<f64> {
+            let entries = list(n);
+            let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
+            entries.iter().map(|x| x / length).collect()
+        };
+        match self {
+            Block::Flat(n) => list(n),
+            Block::Circle => unit(2),
+            Block::Quaternion => unit(4),
+            Block::Rotation => {
+                let q = unit(4);
+                rotation([q[0], q[1], q[2], q[3]], 2.0)
+            }
+        }
+    }
+
     /// Returns `false`: every block has entries.
     pub fn is_empty(self) -> bool {
         self.len() == 0

@@ -19,7 +19,6 @@ pub mod motion;
 pub mod nearest;
 pub mod pfaffian;
 pub mod points;
-pub mod provenance;
 pub mod rotations;
 pub mod samples;
 pub mod statements;

@@ -46,12 +46,4 @@ impl Quantity {
             _ => return None,
         })
     }
-
-    /// Returns whether the quantity is an angular one.
-    pub fn is_angular(self) -> bool {
-        matches!(
-            self,
-            Quantity::AngularVelocity | Quantity::AngularAcceleration
-        )
-    }
 }

@@ -129,19 +129,9 @@ fn number(random: &mut Random) -> f64 {
 }
 
 fn coordinates(block: Block, random: &mut Random, sample: usize) -> Vec<f64> {
-    let unit = |n: usize, random: &mut Random| {
-        let entries: Vec<f64> = (0..n).map(|_| number(random)).collect();
-        let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
-        entries.iter().map(|x| x / length).collect::<Vec<f64>>()
-    };
-    match block {
-        Block::Flat(n) if sample < SAMPLES / 2 => (0..n).map(|_| number(random)).collect(),
-        Block::Flat(n) => (0..n).map(|_| number(random) * wide(random)).collect(),
-        Block::Circle => unit(2, random),
-        Block::Quaternion => unit(4, random),
-        Block::Rotation => {
-            let q = unit(4, random);
-            super::layout::rotation([q[0], q[1], q[2], q[3]], 2.0)
-        }
-    }
+    let scaled = sample >= SAMPLES / 2 && matches!(block, Block::Flat(_));
+    block.point(|| match scaled {
+        true => number(random) * wide(random),
+        false => number(random),
+    })
 }

@@ -2,7 +2,6 @@
 //! the start with several velocities.
 
 use super::Model;
-use super::layout::Block;
 use crate::algebra::residue_pair::Random;
 
 /// Number of random states.
@@ -29,10 +28,8 @@ pub fn states(model: &Model) -> Vec<Vec<f64>> {
             continue;
         }
         let Some(equations) = &equations else {
-            let x = model
-                .blocks
-                .iter()
-                .flat_map(|&block| anywhere(block, &mut random));
+            let blocks = model.blocks.iter();
+            let x = blocks.flat_map(|&block| block.point(|| number(&mut random)));
             let x = x.collect();
             all.push(numbers(model, x, &mut random));
             continue;
@@ -62,22 +59,4 @@ fn numbers(model: &Model, x: Vec<f64>, random: &mut Random) -> Vec<f64> {
 /// Returns a random number between −1 and 1.
 fn number(random: &mut Random) -> f64 {
     (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
-
-/// Returns a random point of a block.
-fn anywhere(block: Block, random: &mut Random) -> Vec<f64> {
-    let mut unit = |n: usize| {
-        let entries: Vec<f64> = (0..n).map(|_| number(random)).collect();
-        let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
-        entries.iter().map(|x| x / length).collect::<Vec<f64>>()
-    };
-    match block {
-        Block::Flat(n) => (0..n).map(|_| number(random)).collect(),
-        Block::Circle => unit(2),
-        Block::Quaternion => unit(4),
-        Block::Rotation => {
-            let q = unit(4);
-            super::layout::rotation([q[0], q[1], q[2], q[3]], 2.0)
-        }
-    }
 }

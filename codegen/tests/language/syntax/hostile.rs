@@ -5,7 +5,7 @@ use proptest::test_runner::RngSeed;
 
 use super::accepted::FREE_BODY;
 use super::parsed;
-use hamel_language::render::{render, to_compile_errors};
+use hamel_codegen::render::{render, to_compile_errors};
 use hamel_language::syntax::Places;
 use hamel_language::syntax::{canonical, parse_text};
 

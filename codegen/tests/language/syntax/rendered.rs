@@ -1,7 +1,7 @@
 //! The rendering of errors: underlined in a text, and as errors of the compiler.
 
+use hamel_codegen::render::{render, to_compile_errors};
 use hamel_language::diagnostics::Diagnostic;
-use hamel_language::render::{render, to_compile_errors};
 use hamel_language::syntax::Places;
 use hamel_language::syntax::ast::Span;
 use hamel_language::syntax::parse_text;

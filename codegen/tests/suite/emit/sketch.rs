@@ -3,9 +3,9 @@
 use hamel_codegen::algebra::graph::{Edge, Graph};
 use hamel_codegen::algebra::residue_pair::Random;
 use hamel_codegen::model::layout::{blocks, entry_names};
-use hamel_codegen::model::provenance::Provenance;
 use hamel_codegen::model::value::Value;
 use hamel_codegen::model::{Coordinate, Group, class};
+use hamel_codegen::program::provenance::Provenance;
 use hamel_codegen::program::structure::Structure;
 use hamel_codegen::program::{Argument, Function, Program, Shape};
 use hamel_codegen::syntax::ast::Span as Place;

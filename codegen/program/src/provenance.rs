@@ -4,10 +4,10 @@
 //! Lowering and derivation label the nodes of the quantities that they make. Labels change no operation and no order;
 //! generated code is grouped by them, so that it can be reviewed against equations and description.
 
-use super::{Model, entry};
-use crate::algebra::graph::Label;
-use crate::functions::FunctionId;
-use crate::syntax::ast::Span;
+use hamel_algebra::graph::Label;
+use hamel_language::diagnostics::Span;
+use hamel_language::functions::FunctionId;
+use hamel_language::model::{Frame, Model, entry};
 use std::collections::BTreeMap;
 
 /// List of a model whose entries quantities belong to.
@@ -151,7 +151,7 @@ impl Provenance {
         let written = |name: &str| model.origins.written(name).unwrap_or(name).to_owned();
         let frames = |map: &BTreeMap<String, Span>| -> Vec<(String, Span)> {
             let frames = model.frames.iter();
-            let of = |frame: &super::Frame| {
+            let of = |frame: &Frame| {
                 let span = map.get(&frame.name).copied();
                 let span = span.unwrap_or_else(|| place(&statements.names, &frame.name));
                 (written(&frame.name), span)
@@ -319,32 +319,30 @@ fn result(id: FunctionId) -> (List, &'static str, &'static str) {
     }
 }
 
-impl Model {
-    /// Labels the expressions of the description: named expressions, poses of frames, loads, rates and constraints.
-    pub fn label_quantities(&mut self) {
-        let graph = &mut self.graph;
-        for (index, (_, value)) in self.lets.iter().enumerate() {
-            graph.label(&value.entries(), Quantity::Let.of(index));
-        }
-        for (index, frame) in self.frames.iter().enumerate() {
-            let (turn, shift) = &frame.relative;
-            graph.label(&frame.rotation.concat(), Quantity::Rotation.of(index));
-            graph.label(&frame.position, Quantity::Position.of(index));
-            graph.label(&turn.concat(), Quantity::RelativePose.of(index));
-            graph.label(shift, Quantity::RelativePose.of(index));
-        }
-        for (index, wrench) in self.wrenches.iter().enumerate() {
-            let both = [wrench.force, wrench.torque, wrench.at].concat();
-            graph.label(&both, Quantity::Load.of(index));
-        }
-        for (index, (&rate, row)) in self.rate.iter().zip(&self.a).enumerate() {
-            graph.label(&[rate], Quantity::CoordinateRate.of(index));
-            graph.label(row, Quantity::KinematicMap.of(index));
-        }
-        for (index, constraint) in self.constraints.iter().enumerate() {
-            graph.label(&constraint.row, Quantity::ConstraintRow.of(index));
-        }
-        graph.label(&[self.kinetic], Quantity::WrittenEnergy.of(0));
-        graph.label(&[self.potential], Quantity::WrittenPotential.of(0));
+/// Labels the expressions of the description: named expressions, poses of frames, loads, rates and constraints.
+pub fn label_quantities(model: &mut Model) {
+    let graph = &mut model.graph;
+    for (index, (_, value)) in model.lets.iter().enumerate() {
+        graph.label(&value.entries(), Quantity::Let.of(index));
     }
+    for (index, frame) in model.frames.iter().enumerate() {
+        let (turn, shift) = &frame.relative;
+        graph.label(&frame.rotation.concat(), Quantity::Rotation.of(index));
+        graph.label(&frame.position, Quantity::Position.of(index));
+        graph.label(&turn.concat(), Quantity::RelativePose.of(index));
+        graph.label(shift, Quantity::RelativePose.of(index));
+    }
+    for (index, wrench) in model.wrenches.iter().enumerate() {
+        let both = [wrench.force, wrench.torque, wrench.at].concat();
+        graph.label(&both, Quantity::Load.of(index));
+    }
+    for (index, (&rate, row)) in model.rate.iter().zip(&model.a).enumerate() {
+        graph.label(&[rate], Quantity::CoordinateRate.of(index));
+        graph.label(row, Quantity::KinematicMap.of(index));
+    }
+    for (index, constraint) in model.constraints.iter().enumerate() {
+        graph.label(&constraint.row, Quantity::ConstraintRow.of(index));
+    }
+    graph.label(&[model.kinetic], Quantity::WrittenEnergy.of(0));
+    graph.label(&[model.potential], Quantity::WrittenPotential.of(0));
 }
