@@ -1,5 +1,6 @@
 //! Options for robots in URDF and for descriptions, common to all commands that read descriptions.
 
+use crate::parse::Expected;
 use clap::{Args, ValueEnum};
 use hamel_codegen::urdf;
 use hamel_engine::OpenOptions;
@@ -59,24 +60,20 @@ impl From<&RobotOptions> for OpenOptions {
     }
 }
 
-fn lock(text: &str) -> Result<(String, String), &'static str> {
-    let (joint, value) = text
-        .rsplit_once('=')
-        .ok_or("write JOINT=VALUE, as in `--lock finger_joint=0.04`")?;
+fn lock(text: &str) -> Result<(String, String), Expected> {
+    let (joint, value) = text.rsplit_once('=').ok_or(Expected::Joint)?;
     Ok((joint.to_string(), value.to_string()))
 }
 
-fn constant(text: &str) -> Result<(String, String), &'static str> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or("write NAME=VALUE, as in `--const n=100`")?;
+fn constant(text: &str) -> Result<(String, String), Expected> {
+    let (name, value) = text.split_once('=').ok_or(Expected::Constant)?;
     Ok((name.trim().to_string(), value.trim().to_string()))
 }
 
-fn tolerance(text: &str) -> Result<f64, &'static str> {
-    let tolerance: f64 = text.parse().map_err(|_| "not a number")?;
+fn tolerance(text: &str) -> Result<f64, Expected> {
+    let tolerance: f64 = text.parse().map_err(|_| Expected::Number)?;
     match (0.0..=0.1).contains(&tolerance) {
         true => Ok(tolerance),
-        false => Err("not between 0 and 0.1"),
+        false => Err(Expected::Tolerance),
     }
 }

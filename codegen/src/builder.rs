@@ -9,12 +9,14 @@
 //!
 //! and in the crate `include!(concat!(env!("OUT_DIR"), "/free_body.rs"));`.
 
+mod error;
+
 use crate::diagnostics::Diagnostic;
 use crate::emit::{self, c::Precision};
 use crate::generate::{Generated, from_file, from_text, text_of};
-use crate::render::{render, warnings};
+use crate::render::warnings;
+pub use error::{BuildError, BuildProblem};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::io::{self, Write};
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
@@ -37,27 +39,9 @@ enum Kind {
     Urdf(crate::urdf::Options),
 }
 
-/// Errors of a build, in which nothing or not everything was generated. Shows every error with its place in the source.
-pub struct BuildError(String);
-
-impl fmt::Display for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.0)
-    }
-}
-
 /// Stack size in bytes: enough for the deepest nesting that is allowed, even in a build without optimization. On
 /// Windows, the main thread has only 1 MB.
 const STACK: usize = 8 << 20;
-
-// A build script that returns the error prints its `Debug` form, which must be readable, too.
-impl fmt::Debug for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "\n{}", self.0)
-    }
-}
-
-impl std::error::Error for BuildError {}
 
 impl Builder {
     /// Creates a builder without files.
@@ -115,73 +99,62 @@ impl Builder {
     }
 
     fn generate_here(&self) -> Result<(), BuildError> {
-        let out_dir = match self
-            .out_dir
-            .clone()
-            .or_else(|| std::env::var_os("OUT_DIR").map(PathBuf::from))
-        {
-            Some(folder) => folder,
-            None => return Err(BuildError(
-                "OUT_DIR is not set: call this in a build script, or name a folder with `out_dir`"
-                    .into(),
-            )),
+        let own = self.out_dir.clone();
+        let Some(out_dir) = own.or_else(|| std::env::var_os("OUT_DIR").map(PathBuf::from)) else {
+            return Err(BuildError {
+                problems: vec![BuildProblem::NoOutDir],
+            });
         };
-        let mut errors = Vec::new();
+        let mut problems = Vec::new();
         let mut stems: BTreeMap<String, PathBuf> = BTreeMap::new();
         let mut made = Made::default();
         for (path, kind) in &self.files {
             let stem = self.stem(path, &mut stems);
             let done = stem.and_then(|stem| self.make(path, kind, &stem, &mut made));
-            errors.extend(done.err());
+            problems.extend(done.err());
         }
         let mut missing = BTreeSet::new();
         for (file, text) in &made.files {
             let file = out_dir.join(file);
             let folder = file.parent().filter(|folder| *folder != Path::new(""));
             match folder.filter(|folder| !folder.is_dir()) {
-                None => errors.extend(made.write(&file, text).err()),
-                Some(folder) if missing.insert(folder.to_owned()) => errors.push(format!(
-                    "the folder {} does not exist; create it first",
-                    folder.display()
-                )),
+                None => problems.extend(made.write(&file, text).err()),
+                Some(folder) if missing.insert(folder.to_owned()) => {
+                    problems.push(BuildProblem::NoFolder(folder.to_owned()));
+                }
                 Some(_) => {}
             }
         }
-        if errors.is_empty() {
-            Ok(())
-        } else {
-            Err(BuildError(errors.join("\n")))
+        match problems.is_empty() {
+            true => Ok(()),
+            false => Err(BuildError { problems }),
         }
     }
 
     /// Returns the common stem of the output files of a path, and refuses a stem that another path has already.
-    fn stem(&self, path: &Path, stems: &mut BTreeMap<String, PathBuf>) -> Result<String, String> {
-        let shown = path.display();
+    fn stem(
+        &self,
+        path: &Path,
+        stems: &mut BTreeMap<String, PathBuf>,
+    ) -> Result<String, BuildProblem> {
+        let path = path.to_owned();
         let Some(stem) = path.file_stem() else {
-            return Err(format!(
-                "`{shown}` is not the path of a file: give the path of a description, such as `models/arm.eom`"
-            ));
+            return Err(BuildProblem::NoFileName(path));
         };
         let stem = stem.to_string_lossy().into_owned();
         if self.c.is_some() && !emit::c::includable(&stem) {
-            return Err(format!(
-                "{shown}: C cannot include `{stem}.h`, or has a header of this name; rename it, without quotes, `?`, `\\` and line breaks"
-            ));
+            return Err(BuildProblem::NotIncludable { path, stem });
         }
         if let Some(other) = stems.get(&stem) {
+            let other = other.clone();
             return Err(
-                match place(path).is_some_and(|file| place(other) == Some(file)) {
-                    true => format!(
-                        "{shown} is given twice, but has only one {stem}.rs; remove it, or write it to another folder with another `Builder`"
-                    ),
-                    false => format!(
-                        "{} and {shown} would both be written to {stem}.rs; rename one of them",
-                        other.display()
-                    ),
+                match place(&path).is_some_and(|file| place(&other) == Some(file)) {
+                    true => BuildProblem::Repeated { path, stem },
+                    false => BuildProblem::SameOutput { other, path, stem },
                 },
             );
         }
-        stems.insert(stem.clone(), path.to_owned());
+        stems.insert(stem.clone(), path);
         Ok(stem)
     }
 }
@@ -220,14 +193,11 @@ impl Made {
         }
     }
 
-    fn write(&self, file: &Path, text: &str) -> Result<(), String> {
+    fn write(&self, file: &Path, text: &str) -> Result<(), BuildProblem> {
         if place(file).is_some_and(|file| self.read.contains(&file)) {
-            return Err(format!(
-                "cannot write {}: this file is an input; write to another folder, or rename it",
-                file.display()
-            ));
+            return Err(BuildProblem::Overwrites(file.to_owned()));
         }
-        hamel_files::update(file, text).map_err(|error| error.to_string())
+        hamel_files::update(file, text).map_err(BuildProblem::Unwritten)
     }
 }
 
@@ -266,16 +236,21 @@ fn watch(path: &Path) -> io::Result<()> {
 
 impl Builder {
     /// Reads a file, and generates the texts that are to be written.
-    fn make(&self, path: &Path, kind: &Kind, stem: &str, made: &mut Made) -> Result<(), String> {
+    fn make(
+        &self,
+        path: &Path,
+        kind: &Kind,
+        stem: &str,
+        made: &mut Made,
+    ) -> Result<(), BuildProblem> {
         let shown = path.display().to_string();
-        let text = made.open_as(path, kind).map_err(|error| {
-            let here = match std::env::current_dir() {
-                Ok(folder) if path.is_relative() && error.kind() == io::ErrorKind::NotFound => {
-                    format!("; its path starts at {}", folder.display())
-                }
-                _ => String::new(),
-            };
-            format!("cannot read {shown}: {error}{here}")
+        let text = made.open_as(path, kind).map_err(|source| {
+            let is_astray = path.is_relative() && source.kind() == io::ErrorKind::NotFound;
+            BuildProblem::Unreadable {
+                path: path.to_owned(),
+                start: std::env::current_dir().ok().filter(|_| is_astray),
+                source,
+            }
         })?;
         match kind {
             Kind::Description => {
@@ -283,9 +258,13 @@ impl Builder {
                     .trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n'])
                     .starts_with('<')
                 {
-                    return Err(format!("{shown} is not a description: {ROBOTS}"));
+                    return Err(BuildProblem::Xml(path.to_owned()));
                 }
-                let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
+                let refused = |diagnostics: Vec<Diagnostic>| BuildProblem::Description {
+                    path: path.to_owned(),
+                    text: text.clone(),
+                    diagnostics,
+                };
                 let folder = path.parent().unwrap_or(Path::new(""));
                 let open = &mut |name: &str| made.open(&folder.join(name));
                 let generated = from_file(&text, open).map_err(refused)?;
@@ -296,11 +275,19 @@ impl Builder {
             #[cfg(feature = "urdf")]
             Kind::Urdf(options) => {
                 use crate::generate::available_in;
-                use crate::urdf::{import, refused, warnings};
-                let imported = import(&text, options, &shown, false)?;
+                use crate::urdf::{import, warnings};
+                let imported = import(&text, options).map_err(|problems| BuildProblem::Import {
+                    path: path.to_owned(),
+                    text: text.clone(),
+                    problems,
+                })?;
                 warn(&warnings(&imported, &shown, &text, false));
                 let description = name(&path.with_extension("eom"));
-                let refused = |errors: Vec<Diagnostic>| refused(&errors, &shown, &text, false);
+                let refused = |diagnostics: Vec<Diagnostic>| BuildProblem::Robot {
+                    path: path.to_owned(),
+                    text: text.clone(),
+                    diagnostics,
+                };
                 let (generated, left_out) = available_in(&imported.system).map_err(refused)?;
                 // The import has warned already if there are no masses.
                 if let Some(left_out) = left_out.filter(|_| imported.has_masses) {
@@ -350,12 +337,6 @@ fn apart(
     named.extend(names.into_iter().map(|name| (name, shown.to_owned())));
     Ok(())
 }
-
-/// Hint for XML in place of a description.
-#[cfg(feature = "urdf")]
-const ROBOTS: &str = "a robot in URDF has a name that ends in `.urdf`, or is added by `urdf`";
-#[cfg(not(feature = "urdf"))]
-const ROBOTS: &str = "robots in URDF need the feature `urdf` of hamel-codegen";
 
 /// Prints lines that Cargo shows as warnings of the package. The form with one colon works for any `rust-version`.
 fn warn(text: &str) {

@@ -16,17 +16,11 @@ pub fn is_urdf(path: &Path) -> bool {
         .is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
 }
 
-/// Converts a robot to a description, without redundant equations of its closing joints. Errors are shown with the text
-/// underlined, under the name `path`.
-pub fn import(text: &str, options: &Options, path: &str, color: bool) -> Result<Imported, String> {
-    read(text, options).map_err(|problems| errors(&problems, path, text, color))
-}
-
-/// Converts a robot to a description as [`import`] does.
+/// Converts a robot to a description, without redundant equations of its closing joints.
 ///
 /// # Errors
-/// Each with its place in the text.
-pub fn read(text: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
+/// Each with its place in the text; [`errors`] shows them with the text underlined.
+pub fn import(text: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
     let imported = hamel_import::import(text, options)?;
     Ok(idle::without_idle(text, options, imported))
 }

@@ -7,6 +7,7 @@ use crate::state::StateProblem;
 use hamel::StepError;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::render::render;
+use hamel_codegen::tables::TableError;
 use hamel_codegen::urdf::{self, Undecoded};
 use std::fmt;
 
@@ -196,7 +197,7 @@ pub enum Error {
         why: String,
     },
     /// A table is unknown or does not exist for the system.
-    Table(String),
+    Table(TableError),
 }
 
 impl Error {
@@ -394,7 +395,7 @@ impl fmt::Display for Error {
             Error::NoRegressor { path, system, why } => {
                 write!(f, "{path}: `{system}` has no regressor: {why}")
             }
-            Error::Table(why) => f.write_str(why),
+            Error::Table(why) => why.fmt(f),
         }
     }
 }

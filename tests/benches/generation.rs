@@ -69,7 +69,7 @@ fn robots(bencher: divan::Bencher, robot: &str) {
         ..Options::default()
     };
     bencher.bench(|| {
-        let imported = import(divan::black_box(&text), &options, robot, false);
+        let imported = import(divan::black_box(&text), &options);
         let description = imported.expect("a sound robot").text();
         source(&description, robot).expect("the description is correct")
     });

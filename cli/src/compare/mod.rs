@@ -5,7 +5,7 @@ mod reference;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::parse::positive;
+use crate::parse::{Expected, positive};
 #[cfg(feature = "command")]
 use crate::progress;
 use crate::robot::RobotOptions;
@@ -365,10 +365,10 @@ fn title(name: &str, docs: &[String]) -> String {
 }
 
 /// Parses a number of steps.
-fn number_of_steps(text: &str) -> Result<u64, String> {
+fn number_of_steps(text: &str) -> Result<u64, Expected> {
     let number = text.trim().parse::<u64>().ok();
     let number = number.filter(|number| (1..=MAX_STEPS).contains(number));
-    number.ok_or_else(|| format!("a whole number from 1 to {MAX_STEPS} is needed"))
+    number.ok_or(Expected::Steps(MAX_STEPS))
 }
 
 /// Returns the end time, which a reference has to list.

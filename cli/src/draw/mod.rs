@@ -4,7 +4,7 @@ mod shapes;
 
 use crate::failure::{self, Failure, print};
 use crate::outputs;
-use crate::parse::positive;
+use crate::parse::{Expected, positive};
 use crate::robot::RobotOptions;
 use crate::simulate::InputArguments;
 use crate::source;
@@ -237,7 +237,7 @@ fn caption(arguments: &Arguments) -> String {
     }
 }
 
-fn view(text: &str) -> Result<(f64, f64), String> {
+fn view(text: &str) -> Result<(f64, f64), Expected> {
     if text == DEFAULT_VIEW {
         return Ok(ISOMETRIC);
     }
@@ -248,6 +248,5 @@ fn view(text: &str) -> Result<(f64, f64), String> {
     let angles = text
         .split_once(',')
         .and_then(|(azimuth, elevation)| Some((number(azimuth)?, number(elevation)?)));
-    angles
-        .ok_or_else(|| format!("expected `{DEFAULT_VIEW}`, or two angles in degrees as in -60,20"))
+    angles.ok_or(Expected::View(DEFAULT_VIEW))
 }

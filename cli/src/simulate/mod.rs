@@ -11,7 +11,7 @@ mod write;
 use crate::absent::warn_of_interpretation;
 use crate::failure::{Failure, print};
 use crate::outputs;
-use crate::parse::positive;
+use crate::parse::{Expected, positive};
 use crate::robot::RobotOptions;
 use crate::source;
 use clap::Args;
@@ -160,12 +160,12 @@ fn coefficients(generated: &Generated) -> String {
 }
 
 /// Parses `10` as steps and `0.01s` as a time.
-fn every(text: &str) -> Result<Every, &'static str> {
+fn every(text: &str) -> Result<Every, Expected> {
     match text.strip_suffix('s') {
         Some(time) => positive(time).map(Every::Time),
         None => match text.parse::<u64>() {
             Ok(steps) if steps > 0 => Ok(Every::Steps(steps)),
-            _ => Err("expected a number of steps, 1 or greater, or a time as in 0.01s"),
+            _ => Err(Expected::Interval),
         },
     }
 }

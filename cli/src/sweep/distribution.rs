@@ -35,7 +35,7 @@ impl Distribution {
     pub fn read(
         piece: Piece,
         entries: usize,
-        numbers: &dyn Fn(&str) -> Result<Vec<f64>, String>,
+        numbers: &dyn Fn(Piece) -> Result<Vec<f64>, Diagnostic>,
     ) -> Result<Vec<Self>, Vec<Diagnostic>> {
         let Some((name, inner)) = piece.call() else {
             return Err(vec![
@@ -134,14 +134,14 @@ impl Distribution {
 fn argument(
     piece: Piece,
     entries: usize,
-    numbers: &dyn Fn(&str) -> Result<Vec<f64>, String>,
+    numbers: &dyn Fn(Piece) -> Result<Vec<f64>, Diagnostic>,
 ) -> Result<Vec<f64>, Diagnostic> {
     if piece.text.is_empty() {
         return Err(piece.wrong("an argument is missing"));
     }
     let values = match piece.text.parse::<f64>() {
         Ok(value) => vec![value],
-        Err(_) => numbers(piece.text).map_err(|why| piece.wrong(why))?,
+        Err(_) => numbers(piece)?,
     };
     if !values.iter().all(|value| value.is_finite()) {
         return Err(piece.wrong("this is not a finite number"));
@@ -178,15 +178,12 @@ pub fn count(count: usize, word: &str) -> String {
 mod tests {
     use super::Distribution;
     use crate::sweep::draws::Draws;
+    use hamel_codegen::diagnostics::Diagnostic;
     use hamel_engine::option_text::Piece;
 
-    fn read(text: &str, entries: usize) -> Result<Vec<Distribution>, String> {
-        let numbers = |text: &str| Err(format!("{text} is unknown"));
-        let piece = Piece::of(text).expect("brackets");
-        Distribution::read(piece, entries, &numbers).map_err(|errors| {
-            let said: Vec<String> = errors.into_iter().map(|error| error.message).collect();
-            said.join("; ")
-        })
+    fn read(text: &str, entries: usize) -> Result<Vec<Distribution>, Vec<Diagnostic>> {
+        let numbers = |piece: Piece| Err(piece.wrong(format!("{} is unknown", piece.text)));
+        Distribution::read(Piece::of(text).expect("brackets"), entries, &numbers)
     }
 
     #[test]
@@ -203,8 +200,10 @@ mod tests {
             ("uniforn(1, 2)", "no distribution"),
             ("3", "expected a distribution"),
         ] {
-            let error = read(text, 1).expect_err(text);
-            assert!(error.contains(said), "{text}: {error}");
+            let errors = read(text, 1).expect_err(text);
+            let messages: Vec<&str> = errors.iter().map(|error| error.message.as_str()).collect();
+            let messages = messages.join("; ");
+            assert!(messages.contains(said), "{text}: {messages}");
         }
     }
 

@@ -3,6 +3,7 @@
 use super::manifest::Manifest;
 use super::shard::Footer;
 use crate::failure::{self, Failure};
+use crate::parse::Expected;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -42,12 +43,12 @@ impl Part {
     }
 
     /// Parses `i/N`.
-    pub fn read(text: &str) -> Result<Self, String> {
+    pub fn read(text: &str) -> Result<Self, Expected> {
         let numbers = text.split_once('/');
         let numbers = numbers.and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
         match numbers {
             Some((number, of)) if (1..=of).contains(&number) => Ok(Part { number, of }),
-            _ => Err("expected i/N with 1 ≤ i ≤ N, as in 3/16".into()),
+            _ => Err(Expected::Part),
         }
     }
 }

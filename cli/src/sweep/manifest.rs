@@ -1,13 +1,57 @@
 //! The file in a sweep's folder that specifies the sweep: everything on which a row depends.
 
 use crate::json::Json;
-use hamel_engine::state::parse;
+use hamel_engine::state::{JsonError, parse};
 use serde_json::{Map, Value};
+use std::error::Error;
+use std::fmt;
 
 /// Version of the file's format.
 const FORMAT: u128 = 1;
 /// Longer texts are compared by their first differing line.
 const MAX_INLINE_TEXT: usize = 60;
+
+/// Reason why a text is not a manifest.
+#[derive(Debug)]
+pub enum ManifestError {
+    /// It is not JSON.
+    Json(JsonError),
+    /// It is JSON, but not an object.
+    NoObject,
+    /// Its format is of another version.
+    OtherFormat,
+    /// The entry of this name is not a whole number above 0.
+    NoCount(&'static str),
+}
+
+impl fmt::Display for ManifestError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ManifestError::Json(error) => error.fmt(f),
+            ManifestError::NoObject => f.write_str("expected an object"),
+            ManifestError::OtherFormat => write!(
+                f,
+                "`format` is not {FORMAT}: another version of hamel wrote it"
+            ),
+            ManifestError::NoCount(name) => write!(f, "`{name}` is not a whole number above 0"),
+        }
+    }
+}
+
+impl Error for ManifestError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            ManifestError::Json(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl From<JsonError> for ManifestError {
+    fn from(error: JsonError) -> Self {
+        ManifestError::Json(error)
+    }
+}
 
 /// The specification of a sweep.
 #[derive(Clone, Debug)]
@@ -23,7 +67,7 @@ pub struct Manifest {
 
 impl Manifest {
     /// Creates a manifest with these values to be fixed, in this order.
-    pub fn new(count: u64, size: u64, fixed: Vec<(&str, Json)>) -> Result<Self, String> {
+    pub fn new(count: u64, size: u64, fixed: Vec<(&str, Json)>) -> Result<Self, ManifestError> {
         let own = [
             ("format", Json::Count(FORMAT)),
             ("hamel", Json::Text(env!("CARGO_PKG_VERSION").into())),
@@ -34,9 +78,9 @@ impl Manifest {
     }
 
     /// Reads the file.
-    pub fn read(text: &str) -> Result<Self, String> {
-        let Value::Object(members) = parse(text).map_err(|error| error.to_string())? else {
-            return Err("expected an object".into());
+    pub fn read(text: &str) -> Result<Self, ManifestError> {
+        let Value::Object(members) = parse(text)? else {
+            return Err(ManifestError::NoObject);
         };
         if members
             .get("format")
@@ -44,14 +88,12 @@ impl Manifest {
             .map(u128::from)
             != Some(FORMAT)
         {
-            return Err(format!(
-                "`format` is not {FORMAT}: another version of hamel wrote it"
-            ));
+            return Err(ManifestError::OtherFormat);
         }
-        let number = |name: &str| {
+        let number = |name: &'static str| {
             let number = members.get(name).and_then(Value::as_u64);
             let number = number.filter(|number| *number > 0);
-            number.ok_or_else(|| format!("`{name}` is not a whole number above 0"))
+            number.ok_or(ManifestError::NoCount(name))
         };
         Ok(Manifest {
             count: number("members")?,
@@ -170,7 +212,7 @@ mod tests {
             ),
             ("{\"format\": 1, \"format\": 1}", "twice"),
         ] {
-            let error = Manifest::read(text).expect_err(text);
+            let error = Manifest::read(text).expect_err(text).to_string();
             assert!(error.contains(why), "{error}");
         }
     }

@@ -28,6 +28,7 @@ mod work;
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::outputs;
+use crate::parse::Expected;
 use crate::robot::RobotOptions;
 use crate::simulate::{InputArguments, SteppingArguments};
 use crate::source;
@@ -257,16 +258,15 @@ pub fn run(arguments: &Arguments, stop: Option<&CancellationToken>) -> Result<()
 }
 
 /// Parses a number of members.
-fn members(text: &str) -> Result<u64, String> {
+fn members(text: &str) -> Result<u64, Expected> {
     let number = text.parse::<u64>().ok();
     let number = number.filter(|number| (1..=i64::MAX as u64).contains(number));
-    number.ok_or_else(|| "expected a whole number from 1 to 2^63 - 1".into())
+    number.ok_or(Expected::Members)
 }
 
 /// Parses a seed.
-fn seed(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| "expected a whole number from 0 to 2^64 - 1".into())
+fn seed(text: &str) -> Result<u64, Expected> {
+    text.parse().map_err(|_| Expected::Seed)
 }
 
 /// Prepares the data that members share, and the columns of their rows.

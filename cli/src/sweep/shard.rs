@@ -11,7 +11,10 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type as Field, TypePtr};
 use std::collections::BTreeSet;
+use std::error::Error;
+use std::fmt;
 use std::fs::File;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -138,39 +141,63 @@ fn optional<T>(values: impl Iterator<Item = Option<T>>) -> (Vec<i16>, Vec<T>) {
 }
 
 /// Returns the first columns of numbers of a file, after that of the index; missing values are NaN.
-pub fn numbers(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, String> {
-    let read = || -> Result<Vec<Vec<f64>>, ParquetError> {
-        let reader = SerializedFileReader::new(File::open(path)?)?;
-        let mut all = vec![Vec::new(); count];
-        for group in 0..reader.num_row_groups() {
-            let group = reader.get_row_group(group)?;
-            let rows = group.metadata().num_rows().unsigned_abs() as usize;
-            for (place, column) in all.iter_mut().enumerate() {
-                let mut reader =
-                    get_typed_column_reader::<DoubleType>(group.get_column_reader(place + 1)?);
-                let optional = group
-                    .metadata()
-                    .column(place + 1)
-                    .column_descr()
-                    .max_def_level()
-                    > 0;
-                let (mut values, mut levels) = (Vec::new(), Vec::new());
-                reader.read_records(rows, optional.then_some(&mut levels), None, &mut values)?;
-                let mut present = values.into_iter();
-                let mut next = || present.next().unwrap_or(f64::NAN);
-                match optional {
-                    true => column.extend(
-                        levels
-                            .iter()
-                            .map(|level| if *level > 0 { next() } else { f64::NAN }),
-                    ),
-                    false => column.extend((0..rows).map(|_| next())),
-                }
+pub fn numbers(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, ParquetError> {
+    let reader = SerializedFileReader::new(File::open(path)?)?;
+    let mut all = vec![Vec::new(); count];
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group)?;
+        let rows = group.metadata().num_rows().unsigned_abs() as usize;
+        for (place, column) in all.iter_mut().enumerate() {
+            let mut reader =
+                get_typed_column_reader::<DoubleType>(group.get_column_reader(place + 1)?);
+            let optional = group
+                .metadata()
+                .column(place + 1)
+                .column_descr()
+                .max_def_level()
+                > 0;
+            let (mut values, mut levels) = (Vec::new(), Vec::new());
+            reader.read_records(rows, optional.then_some(&mut levels), None, &mut values)?;
+            let mut present = values.into_iter();
+            let mut next = || present.next().unwrap_or(f64::NAN);
+            match optional {
+                true => column.extend(
+                    levels
+                        .iter()
+                        .map(|level| if *level > 0 { next() } else { f64::NAN }),
+                ),
+                false => column.extend((0..rows).map(|_| next())),
             }
         }
-        Ok(all)
-    };
-    read().map_err(|error| error.to_string())
+    }
+    Ok(all)
+}
+
+/// Reason why the footer of a file cannot be read.
+#[derive(Debug)]
+pub enum ShardError {
+    /// The file cannot be opened.
+    Open(io::Error),
+    /// Its footer is not that of a Parquet file.
+    Parquet(ParquetError),
+}
+
+impl fmt::Display for ShardError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ShardError::Open(error) => error.fmt(f),
+            ShardError::Parquet(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for ShardError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        Some(match self {
+            ShardError::Open(error) => error,
+            ShardError::Parquet(error) => error,
+        })
+    }
 }
 
 /// The footer of a file.
@@ -186,10 +213,10 @@ pub struct Footer {
 
 impl Footer {
     /// Reads the footer of a file.
-    pub fn read(path: &Path) -> Result<Self, String> {
-        let file = File::open(path).map_err(|error| error.to_string())?;
+    pub fn read(path: &Path) -> Result<Self, ShardError> {
+        let file = File::open(path).map_err(ShardError::Open)?;
         let read = ParquetMetaDataReader::new().parse_and_finish(&file);
-        let metadata: ParquetMetaData = read.map_err(|error| error.to_string())?;
+        let metadata: ParquetMetaData = read.map_err(ShardError::Parquet)?;
         let metadata = metadata.file_metadata();
         let value = |key: &str| {
             let known = metadata.key_value_metadata()?.iter();

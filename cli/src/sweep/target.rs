@@ -2,6 +2,7 @@
 //! JSON.
 
 use hamel::{s3, so3};
+use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::model::layout::entry_names;
 use hamel_codegen::model::{Coordinate, Group, Model};
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
@@ -9,6 +10,7 @@ use hamel_codegen::syntax::path::plain;
 use hamel_codegen::syntax::suggest::closest;
 use hamel_engine::State;
 use hamel_engine::names;
+use hamel_engine::option_text::Piece;
 use serde_json::{Map, Value};
 
 /// The kind of symbol that a name refers to.
@@ -65,22 +67,23 @@ enum Form {
 }
 
 impl Target {
-    /// Resolves a name to a target and the indices of its entries.
+    /// Resolves a name, which `piece` contains, to a target and the indices of its entries.
     pub fn find(
+        piece: Piece,
         part: Part,
         name: &str,
         model: &Model,
         state: &State,
-    ) -> Result<(Self, Vec<usize>), String> {
+    ) -> Result<(Self, Vec<usize>), Diagnostic> {
         let all = Target::all(part, model, state);
         let called = |target: &&Target| plain(&target.qualified_name()) == plain(name);
         if let Some(target) = all.iter().find(called) {
             if let Form::Matrix(_) | Form::Symmetric(_) = target.form {
-                return Err(format!(
+                return Err(piece.wrong(format!(
                     "a matrix is varied by its entries, as in `{}{}`",
                     part.word(),
                     target.entries[0]
-                ));
+                )));
             }
             return Ok((target.clone(), (0..target.entries.len()).collect()));
         }
@@ -93,10 +96,10 @@ impl Target {
         if let Some(pose) = model.coordinates.iter().find(|known| {
             part == Part::Start && known.kind == CoordKind::SE3 && known.name == plain(name)
         }) {
-            return Err(format!(
+            return Err(piece.wrong(format!(
                 "`{0}` is a pose: vary its position `start {0}.p`, its rotation `start {0}.R`, or both",
                 pose.name
-            ));
+            )));
         }
         let what = match part {
             Part::Parameter => "parameter",
@@ -105,16 +108,12 @@ impl Target {
         };
         let message = format!("no {what} is called `{name}`");
         let names: Vec<String> = all.iter().map(Target::qualified_name).collect();
-        Err(
-            match (
-                closest(name, names.iter().map(String::as_str)),
-                names.as_slice(),
-            ) {
-                (Some(close), _) => format!("{message}: did you mean `{close}`?"),
-                (None, []) => format!("{message}: the description has none"),
-                (None, names) => format!("{message}: there are {}", names.join(", ")),
-            },
-        )
+        let close = closest(name, names.iter().map(String::as_str));
+        Err(piece.wrong(match (close, names.as_slice()) {
+            (Some(close), _) => format!("{message}: did you mean `{close}`?"),
+            (None, []) => format!("{message}: the description has none"),
+            (None, names) => format!("{message}: there are {}", names.join(", ")),
+        }))
     }
 
     /// Returns all targets of a kind.

@@ -78,8 +78,8 @@ impl Variations {
                 "nothing is varied; an item is written `NAME = DISTRIBUTION`",
             )]));
         }
-        vary.count(members)
-            .map_err(|why| wrong(vec![whole.wrong(why)]))?;
+        vary.count(whole, members)
+            .map_err(|error| wrong(vec![error]))?;
         let members = vary.members;
         for (index, entry) in vary.entries.iter_mut().enumerate() {
             if let Distribution::Latin(..) = entry.distribution {
@@ -107,8 +107,8 @@ impl Variations {
             Some(("input", name)) => (Part::Input, name.trim()),
             _ => (Part::Parameter, left.text),
         };
-        let (target, places) = Target::find(part, name, &generated.active, state)
-            .map_err(|why| vec![left.wrong(why)])?;
+        let (target, places) = Target::find(*left, part, name, &generated.active, state)
+            .map_err(|error| vec![error])?;
         let known = self.targets.iter().position(|known| known.is(&target));
         let number = known.unwrap_or(self.targets.len());
         let taken = |entry: &Entry| entry.target == number && places.contains(&entry.place);
@@ -125,9 +125,9 @@ impl Variations {
                 "arguments are numbers, and expressions of parameters that other items do not vary";
             return Err(vec![right.wrong(message).help(help)]);
         }
-        let numbers = |text: &str| {
-            let numbers = constant(text, generated, &state.params);
-            numbers.map_err(|problem| problem.to_string())
+        let numbers = |piece: Piece| {
+            let numbers = constant(piece.text, generated, &state.params);
+            numbers.map_err(|problem| piece.wrong(problem.to_string()))
         };
         let distributions = Distribution::read(*right, places.len(), &numbers)?;
         for (place, distribution) in places.into_iter().zip(distributions) {
@@ -147,7 +147,7 @@ impl Variations {
     }
 
     /// Counts the members: the requested number, or the points of all grids.
-    fn count(&mut self, asked: Option<u64>) -> Result<(), String> {
+    fn count(&mut self, whole: Piece, asked: Option<u64>) -> Result<(), Diagnostic> {
         let mut points: u64 = 1;
         let mut grids = false;
         // The last grid varies fastest.
@@ -158,19 +158,19 @@ impl Variations {
                 points = points
                     .checked_mul(n)
                     .filter(|points| *points <= i64::MAX as u64)
-                    .ok_or("the grids have more points than can be counted")?;
+                    .ok_or_else(|| whole.wrong("the grids have more points than can be counted"))?;
             }
         }
         self.members = match (asked, grids) {
             (Some(asked), true) if asked % points != 0 => {
-                return Err(format!(
+                return Err(whole.wrong(format!(
                     "the grids have {}: --members has to be a multiple of that or omitted",
                     count(points as usize, "point")
-                ));
+                )));
             }
             (Some(asked), _) => asked,
             (None, true) => points,
-            (None, false) => return Err("without a grid, --members is required".into()),
+            (None, false) => return Err(whole.wrong("without a grid, --members is required")),
         };
         Ok(())
     }

@@ -202,7 +202,7 @@ fn jacobians_cost_no_more_than_they_did() {
             floating,
             ..Options::default()
         };
-        let imported = import(&text, &options, "robot.urdf", false).expect("a robot");
+        let imported = import(&text, &options).expect("a robot");
         let text = imported.text();
         let (text, _) = text.rsplit_once('}').expect("a description");
         let asked = format!("generate jacobian {link}, jacobian {link} in {link};");

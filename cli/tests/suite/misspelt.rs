@@ -80,7 +80,7 @@ fn what_is_said_of_robots() {
             name: Some("robot".into()),
             ..Options::default()
         };
-        let Ok(imported) = import(&text, &options, &name, false) else {
+        let Ok(imported) = import(&text, &options) else {
             said.entry("refused".into()).or_default().push(name);
             continue;
         };
@@ -134,7 +134,7 @@ fn misspelt_elements_are_never_lost() {
                 wrong.insert(at, 'q');
                 let broken = misspelt(&text, place, word, &wrong);
                 tried += 1;
-                let Ok(found) = import(&broken, &Options::default(), &name, false) else {
+                let Ok(found) = import(&broken, &Options::default()) else {
                     continue;
                 };
                 let quoted = format!("`<{wrong}>`");

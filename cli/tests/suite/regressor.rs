@@ -379,7 +379,7 @@ fn agrees(folder: &Path, reference: &Value) {
         floating: reference["floating_base"] == true,
         ..Options::default()
     };
-    let imported = import(&urdf, &options, "robot.urdf", false).expect("a robot");
+    let imported = import(&urdf, &options).expect("a robot");
     let found = found(&imported.text());
     let model = &found.model;
     let joints = &imported.joints;

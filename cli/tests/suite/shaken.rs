@@ -226,7 +226,7 @@ fn robots_keep_their_digits() {
                     mimic: Mimic::Free,
                     ..Options::default()
                 };
-                let Ok(imported) = import(&text, &options, &name, false) else {
+                let Ok(imported) = import(&text, &options) else {
                     continue;
                 };
                 let case = format!("{name}, {how}, floating {floating}, rounding {tolerance}");

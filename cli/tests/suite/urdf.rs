@@ -276,7 +276,7 @@ fn words_of_the_language_are_names_of_robots() {
             let (base, link) = (r#"<link name="base"/>"#, link(link_name));
             let joint = joint(joint_name, "revolute", "base", link_name);
             let text = format!(r#"<robot name="{word}">{base}{link}{joint}</robot>"#);
-            let imported = hamel_codegen::urdf::import(&text, &Options::default(), "r.urdf", false);
+            let imported = hamel_codegen::urdf::import(&text, &Options::default());
             imported.expect("a sound robot")
         };
         for imported in [robot(word, "rod"), robot("hinge", word)] {

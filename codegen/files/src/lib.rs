@@ -13,10 +13,13 @@
 //! written to; folders and everything else are refused.
 
 pub mod number;
+mod reason;
 mod replace;
 mod stream;
 mod target;
 
+pub use reason::Reason;
+use std::error::Error;
 use std::fmt;
 use std::fs;
 use std::io::{self, ErrorKind, Read};
@@ -26,17 +29,23 @@ use target::Target;
 /// The error that a file was not written, with its path and the reason.
 #[derive(Debug)]
 pub struct Unwritten {
-    path: PathBuf,
-    why: String,
+    /// Path of the file.
+    pub path: PathBuf,
+    /// Reason why it was not written.
+    pub reason: Reason,
 }
 
 impl fmt::Display for Unwritten {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "cannot write {}: {}", self.path.display(), self.why)
+        write!(f, "cannot write {}: {}", self.path.display(), self.reason)
     }
 }
 
-impl std::error::Error for Unwritten {}
+impl Error for Unwritten {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.reason.source()
+    }
+}
 
 /// Writes a text to a file.
 ///
@@ -51,9 +60,9 @@ pub fn write(path: &Path, text: &str) -> Result<(), Unwritten> {
 /// # Errors
 /// As [`write()`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Unwritten> {
-    let unwritten = |why: String| Unwritten {
+    let unwritten = |reason: Reason| Unwritten {
         path: path.to_path_buf(),
-        why,
+        reason,
     };
     match Target::of(path).map_err(unwritten)? {
         Target::File { place, known } => replace::replace(&place, known.as_ref(), bytes),

@@ -1,32 +1,32 @@
 //! Replaces a regular file in one step.
 
+use crate::reason::Reason;
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 use tempfile::Builder;
 
 /// Writes bytes to a new file and gives it the path `place`; `known` describes the present file, if there is one.
-pub fn replace(place: &Path, known: Option<&Metadata>, bytes: &[u8]) -> Result<(), String> {
-    let said = |error: io::Error| error.to_string();
+pub fn replace(place: &Path, known: Option<&Metadata>, bytes: &[u8]) -> Result<(), Reason> {
     let Some(folder) = place.parent() else {
-        return Err("it is a folder".into());
+        return Err(Reason::Folder);
     };
     if known.is_some() {
         // A file that is write-protected must not be replaced either.
-        OpenOptions::new().write(true).open(place).map_err(said)?;
+        OpenOptions::new().write(true).open(place)?;
     }
     let mut builder = Builder::new();
     builder.prefix(".hamel-").suffix(".tmp");
     for_everybody(&mut builder);
     let mut file = builder
         .tempfile_in(folder)
-        .map_err(|error| format!("no file can be made beside it: {error}"))?;
-    file.write_all(bytes).map_err(said)?;
+        .map_err(Reason::NoTemporaryFile)?;
+    file.write_all(bytes)?;
     if let Some(known) = known {
-        keep(file.as_file(), known).map_err(said)?;
+        keep(file.as_file(), known)?;
     }
-    file.as_file().sync_all().map_err(said)?;
-    file.persist(place).map_err(|error| said(error.error))?;
+    file.as_file().sync_all()?;
+    file.persist(place).map_err(|error| error.error)?;
     // Flushes the folder as well, which contains the new name, on systems that can do this. The file is
     // complete in any case.
     if cfg!(unix) {

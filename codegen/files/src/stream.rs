@@ -1,5 +1,6 @@
 //! Targets that are written to and not replaced: devices, pipes, file descriptors.
 
+use crate::reason::Reason;
 use std::fs::{self, File, FileType, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ pub enum Stream {
 
 impl Stream {
     /// Returns the target of a path that the kernel lists as a file descriptor; `None` for other paths.
-    pub fn descriptor(folder: &Path, place: &Path) -> Option<Result<Stream, String>> {
+    pub fn descriptor(folder: &Path, place: &Path) -> Option<Result<Stream, Reason>> {
         let own = format!("/proc/{}/fd", std::process::id());
         let fixed = folder == Path::new(&own) || folder == Path::new("/dev/fd");
         if !fixed && !folder.starts_with("/proc") {
@@ -33,7 +34,7 @@ impl Stream {
             _ => {}
         }
         Some(match fs::metadata(place) {
-            Err(error) => Err(error.to_string()),
+            Err(error) => Err(error.into()),
             Ok(known) if known.is_file() => Ok(Stream::Descriptor(place.to_path_buf())),
             Ok(known) => Stream::of(place.to_path_buf(), known.file_type()),
         })
@@ -41,33 +42,33 @@ impl Stream {
 
     /// Returns the target of a path that is not a regular file, by its type.
     #[cfg(unix)]
-    pub fn of(place: PathBuf, of: FileType) -> Result<Stream, String> {
+    pub fn of(place: PathBuf, of: FileType) -> Result<Stream, Reason> {
         use std::os::unix::fs::FileTypeExt;
         if of.is_dir() {
-            Err("it is a folder".into())
+            Err(Reason::Folder)
         } else if of.is_fifo() {
             Ok(Stream::Pipe(place))
         } else if of.is_char_device() {
             Ok(Stream::Device(place))
         } else if of.is_socket() {
-            Err("it is a socket".into())
+            Err(Reason::Socket)
         } else {
-            Err("it is a disk or the like".into())
+            Err(Reason::Disk)
         }
     }
 
     /// Returns the target of a path that is not a regular file, by its type.
     #[cfg(not(unix))]
-    pub fn of(place: PathBuf, of: FileType) -> Result<Stream, String> {
+    pub fn of(place: PathBuf, of: FileType) -> Result<Stream, Reason> {
         if of.is_dir() {
-            Err("it is a folder".into())
+            Err(Reason::Folder)
         } else {
             Ok(Stream::Device(place))
         }
     }
 
     /// Writes bytes after the existing content.
-    pub fn write(self, bytes: &[u8]) -> Result<(), String> {
+    pub fn write(self, bytes: &[u8]) -> Result<(), Reason> {
         let whole = |mut to: Box<dyn Write>| {
             to.write_all(bytes)?;
             to.flush()
@@ -86,15 +87,15 @@ impl Stream {
             Stream::Pipe(place) => whole(Box::new(pipe(&place)?)),
         };
         written.map_err(|error| match error.kind() {
-            ErrorKind::BrokenPipe => "its reader is gone".into(),
-            _ => error.to_string(),
+            ErrorKind::BrokenPipe => Reason::ReaderGone,
+            _ => Reason::Io(error),
         })
     }
 }
 
 /// Opens a pipe that has a reader. It does not block if there is none, and returns an error instead.
 #[cfg(unix)]
-fn pipe(place: &Path) -> Result<File, String> {
+fn pipe(place: &Path) -> Result<File, Reason> {
     use rustix::fs::{OFlags, fcntl_setfl};
     use rustix::io::Errno;
     use std::os::unix::fs::OpenOptionsExt;
@@ -104,18 +105,15 @@ fn pipe(place: &Path) -> Result<File, String> {
         .custom_flags(flags)
         .open(place)
         .map_err(|error| match error.raw_os_error() {
-            Some(code) if code == Errno::NXIO.raw_os_error() => {
-                "it is a pipe that nobody reads from".into()
-            }
-            _ => error.to_string(),
+            Some(code) if code == Errno::NXIO.raw_os_error() => Reason::NoReader,
+            _ => Reason::Io(error),
         })?;
     // From here on, writing may block as long as there is a reader.
-    fcntl_setfl(&file, OFlags::empty()).map_err(|error| error.to_string())?;
+    fcntl_setfl(&file, OFlags::empty()).map_err(io::Error::from)?;
     Ok(file)
 }
 
 #[cfg(not(unix))]
-fn pipe(place: &Path) -> Result<File, String> {
-    let file = OpenOptions::new().write(true).open(place);
-    file.map_err(|error| error.to_string())
+fn pipe(place: &Path) -> Result<File, Reason> {
+    Ok(OpenOptions::new().write(true).open(place)?)
 }

@@ -1,5 +1,6 @@
 //! The target of a path: a file that is replaced, or a stream that is written to.
 
+use crate::reason::Reason;
 use crate::stream::Stream;
 use std::fs::{self, Metadata};
 use std::io::ErrorKind;
@@ -23,20 +24,21 @@ pub enum Target {
 
 impl Target {
     /// Follows symbolic links to the target of a path; the error says why it cannot be written.
-    pub fn of(path: &Path) -> Result<Target, String> {
+    pub fn of(path: &Path) -> Result<Target, Reason> {
         let mut path = path.to_path_buf();
         for _ in 0..=MOST_LINKS {
             let folder_only = path.to_string_lossy().ends_with(is_separator);
             let (Some(name), false) = (path.file_name(), folder_only) else {
-                return Err("it names a folder".into());
+                return Err(Reason::FolderName);
             };
             let folder = match path.parent() {
                 Some(parent) if !parent.as_os_str().is_empty() => parent,
                 _ => Path::new("."),
             };
-            let folder = folder
-                .canonicalize()
-                .map_err(|error| format!("its folder {}: {error}", folder.display()))?;
+            let folder = folder.canonicalize().map_err(|source| Reason::Parent {
+                folder: folder.to_path_buf(),
+                source,
+            })?;
             let place = folder.join(name);
             if let Some(stream) = Stream::descriptor(&folder, &place) {
                 return stream.map(Target::Stream);
@@ -45,9 +47,9 @@ impl Target {
                 Err(error) if error.kind() == ErrorKind::NotFound => {
                     return Ok(Target::File { place, known: None });
                 }
-                Err(error) => return Err(error.to_string()),
+                Err(error) => return Err(error.into()),
                 Ok(known) if known.is_symlink() => {
-                    let link = fs::read_link(&place).map_err(|error| error.to_string())?;
+                    let link = fs::read_link(&place)?;
                     path = folder.join(link);
                 }
                 Ok(known) if known.is_file() => {
@@ -57,6 +59,6 @@ impl Target {
                 Ok(known) => return Stream::of(place, known.file_type()).map(Target::Stream),
             }
         }
-        Err("its symbolic links lead nowhere".into())
+        Err(Reason::EndlessLinks)
     }
 }

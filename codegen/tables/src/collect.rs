@@ -1,6 +1,7 @@
 //! The entries of every table, as edges of the graph to which they belong.
 
 use super::entries::Cell;
+use super::error::TableError;
 use super::kind::Table;
 use super::listing::{Listing, listing};
 use super::simplify::Simplifier;
@@ -28,7 +29,7 @@ impl<'a> Collector<'a> {
     }
 
     /// Derives one table.
-    pub fn listing(&mut self, table: Table) -> Result<Listing, String> {
+    pub fn listing(&mut self, table: Table) -> Result<Listing, TableError> {
         match table {
             Table::Phi => Ok(self.phi()),
             Table::A | Table::States | Table::Outputs => Ok(self.described(table)),
@@ -81,16 +82,14 @@ impl<'a> Collector<'a> {
         listing(table, shape, &cells, &model.graph, &mut simplifier, &[])
     }
 
-    fn accel(&self) -> Result<Listing, String> {
+    fn accel(&self) -> Result<Listing, TableError> {
         let Derivation {
             active: model,
             program,
             ..
         } = self.derivation;
         let Some(function) = program.function(FunctionId::Accel) else {
-            return Err(
-                "there is no table `accel`: the description does not generate the function".into(),
-            );
+            return Err(TableError::NotGenerated(Table::Accel));
         };
         let rates = function
             .outputs
@@ -119,17 +118,14 @@ impl<'a> Collector<'a> {
         ))
     }
 
-    fn derived(&mut self, table: Table) -> Result<Listing, String> {
-        if self.geometry.is_none() {
-            let model = self.derivation.model;
-            let geometry = Geometry::new(model);
-            let geometry = geometry.ok_or_else(|| {
-                format!("there is no table `{}`: the columns of A are dependent, so no Y satisfies Y A = I", table.name())
-            })?;
-            self.geometry = Some((geometry, Simplifier::modulo(&model.points)));
-        }
-        let Some((geometry, simplifier)) = &mut self.geometry else {
-            return Err(format!("there is no table `{}`", table.name()));
+    fn derived(&mut self, table: Table) -> Result<Listing, TableError> {
+        let (geometry, simplifier) = match &mut self.geometry {
+            Some(derived) => derived,
+            underived => {
+                let model = self.derivation.model;
+                let geometry = Geometry::new(model).ok_or(TableError::DependentColumns(table))?;
+                underived.insert((geometry, Simplifier::modulo(&model.points)))
+            }
         };
         let (shape, cells) = cells(geometry, table);
         Ok(listing(

@@ -1,5 +1,7 @@
 //! The kinds of tables.
 
+use super::error::TableError;
+
 /// A kind of table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Table {
@@ -202,19 +204,17 @@ impl Table {
     }
 
     /// Returns the table with this name; the error lists all names.
-    pub fn parse(name: &str) -> Result<Table, String> {
+    pub fn parse(name: &str) -> Result<Table, TableError> {
         let found = ROWS.iter().find(|row| row.name == name.trim());
-        found.map(|row| row.table).ok_or_else(|| {
-            format!(
-                "there is no table `{}`; the tables are {}",
-                name.trim(),
-                Table::names().join(", ")
-            )
-        })
+        found
+            .map(|row| row.table)
+            .ok_or_else(|| TableError::Unknown {
+                name: name.trim().to_string(),
+            })
     }
 
     /// Parses a comma-separated list of tables, such as `A,gamma,M`.
-    pub fn parse_list(list: &str) -> Result<Vec<Table>, String> {
+    pub fn parse_list(list: &str) -> Result<Vec<Table>, TableError> {
         list.split(',')
             .filter(|name| !name.trim().is_empty())
             .map(Table::parse)

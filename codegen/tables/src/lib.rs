@@ -5,6 +5,7 @@
 //! | file | owns |
 //! |---|---|
 //! | `kind` | the kinds of tables, with their symbols, shapes and names |
+//! | `error` | reasons why a table is not available |
 //! | `collect` | the entries of every table as edges of a graph |
 //! | `simplify`, `circles` | the polynomial that is shown for an expression, modulo φ |
 //! | `write`, `style` | turns nodes into expressions; shared subexpressions get names |
@@ -20,6 +21,7 @@
 mod circles;
 mod collect;
 mod entries;
+mod error;
 pub mod expression;
 pub mod geometry;
 mod json;
@@ -40,6 +42,7 @@ mod typeset;
 mod write;
 
 pub use entries::{Definition, Entry, Group};
+pub use error::TableError;
 pub use json::json;
 pub use kind::Table;
 pub use latex::latex;
@@ -81,7 +84,7 @@ pub struct Derivation<'a> {
 
 /// Derives tables. If none is requested: all of [`Table::DEFAULT`] that the system has, plus the rates of states if it
 /// has states. The error says which table is not available, and why.
-pub fn tables(derivation: Derivation, asked: &[Table]) -> Result<Tables, String> {
+pub fn tables(derivation: Derivation, asked: &[Table]) -> Result<Tables, TableError> {
     let model = derivation.model;
     let of = match asked {
         [] if model.states.is_empty() => Table::DEFAULT.to_vec(),
@@ -92,21 +95,15 @@ pub fn tables(derivation: Derivation, asked: &[Table]) -> Result<Tables, String>
     let of = match (asked, of.iter().copied().find(lacking)) {
         ([], _) => of.into_iter().filter(|table| !lacking(table)).collect(),
         (_, None) => of,
-        (_, Some(table)) => {
-            return Err(format!(
-                "there is no table `{}`: the system has no inertia",
-                table.name()
-            ));
-        }
+        (_, Some(table)) => return Err(TableError::NoInertia(table)),
     };
     let mut collector = Collector::new(derivation);
     let mut listings: Vec<Listing> = Vec::new();
     let mut geometry = None;
     for table in of {
         if table == Table::Geometry {
-            geometry = Some(Inspection::new(model).ok_or(
-                "there is no table `geometry`: the columns of A are dependent, so no Y satisfies Y A = I",
-            )?);
+            let inspection = Inspection::new(model);
+            geometry = Some(inspection.ok_or(TableError::DependentColumns(table))?);
         } else if listings.iter().all(|known| known.table != table) {
             listings.push(collector.listing(table)?);
         }

@@ -246,6 +246,7 @@ impl<'a> Writer<'a> {
     }
 
     fn term(&self, id: NodeId) -> Term {
+        // The children of a planned node are planned, and written before it: none is missing here.
         let known = self.terms.get(&id).cloned();
         known.unwrap_or_else(|| Term::number(BigRational::one()))
     }

@@ -57,7 +57,7 @@ fn closing(kind: &str, axis: &str, ends: [&str; 4]) -> String {
 }
 
 fn imported(urdf: &str) -> Imported {
-    import(urdf, &Options::default(), "bars.urdf", false).expect("a robot")
+    import(urdf, &Options::default()).expect("a robot")
 }
 
 /// Returns the equations that are comments.

@@ -19,7 +19,7 @@ const ARM: &str = r#"<robot name="arm">
 
 fn imported() -> (String, Imported) {
     let text = ARM.replace("MASS", "2");
-    let imported = import(&text, &Options::default(), "arm.urdf", false).expect("a robot");
+    let imported = import(&text, &Options::default()).expect("a robot");
     (text, imported)
 }
 

@@ -29,6 +29,7 @@
 //! | `points` | the fresh points at which everything is compared | |
 //! | `confidence` | the chance of error of equality at random points | |
 //! | `verdict` | the result of a proof | |
+//! | `violation` | identities that a program violates | |
 
 mod centroidal;
 mod charts;
@@ -61,6 +62,7 @@ mod splitting;
 mod states;
 pub mod validate;
 mod verdict;
+mod violation;
 pub mod virtual_power;
 
 use hamel_dynamics::reduction::Reduction;
@@ -68,6 +70,7 @@ use hamel_dynamics::regressor::Regressor;
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 use hamel_program::Program;
+pub use violation::{RegressorFault, Violation};
 
 /// Proves the functions of a program, and the claims of the description that quantities are constant along the motion.
 ///

@@ -8,6 +8,7 @@
 use super::numbers::Numbers;
 use super::points::{Disagreement, at_fresh_points};
 use super::verdict::{failure, nowhere};
+use super::violation::{RegressorFault, Violation};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
@@ -21,31 +22,26 @@ use hamel_program::{FunctionId, Program};
 /// Proves the base parameters of a model.
 ///
 /// # Errors
-/// A fault of the generator: a message that says what differs.
-pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
-    let failed = |what: &str| format!("internal check failed: {what}");
-    let (heavier, added) = with_random_bodies(model, regressor)
-        .ok_or_else(|| failed("its links are not those of the description"))?;
-    let numbers = Numbers::new(&heavier).ok_or_else(|| failed("its forces have no numbers"))?;
+/// A fault of the generator.
+pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), RegressorFault> {
+    let (heavier, added) =
+        with_random_bodies(model, regressor).ok_or(RegressorFault::UnknownLink)?;
+    let numbers = Numbers::new(&heavier).ok_or(RegressorFault::NoForces)?;
     let factors = regressor.base.iter().flat_map(|base| &base.terms);
     let mut edges: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
     edges.extend(regressor.standard.iter().map(|one| one.value));
     edges.extend(regressor.columns.iter().flatten());
     edges.extend(regressor.base.iter().flat_map(|base| &base.column));
     edges.extend(&regressor.other_potentials);
-    let tape = Tape::new(&regressor.model.graph, &edges)
-        .ok_or_else(|| failed("its columns have no numbers"))?;
+    let tape = Tape::new(&regressor.model.graph, &edges).ok_or(RegressorFault::NoColumns)?;
     let compared = at_fresh_points(
         |seed| model.points.lane(seed),
         |point, seed| at(&numbers, (&tape, &added), regressor, point, seed),
     );
-    match compared {
-        Ok(()) => Ok(()),
-        Err(Disagreement::Differs(what)) => Err(failed(&what)),
-        Err(Disagreement::Nowhere) => {
-            Err(failed("there are too few points to compare its forces at"))
-        }
-    }
+    compared.map_err(|disagreement| match disagreement {
+        Disagreement::Differs(violation) => RegressorFault::Violation(violation),
+        Disagreement::Nowhere => RegressorFault::TooFewPoints,
+    })
 }
 
 /// Checks at fresh points that the base parameters determine the forces of (30b), and that the emitted functions return
@@ -54,7 +50,7 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
 /// # Errors
 /// A fault of the generator; the program is not emitted.
 pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Result<(), Diagnostic> {
-    prove(model, regressor).map_err(|what| failure(model, &what))?;
+    prove(model, regressor).map_err(|fault| failure(model, &fault.to_string()))?;
     let columns: Vec<&Vec<Edge>> = regressor.base.iter().map(|base| &base.column).collect();
     let n = regressor.model.n();
     let rows = (0..n).flat_map(|row| columns.iter().map(move |column| column[row]));
@@ -148,10 +144,10 @@ fn at(
     regressor: &Regressor,
     point: &FieldPoint,
     seed: u64,
-) -> Option<Result<(), String>> {
+) -> Option<Result<(), Violation>> {
     let left = match numbers.at(point)? {
         Ok(values) => values.left,
-        Err(what) => return Some(Err(what)),
+        Err(violation) => return Some(Err(violation)),
     };
     let values = tape.values(point)?;
     let terms: usize = regressor.base.iter().map(|base| base.terms.len()).sum();
@@ -181,7 +177,9 @@ fn at(
     let random = &mut Random::new(seed ^ 0x5bd1);
     let anything: Vec<ResiduePair> = given.iter().map(|_| random.element()).collect();
     if whole(&anything) != based(&anything) {
-        return Some(Err("base parameters do not determine all parameters".into()));
+        return Some(Err(Violation::Identity(
+            "base parameters do not determine all parameters",
+        )));
     }
     // (30b) contains no dampers, and the regressor contains no other potentials.
     let all: Vec<ResiduePair> = given
@@ -198,7 +196,9 @@ fn at(
     increase(&mut force, rest, ResiduePair::ONE);
     Some(match force == left[1] {
         true => Ok(()),
-        false => Err("the regressor is not that of inverse dynamics, (30b)".into()),
+        false => Err(Violation::Identity(
+            "the regressor is not that of inverse dynamics, (30b)",
+        )),
     })
 }
 

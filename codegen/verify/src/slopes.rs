@@ -8,6 +8,7 @@
 use super::hamel_form;
 use super::kernel::dot;
 use super::reference::Reference;
+use super::violation::Violation;
 use super::{centroidal, derivatives, frames, outputs, states};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
@@ -128,30 +129,30 @@ impl DerivativeComparison {
     }
 
     /// Compares at one point; `None` if something has no value there.
-    pub fn at_point(&self, program: &Program, point: &FieldPoint) -> Option<Result<(), String>> {
+    pub fn at_point(&self, program: &Program, point: &FieldPoint) -> Option<Result<(), Violation>> {
         let value = |name: &str| {
             let function = program.function(name)?;
             evaluate_at(&program.graph, &function.outputs, &mut point.clone())
         };
         for (name, entries) in &self.invariants {
             if value(name)? != evaluate_at(&self.model.graph, entries, &mut point.clone())? {
-                return Some(Err("an invariant".into()));
+                return Some(Err(Violation::Identity("an invariant")));
             }
         }
         if !measured_at(&self.model, program, [point, point])? {
-            return Some(Err(MEASURE.into()));
+            return Some(Err(Violation::Identity(MEASURE)));
         }
         if !derivatives::hold(&self.model, program, [point, point])? {
-            return Some(Err(derivatives::SUBJECT.into()));
+            return Some(Err(Violation::Identity(derivatives::SUBJECT)));
         }
         if !frames::hold(&self.model, program, point)? {
-            return Some(Err(frames::SUBJECT.into()));
+            return Some(Err(Violation::Identity(frames::SUBJECT)));
         }
         if !centroidal::holds(&self.model, program, point)? {
-            return Some(Err(centroidal::SUBJECT.into()));
+            return Some(Err(Violation::Identity(centroidal::SUBJECT)));
         }
         if !rates_at(program, point)? {
-            return Some(Err("ξ̇ beside its slopes".into()));
+            return Some(Err(Violation::Identity("ξ̇ beside its slopes")));
         }
         match &self.source {
             None => Some(Ok(())),
@@ -163,7 +164,7 @@ impl DerivativeComparison {
     }
 
     /// Compares [A B] with the derivatives of the emitted M, inverse dynamics and f.
-    fn emitted_at(&self, program: &Program, point: &FieldPoint) -> Option<Result<(), String>> {
+    fn emitted_at(&self, program: &Program, point: &FieldPoint) -> Option<Result<(), Violation>> {
         let (model, graph) = (&self.model, &program.graph);
         let (n, nu) = (model.n(), model.nu());
         let outputs = |name: &str| Some(program.function(name)?.outputs.as_slice());
@@ -195,7 +196,7 @@ impl DerivativeComparison {
             &product(&matrix(&moving[..nu * n]), &displaced.columns[..n]),
         );
         if product(&matrix(&here[..nu * n]), &found[..n]) != left {
-            return Some(Err(KINEMATIC.into()));
+            return Some(Err(Violation::Identity(KINEMATIC)));
         }
         // M δξ̇ = δ(f − F(x, ξ, ξ̇)) with ξ̇ held constant.
         let mut held = point.clone();
@@ -214,14 +215,14 @@ impl DerivativeComparison {
         let right = difference(&slopes("generalized_force")?, &slopes("inverse_dynamics")?);
         let (changed, state_rates) = found[n..].split_at(n);
         if product(&mass, changed) != right {
-            return Some(Err(DYNAMIC.into()));
+            return Some(Err(Violation::Identity(DYNAMIC)));
         }
         if states::slopes(model, (&xi_dot, changed), point, &moved)? != state_rates {
-            return Some(Err(states::SUBJECT.into()));
+            return Some(Err(Violation::Identity(states::SUBJECT)));
         }
         let along = (&moved[..], &displaced.columns[..]);
         if !outputs::slopes_hold(model, program, (&xi_dot, changed), point, along)? {
-            return Some(Err(outputs::SUBJECT.into()));
+            return Some(Err(Violation::Identity(outputs::SUBJECT)));
         }
         Some(Ok(()))
     }
@@ -332,7 +333,7 @@ fn derived_at(
     reference: &Reference,
     program: &Program,
     point: &FieldPoint,
-) -> Option<Result<(), String>> {
+) -> Option<Result<(), Violation>> {
     let (model, graph) = (&reference.model, &reference.model.graph);
     let n = model.n();
     let roots = Numbers::roots(reference);
@@ -352,21 +353,21 @@ fn derived_at(
     // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
     let left = difference(&changed.rate, &product(&moving.a, &displaced.columns[..n]));
     if product(&here.a, &found[..n]) != left {
-        return Some(Err(KINEMATIC.into()));
+        return Some(Err(Violation::Identity(KINEMATIC)));
     }
     // M δξ̇ = δF − δM ξ̇.
     let right = difference(&changed.force, &product(&changed.mass, &xi_dot));
     let (changed_rates, state_rates) = found[n..].split_at(n);
     if product(&here.mass, changed_rates) != right {
-        return Some(Err(DYNAMIC.into()));
+        return Some(Err(Violation::Identity(DYNAMIC)));
     }
     let moved = displaced.direction(model, &here.a.concat());
     if states::slopes(model, (&xi_dot, changed_rates), point, &moved)? != state_rates {
-        return Some(Err(states::SUBJECT.into()));
+        return Some(Err(Violation::Identity(states::SUBJECT)));
     }
     let along = (&moved[..], &displaced.columns[..]);
     if !outputs::slopes_hold(model, program, (&xi_dot, changed_rates), point, along)? {
-        return Some(Err(outputs::SUBJECT.into()));
+        return Some(Err(Violation::Identity(outputs::SUBJECT)));
     }
     Some(Ok(()))
 }

@@ -11,6 +11,7 @@
 //! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
 
 use super::numbers::{Numbers, PointValues};
+use super::violation::Violation;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::{evaluate_at, solve};
@@ -57,8 +58,8 @@ impl Proof {
         numbers: &Numbers,
         program: &Program,
         point: &FieldPoint,
-    ) -> Option<Result<(), String>> {
-        let wrong = |what: &str| Some(Err(what.to_string()));
+    ) -> Option<Result<(), Violation>> {
+        let wrong = |identity: &'static str| Some(Err(Violation::Identity(identity)));
         let at = |name: &str, point: &FieldPoint| {
             let function = program.function(name)?;
             evaluate_at(&program.graph, &function.outputs, &mut point.clone())

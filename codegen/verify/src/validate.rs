@@ -27,6 +27,7 @@ use super::slopes::DerivativeComparison;
 use super::splitting::Proof;
 use super::states;
 use super::verdict::{failure, nowhere};
+use super::violation::Violation;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
@@ -50,7 +51,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         let Disagreement::Differs(what) = unequal else {
             return nowhere(model);
         };
-        let mut broken = vec![what];
+        let mut broken = vec![what.to_string()];
         if model.n() <= MAX_EXPLAINED_VELOCITIES
             && let Some(symbols) = Symbols::new(model)
         {
@@ -62,8 +63,11 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
 }
 
 /// Returns the first comparison that fails, at the first point at which one does.
-pub(super) fn first_failure(model: &Model, program: &Program) -> Result<(), Disagreement<String>> {
-    let without = |what: &str| Disagreement::Differs(what.to_string());
+pub(super) fn first_failure(
+    model: &Model,
+    program: &Program,
+) -> Result<(), Disagreement<Violation>> {
+    let without = |identity| Disagreement::Differs(Violation::Identity(identity));
     let with_rates = states::with_rates(model, program);
     let numbers = Numbers::new(model).ok_or_else(|| without("Y A = I"))?;
     let emitted =
@@ -72,10 +76,10 @@ pub(super) fn first_failure(model: &Model, program: &Program) -> Result<(), Disa
         DerivativeComparison::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
     let splitting = Proof::new(model, program);
     let charts = ChartComparison::new(program).ok_or_else(|| without("that charts have values"))?;
-    let at_point = |point: &FieldPoint| -> Option<Result<(), String>> {
+    let at_point = |point: &FieldPoint| -> Option<Result<(), Violation>> {
         let values = match numbers.at(point)? {
             Ok(values) => values,
-            Err(what) => return Some(Err(what)),
+            Err(violation) => return Some(Err(violation)),
         };
         let all = [
             compare(
@@ -88,7 +92,7 @@ pub(super) fn first_failure(model: &Model, program: &Program) -> Result<(), Disa
             slopes.at_point(program, point)?,
             match charts.hold(&values.rate, point)? {
                 true => Ok(()),
-                false => Err("K(x) times the rate of the chart = ẋ".into()),
+                false => Err(Violation::Identity("K(x) times the rate of the chart = ẋ")),
             },
             splitting.as_ref().map_or(Some(Ok(())), |splitting| {
                 splitting.at_point(&numbers, program, point)
@@ -164,10 +168,10 @@ fn compare(
     values: &PointValues,
     emitted: &FxHashMap<&str, Vec<ResiduePair>>,
     point: &FieldPoint,
-) -> Option<Result<(), String>> {
+) -> Option<Result<(), Violation>> {
     let broken = disagreements(&values.left);
     if !broken.is_empty() {
-        return Some(Err(broken.join(", ")));
+        return Some(Err(Violation::Forms(broken)));
     }
     let product = |vector: &[ResiduePair]| -> Vec<ResiduePair> {
         let rows = values.mass.iter();
@@ -184,7 +188,7 @@ fn compare(
     };
     let energy = values.kinetic + values.potential;
     let resistance = sum(&[&values.bias, &values.slope]);
-    let table: [(&str, &[ResiduePair], &str); 11] = [
+    let table: [(&str, &[ResiduePair], &'static str); 11] = [
         (
             "mass_matrix",
             &values.mass.concat(),
@@ -223,35 +227,35 @@ fn compare(
     ];
     for (name, expected, what) in table {
         if emitted.get(name).is_some_and(|value| value != expected) {
-            return Some(Err(what.into()));
+            return Some(Err(Violation::Identity(what)));
         }
     }
     if let Some(rates) = emitted.get("accel") {
         let (xi_dot, state_rates) = rates.split_at(model.n());
         if sum(&[&product(xi_dot), &resistance]) != values.force {
-            return Some(Err("(30c) for the emitted ξ̇".into()));
+            return Some(Err(Violation::Identity("(30c) for the emitted ξ̇")));
         }
         if state_rates != states::rates(with_rates, xi_dot, point)? {
-            return Some(Err(states::SUBJECT.into()));
+            return Some(Err(Violation::Identity(states::SUBJECT)));
         }
     }
     // d/dt (M ξ) = Ṁ ξ + f − h − ∂V.
     if let Some(rate) = emitted.get("momentum_rate")
         && sum(&[rate, &resistance]) != sum(&[&values.mass_rate, &values.force])
     {
-        return Some(Err("ṗ".into()));
+        return Some(Err(Violation::Identity("ṗ")));
     }
     if let Some(xi) = emitted.get("velocity_from_momentum") {
         let momenta = evaluate_at(&model.graph, &model.momenta, &mut point.clone())?;
         if product(xi) != momenta {
-            return Some(Err("ξ of p".into()));
+            return Some(Err(Violation::Identity("ξ of p")));
         }
     }
     for (name, expected) in &model.outputs {
         if program.function(name).is_some() {
             let expected = evaluate_at(&model.graph, &expected.entries(), &mut point.clone())?;
             if emitted.get(name.as_str()) != Some(&expected) {
-                return Some(Err(format!("output `{name}`")));
+                return Some(Err(Violation::Output(name.clone())));
             }
         }
     }

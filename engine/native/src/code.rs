@@ -18,6 +18,7 @@
 
 #![allow(unsafe_code)]
 
+use crate::code_error::CodeError;
 use crate::evaluate::apply;
 use crate::lower::{Callee, STATUS_INTERPRET, STATUS_SUCCESS, callee, signature};
 use crate::parts::{Lowering, signature_of_part};
@@ -32,6 +33,7 @@ use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Source, Tape, Tapes};
 use std::collections::HashMap;
+use std::error::Error;
 use std::fmt;
 use std::mem::ManuallyDrop;
 
@@ -181,7 +183,7 @@ impl Code {
     ///
     /// # Errors
     /// If no code can be made on this machine, with the reason.
-    pub fn new(tapes: &Tapes, target: Target) -> Result<(Self, Vec<f64>), String> {
+    pub fn new(tapes: &Tapes, target: Target) -> Result<(Self, Vec<f64>), CodeError> {
         let mut flags = builder();
         for (name, value) in [
             ("opt_level", "none"),
@@ -196,13 +198,13 @@ impl Code {
             ("enable_probestack", "true"),
             ("probestack_strategy", "inline"),
         ] {
-            flags.set(name, value).map_err(|error| error.to_string())?;
+            flags.set(name, value).map_err(cranelift)?;
         }
-        let machine = cranelift_native::builder()?;
+        let machine = cranelift_native::builder().map_err(CodeError::UnknownMachine)?;
         let machine = machine.finish(Flags::new(flags));
-        let machine = machine.map_err(|error| error.to_string())?;
+        let machine = machine.map_err(cranelift)?;
         if machine.pointer_bits() != 64 {
-            return Err("addresses of this machine do not have 64 bits".into());
+            return Err(CodeError::NarrowAddresses);
         }
         let calls: Vec<Callee> = tapes
             .all()
@@ -220,14 +222,14 @@ impl Code {
             size: 0,
             target,
         };
-        let made: Result<Vec<(FuncId, Vec<Cause>)>, String> = tapes
+        let made: Result<Vec<(FuncId, Vec<Cause>)>, CodeError> = tapes
             .all()
             .enumerate()
             .map(|(index, tape)| code_builder.function(index, tape))
             .collect();
         let made = made.and_then(|made| {
             let finished = code_builder.module.finalize_definitions();
-            finished.map_err(|error| error.to_string())?;
+            finished.map_err(cranelift)?;
             Ok(made)
         });
         let CodeBuilder {
@@ -382,6 +384,11 @@ fn outcome(code: i32, causes: &[Cause]) -> CallOutcome {
     }
 }
 
+/// Keeps an error of Cranelift.
+fn cranelift(error: impl Error + Send + Sync + 'static) -> CodeError {
+    CodeError::Cranelift(Box::new(error))
+}
+
 /// The compiler with its module and buffers.
 struct CodeBuilder {
     module: ManuallyDrop<JITModule>,
@@ -392,9 +399,11 @@ struct CodeBuilder {
 }
 
 impl CodeBuilder {
-    fn function(&mut self, index: usize, tape: &Tape) -> Result<(FuncId, Vec<Cause>), String> {
+    fn function(&mut self, index: usize, tape: &Tape) -> Result<(FuncId, Vec<Cause>), CodeError> {
         if !tape.is_in_order() {
-            return Err(format!("`{}` reads what is not there yet", tape.name));
+            return Err(CodeError::Disordered {
+                function: tape.name.clone(),
+            });
         }
         let reach = AccessLengths::of(tape);
         let lists = reach
@@ -403,7 +412,9 @@ impl CodeBuilder {
             .chain([reach.out, reach.constants]);
         let largest = lists.chain([tape.values(), self.pool.start]).max();
         if largest.is_some_and(|largest| largest > MAX_ENTRIES) {
-            return Err(format!("`{}` is too long", tape.name));
+            return Err(CodeError::TooLong {
+                function: tape.name.clone(),
+            });
         }
         let pointer = self.module.target_config().pointer_type();
         let whole = signature(self.module.make_signature(), pointer);
@@ -413,7 +424,7 @@ impl CodeBuilder {
             let id = self.part(&name, whole, &mut lowering, 0)?;
             return Ok((id, lowering.causes));
         }
-        let parts: Result<Vec<FuncId>, String> = (0..lowering.parts())
+        let parts: Result<Vec<FuncId>, CodeError> = (0..lowering.parts())
             .map(|part| {
                 let signature = signature_of_part(whole.clone(), pointer);
                 self.part(&format!("{name}_{part}"), signature, &mut lowering, part)
@@ -440,7 +451,7 @@ impl CodeBuilder {
         signature: Signature,
         lowering: &mut Lowering,
         part: usize,
-    ) -> Result<FuncId, String> {
+    ) -> Result<FuncId, CodeError> {
         let mut context = self.module.make_context();
         context.func.signature = signature;
         let mut callees = HashMap::new();
@@ -458,7 +469,7 @@ impl CodeBuilder {
             let declared = self
                 .module
                 .declare_function(name, Linkage::Import, &signature)
-                .map_err(|error| error.to_string())?;
+                .map_err(cranelift)?;
             let here = self
                 .module
                 .declare_func_in_func(declared, &mut context.func);
@@ -471,14 +482,14 @@ impl CodeBuilder {
     }
 
     /// Compiles a function and defines it in the module.
-    fn defined(&mut self, name: &str, mut context: Context) -> Result<FuncId, String> {
+    fn defined(&mut self, name: &str, mut context: Context) -> Result<FuncId, CodeError> {
         let id = self
             .module
             .declare_function(name, Linkage::Local, &context.func.signature)
-            .map_err(|error| error.to_string())?;
+            .map_err(cranelift)?;
         self.module
             .define_function(id, &mut context)
-            .map_err(|error| format!("{error:?}"))?;
+            .map_err(cranelift)?;
         let compiled = context.compiled_code();
         self.size += compiled.map_or(0, |code| code.code_info().total_size as usize);
         Ok(id)

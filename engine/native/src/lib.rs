@@ -19,6 +19,7 @@
 //! | `lower` | the steps in Cranelift's intermediate code |
 //! | `parts` | a tape as one function or, if it is long, as several called by one more |
 //! | `code` | executable memory and calls into it: everything that is `unsafe` |
+//! | `code_error` | reasons why there is no machine code |
 //! | `no_code` | the replacement without the feature `machine`: no code can be made |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
 //! | `evaluate` | the interpreter of tapes |
@@ -34,6 +35,7 @@
 
 #[cfg(feature = "machine")]
 mod code;
+mod code_error;
 mod evaluate;
 #[cfg(feature = "machine")]
 mod lower;
@@ -48,6 +50,7 @@ mod spill;
 mod target;
 mod traced;
 
+pub use code_error::CodeError;
 pub use evaluate::{evaluate, evaluate_in};
 pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
 pub use repeat::Paired;
@@ -74,7 +77,7 @@ struct Parts {
     tapes: Tapes,
     /// Numbers that code reads, after the constants.
     numbers: Vec<f64>,
-    code: Result<Code, String>,
+    code: Result<Code, CodeError>,
     fused: bool,
     verified: bool,
 }
@@ -135,15 +138,15 @@ impl Compiled {
         Compiled(Arc::new(Parts {
             tapes,
             numbers: Vec::new(),
-            code: Err("not asked for".into()),
+            code: Err(CodeError::NotRequested),
             fused: code::is_fused(),
             verified: false,
         }))
     }
 
     /// Returns the reason if there is no machine code.
-    pub fn interpreted_because(&self) -> Option<&str> {
-        self.0.code.as_ref().err().map(String::as_str)
+    pub fn interpreted_because(&self) -> Option<&CodeError> {
+        self.0.code.as_ref().err()
     }
 
     /// Returns whether a step that the machine can round once is rounded once; the last digits depend on it.

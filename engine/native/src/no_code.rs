@@ -4,6 +4,7 @@
 // The interface of `code`, none of which can be called here.
 #![allow(dead_code)]
 
+use crate::code_error::CodeError;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::Tapes;
 
@@ -38,8 +39,8 @@ impl Code {
     ///
     /// # Errors
     /// Always, with the reason.
-    pub fn new(_: &Tapes, _: Target) -> Result<(Self, Vec<f64>), String> {
-        Err("this build has no generator of machine code".into())
+    pub fn new(_: &Tapes, _: Target) -> Result<(Self, Vec<f64>), CodeError> {
+        Err(CodeError::NoGenerator)
     }
 
     pub fn size(&self) -> usize {

@@ -46,7 +46,7 @@ impl Robot {
         options: &OpenOptions,
         reporter: &dyn Reporter,
     ) -> Result<Self, Error> {
-        match urdf::read(&urdf, &options.import(path)) {
+        match urdf::import(&urdf, &options.import(path)) {
             Ok(imported) => {
                 reporter.warn(&Warning::Robot {
                     path,

@@ -57,7 +57,7 @@ fn imports_use_what_they_declare() {
                     floating,
                     ..Options::default()
                 };
-                let imported = import(&text, &options, "robot.urdf", false).expect("a robot");
+                let imported = import(&text, &options).expect("a robot");
                 let model = read(&imported.text(), Path::new(""));
                 let reduction = reduce(&model).expect("a robot that moves");
                 let dropped = reduction.map_or(Vec::new(), |reduction| reduction.dropped);

@@ -71,14 +71,29 @@ impl fmt::Display for Precision {
     }
 }
 
-impl FromStr for Precision {
-    type Err = String;
+/// Error that no floating-point type of C has this name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownPrecision {
+    /// The name that was given.
+    pub name: String,
+}
 
-    fn from_str(name: &str) -> Result<Self, String> {
+impl fmt::Display for UnknownPrecision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` is neither `double` nor `float`", self.name)
+    }
+}
+
+impl std::error::Error for UnknownPrecision {}
+
+impl FromStr for Precision {
+    type Err = UnknownPrecision;
+
+    fn from_str(name: &str) -> Result<Self, UnknownPrecision> {
         match name {
             "double" => Ok(Precision::Double),
             "float" => Ok(Precision::Float),
-            _ => Err(format!("`{name}` is neither `double` nor `float`")),
+            _ => Err(UnknownPrecision { name: name.into() }),
         }
     }
 }

@@ -25,6 +25,7 @@ mod motion;
 mod space;
 
 use crate::kernel::dot;
+use crate::violation::Violation;
 use expressions::{Expressions, Reader};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::jets::{Jet, Seeds};
@@ -179,8 +180,8 @@ impl Numbers {
     /// Evaluates at a point; `None` if something has no value there.
     ///
     /// # Errors
-    /// The name of the identity if Y A is not I.
-    pub fn at(&self, field_point: &FieldPoint) -> Option<Result<PointValues, String>> {
+    /// If Y A is not I.
+    pub fn at(&self, field_point: &FieldPoint) -> Option<Result<PointValues, Violation>> {
         let all = &self.expressions;
         let model = &all.model;
         let (n, nu) = (model.n(), model.nu());
@@ -218,7 +219,7 @@ impl Numbers {
             y,
         };
         if !kinematics.inverse() {
-            return Some(Err("(6), Y A = I".into()));
+            return Some(Err(Violation::Identity("(6), Y A = I")));
         }
         // Columns (x₂ with x₁₂): Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
         let second: Vec<ResiduePair> = kinematics.rate.iter().map(|jet| jet.along).collect();

@@ -157,7 +157,7 @@ fn code_of_models_gives_what_their_graphs_give() {
                 return (0, 0);
             }
         };
-        assert_eq!(code.interpreted_because(), None);
+        assert!(code.interpreted_because().is_none());
         let steps = Compiled::interpreted(code.tapes().clone());
         let constants = code.constants(&program.defaults);
         let others = steps.constants(&program.defaults);

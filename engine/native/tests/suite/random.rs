@@ -181,7 +181,7 @@ impl Met {
                 true => Compiled::verified(tapes.clone()),
                 false => Compiled::of(tapes.clone()),
             };
-            assert_eq!(code.interpreted_because(), None);
+            assert!(code.interpreted_because().is_none());
             let steps = Compiled::interpreted(tapes.clone());
             let paired = Paired::new(&code).expect("code for two lanes");
             let mut before: Option<Lane> = None;
@@ -369,7 +369,7 @@ fn long_tapes_are_several_functions_with_the_same_bits() {
         functions: vec![long_tape(&mut random, steps)],
     };
     let code = Compiled::verified(tapes.clone());
-    assert_eq!(code.interpreted_because(), None);
+    assert!(code.interpreted_because().is_none());
     let steps = Compiled::interpreted(tapes);
     let paired = Paired::new(&code).expect("code for two lanes");
     let lanes = [0, 1].map(|_| -> Lane {

@@ -173,7 +173,9 @@ fn outputs_names_and_notation() {
 
 #[test]
 fn an_unknown_table_is_refused_with_the_names() {
-    let error = Table::parse_list("A,gama").expect_err("unknown");
+    let error = Table::parse_list("A,gama")
+        .expect_err("unknown")
+        .to_string();
     assert!(
         error.contains("`gama`") && error.contains("gamma") && error.contains("outputs"),
         "{error}"
