@@ -143,7 +143,7 @@ fn measures() -> io::Result<Vec<Measure>> {
             "lines of the largest crate",
             sizes.iter().copied().max().unwrap_or_default(),
             26_000,
-            26_000,
+            26_200,
         ),
         measure("lines of snapshots", snapshots, 16_000, 16_000),
         measure("`#[path]` outside of tests", included, 0, 0),
