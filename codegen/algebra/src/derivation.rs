@@ -111,7 +111,15 @@ impl Derivation {
                         -graph.mul(slope, da)
                     }
                     Slope::OwnValue => graph.mul(Edge::of(id), da),
-                    Slope::InverseOfArgument => graph.div(da, a).unwrap_or(zero),
+                    Slope::InversePolynomial(coefficients) => {
+                        let mut divisor = zero;
+                        for &coefficient in coefficients.iter().rev() {
+                            let product = graph.mul(divisor, a);
+                            let coefficient = graph.ratio(coefficient.into(), 1);
+                            divisor = graph.add(product, coefficient);
+                        }
+                        graph.div(da, divisor).unwrap_or(zero)
+                    }
                     Slope::HalfInverseOfValue => {
                         let half = graph.ratio(1, 2);
                         let numerator = graph.mul(half, da);

@@ -13,7 +13,7 @@
 //! (`roots`).
 
 use super::external::Component;
-use super::function::Function;
+use super::function::{Function, Parity};
 use super::numbers::{Form, Modular, Numbers, Step};
 use super::prime::Residue;
 use super::residue_pair::{Random, ResiduePair};
@@ -169,20 +169,19 @@ impl FieldPoint {
             }
             Function::Abs => self.sign(argument) * argument,
             Function::Sign => self.sign(argument),
-            // The function is odd.
-            Function::Inverse => {
-                let of = |a| self.opaque(function, a, ResiduePair::ZERO);
-                of(argument) - of(-argument)
-            }
             // The function is linear.
             Function::Raised => {
                 argument * self.opaque(function, ResiduePair::ONE, ResiduePair::ZERO)
             }
-            Function::Log
-            | Function::Atan2
-            | Function::Select
-            | Function::Listed
-            | Function::External => self.opaque(function, argument, ResiduePair::ZERO),
+            // Of functions without a law, nothing is known but their symmetry.
+            _ => {
+                let of = |a| self.opaque(function, a, ResiduePair::ZERO);
+                match function.row().parity {
+                    Parity::Odd => of(argument) - of(-argument),
+                    Parity::Even => of(argument) + of(-argument),
+                    Parity::Neither => of(argument),
+                }
+            }
         }
     }
 

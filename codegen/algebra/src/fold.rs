@@ -145,12 +145,12 @@ impl Graph {
     }
 
     /// Returns what a `FieldPoint` needs to know about a function's argument in addition to its value. For
-    /// functions with a group law, this is the linear form of the argument. For a square root, it is the
+    /// functions with a group law, or with a derivative that has one, this is the linear form of the argument. For a square root, it is the
     /// rational factor of the argument, or nothing if the argument is a number that is not rational and
     /// positive.
     pub fn form(&self, function: Function, argument: Edge) -> Vec<(NodeId, BigRational)> {
         match function.row().law {
-            law if law.is_additive() => self.linear_form(argument),
+            _ if function.needs_linear_form() => self.linear_form(argument),
             Law::Radical => {
                 let number = self.as_rational(argument);
                 let is_number = self.class(argument.node()) == 0;

@@ -1,14 +1,15 @@
 //! The elementary functions, with everything that is known of each in one table.
 //!
-//! To add a function, add a row to the table, with its values in numbers of every kind, and add its values
-//! modulo p to `FieldPoint::function`. The latter must obey the laws by which expressions with the function are
-//! found equal.
+//! To add a function, add a row to the table. The language, derivatives, proofs, operation counts, tables, Rust, C,
+//! machine code and the interpreter read it. A function with a law also has its values modulo p in
+//! `FieldPoint::function`, which must obey this law and no other; without them, it is treated like a function
+//! without laws.
 
 use Cost::{Comparison, Other, Product, Quotient, Root, SineOrCosine};
 use Law::{Angle, Free, Hyperbola, Linear, Power, Radical, Side};
 use Parity::{Even, Neither, Odd};
 use Slope::{
-    FunctionOfArgument, HalfFunctionOfValue, HalfInverseOfValue, InverseOfArgument,
+    FunctionOfArgument, HalfFunctionOfValue, HalfInverseOfValue, InversePolynomial,
     MinusFunctionOfArgument, MinusSquareOfValue, OneMinusSquareOfValue, OwnValue, SeveralArguments,
     ValueAtOne, Zero,
 };
@@ -66,8 +67,8 @@ pub enum Slope {
     MinusFunctionOfArgument(Function),
     /// f(a).
     OwnValue,
-    /// 1/a.
-    InverseOfArgument,
+    /// 1/(c₀ + c₁ a + c₂ a² + …), with these coefficients.
+    InversePolynomial(&'static [i32]),
     /// 1/(2 f(a)).
     HalfInverseOfValue,
     /// ½ g(f(a)).
@@ -106,8 +107,11 @@ pub enum Cost {
 pub struct Row {
     /// Name in descriptions and in texts.
     pub name: &'static str,
-    /// Call as a method in Rust.
+    /// Call as a method of `hamel::Scalar` in Rust; without parentheses for nodes of their own.
     pub rust: &'static str,
+    /// Name in `<math.h>`, from which emitted languages derive theirs; `@_name` if it has none and each language
+    /// defines a helper `name`; empty for nodes of their own.
+    pub c: &'static str,
     /// Name in LaTeX.
     pub latex: &'static str,
     /// Kind of operation that it counts as.
@@ -131,7 +135,7 @@ pub struct Row {
 }
 
 macro_rules! table {
-    ($($id:ident $doc:literal $name:literal $rust:literal $latex:literal $cost:ident $parity:ident $law:ident
+    ($($id:ident $doc:literal $name:literal [$($rust:tt)*] $c:literal $latex:literal $cost:ident $parity:ident $law:ident
         [$at:expr] [$slope:expr] $value:expr, $double:expr, $real:expr, $interval:expr;)*) => {
         /// Elementary functions beyond the four arithmetic operations.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
@@ -149,7 +153,8 @@ macro_rules! table {
                     $(Function::$id => {
                         static ROW: Row = Row {
                             name: $name,
-                            rust: $rust,
+                            rust: stringify!($($rust)*),
+                            c: $c,
                             latex: $latex,
                             cost: $cost,
                             parity: $parity,
@@ -178,55 +183,64 @@ macro_rules! table {
                 self.row().name
             }
         }
+
+        /// Passes each function of the table with its call in Rust, as `Exp [exp()]`, to a macro. Crates that know
+        /// `hamel::Scalar`, of which this crate does not, implement all functions by it.
+        #[macro_export]
+        macro_rules! for_each_function {
+            ($macro:ident) => {
+                $macro! { $($id [$($rust)*])* }
+            };
+        }
     };
 }
 
 // The position in the table determines values modulo p, so new functions must come last. Columns:
-// identifier, documentation, names (in descriptions, Rust, LaTeX), cost, parity, law, exact value,
+// identifier, documentation, names (in descriptions, Rust, C, LaTeX), cost, parity, law, exact value,
 // derivative; then values in `f64`, in double-double precision, with bounds of errors, and as intervals.
 table! {
-    Sin "sine" "sin" "sin_cos().0" r"\sin" SineOrCosine Odd Angle [Some([0, 0])] [FunctionOfArgument(Function::Cos)]
+    Sin "sine" "sin" [sin_cos().0] "sin" r"\sin" SineOrCosine Odd Angle [Some([0, 0])] [FunctionOfArgument(Function::Cos)]
         f64::sin, Double::sin, Real::sin, Interval::sin;
-    Cos "cosine" "cos" "sin_cos().1" r"\cos" SineOrCosine Even Angle [Some([0, 1])] [MinusFunctionOfArgument(Function::Sin)]
+    Cos "cosine" "cos" [sin_cos().1] "cos" r"\cos" SineOrCosine Even Angle [Some([0, 1])] [MinusFunctionOfArgument(Function::Sin)]
         f64::cos, Double::cos, Real::cos, Interval::cos;
-    Exp "exponential" "exp" "exp()" r"\exp" Other Neither Power [Some([0, 1])] [OwnValue]
+    Exp "exponential" "exp" [exp()] "exp" r"\exp" Other Neither Power [Some([0, 1])] [OwnValue]
         f64::exp, Double::exp, Real::exp, Interval::exp;
-    Log "natural logarithm" "log" "ln()" r"\ln" Other Neither Free [Some([1, 0])] [InverseOfArgument]
+    Log "natural logarithm" "log" [ln()] "log" r"\ln" Other Neither Free [Some([1, 0])] [InversePolynomial(&[0, 1])]
         f64::ln, Double::log, Real::log, Interval::log;
-    Sqrt "square root" "sqrt" "sqrt()" r"\sqrt" Root Neither Radical [None] [HalfInverseOfValue]
+    Sqrt "square root" "sqrt" [sqrt()] "sqrt" r"\sqrt" Root Neither Radical [None] [HalfInverseOfValue]
         f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
     Atan2 "angle of (x, y), arguments (y, x): a node of its own, without values of one argument"
-        "atan2" "atan2" r"\operatorname{atan2}" Other Neither Free [None] [SeveralArguments]
+        "atan2" [atan2] "" r"\operatorname{atan2}" Other Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
-    Sinh "hyperbolic sine" "sinh" "sinh()" r"\sinh" Other Odd Hyperbola [Some([0, 0])] [FunctionOfArgument(Function::Cosh)]
+    Sinh "hyperbolic sine" "sinh" [sinh()] "sinh" r"\sinh" Other Odd Hyperbola [Some([0, 0])] [FunctionOfArgument(Function::Cosh)]
         f64::sinh, Double::sinh, Real::sinh, Interval::sinh;
-    Cosh "hyperbolic cosine" "cosh" "cosh()" r"\cosh" Other Even Hyperbola [Some([0, 1])] [FunctionOfArgument(Function::Sinh)]
+    Cosh "hyperbolic cosine" "cosh" [cosh()] "cosh" r"\cosh" Other Even Hyperbola [Some([0, 1])] [FunctionOfArgument(Function::Sinh)]
         f64::cosh, Double::cosh, Real::cosh, Interval::cosh;
-    Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquareOfValue]
+    Tanh "hyperbolic tangent" "tanh" [tanh()] "tanh" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquareOfValue]
         f64::tanh, Double::tanh, Real::tanh, Interval::tanh;
-    Sign "1 with the sign of its argument, 0 of 0" "sign" "sign()" r"\operatorname{sign}" Comparison Odd Side
+    Sign "1 with the sign of its argument, 0 of 0" "sign" [sign()] "@_sign" r"\operatorname{sign}" Comparison Odd Side
         [Some([0, 0])] [Zero]
         |a| if a == 0.0 { a } else { a.signum() }, Double::sign, Real::sign, Interval::sign;
-    Abs "absolute value" "abs" "abs()" r"\operatorname{abs}" Comparison Even Side [Some([0, 0])] [FunctionOfArgument(Function::Sign)]
+    Abs "absolute value" "abs" [abs()] "fabs" r"\operatorname{abs}" Comparison Even Side [Some([0, 0])] [FunctionOfArgument(Function::Sign)]
         f64::abs, Double::abs, Real::abs, Interval::abs;
     Select "a where c > 0, else b, arguments (c, a, b): a node of its own, without values of one argument"
-        "if" "select_positive" r"\operatorname{if}" Comparison Neither Free [None] [SeveralArguments]
+        "if" [select_positive] "" r"\operatorname{if}" Comparison Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     Norm "length, the root of a sum of squares: where that is 0, its derivative is 0"
-        "sqrt" "sqrt()" r"\sqrt" Root Neither Radical [None] [HalfFunctionOfValue(Function::Inverse)]
+        "sqrt" [sqrt()] "sqrt" r"\sqrt" Root Neither Radical [None] [HalfFunctionOfValue(Function::Inverse)]
         f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
     Inverse "1/a, but a large number where a is nearly 0: times a sum of products that are 0 there it is 0"
-        "1/" "inverse_of_length()" r"1/" Quotient Odd Free [None] [MinusSquareOfValue]
+        "1/" [inverse_of_length()] "@_inverse_of_length" r"1/" Quotient Odd Free [None] [MinusSquareOfValue]
         |a| if a.abs() < MIN_DIVISOR { MIN_DIVISOR.recip() } else { a.recip() }, Double::inverse_of_length,
         |a| Real::new(1.0, 0.0).over(a), Interval::inverse;
     Listed "a list of numbers, the rest and the last: a node of its own, which only what is called reads"
-        "[]" "" "" Comparison Neither Free [None] [SeveralArguments]
+        "[]" [] "" "" Comparison Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     External "a component of a function that is given elsewhere: a node of its own over a list"
-        "extern" "" "" Other Neither Free [None] [SeveralArguments]
+        "extern" [] "" "" Other Neither Free [None] [SeveralArguments]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
     Raised "a larger by a small part that rounding does not hide, 2⁻²⁶ of it in `f64`: a pivot that may be nothing but rounding becomes one that can be divided by"
-        "(1 + ε) " "inflated()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [ValueAtOne]
+        "(1 + ε) " [inflated()] "@_raised" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [ValueAtOne]
         |a| a * RAISE_FACTOR, |a| a * Double::new(RAISE_FACTOR), |a| a.times(Real::new(RAISE_FACTOR, 0.0)),
         |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISE_FACTOR)?)));
 }
@@ -236,6 +250,20 @@ const RAISE_FACTOR: f64 = 1.0 + 1.0 / (1u32 << 26) as f64;
 
 /// Smallest length that is divided by: shorter ones are treated as if they were this long.
 pub(super) const MIN_DIVISOR: f64 = 1e-100;
+
+impl Function {
+    /// Whether the function, or its derivative, has an addition theorem, so that its values modulo p depend on the
+    /// argument as a sum.
+    pub fn needs_linear_form(self) -> bool {
+        let row = self.row();
+        match row.slope {
+            FunctionOfArgument(other) | MinusFunctionOfArgument(other) => {
+                row.law.is_additive() || other.row().law.is_additive()
+            }
+            _ => row.law.is_additive(),
+        }
+    }
+}
 
 impl Interval {
     /// Applies a function of one argument; `None` if it has no value, or none is known.

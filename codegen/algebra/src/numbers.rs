@@ -95,9 +95,15 @@ pub trait Numbers {
                 self.make(Step::Neg(&value))
             }
             Slope::OwnValue => Some(value.clone()),
-            Slope::InverseOfArgument => {
+            Slope::InversePolynomial(coefficients) => {
+                let mut divisor = self.make(Step::Whole(0))?;
+                for &coefficient in coefficients.iter().rev() {
+                    let product = self.make(Step::Mul(&divisor, a))?;
+                    let coefficient = self.make(Step::Whole(coefficient))?;
+                    divisor = self.make(Step::Add(&product, &coefficient))?;
+                }
                 let one = self.make(Step::Whole(1))?;
-                self.make(Step::Div(&one, a))
+                self.make(Step::Div(&one, &divisor))
             }
             Slope::HalfInverseOfValue => {
                 let (one, twice) = (

@@ -29,6 +29,7 @@ use cranelift_codegen::settings::{Configurable, Flags, builder};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
+use hamel_codegen::algebra::for_each_function;
 use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Source, Tape, Tapes};
@@ -145,38 +146,28 @@ pub fn is_fused() -> bool {
     true
 }
 
-extern "C" fn exp(a: f64) -> f64 {
-    apply(Function::Exp, a)
-}
-extern "C" fn log(a: f64) -> f64 {
-    apply(Function::Log, a)
-}
-extern "C" fn sinh(a: f64) -> f64 {
-    apply(Function::Sinh, a)
-}
-extern "C" fn cosh(a: f64) -> f64 {
-    apply(Function::Cosh, a)
-}
-extern "C" fn tanh(a: f64) -> f64 {
-    apply(Function::Tanh, a)
-}
 extern "C" fn atan2(y: f64, x: f64) -> f64 {
     hamel::Scalar::atan2(y, x)
 }
 
-/// Returns the name and the address of a function that code calls.
-fn known(callee: Callee) -> Option<(&'static str, *const u8)> {
-    let one = |of: extern "C" fn(f64) -> f64| of as *const u8;
-    Some(match callee {
-        Callee::Apply(Function::Exp) => ("hamel_exp", one(exp)),
-        Callee::Apply(Function::Log) => ("hamel_log", one(log)),
-        Callee::Apply(Function::Sinh) => ("hamel_sinh", one(sinh)),
-        Callee::Apply(Function::Cosh) => ("hamel_cosh", one(cosh)),
-        Callee::Apply(Function::Tanh) => ("hamel_tanh", one(tanh)),
-        Callee::Atan2 => ("hamel_atan2", atan2 as *const u8),
-        Callee::Apply(_) => return None,
-    })
+/// Gives each function of one argument a symbol of its own.
+macro_rules! symbols {
+    ($($function:ident $call:tt)*) => {
+        /// Returns the name and the address of a function that code calls.
+        fn known(callee: Callee) -> (&'static str, *const u8) {
+            match callee {
+                Callee::Atan2 => ("hamel_atan2", atan2 as *const u8),
+                $(Callee::Apply(Function::$function) => {
+                    extern "C" fn called(a: f64) -> f64 {
+                        apply(Function::$function, a)
+                    }
+                    (concat!("hamel_", stringify!($function)), called as *const u8)
+                })*
+            }
+        }
+    };
 }
+for_each_function!(symbols);
 
 impl Code {
     /// Compiles tapes. Returns also the numbers that have to follow the constants in every call.
@@ -212,7 +203,7 @@ impl Code {
             .filter_map(callee)
             .collect();
         let mut jit = JITBuilder::with_isa(machine, default_libcall_names());
-        for (name, address) in calls.iter().filter_map(|&callee| known(callee)) {
+        for (name, address) in calls.iter().map(|&callee| known(callee)) {
             jit.symbol(name, address);
         }
         let mut code_builder = CodeBuilder {
@@ -456,9 +447,7 @@ impl CodeBuilder {
         context.func.signature = signature;
         let mut callees = HashMap::new();
         for callee in lowering.calls(part) {
-            let Some((name, _)) = known(callee) else {
-                continue;
-            };
+            let (name, _) = known(callee);
             if callees.contains_key(&callee) {
                 continue;
             }

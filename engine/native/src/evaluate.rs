@@ -2,6 +2,7 @@
 
 use hamel::Scalar;
 use hamel::trig::{self, Arithmetic};
+use hamel_codegen::algebra::for_each_function;
 use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape};
@@ -174,24 +175,18 @@ pub(crate) fn read<S: Scalar>(
     if operand.negative { -value } else { value }
 }
 
-/// Evaluates a function of one argument, as in generated code.
-pub fn apply<S: Scalar>(function: Function, a: S) -> S {
-    match function {
-        Function::Sin => a.sin_cos().0,
-        Function::Cos => a.sin_cos().1,
-        Function::Exp => a.exp(),
-        Function::Log => a.ln(),
-        Function::Sqrt | Function::Norm => a.sqrt(),
-        Function::Sinh => a.sinh(),
-        Function::Cosh => a.cosh(),
-        Function::Tanh => a.tanh(),
-        Function::Sign => a.sign(),
-        Function::Abs => a.abs(),
-        Function::Inverse => a.inverse_of_length(),
-        Function::Raised => a.inflated(),
-        // These have separate steps.
-        Function::Atan2 | Function::Select | Function::Listed | Function::External => {
-            S::from_f64(f64::NAN)
+/// Evaluates a function of one argument by its call in generated code; NaN for functions of several arguments, which
+/// have steps of their own.
+macro_rules! evaluate_by_calls {
+    ($($function:ident $call:tt)*) => {
+        /// Evaluates a function of one argument, as in generated code.
+        pub fn apply<S: Scalar>(function: Function, a: S) -> S {
+            match function {
+                $(Function::$function => evaluate_by_calls!(@call a $call),)*
+            }
         }
-    }
+    };
+    (@call $a:ident [$($name:ident)?]) => { S::from_f64(f64::NAN) };
+    (@call $a:ident [$($call:tt)*]) => { $a.$($call)* };
 }
+for_each_function!(evaluate_by_calls);

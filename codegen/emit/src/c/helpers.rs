@@ -307,3 +307,25 @@ pub fn around(functions: &str, names: &Identifiers, precision: Precision) -> [St
     }
     [before, after]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::HELPERS;
+    use hamel_algebra::function::{Function, Slope};
+
+    /// A function of one argument is in `<math.h>`, or has a helper.
+    #[test]
+    fn every_function_has_a_name_in_c() {
+        for function in Function::ALL {
+            let row = function.row();
+            match row.c.strip_prefix("@_") {
+                Some(helper) => assert!(HELPERS.iter().any(|(name, _)| *name == helper)),
+                None => assert_eq!(
+                    row.c.is_empty(),
+                    row.slope == Slope::SeveralArguments,
+                    "{function:?}"
+                ),
+            }
+        }
+    }
+}

@@ -204,13 +204,9 @@ impl Language for C<'_> {
 
     fn function(&self, function: Function, operand: &Operand) -> String {
         let suffix = self.precision.suffix();
-        let name = match function {
-            Function::Sign => self.names.own("sign"),
-            Function::Inverse => self.names.own("inverse_of_length"),
-            Function::Raised => self.names.own("raised"),
-            Function::Abs => format!("fabs{suffix}"),
-            // The others have the same names as in C.
-            _ => format!("{}{suffix}", function.name()),
+        let name = match function.row().c.strip_prefix("@_") {
+            Some(helper) => self.names.own(helper),
+            None => format!("{}{suffix}", function.row().c),
         };
         format!("{name}({})", operand.signed())
     }
