@@ -206,6 +206,17 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     }
 
     #[inline]
+    fn ln_1p(self) -> Self {
+        let one = S::from_f64(1.0);
+        self.chain(self.value.ln_1p(), one / (one + self.value))
+    }
+
+    #[inline]
+    fn exp_m1(self) -> Self {
+        self.chain(self.value.exp_m1(), self.value.exp())
+    }
+
+    #[inline]
     fn sinh(self) -> Self {
         self.chain(self.value.sinh(), self.value.cosh())
     }

@@ -54,6 +54,27 @@ pub trait Scalar:
     /// Natural logarithm; NaN below zero.
     fn ln(self) -> Self;
 
+    /// Returns log(1 + self), accurate near 0; NaN below −1. What 1 + self loses to rounding is restored by the quotient
+    /// of `self` and what is left of it (Kahan).
+    fn ln_1p(self) -> Self {
+        let one = Self::from_f64(1.0);
+        let sum = one + self;
+        let left = sum - one;
+        let near = sum.ln() * self / left;
+        let near = left
+            .abs()
+            .select_lt(Self::from_f64(Self::EPSILON), self, near);
+        self.abs().select_lt(one, near, sum.ln())
+    }
+
+    /// Returns exp(self) − 1, accurate near 0: 2 exp(x/2) sinh(x/2) there.
+    fn exp_m1(self) -> Self {
+        let one = Self::from_f64(1.0);
+        let half = self * Self::from_f64(0.5);
+        let near = Self::from_f64(2.0) * half.exp() * half.sinh();
+        self.abs().select_lt(one, near, self.exp() - one)
+    }
+
     /// Hyperbolic sine, accurate near 0: x Σ x²ᵏ/(2k + 1)! there, (eˣ − e⁻ˣ)/2 elsewhere.
     fn sinh(self) -> Self {
         const TERMS: [f64; 7] = [

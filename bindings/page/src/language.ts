@@ -17,7 +17,7 @@ const INSIDE = words(
 );
 const KINDS = words("R1 R2 R3 R4 R5 R6 S1 S3 SO3 SE3 vec2 vec3 vec4 vec6 mat2 mat3 sym2 sym3");
 const FUNCTIONS = words(
-  "transpose dot cross outer hat vee norm diag trace identity sin cos tan asin acos atan atan2 sqrt exp log sinh cosh tanh sign abs " +
+  "transpose dot cross outer hat vee norm diag trace identity sin cos tan asin acos atan atan2 sqrt exp log log1p expm1 sinh cosh tanh sign abs " +
     "min max clamp hypot pi pose rotx roty rotz rpy axis_angle rot position acceleration angular_velocity angular_acceleration " +
     "angle translation",
 );

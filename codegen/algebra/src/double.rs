@@ -155,6 +155,19 @@ impl Double {
         if powers.abs() > 1000.0 || powers.is_nan() {
             return Double::new(self.high.exp());
         }
+        (Double::ONE + self.expm1_beside(powers)).scaled(2.0_f64.powi(powers as i32))
+    }
+
+    /// exp a − 1.
+    pub fn expm1(self) -> Self {
+        match (self.high / LOG_2.high).round() == 0.0 {
+            true => self.expm1_beside(0.0),
+            false => self.exp() - Double::ONE,
+        }
+    }
+
+    /// exp(a − n log 2) − 1 for a near n log 2.
+    fn expm1_beside(self, powers: f64) -> Self {
         let rest = self - Double::new(powers) * LOG_2;
         let small = rest.scaled(0.5_f64.powi(EXP_HALVINGS as i32));
         // Squaring exp x − 1 keeps its relative precision: (1 + e)² − 1 = e (2 + e).
@@ -165,7 +178,7 @@ impl Double {
         for _ in 0..EXP_HALVINGS {
             less = less * (Double::new(2.0) + less);
         }
-        (Double::ONE + less).scaled(2.0_f64.powi(powers as i32))
+        less
     }
 
     /// log a.
@@ -176,6 +189,19 @@ impl Double {
         }
         let first = Double::new(first);
         first + (self * (-first).exp() - Double::ONE)
+    }
+
+    /// log(1 + a), by one step of Newton's method for expm1.
+    pub fn log1p(self) -> Self {
+        if self.high < -0.5 {
+            return (Double::ONE + self).log();
+        }
+        let first = self.high.ln_1p();
+        if !first.is_finite() {
+            return Double::new(first);
+        }
+        let first = Double::new(first);
+        first + (self - first.expm1()) / first.exp()
     }
 
     /// Angle of the point (x, y), where `self` is y.

@@ -243,6 +243,13 @@ table! {
         "(1 + ε) " [inflated()] "@_raised" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [ValueAtOne]
         |a| a * RAISE_FACTOR, |a| a * Double::new(RAISE_FACTOR), |a| a.times(Real::new(RAISE_FACTOR, 0.0)),
         |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISE_FACTOR)?)));
+    // Neither has a law: if log1p(a) and log(1 + a) were one node, one of them would lose its digits near 0.
+    Log1p "log(1 + a) without the rounding of 1 + a" "log1p" [ln_1p()] "log1p" r"\operatorname{log1p}" Other Neither Free
+        [Some([0, 0])] [InversePolynomial(&[1, 1])]
+        f64::ln_1p, Double::log1p, |a| Real::new(1.0, 0.0).plus(a).log(), |a| Interval::whole(1).plus(a).log();
+    Expm1 "exp(a) − 1 without the rounding of exp(a)" "expm1" [exp_m1()] "expm1" r"\operatorname{expm1}" Other Neither Free
+        [Some([0, 0])] [FunctionOfArgument(Function::Exp)]
+        f64::exp_m1, Double::expm1, |a| a.exp().plus(Real::new(-1.0, 0.0)), |a| Some(a.exp()?.plus(&Interval::whole(-1)));
 }
 
 /// Factor by which `Raised` multiplies in `f64`.

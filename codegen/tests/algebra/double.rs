@@ -69,6 +69,21 @@ fn functions_obey_their_laws() {
         close(a.exp() * (-a).exp(), Double::ONE);
         close(a.abs().sinh() + a.cosh(), a.abs().exp());
         close(a.tanh() * a.cosh(), a.sinh());
+        let tiny = a * Double::new(1e-9);
+        for a in [a, tiny] {
+            let near = |found: Double, expected: Double, bound: f64| {
+                let error = (found - expected).abs().to_f64();
+                assert!(error <= bound * expected.abs().to_f64(), "{a:?}: {error:e}");
+            };
+            // expm1(a) (1 + e⁻ᵃ) = 2 sinh a, without a difference; log1p is its inverse.
+            let twice = a.abs().sinh() * Double::new(2.0);
+            near(
+                a.abs().expm1() * (Double::ONE + (-a.abs()).exp()),
+                twice,
+                1e-29,
+            );
+            near(a.expm1().log1p(), a, 1e-27);
+        }
         if k != 0 {
             assert!((a.abs().log().exp() - a.abs()).abs().to_f64() < 1e-30 * a.abs().to_f64());
         }

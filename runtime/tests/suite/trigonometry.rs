@@ -62,6 +62,40 @@ fn far_angles_are_reduced_and_no_angle_has_no_sine() {
     }
 }
 
+/// log1p and expm1 keep their digits near 0, in dual numbers too, and have their limits.
+#[test]
+fn log1p_and_expm1_are_those_of_the_c_library() {
+    let mut worst = [0.0_f64; 3];
+    let near = [1e-300, 1e-17, 1e-16, 3e-16, 1e-9, 1e-4];
+    let few = |x: &f64| x.abs() < 20.0;
+    for x in angles().filter(few).chain(near).flat_map(|x| [x, -x]) {
+        let off = |found: f64, known: f64| (found - known).abs() / spacing(known);
+        worst[0] = worst[0].max(off(Scalar::exp_m1(x), f64::exp_m1(x)));
+        if x > -0.999 {
+            worst[1] = worst[1].max(off(Scalar::ln_1p(x), f64::ln_1p(x)));
+            let both = hamel::Dual::<f64, 1>::along(x, 0);
+            let round = Scalar::ln_1p(Scalar::exp_m1(both));
+            worst[2] = worst[2].max((round.slopes[0] - 1.0).abs() / f64::EPSILON / x.abs().exp());
+        }
+    }
+    assert!(worst.iter().all(|&most| most < 12.0), "{worst:?}");
+    let [inf, nan] = [f64::INFINITY, f64::NAN];
+    assert_eq!(
+        [Scalar::exp_m1(-1e4_f64), Scalar::exp_m1(1e4_f64)],
+        [-1.0, inf]
+    );
+    assert_eq!([Scalar::ln_1p(inf), Scalar::ln_1p(-1.0_f64)], [inf, -inf]);
+    assert!(
+        [
+            Scalar::ln_1p(-2.0_f64),
+            Scalar::ln_1p(nan),
+            Scalar::exp_m1(nan)
+        ]
+        .iter()
+        .all(|x| x.is_nan())
+    );
+}
+
 /// Hyperbolic functions keep their digits, near 0 and where their series end, and have their limits.
 #[test]
 fn hyperbolic_functions_are_those_of_the_c_library() {

@@ -96,7 +96,7 @@ impl Interval {
         Some(sum)
     }
 
-    fn whole(value: i64) -> Self {
+    pub(crate) fn whole(value: i64) -> Self {
         Interval::rational(&BigRational::from_integer(value.into()))
     }
 

@@ -11,7 +11,7 @@ use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use crate::model::value::Value;
 use crate::shapes::MOST_ENTRIES;
 use crate::syntax::ast::{Expr, Ident, Span};
-use num_traits::Signed;
+use num_traits::{Signed, ToPrimitive};
 use rustc_hash::FxHashSet;
 
 impl Evaluator<'_> {
@@ -55,6 +55,9 @@ impl Evaluator<'_> {
 
 /// Why a call has no value: a mathematical reason, and what to do; `None` if the arguments are in error.
 type Fault = Option<(&'static str, &'static str)>;
+
+/// Size of arguments below which every function has a finite value in `f64` if it has one.
+const MAX_ARGUMENT: f64 = 700.0;
 
 const ZERO_DIVISOR: Fault = Some((
     "division by an expression that is identically zero",
@@ -233,10 +236,19 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
                     .collect(),
             )
         }
-        (name, [Scalar(a)]) => match Function::from_name(name) {
-            Some(function) => Scalar(graph.apply(function, *a)),
-            None => return Err(None),
-        },
+        (name, [Scalar(a)]) => {
+            let function = Function::from_name(name).ok_or(None)?;
+            let number = graph.as_rational(*a).and_then(|n| n.to_f64());
+            if number
+                .is_some_and(|a| a.abs() < MAX_ARGUMENT && !(function.row().value)(a).is_finite())
+            {
+                return Err(Some((
+                    "this function has no value at its argument",
+                    "check the argument: it is this number for every configuration",
+                )));
+            }
+            Scalar(graph.apply(function, *a))
+        }
         _ => return Err(None),
     };
     Ok(value)
