@@ -1,4 +1,4 @@
-//! `hamel emit`: writes the generated Rust, or C99.
+//! `hamel emit`: writes the generated Rust, C99 or Python.
 
 use crate::failure::{Failure, print, update};
 use crate::outputs;
@@ -13,7 +13,7 @@ use hamel_codegen::trace::Places;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Writes the generated Rust, or C99.
+/// Writes the generated Rust, C99 or Python.
 ///
 /// The output is byte for byte the same as that of a build script.
 #[derive(Args)]
@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
   hamel emit heavy_top.eom -o src/heavy_top.rs --trace heavy_top.json    and what each statement is
   hamel emit --language c heavy_top.eom -o src/heavy_top  C99: src/heavy_top.h and src/heavy_top.c
   hamel emit --language c --precision float drone.eom -o drone    the same with `float`
+  hamel emit --language python heavy_top.eom -o heavy_top.py      for arrays of NumPy or JAX
 C on the terminal is the header and the source in one, which compiles alone.")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
@@ -57,14 +58,23 @@ enum Language {
     Rust,
     /// C99, also valid as C++17, in a header and a source file.
     C,
+    /// A Python class whose methods take arrays of NumPy, JAX or another module.
+    Python,
 }
 
 /// Writes the code, or compares it with the file.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.language == Language::Rust && arguments.precision.is_some() {
-        return Err(Failure::usage(
-            "`--precision` is for `--language c`: the Rust is generic over its numbers",
-        ));
+    if arguments.precision.is_some() {
+        let why = match arguments.language {
+            Language::C => None,
+            Language::Rust => Some("the Rust is generic over its numbers"),
+            Language::Python => Some("Python has the numbers of the arrays that it is given"),
+        };
+        if let Some(why) = why {
+            return Err(Failure::usage(format!(
+                "`--precision` is for `--language c`: {why}"
+            )));
+        }
     }
     let stem = match (arguments.language, &arguments.out) {
         (Language::C, Some(out)) => Some(stem(out)?),
@@ -126,6 +136,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let files = builder::written_in_c(&generated, &name, stem.as_deref(), precision)
                 .map_err(|errors| source.description_error(&errors))?;
             write_c(arguments, &files, stem.as_deref())
+        }
+        Language::Python => {
+            let out = arguments.out.as_ref().and_then(|out| out.file_name());
+            let out = out.map(|name| name.to_string_lossy());
+            let code = builder::written_in_python(&generated, &name, out.as_deref())
+                .map_err(|errors| source.description_error(&errors))?;
+            match &arguments.out {
+                Some(out) => write(arguments, out, &code),
+                None => print(&code),
+            }
         }
     }
 }
@@ -207,6 +227,7 @@ fn write(arguments: &Arguments, out: &Path, code: &str) -> Result<(), Failure> {
             let language = match arguments.language {
                 Language::Rust => "",
                 Language::C => "--language c ",
+                Language::Python => "--language python ",
             };
             let precision = match arguments.precision {
                 Some(precision) => format!("--precision {precision} "),

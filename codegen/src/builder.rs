@@ -370,14 +370,7 @@ pub fn written_in_c(
     stem: Option<&str>,
     precision: Precision,
 ) -> Result<emit::c::Files, Vec<Diagnostic>> {
-    let refused = generated.model.externals.iter().map(|&place| {
-        Diagnostic::new(place, "C cannot call a function that is given in Rust")
-            .help("write it as an expression, a `fn` or a table")
-    });
-    let refused: Vec<Diagnostic> = refused.collect();
-    if !refused.is_empty() {
-        return Err(refused);
-    }
+    without_externals(generated, "C")?;
     let numbers = match precision {
         Precision::Double => "",
         Precision::Float => " --precision float",
@@ -392,6 +385,36 @@ pub fn written_in_c(
         precision,
     };
     Ok(emit::c::files(&generated.program, &options))
+}
+
+/// Generates a Python module for a system that is derived already. `name` appears in the command that the header shows,
+/// with the name of the file `out`, if it has one. External functions in Rust are refused.
+pub fn written_in_python(
+    generated: &Generated,
+    name: &str,
+    out: Option<&str>,
+) -> Result<String, Vec<Diagnostic>> {
+    without_externals(generated, "Python")?;
+    let out = out.map_or_else(String::new, |out| format!(" -o {}", quoted(out)));
+    let options = emit::python::Options {
+        source_hash: generated.hash,
+        command: format!("hamel emit --language python {}{out}", quoted(name)),
+        description: generated.text.clone(),
+    };
+    Ok(emit::python::file(&generated.program, &options))
+}
+
+/// Refuses external functions in Rust, which other languages cannot call.
+fn without_externals(generated: &Generated, language: &str) -> Result<(), Vec<Diagnostic>> {
+    let refused = generated.model.externals.iter().map(|&place| {
+        let message = format!("{language} cannot call a function that is given in Rust");
+        Diagnostic::new(place, message).help("write it as an expression, a `fn` or a table")
+    });
+    let refused: Vec<Diagnostic> = refused.collect();
+    match refused.is_empty() {
+        true => Ok(()),
+        false => Err(refused),
+    }
 }
 
 /// Quotes a word of a command for a shell, if necessary.

@@ -111,10 +111,14 @@ fn what_the_terminal_shows_compiles_alone() {
 #[test]
 fn what_makes_no_sense_is_refused_with_the_way_out() {
     let file = model("kapitza.eom");
-    let cases: [(&[&str], &str); 6] = [
+    let cases: [(&[&str], &str); 7] = [
         (
             &["--precision", "float"],
             "`--precision` is for `--language c`",
+        ),
+        (
+            &["--language", "python", "--precision", "float"],
+            "Python has the numbers of the arrays that it is given",
         ),
         (
             &["--language", "c", "--precision", "half"],
@@ -132,7 +136,10 @@ fn what_makes_no_sense_is_refused_with_the_way_out() {
             &["--language", "c", "-o", "src/math"],
             "or the name of a C header; give it without",
         ),
-        (&["--language", "fortran"], "possible values: rust, c"),
+        (
+            &["--language", "fortran"],
+            "possible values: rust, c, python",
+        ),
     ];
     for (arguments, part) in cases {
         let (status, message) = said(&[&["emit", &file], arguments].concat());

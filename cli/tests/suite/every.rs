@@ -105,6 +105,7 @@ const USES: [&str; 35] = [
     "ops TOY --format json --advise",
     "emit TOY --language rust --out OUT/toy.rs --trace OUT/toy.json",
     "emit TOY --language c --precision float --out OUT/toy",
+    "emit TOY --language python --out OUT/toy.py",
     "eval TOY --at OUT/state.json --frame rod --tables",
     "linearize TOY --at OUT/state.json --full --format text",
     "linearize TOY --format json",

@@ -60,7 +60,7 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) 
     let none = FxHashMap::default();
     let plan = cut(body, places, time, limit, &none, &FxHashSet::default());
     // The function of constants runs only when parameters change, and a body that fits the cache gains nothing.
-    if time != Time::Call || body.statements.len() <= FITS {
+    if time != Time::Call || when == When::Whole || body.statements.len() <= FITS {
         return plan;
     }
     let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
@@ -74,7 +74,7 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) 
             let pivot = body.statements.iter().rposition(|s| !s.is_let());
             pivot.unwrap_or(0)
         }
-        When::AtTheEnd => body.statements.len(),
+        When::AtTheEnd | When::Whole => body.statements.len(),
     };
     let kept = body.statements[..kept].iter();
     let known = kept.flat_map(|statement| statement.defined());
@@ -104,6 +104,8 @@ pub enum When {
     BehindPivots,
     /// All after the last part.
     AtTheEnd,
+    /// All at the end of a function without parts.
+    Whole,
 }
 
 /// Counts accesses to values that cross parts: one for each part that reads a value computed elsewhere, and one for the

@@ -30,7 +30,8 @@ pub struct Field {
 }
 
 impl Field {
-    fn len(&self) -> usize {
+    /// Returns the number of its entries.
+    pub fn length(&self) -> usize {
         match self.shape {
             ShapeKind::Scalar => 1,
             ShapeKind::Vector(n) => n,
@@ -249,7 +250,7 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
         .iter()
         .map(|field| {
             let name = ranges.claim(&field.name.to_ascii_uppercase());
-            let (from, to) = (field.offset, field.offset + field.len());
+            let (from, to) = (field.offset, field.offset + field.length());
             format!(
                 "/// The place of `{}` in `{}`.\npub const {name}: ::core::ops::Range<usize> = {from}..{to};\n\n",
                 field.name, field.array
