@@ -24,6 +24,7 @@ use hamel_algebra::transplant::{map_symbols, rebuild};
 use hamel_language::model::Model;
 use hamel_program::Cause;
 use hamel_program::count::count;
+use hamel_program::provenance::Quantity;
 
 /// Largest number of velocities for which entries are expanded.
 const MAX_EXPANDED_VELOCITIES: usize = 8;
@@ -269,10 +270,18 @@ pub fn linearize(
     });
     // The first of equal ones; there is always at least one.
     let best = polished.min_by_key(|(cost, _)| *cost);
-    best.map_or_else(
+    let mut best = best.map_or_else(
         || differentiate(model, motion, &upper),
         |(_, linear)| linear,
-    )
+    );
+    for (place, row) in best.rows.iter().enumerate() {
+        let label = match place.checked_sub(motion.displacements.n()) {
+            None => Quantity::DisplacementDerivative.of(0),
+            Some(velocity) => Quantity::AccelerationDerivative.of(velocity),
+        };
+        best.graph.label(row, label);
+    }
+    best
 }
 
 /// Returns the linearisation after resubstitution, if that finds anything.
@@ -375,6 +384,9 @@ fn differentiate_implicitly(
                 .collect()
         })
         .collect();
+    for (velocity, row) in changes.iter().enumerate() {
+        graph.label(row, Quantity::ForceDerivative.of(velocity));
+    }
     let solved = solve_symmetric(&mut graph, mass, &changes)?;
     let mut rows = copy_rows(upper, &mut graph);
     rows.extend(solved);

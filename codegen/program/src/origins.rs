@@ -7,6 +7,7 @@ use super::provenance::Origin;
 use super::statements::{Body, Operation};
 use super::{Function, Program, Shape};
 use hamel_algebra::graph::{Label, NodeId};
+use hamel_language::functions::FunctionId;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
@@ -29,7 +30,12 @@ pub fn origins(
         for row in 0..rows.max(1) {
             let origin = all.place(provenance.result(function.id, &function.name, row));
             for output in outputs.by_ref().take(columns) {
-                named.entry(output.node()).or_insert(origin);
+                // Labels name the rows of a linearisation, in which displacements, velocities and states follow one
+                // another.
+                let is_labelled = program.graph.label_of(output.node()).is_some();
+                if function.id != Some(FunctionId::Linearize) || !is_labelled {
+                    named.entry(output.node()).or_insert(origin);
+                }
             }
         }
     }

@@ -7,7 +7,7 @@
 use hamel_algebra::graph::Label;
 use hamel_language::diagnostics::Span;
 use hamel_language::functions::FunctionId;
-use hamel_language::model::{Frame, Model, entry};
+use hamel_language::model::{Frame, Model, Particle, entry};
 use std::collections::BTreeMap;
 
 /// List of a model whose entries quantities belong to.
@@ -21,6 +21,8 @@ pub enum List {
     Frames,
     /// Frames with the bodies on them.
     Bodies,
+    /// Particles, numbered.
+    Particles,
     /// Loads on frames.
     Loads,
     /// Entries of x.
@@ -32,11 +34,12 @@ pub enum List {
 }
 
 impl List {
-    const ALL: [List; 8] = [
+    const ALL: [List; 9] = [
         List::System,
         List::Lets,
         List::Frames,
         List::Bodies,
+        List::Particles,
         List::Loads,
         List::Coordinates,
         List::Velocities,
@@ -86,6 +89,11 @@ quantities! {
     InertialForce Bodies "inertial force at ξ̇ = 0" "KR18 (30c)"
     InertialTorque Bodies "inertial torque at ξ̇ = 0" "KR18 (30c)"
     Weight Bodies "weight" "KR18 (30c)"
+    ParticleJacobian Particles "Jacobian of the velocity, world axes" "KR18 (20)"
+    ParticleVelocity Particles "velocity, world axes" "KR18 (20)"
+    ParticleAcceleration Particles "acceleration at ξ̇ = 0, world axes" "KR18 (30c)"
+    ParticleForce Particles "inertial force at ξ̇ = 0, world axes" "KR18 (30c)"
+    ParticleWeight Particles "weight" "KR18 (30c)"
     MassMatrix Velocities "row of the mass matrix M" "KR18 (20)"
     BiasForce Velocities "bias force Γ ξ ξ" "KR18 (30c)"
     PotentialSlope Velocities "slope ∂V of the potential" "KR18 (9)"
@@ -113,6 +121,13 @@ quantities! {
     JointResidual Frames "joint force less bias" "RBDA 7.3"
     JointShare Frames "articulated inertia along the joint over the pivot" "RBDA 7.3"
     JointAcceleration Frames "acceleration of the link due to ξ̇" "RBDA 7.3"
+    RelativeMomentum Frames "momentum relative to the link of all that it carries" "Carpentier and Mansard (2018)"
+    LinkVariation Frames "change of the link's motion with its joint" "Carpentier and Mansard (2018)"
+    JointForceVariation Frames "joint force by changes of the link's motion" "Carpentier and Mansard (2018)"
+    WrenchVariation Frames "change of the wrench through the joint" "Carpentier and Mansard (2018)"
+    DisplacementDerivative System "derivatives of the rates ḣ" "ḣ = δξ − γ ξ h"
+    ForceDerivative Velocities "derivatives of the force less M ξ̇" "δ(M ξ̇ + Γ ξ ξ + ∂V − f)"
+    AccelerationDerivative Velocities "derivatives of ξ̇" "δξ̇ = ∂F h + ∂F/∂ξ δξ + ∂F/∂u δu"
 }
 
 impl Quantity {
@@ -168,6 +183,13 @@ impl Provenance {
                 }
                 List::Frames => frames(&statements.names),
                 List::Bodies => frames(&statements.bodies),
+                List::Particles => {
+                    let particles = model.particles.iter().enumerate();
+                    let of = |(index, particle): (usize, &Particle)| {
+                        (format!("particle {}", index + 1), particle.span)
+                    };
+                    particles.map(of).collect()
+                }
                 List::Loads => {
                     let all = frames(&statements.loads);
                     let wrenches = model.wrenches.iter();

@@ -1,6 +1,6 @@
 //! The trace of emitted code says what the statements compute, and why.
 
-use crate::derived::models;
+use crate::derived::{Derived, models};
 use hamel_codegen::algebra::graph::{Edge, Function};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::residue_pair::Random;
@@ -13,7 +13,7 @@ use hamel_codegen::program::places::Places;
 use hamel_codegen::program::schedule::Schedule;
 use hamel_codegen::syntax::ast::ShapeKind;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Statements of each model that are compared.
 const COMPARED: usize = 10;
@@ -257,4 +257,32 @@ fn every_statement_serves_a_quantity_of_the_description() {
         .for_each(|model| described(&model.name, model.generated()));
     let ur5 = include_str!("../../../examples/gallery/ur5.eom");
     described("ur5", &from_text(ur5).expect("correct"));
+}
+
+/// Returns the quantities that the statements of a function serve.
+fn quantities(generated: &Generated, function: &str) -> BTreeSet<String> {
+    let traces = generated.trace().into_iter();
+    let traces = traces.filter(|trace| trace.function == function);
+    let statements = traces.flat_map(|trace| trace.statements);
+    let origins = statements.filter_map(|traced| traced.origin);
+    origins.map(|origin| origin.quantity.clone()).collect()
+}
+
+#[test]
+fn particles_and_linearisations_have_quantities_of_their_own() {
+    let is_of_particle = |model: &Derived| {
+        let functions = model.generated().trace().into_iter();
+        let mut functions = functions.map(|trace| quantities(model.generated(), &trace.function));
+        functions.any(|all| all.iter().any(|quantity| quantity.starts_with("particle ")))
+    };
+    assert!(models().par_iter().any(is_of_particle));
+    let ur5 = include_str!("../../../examples/gallery/ur5.eom");
+    let (body, _) = ur5.rsplit_once('}').expect("a description");
+    let ur5 = from_text(&format!("{body}generate linearize;\n}}")).expect("correct");
+    let of = |function: &str| quantities(&ur5, function).into_iter();
+    assert!(of("linearize").any(|quantity| quantity.ends_with("derivatives of ξ̇")));
+    assert!(
+        of("linearize")
+            .any(|quantity| quantity.ends_with("change of the wrench through the joint"))
+    );
 }

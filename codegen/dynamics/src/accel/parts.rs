@@ -142,13 +142,18 @@ pub fn trace_terms(
         let traced = BodyTerms::new(model, calculus, &body, variant);
         traced.add(&mut model.graph, &mut mass, &mut inertia, &mut gravity);
     }
-    for particle in model.particles.clone() {
+    for (index, particle) in model.particles.clone().into_iter().enumerate() {
         let graph = &mut model.graph;
         let columns = calculus.point_jacobian(graph, particle.position);
         let velocity = calculus.rate3(graph, particle.position);
         let acceleration = calculus.rate3(graph, velocity);
         let force = scale3(graph, particle.mass, acceleration);
         let weight = scale3(graph, particle.mass, model.gravity);
+        graph.label(&columns.concat(), Quantity::ParticleJacobian.of(index));
+        graph.label(&velocity, Quantity::ParticleVelocity.of(index));
+        graph.label(&acceleration, Quantity::ParticleAcceleration.of(index));
+        graph.label(&force, Quantity::ParticleForce.of(index));
+        graph.label(&weight, Quantity::ParticleWeight.of(index));
         for i in 0..n {
             let (h, g) = (
                 graph.dot(&columns[i], &force),

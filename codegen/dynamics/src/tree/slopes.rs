@@ -13,8 +13,9 @@ use super::inverse::{LinkMotion, motions, to_parent, wrench};
 use super::link::{Freedom, Link, Tree};
 use super::mass::LinkInertia;
 use super::wrench::Wrench;
-use hamel_algebra::graph::{Edge, Graph};
+use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, scale3, zero3};
+use hamel_program::provenance::Quantity;
 
 /// Derivatives ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ requires.
 pub struct InverseDynamicsDerivatives {
@@ -79,6 +80,12 @@ pub fn slopes(
             let total = to_parent(graph, link, &totals[index]);
             totals[parent] = totals[parent].plus(graph, &total);
         }
+        let of = |quantity: Quantity| quantity.of(link.frame);
+        masses[index].label(graph, of(Quantity::CompositeInertia));
+        totals[index].label(graph, of(Quantity::JointWrench));
+        let relative = &relative_momenta[index];
+        graph.label(&relative.first, of(Quantity::RelativeMomentum));
+        graph.label(&relative.second.concat(), of(Quantity::RelativeMomentum));
     }
     let mut slopes = InverseDynamicsDerivatives {
         displacement: vec![vec![graph.zero(); n]; n],
@@ -92,10 +99,14 @@ pub fn slopes(
         .map(|(link, motion)| {
             let both = link.freedoms.iter();
             both.map(|f| {
-                (
+                let both = (
                     displacement_variation(graph, f, motion),
                     velocity_variation(graph, f, motion),
-                )
+                );
+                for variation in [both.0, both.1] {
+                    variation.label(graph, Quantity::LinkVariation.of(link.frame));
+                }
+                both
             })
             .collect()
         })
@@ -110,6 +121,7 @@ pub fn slopes(
             let (i, _) = *freedom.rate.first()?;
             // Force of this joint as a covector on variations of its link and of its ancestors.
             let mut covector = composite.force(graph, freedom);
+            covector.label(graph, Quantity::JointForceVariation.of(link.frame));
             let mut here = index;
             loop {
                 for (other, (by_place, by_rate)) in
@@ -125,6 +137,7 @@ pub fn slopes(
                 let before = motions[parent].omega;
                 covector =
                     covector.to_parent(graph, &tree.links[here], motions[here].relative, before);
+                covector.label(graph, Quantity::JointForceVariation.of(link.frame));
                 here = parent;
             }
             // Wrench that a variation of this joint passes on to its ancestors.
@@ -132,9 +145,15 @@ pub fn slopes(
             let mut wrenches = [by_place, by_rate].map(|v| composite.wrench(graph, &v));
             let total = totals[index];
             wrenches[0] = transport_change(graph, &wrenches[0], freedom, &total);
+            for wrench in &wrenches {
+                wrench.label(graph, Quantity::WrenchVariation.of(link.frame));
+            }
             let mut here = index;
             while let Some(parent) = tree.links[here].parent {
                 wrenches = wrenches.map(|wrench| to_parent(graph, &tree.links[here], &wrench));
+                for wrench in &wrenches {
+                    wrench.label(graph, Quantity::WrenchVariation.of(link.frame));
+                }
                 for other in &tree.links[parent].freedoms {
                     let (j, _) = *other.rate.first()?;
                     slopes.displacement[j][i] = other.force_of(graph, &wrenches[0]);
@@ -199,6 +218,12 @@ fn velocity_variation(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion)
 }
 
 impl Variation {
+    fn label(&self, graph: &mut Graph, label: Option<Label>) {
+        for part in [self.omega, self.alpha, self.a] {
+            graph.label(&part, label);
+        }
+    }
+
     /// Returns the pairing of a covector (`self`) with a variation.
     fn on(&self, graph: &mut Graph, variation: &Variation) -> Edge {
         let terms = [

@@ -77,7 +77,12 @@ impl Reader<'_, '_> {
         Some(matrix)
     }
 
-    pub fn particle(&mut self, mass: &Expr, at: &Expr, on: Option<&Ident>) -> Option<Particle> {
+    pub fn particle(
+        &mut self,
+        span: Span,
+        (mass, at): (&Expr, &Expr),
+        on: Option<&Ident>,
+    ) -> Option<Particle> {
         const WHAT: &str = "the position of a particle";
         let mass = self.constant_scalar(mass, "a mass");
         let position = self.evaluator.vec3(at).and_then(|position| {
@@ -97,7 +102,11 @@ impl Reader<'_, '_> {
             let moved = apply3(self.evaluator.graph, &frame.rotation, position);
             position = add3(self.evaluator.graph, frame.position, moved);
         }
-        Some(Particle { mass, position })
+        Some(Particle {
+            mass,
+            position,
+            span,
+        })
     }
 
     /// Reads a kinetic energy T = ½ ξᵀ M(x) ξ.

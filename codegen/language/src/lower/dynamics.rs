@@ -56,7 +56,7 @@ pub fn read(
                 dynamics.has_inertia = true;
                 dynamics
                     .particles
-                    .extend(reader.particle(mass, at, on.as_ref()));
+                    .extend(reader.particle(item.span, (mass, at), on.as_ref()));
             }
             ItemKind::Kinetic(expr) => {
                 dynamics.has_inertia = true;

@@ -123,7 +123,7 @@ macro_rules! fields {
 fields!(Group { value; name, shape, offset, len });
 fields!(Frame { rotation, position, relative; name, parent });
 fields!(Body { mass, com, inertia_com, inertia_origin; frame });
-fields!(Particle { mass, position; });
+fields!(Particle { mass, position; span });
 fields!(Wrench { at, force, torque; frame, axes });
 fields!(FullFrame { images; full, active });
 fields!(KineticTerms { mass, bias; });

@@ -117,6 +117,8 @@ pub struct Particle {
     pub mass: Edge,
     /// Position in world axes (m).
     pub position: Vec3,
+    /// Place of its statement.
+    pub span: Span,
 }
 
 /// Contribution of a kinetic energy that the user wrote, if ξ does not span the tangent space.
