@@ -15,9 +15,12 @@ const SWEEP: &str =
   cargo install --locked hamel-cli --all-features         anywhere
 or use the Python package, which has them: `hamel.sweep`, and the command `hamel` that it installs";
 
-const MACHINE: &str = "note: this `hamel` was built without machine code, and interprets functions: long runs take several times longer than
-with `cargo install --locked --path cli --all-features`
+const MACHINE: &str = "note: this `hamel` was built without machine code and interprets functions, which takes tens of times as long;
+`cargo install --locked --path cli --all-features` installs one with machine code
 ";
+
+/// Number of evaluations from which a run is long enough that machine code is worth a note: some seconds for a robot.
+const MIN_NOTED_EVALUATIONS: u64 = 1_000_000;
 
 /// Runs a system many times, with parameters, starts and inputs that differ from run to run; needs the feature `sweep`.
 #[derive(Args)]
@@ -33,9 +36,9 @@ pub fn run(_: &Arguments, _: Option<&CancellationToken>) -> Result<(), Failure> 
     Err(Failure::usage(SWEEP))
 }
 
-/// Says that runs are interpreted, where they are.
-pub fn warn_of_interpretation() {
-    if cfg!(not(feature = "machine")) {
+/// Notes that functions are interpreted, if they are and a run had many evaluations.
+pub fn warn_of_interpretation(evaluations: u64) {
+    if cfg!(not(feature = "machine")) && evaluations >= MIN_NOTED_EVALUATIONS {
         warn(MACHINE);
     }
 }

@@ -103,7 +103,6 @@ enum Format {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     method::check_names(&arguments.methods)?;
     let solution = arguments.reference.as_deref().map(read).transpose()?;
-    crate::absent::warn_of_interpretation();
     let mut report = Report {
         title: "Speed against error".into(),
         command: command(arguments),

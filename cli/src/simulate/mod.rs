@@ -93,9 +93,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     let session = Session::with_all_functions(source::open(&arguments.file, &arguments.robot)?)?;
     let state = session.read_state(arguments.at.as_deref())?;
-    warn_of_interpretation();
     let step_is_chosen = stepping.step.is_none();
     let run = session.simulate(&state, &arguments.simulation(stepping)?)?;
+    warn_of_interpretation(run.evaluations);
 
     let mut written = String::new();
     for (path, format) in [

@@ -209,9 +209,9 @@ mod tests {
         let (mut good, mut bad) = (0, 0);
         for _ in 0..20_000 {
             let text: String = (0..1 + next(9)).map(|_| words[next(words.len())]).collect();
-            let numbers = |text: &str| match text.len() {
+            let numbers = |piece: Piece| match piece.text.len() {
                 1 => Ok(vec![1.0]),
-                _ => Err("unknown".to_string()),
+                _ => Err(piece.wrong("unknown".to_string())),
             };
             if let Ok(piece) = Piece::of(&text) {
                 for entries in [1, 3] {

@@ -92,7 +92,7 @@ const NEEDED: [(&str, &str); 5] = [
 ];
 
 /// Uses of all other options, as words separated by spaces; `~` is a space within a word.
-const USES: [&str; 35] = [
+const USES: [&str; 36] = [
     "tables TOY --of A,M --format text --all",
     "tables TOY --format markdown",
     "tables TOY --format latex",

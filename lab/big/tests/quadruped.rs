@@ -35,7 +35,9 @@ fn slopes_are_those_of_dual_numbers() {
         parts > 50 && statements > 10_000,
         "{parts} parts, {statements} statements"
     );
-    let blocks = generated(include_str!("../models/quadruped.eom")).program.blocks;
+    let blocks = generated(include_str!("../models/quadruped.eom"))
+        .program
+        .blocks;
     let system = Quadruped::<f64>::new().expect("masses are positive");
     let dual = Quadruped::<Slope>::new().expect("masses are positive");
     let mut random = Random::new(0x4e6);
