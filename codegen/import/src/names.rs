@@ -5,22 +5,26 @@
 //! or `_loop`, and then `_2`, `_3` and so on. Joints choose first, in the order of the file.
 
 use crate::robot::{Joint, Kind, Robot};
+use hamel_language::vocabulary::is_reserved;
 use std::collections::BTreeSet;
 
-/// Reserved words: statements, connectives, functions and constants of the language, and keywords of Rust.
+/// Reserved words in addition to the functions and constants of the language: its statements, connectives and coordinate
+/// kinds, names in generated code, and keywords of Rust.
 const WORDS: &str = "\
-abs abstract acceleration acos angular_acceleration angular_momentum angular_velocity armature as \
-asin async at atan atan2 await axis_angle become body box break clamp com const constraint continue \
-continuous coord cos cosh crate cross cylindrical damper damping diag dissipation do dot dyn else \
-energy enum exp extern false final fixed fn follows for force frame free from gen generalized \
-generate gravity hat hypot identity if impl in inactive inertia input invariant inverse joint \
-kinetic length let limit linear_momentum log loop macro mass match max max_force max_speed min mod \
-move moves mut nonholonomic norm on origin outer output override param particle pi planar pose \
-position potential prismatic priv pub qmul rate ref rest return revolute rot rotx roty rotz rpy \
-Self self sign sin sinh spherical spring sqrt stabilized start static stiffness struct super \
-system tan tanh to torque trace trait transpose true try type typeof universal unsafe unsized use \
-vee velocity virtual when where while world wrench yield about cart _ x xi u xi_dot R1 R2 R3 S1 S3 \
+abstract angular_momentum armature as async at await become body box break com const constraint \
+continue continuous coord crate cylindrical damper damping dissipation do dyn else energy enum \
+extern false final fixed fn follows for force frame free from gen generalized generate gravity if \
+impl in inactive inertia input invariant joint kinetic length let limit linear_momentum loop macro \
+mass match max_force max_speed mod move moves mut nonholonomic on origin output override param \
+particle planar potential prismatic priv pub ref rest return revolute Self self spherical spring \
+stabilized start static stiffness struct super system to torque trait true try type typeof universal \
+unsafe unsized use virtual when where while wrench yield about cart _ x xi u xi_dot R1 R2 R3 S1 S3 \
 SO3 SE3 vec2 vec3 mat3 sym3";
+
+/// Returns whether a name is a reserved word.
+fn is_word(name: &str) -> bool {
+    is_reserved(name) || WORDS.split(' ').any(|word| word == name)
+}
 
 /// Suffixes of the symbols that belong to a joint.
 const SUFFIXES: [&str; 10] = [
@@ -97,7 +101,7 @@ impl Taken {
     /// Picks the first candidate that is free with all its suffixes.
     fn choose(&mut self, name: &str, kind: &str, suffixes: &[&str]) -> String {
         let plain = identifier(name);
-        let reserved = WORDS.split(' ').any(|word| word == plain);
+        let reserved = is_word(&plain);
         let longer = format!("{plain}{kind}");
         let first = (!reserved).then(|| plain.clone());
         let mut candidates = first
@@ -144,7 +148,7 @@ fn camel(name: &str) -> String {
     if joined.is_empty() || joined.starts_with(|c: char| c.is_ascii_digit()) {
         return format!("Robot{joined}");
     }
-    if WORDS.split(' ').any(|word| word == joined) {
+    if is_word(&joined) {
         return format!("{joined}Robot");
     }
     joined

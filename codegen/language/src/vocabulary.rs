@@ -23,6 +23,13 @@ pub fn fields_of_bodies() -> impl Iterator<Item = (&'static str, &'static str)> 
     body_fields()
 }
 
+/// Returns whether a name is that of a function or constant that descriptions cannot redefine.
+pub fn is_reserved(name: &str) -> bool {
+    words::reserved()
+        .chain(words::FUNCTIONS)
+        .any(|word| word == name)
+}
+
 /// Returns the functions that expressions can call, each with a description of its arguments.
 pub fn functions() -> impl Iterator<Item = (&'static str, String)> {
     words::names().filter_map(|name| Some((name, words::usage(name)?.into_owned())))
