@@ -104,6 +104,8 @@ const ATTACK_TASKS: Task = &[
     "bash lab/dalembert/run.sh --what loops written driven --seeds 1000 60 --largest 5",
     "bash lab/dalembert/run.sh --seeds 2000 40 --largest 5 --hard",
     "bash lab/dalembert/run.sh --what platforms --seeds 0 9",
+    // Emitted modules in JAX.
+    "bash tests/python/run.sh jax",
     // As a user installs it.
     "bash tests/python/wheel.sh",
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --allow-dirty --locked",
