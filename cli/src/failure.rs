@@ -1,7 +1,7 @@
 //! Failures of commands: how they are shown, and their exit statuses.
 
 #[cfg(feature = "command")]
-use crate::simulate::SeriesError;
+use crate::series::SeriesError;
 use hamel_codegen::render::{render, warnings};
 use hamel_codegen::urdf;
 use hamel_engine::{Error, Warning};

@@ -11,6 +11,7 @@
 //! | `source`, `robot` | descriptions as the command line opens them, and the options for that |
 //! | `reports` | reports of the commands, for other front ends |
 //! | `absent` | messages of commands where a feature is missing |
+//! | `series` | time series in CSV files |
 //! | `parse` | numbers on the command line |
 //! | `json`, `columns`, `outputs` | how results are written; pictures are those of `hamel-report` |
 //! | `progress` | progress of long work |
@@ -58,6 +59,8 @@ mod regressor;
 pub mod reports;
 mod robot;
 #[cfg(feature = "command")]
+mod series;
+#[cfg(feature = "command")]
 mod simulate;
 mod source;
 #[cfg(feature = "sweep")]
@@ -72,5 +75,5 @@ pub use failure::Failure;
 #[cfg(feature = "command")]
 pub use progress::Terminal;
 #[cfg(feature = "command")]
-pub use simulate::{SeriesError, read_series};
+pub use series::{SeriesError, read_series};
 pub use tables::Format;

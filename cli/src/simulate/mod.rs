@@ -4,7 +4,6 @@ mod options;
 mod panels;
 mod picture;
 mod rotor;
-mod series;
 mod summary;
 mod write;
 
@@ -13,6 +12,7 @@ use crate::failure::{Failure, print};
 use crate::outputs;
 use crate::parse::{Expected, positive};
 use crate::robot::RobotOptions;
+use crate::series::read_series;
 use crate::source;
 use clap::Args;
 use hamel_codegen::generate::Generated;
@@ -21,7 +21,6 @@ use hamel_engine::run::Every;
 use hamel_engine::{InputSource, Samples, Session, Simulation, Stepping, method};
 pub use options::{InputArguments, SteppingArguments};
 use picture::picture;
-pub use series::{SeriesError, read_series};
 use std::path::PathBuf;
 use write::Format;
 

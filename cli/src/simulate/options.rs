@@ -1,8 +1,8 @@
 //! Options of runs.
 
-use super::series::read_series;
 use crate::failure::Failure;
 use crate::parse::{positive, rate};
+use crate::series::read_series;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use hamel_engine::method::{self, AUTO};
