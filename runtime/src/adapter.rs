@@ -82,7 +82,7 @@ where
         }
     }
 
-    /// Returns the number of unknowns, ν + n.
+    /// Returns the length ν + n of y = (x, ξ), with all entries of x: four of a quaternion, nine of a rotation.
     pub fn unknowns(&self) -> usize {
         let x = self.system.zero_coordinates();
         let xi = self.system.zero_velocities();
@@ -123,7 +123,8 @@ where
         }
     }
 
-    /// Writes the Jacobian-vector product ∂f/∂y v, by a central difference.
+    /// Writes the product ∂f/∂y v of the Jacobian and a vector, for y = (x, ξ) with all entries of x, by a central
+    /// difference.
     ///
     /// The difference is (f(t, y + δ v) − f(t, y − δ v)) / 2δ, with the largest δ that moves no entry by more than
     /// ∛ε (1 + |yᵢ|): accurate to about 1e-10 of the rates, at two evaluations. Entries of y that v does not move may

@@ -73,7 +73,8 @@ pub struct Degrees<'a> {
 }
 
 impl<'a> Degrees<'a> {
-    /// Creates a calculator. `groups` holds the group of every coordinate of a kind with a norm; symbols
+    /// Creates a calculator of bounds on the degrees of nodes, as rational functions of the random numbers of a point.
+    /// `groups` holds the group of every coordinate of a kind with a norm; symbols
     /// beyond the end of the list have none.
     pub fn new(graph: &'a Graph, groups: Vec<Option<usize>>) -> Self {
         Degrees {

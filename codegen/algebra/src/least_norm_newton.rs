@@ -32,7 +32,7 @@ pub struct StoppingRule {
     pub tolerance: f64,
 }
 
-/// Reason why the iteration ended.
+/// Reason why Newton's iteration by steps of least norm ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// Steps no longer reduce the residuals.

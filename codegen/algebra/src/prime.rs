@@ -98,7 +98,7 @@ impl<const K: usize> Residue<K> {
     }
 
     /// Whether it is an element of F_p.
-    pub fn is_prime(self) -> bool {
+    pub fn is_in_prime_field(self) -> bool {
         self.1 == 0
     }
 
@@ -174,7 +174,9 @@ impl<const K: usize> Residue<K> {
     /// The square root of a in F_p that is itself a square of F_p; `None` if a is not a square of F_p. It
     /// is a^((p+1)/4), because p ≡ 3 mod 4.
     pub fn principal_root(self) -> Option<Self> {
-        let root = self.is_prime().then(|| self.pow(Self::P.div_ceil(4)))?;
+        let root = self
+            .is_in_prime_field()
+            .then(|| self.pow(Self::P.div_ceil(4)))?;
         (root * root == self).then_some(root)
     }
 

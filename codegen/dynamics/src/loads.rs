@@ -72,8 +72,9 @@ pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     sum
 }
 
-/// Returns the applied forces fᵢᴱ, one vector for every load: wrenches, then generalised forces.
-pub fn forces_of_loads(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
+/// Returns the terms of the applied force fᴱ: one vector for every wrench, then the sum of all generalised forces,
+/// dissipation included, unless that is zero.
+pub fn applied_force_terms(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     let mut loads: Vec<Vec<Edge>> = Vec::new();
     for load in model.wrenches.clone() {
         loads.push(wrench(model, calculus, &load));
@@ -90,7 +91,7 @@ pub fn forces_of_loads(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Ed
 
 /// Returns the sum of the applied forces, as a reference for validation.
 pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
-    let all = forces_of_loads(model, calculus);
+    let all = applied_force_terms(model, calculus);
     (0..model.n())
         .map(|i| {
             let column: Vec<Edge> = all.iter().map(|load| load[i]).collect();

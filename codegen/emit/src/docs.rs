@@ -129,7 +129,7 @@ pub fn description(text: &str) -> Vec<String> {
     std::iter::once(String::new()).chain(lines).collect()
 }
 
-/// Returns the description of a function, its cost and its arguments.
+/// Returns the lines of a function's documentation on its purpose, cost and arguments; callers add result and errors.
 pub fn described(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = function.docs.clone();
     if lines.is_empty() {

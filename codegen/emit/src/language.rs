@@ -51,7 +51,7 @@ impl Array {
     }
 }
 
-/// A target language.
+/// Syntax of the statements of functions in a target language.
 pub trait Language {
     /// Tells when the parts of a function write its result, given its shape and whether the function can fail.
     fn when(&self, shape: Shape, fallible: bool) -> When;

@@ -59,7 +59,7 @@ pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
     ))
 }
 
-/// Prints the function, followed by a `linearize` that calls it.
+/// Prints `accel_and_linearize`, which computes ξ̇ and [A B] together, and a `linearize` that calls it.
 pub fn text(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
     let given: Vec<&str> = both
         .arguments

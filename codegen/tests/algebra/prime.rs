@@ -74,7 +74,7 @@ fn unstructured<const K: usize>() {
     for n in (2..2000).filter(|&n| !is_square(n)) {
         let root = Residue::<K>::new(n).sqrt().expect("in F_p(i)");
         // Either in F_p, or i times an element of it.
-        let real = if root.is_prime() {
+        let real = if root.is_in_prime_field() {
             root
         } else {
             -(Residue::I * root)

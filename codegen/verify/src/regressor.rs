@@ -19,7 +19,8 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::{Body, Model};
 use hamel_program::{FunctionId, Program};
 
-/// Proves the base parameters of a model.
+/// Checks at random points, modulo p, that the base parameters reproduce the force of (30b). That they are independent
+/// is not checked.
 ///
 /// # Errors
 /// A fault of the generator.

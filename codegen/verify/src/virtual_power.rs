@@ -92,7 +92,7 @@ impl<'a> Forces<'a> {
     }
 }
 
-/// Returns fᵢ of all loads: wrenches, forces along lines, dampers, dissipation, generalised forces.
+/// Derives expressions of fᵢ of all loads: wrenches, forces along lines, dampers, dissipation, generalised forces.
 pub fn applied_forces(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
     let mut forces = Forces::none(graph, calculus);
     forces.add(&model.elements.generalized);
@@ -151,7 +151,7 @@ fn add_resistance(model: &Model, forces: &mut Forces) {
     forces.add(&resistance);
 }
 
-/// Returns 2 D, the power −fᵢ ξⁱ that dampers and dissipation take.
+/// Derives the expression of 2 D, the power −fᵢ ξⁱ that dampers and dissipation take.
 pub fn dissipated_power(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Edge {
     let mut forces = Forces::none(graph, calculus);
     add_resistance(model, &mut forces);

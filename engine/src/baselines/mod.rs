@@ -23,7 +23,8 @@ pub use rk4_projected::Rk4Projected;
 
 use hamel::{Method, State, StepError, System};
 
-/// The baselines that require [`System`] only, as one type.
+/// Methods for any [`System`] that are kept to show a defect: Euler's method, which gains energy, and Runge-Kutta methods
+/// that project rotations, or add angular velocities in different axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Baseline {

@@ -33,7 +33,7 @@ pub struct File {
 }
 
 impl File {
-    /// Reads a file for a description, or standard input if the path is `-`.
+    /// Reads the JSON file of a state of a described system, or standard input if the path is `-`.
     pub fn read(path: &Path, description: &Source) -> Result<Self, Error> {
         let Source { path, text, .. } = description.read_related(path, "state")?;
         File::of(path, &text, description)

@@ -14,7 +14,7 @@ pub fn roots<const K: usize>(coefficients: &[Residue<K>], random: &mut Random) -
         return Vec::new();
     }
     let x = vec![Residue::ZERO, Residue::ONE];
-    let whole = f.iter().any(|coefficient| !coefficient.is_prime());
+    let whole = f.iter().any(|coefficient| !coefficient.is_in_prime_field());
     let mut frobenius = power(x.clone(), Residue::<K>::P, &f);
     if whole {
         frobenius = power(frobenius, Residue::<K>::P, &f);

@@ -202,7 +202,7 @@ pub fn trace_terms(
     let momentum = kinetic.map(|kinetic| energy::momentum(model, kinetic));
     let kinetic = kinetic.map(|kinetic| energy::kinetic_in_energy(model, kinetic));
     let potential = loads::elastic(model, calculus);
-    let loads = loads::forces_of_loads(model, calculus);
+    let loads = loads::applied_force_terms(model, calculus);
     let graph = &mut model.graph;
     let conservative = (0..n)
         .map(|i| graph.add(gravity[i], potential[i]))

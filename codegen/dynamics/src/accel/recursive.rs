@@ -80,7 +80,7 @@ impl TreeRecursion {
         };
         let tree = Tree::of(&mut model, &mut calculus, placement)?;
         let elastic = loads::elastic(&mut model, &mut calculus);
-        let loads = loads::forces_of_loads(&mut model, &mut calculus);
+        let loads = loads::applied_force_terms(&mut model, &mut calculus);
         let applied = (0..model.n())
             .map(|i| {
                 let column: Vec<Edge> = loads.iter().map(|load| load[i]).collect();

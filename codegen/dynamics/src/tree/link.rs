@@ -6,7 +6,7 @@ use super::wrench::Wrench;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::Vec3;
 
-/// One column of a joint's motion subspace S.
+/// One column of a joint's motion subspace S, with its rate as a linear combination of ξ.
 ///
 /// This is the twist of a link relative to its parent, per unit of the column's rate.
 #[derive(Clone, Debug)]

@@ -21,7 +21,7 @@ impl Wrench {
         }
     }
 
-    /// Labels force and torque.
+    /// Records in the graph that force and torque are entries of a quantity; nodes that have a label keep it.
     pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
         graph.label(&self.torque, label);
         graph.label(&self.force, label);

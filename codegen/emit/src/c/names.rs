@@ -63,7 +63,7 @@ pub struct Identifiers {
 }
 
 impl Identifiers {
-    /// Returns the identifiers of a program, and its names in Rust.
+    /// Returns the identifiers of a program in C, and its names in Rust, from which they are made.
     pub fn of(program: &Program) -> (Self, Names) {
         let names = Names::beside(program, OWN);
         let prefix = snake(&program.name).trim_end_matches('_').to_string();

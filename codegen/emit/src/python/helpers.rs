@@ -71,7 +71,7 @@ def _raised(xp, a):
     ),
 ];
 
-/// Returns the helpers that a text calls.
+/// Returns the source of the helpers that a text calls.
 pub fn used(text: &str) -> String {
     let called = HELPERS
         .iter()

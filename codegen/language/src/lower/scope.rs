@@ -58,7 +58,8 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Returns the coordinates that form a chart by themselves: real ones, if there are no constraints.
+    /// Returns the nodes of all coordinates in ℝ and ℝⁿ, which vary independently of one another; none if the description
+    /// has constraints.
     pub fn plain(&self) -> Vec<NodeId> {
         let plain = |kind| matches!(kind, Kind::Coord(CoordKind::Real | CoordKind::Euclidean(_)));
         let symbols = self.symbols.iter();

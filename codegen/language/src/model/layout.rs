@@ -74,7 +74,7 @@ impl Block {
     }
 }
 
-/// Returns the blocks of a coordinate.
+/// Returns the blocks of x for a kind of coordinate: two for a pose, one for any other.
 pub fn blocks(kind: CoordKind) -> Vec<Block> {
     match kind {
         CoordKind::Real => vec![Block::Flat(1)],

@@ -213,7 +213,8 @@ impl Points {
     fn keeps(&self, fixed: &[Edge]) -> bool {
         let values = self.unconstrained(&mut Random::new(0));
         let mut lane = self.lane_of(&values);
-        let inside = |value: &ResiduePair| value.0.is_prime() && value.1.is_prime();
+        let inside =
+            |value: &ResiduePair| value.0.is_in_prime_field() && value.1.is_in_prime_field();
         let found = evaluate_at(&self.free, fixed, &mut lane);
         found.is_some_and(|found| self.roots != Roots::BaseField || found.iter().all(inside))
     }
@@ -383,7 +384,8 @@ impl Points {
     fn lane_of(&self, values: &[ResiduePair]) -> FieldPoint {
         let mut lane = FieldPoint::new();
         // Values derived from others may lie outside F_p; then sums with them are not squares of F_p.
-        let outside = |value: &ResiduePair| !(value.0.is_prime() && value.1.is_prime());
+        let outside =
+            |value: &ResiduePair| !(value.0.is_in_prime_field() && value.1.is_in_prime_field());
         lane.roots = match self.roots {
             Roots::BaseField if values.iter().any(outside) => Roots::ExtensionField,
             roots => roots,

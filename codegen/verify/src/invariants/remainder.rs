@@ -10,7 +10,7 @@ use num_traits::{One, Signed};
 /// Number of terms that are written out; further terms are only counted.
 const MAX_SHOWN_TERMS: usize = 6;
 
-/// Returns the text of a polynomial; `None` if one of its variables cannot be written briefly, such as a quotient.
+/// Returns the text of a polynomial, whose further terms are counted; `None` if one of its variables cannot be written briefly, such as a quotient.
 pub fn polynomial_text(graph: &Graph, polynomial: &Poly<BigRational>) -> Option<String> {
     let mut text = String::new();
     let terms = polynomial.terms();

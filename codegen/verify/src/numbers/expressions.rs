@@ -29,7 +29,8 @@ pub struct Expressions {
 }
 
 impl Expressions {
-    /// Collects the expressions; `None` if Y is not found, or a number has no image modulo p.
+    /// Collects what the forms are evaluated from: A, its left inverse Y, poses, energies and loads. `None` if A has no
+    /// left inverse, or a number has no image modulo p.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let y = kinematics::left_inverse(&mut model)?;

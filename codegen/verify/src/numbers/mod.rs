@@ -38,7 +38,8 @@ use motion::{Moving, MovingFrame, point};
 use rustc_hash::FxHashMap;
 use space::{Vec3, scale, sub};
 
-/// Evaluation of the three forms for a model.
+/// Evaluates the left sides of (30a), (30b) and (30c) for a model at points of X, modulo p, without the rules of the
+/// generator.
 pub struct Numbers {
     expressions: Expressions,
 }
