@@ -3,6 +3,7 @@
 
 use hamel_codegen::Builder;
 use hamel_codegen::urdf::{self, Options};
+use hamel_lab::robots;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 

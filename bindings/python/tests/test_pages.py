@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import hamel
+from hamel import _hamel
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -48,6 +49,15 @@ def test_they_run(page: str, count: int, names: dict[str, Any]):
     for program in found:
         exec(compile(program, page, "exec"), names)
     assert names["xi_dot"].shape == (6,)
+
+
+def test_an_emitted_module(names: dict[str, Any], tmp_path: Path, models: Path, monkeypatch: pytest.MonkeyPatch):
+    out = tmp_path / "cart_pole.py"
+    assert _hamel.command(["emit", "--language", "python", str(models / "cart_pole.eom"), "-o", str(out)]) == 0
+    monkeypatch.syspath_prepend(tmp_path)
+    [program] = programs("docs/book/src/front-ends.md")
+    exec(compile(program, "front-ends.md", "exec"), names)
+    assert names["xi_dot"].shape == (20, 2)
 
 
 def test_what_the_chapter_says_of_its_events(names: dict[str, Any]):

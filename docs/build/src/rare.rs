@@ -4,9 +4,9 @@
 pub const RARE: &[(&str, &str, &str, &str)] = &[
     (
         "builder.rs",
-        "\"C cannot call a function that is given in Rust\"",
-        "C cannot call a function that is given in Rust",
-        "C is asked for, and the description has an `extern fn`: write what it gives as an expression or a table",
+        "{language} cannot call a function that is given in Rust",
+        "… cannot call a function that is given in Rust",
+        "C or Python is asked for, and the description has an `extern fn`: write what it gives as an expression or a table",
     ),
     (
         "builder.rs",

@@ -9,7 +9,7 @@ use std::path::Path;
 pub fn control() -> Vec<Value> {
     let root = match std::env::var_os("HAMEL_CONTROL_REFERENCE") {
         Some(folder) => folder.into(),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/control"),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference/control"),
     };
     let mut robots = Vec::new();
     for entry in std::fs::read_dir(root).expect("a folder") {

@@ -22,7 +22,7 @@ use hamel::{System, Table, Tangent};
 use hamel_lab::input::{Input, input};
 use hamel_lab::measure::INPUTS;
 use hamel_lab::robots::Robot;
-use hamel_lab::{input, measure, robots};
+use hamel_lab::{measure, robots};
 use libloading::Library;
 use peer::{Description, Peer};
 use std::cell::RefCell;

@@ -8,8 +8,8 @@ mod operations;
 use hamel::methods::{InChart, Rkmk4, SemiImplicitEuler};
 use hamel::{Method, State, System, Table, Tangent, TangentSystem, step_slopes_into};
 use hamel_lab::input::{Input, input};
+use hamel_lab::measure;
 use hamel_lab::measure::INPUTS;
-use hamel_lab::{input, measure};
 use operations::{Counted, counted};
 use std::hint::black_box;
 
