@@ -38,7 +38,7 @@ class Recorded:
 def emitted(path, folder):
     """Emit a description, and import the module."""
     out = folder / f"{path.stem}_emitted.py"
-    assert _hamel.command(["emit", "--language", "python", str(path), "-o", str(out)]) == 0
+    assert _hamel.command(["hamel", "emit", "--language", "python", str(path), "-o", str(out)]) == 0
     spec = importlib.util.spec_from_file_location(out.stem, out)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -120,5 +120,5 @@ def test_wrong_arguments_say_what_is_needed(tmp_path):
 
 
 def test_functions_in_rust_are_refused(capfd):
-    assert _hamel.command(["emit", "--language", "python", str(MODELS / "external" / "glider.eom")]) != 0
+    assert _hamel.command(["hamel", "emit", "--language", "python", str(MODELS / "external" / "glider.eom")]) != 0
     assert "Python cannot call a function that is given in Rust" in capfd.readouterr().err

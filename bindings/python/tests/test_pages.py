@@ -53,7 +53,7 @@ def test_they_run(page: str, count: int, names: dict[str, Any]):
 
 def test_an_emitted_module(names: dict[str, Any], tmp_path: Path, models: Path, monkeypatch: pytest.MonkeyPatch):
     out = tmp_path / "cart_pole.py"
-    assert _hamel.command(["emit", "--language", "python", str(models / "cart_pole.eom"), "-o", str(out)]) == 0
+    assert _hamel.command(["hamel", "emit", "--language", "python", str(models / "cart_pole.eom"), "-o", str(out)]) == 0
     monkeypatch.syspath_prepend(tmp_path)
     [program] = programs("docs/book/src/front-ends.md")
     exec(compile(program, "front-ends.md", "exec"), names)
