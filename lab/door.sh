@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Measures what a newcomer waits for, beside an earlier revision of this repository:
+# Measures the processor time of first builds, beside that of an earlier revision of this repository:
 #
 #     lab/door.sh REVISION
 #
-# Builds three things from nothing, of both: the first command of README, `pip install` of the Python package, and a crate
-# with the program of README, which has one `rigid_eom!`. Of the files as they are now the package is also built after the
-# command, in the same target folder. Prints processor time, the number of packages compiled and the size of what was made, with the ratios.
+# Builds three things from nothing, in both: the first command of README, the Python package by `pip install`, and a crate
+# with the program of README, which has one `rigid_eom!`. In the files as they are, the package is also built after the
+# command, in the same target folder. Prints processor time, the number of packages compiled and the size of the result, with
+# the ratios.
 #
-# What was measured of a revision is kept in `target/door`; the files as they are now are measured anew each time.
-# Needs cargo, git and Python; what is downloaded is downloaded before anything is measured.
+# The figures of a revision are kept in `target/door`; the files as they are now are measured anew each time.
+# Needs cargo, git and Python. Dependencies are downloaded before anything is measured.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -9,7 +9,6 @@ use super::graph::{Edge, Graph, Node, NodeId};
 use super::poly::field::Field;
 use super::poly::monomial::Var;
 use super::poly::polynomial::Poly;
-use super::residue_pair::ResiduePair;
 use num_rational::BigRational;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::borrow::Cow;
@@ -224,42 +223,4 @@ pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
             Node::Div(_, b) => graph.class(b.node()) & classes == 0,
             _ => graph.class(id) & classes == 0,
         })
-}
-
-/// Expands an expression over F_p to a polynomial in the symbols that are `unknown`, with the given values
-/// of all others; `None` if it is not a polynomial in them.
-pub fn polynomial_at(
-    graph: &Graph,
-    edge: Edge,
-    values: &[ResiduePair],
-    unknown: &dyn Fn(usize) -> bool,
-) -> Option<Poly<ResiduePair>> {
-    let mut memo: FxHashMap<NodeId, Poly<ResiduePair>> = FxHashMap::default();
-    let read = |memo: &FxHashMap<NodeId, Poly<ResiduePair>>, edge: Edge| {
-        let polynomial = memo.get(&edge.node())?;
-        Some(if edge.is_negative() {
-            polynomial.neg()
-        } else {
-            polynomial.clone()
-        })
-    };
-    for id in graph.reachable(&[edge]) {
-        let polynomial = match graph.node(id) {
-            Node::Constant(index) => {
-                Poly::constant(ResiduePair::from_rational(graph.constant(index))?)
-            }
-            Node::Symbol(index) if unknown(index as usize) => Poly::var(index),
-            Node::Symbol(index) => Poly::constant(*values.get(index as usize)?),
-            Node::Add(a, b) => read(&memo, a)?.add(&read(&memo, b)?),
-            Node::Mul(a, b) => product(&read(&memo, a)?, &read(&memo, b)?, MAX_TERMS)?,
-            Node::Div(a, b) => {
-                let divisor = read(&memo, b)?.as_constant()?.inv()?;
-                read(&memo, a)?.scale(&divisor)
-            }
-            // Functions and choices are not expanded, not even those of known symbols.
-            _ => return None,
-        };
-        memo.insert(id, polynomial);
-    }
-    read(&memo, edge)
 }

@@ -97,12 +97,6 @@ const TYPES: &[&str] = &[
     "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize",
 ];
 
-/// Whether a word is a Rust keyword.
-pub fn is_keyword(word: &str) -> bool {
-    // No keyword ends in a digit, but most generated names do.
-    !word.ends_with(|last: char| last.is_ascii_digit()) && KEYWORDS.contains(&word)
-}
-
 /// Returns the name of an argument.
 pub fn argument(argument: Argument) -> &'static str {
     match argument {
