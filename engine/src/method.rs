@@ -408,3 +408,23 @@ impl Stepper {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::names;
+    use hamel::methods::{General, Scheme};
+
+    #[test]
+    fn every_scheme_has_a_name() {
+        for scheme in Scheme::ALL {
+            assert!(names().contains(&scheme.name()), "{scheme:?}");
+        }
+    }
+
+    #[test]
+    fn every_method_for_any_system_has_a_name() {
+        for method in General::ALL {
+            assert!(names().contains(&method.name()), "{method:?}");
+        }
+    }
+}

@@ -5,21 +5,62 @@
 //! the same point. Sources: G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; M. Suzuki, Phys. Lett. A 146 (1990) 319; W.
 //! Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089; S. Blanes, P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313.
 
-/// A splitting scheme.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Scheme {
+/// Row of the table: everything that is known of a scheme.
+struct Row {
+    /// Name, for command lines and files.
+    name: &'static str,
+    /// Order, provided that the free flow is exact.
+    order: u32,
+    /// Number of drifts.
+    drifts: usize,
+    /// Drifts of the first half; those in the middle follow from the sum.
+    first_drifts: &'static [f64],
+    /// Kicks of the first half, likewise; empty for compositions of Strang steps, whose kicks follow from the drifts.
+    first_kicks: &'static [f64],
+}
+
+macro_rules! schemes {
+    ($($(#[$doc:meta])* $id:ident $name:literal $order:literal $drifts:literal [$first_drifts:expr] [$first_kicks:expr];)*) => {
+        /// A splitting scheme.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[non_exhaustive]
+        pub enum Scheme {
+            $($(#[$doc])* $id,)*
+        }
+
+        impl Scheme {
+            /// All schemes.
+            pub const ALL: &[Self] = &[$(Self::$id),*];
+
+            const fn row(self) -> Row {
+                match self {
+                    $(Self::$id => Row {
+                        name: $name,
+                        order: $order,
+                        drifts: $drifts,
+                        first_drifts: $first_drifts,
+                        first_kicks: $first_kicks,
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+// To add a scheme, add a row: documentation, identifier, name, order, number of drifts, and the first halves of the drifts and
+// of the kicks.
+schemes! {
     /// Order 2, one kick per step.
-    Strang,
+    Strang "splitting2" 2 1 [&[]] [&[]];
     /// Order 4, composed of five steps of [`Strang`](Self::Strang).
-    Suzuki4,
+    Suzuki4 "suzuki" 4 5 [&[SUZUKI; 2]] [&[]];
     /// Order 6, composed of nine steps of [`Strang`](Self::Strang).
-    KahanLi6,
+    KahanLi6 "kahan-li" 6 9 [&KAHAN_LI] [&[]];
     /// Order 4, six kicks per step, with small error constants; needs the free flow in closed form.
     #[default]
-    Nystrom4,
+    Nystrom4 "splitting" 4 6 [&NYSTROM_4.1] [&NYSTROM_4.0];
     /// Order 6, eleven kicks per step; needs the free flow in closed form.
-    Nystrom6,
+    Nystrom6 "splitting6" 6 11 [&NYSTROM_6.1] [&NYSTROM_6.0];
 }
 
 /// Suzuki's coefficient 1/(4 − ∛4).
@@ -62,75 +103,55 @@ const NYSTROM_6: ([f64; 5], [f64; 5]) = (
     ],
 );
 
+/// Returns entry `index` of a palindrome of `count` entries whose sum is 1, given those of its first half.
+fn entry(first: &[f64], index: usize, count: usize) -> f64 {
+    let mirrored = index.min(count.saturating_sub(1).saturating_sub(index));
+    first.get(mirrored).copied().unwrap_or_else(|| {
+        let sum = first.iter().sum::<f64>();
+        match count % 2 {
+            0 => 0.5 - sum,
+            _ => 1.0 - 2.0 * sum,
+        }
+    })
+}
+
 impl Scheme {
+    /// Returns the name of the scheme, for command lines and files.
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
     /// Returns the order p, provided that the free flow is exact.
     pub const fn order(self) -> u32 {
-        match self {
-            Self::Strang => 2,
-            Self::Suzuki4 | Self::Nystrom4 => 4,
-            Self::KahanLi6 | Self::Nystrom6 => 6,
-        }
+        self.row().order
     }
 
     /// Returns the number of drifts in a step, which is also its number of kicks if the last one is shared with the
     /// next step.
     pub const fn drifts(self) -> usize {
-        match self {
-            Self::Strang => 1,
-            Self::Suzuki4 => 5,
-            Self::KahanLi6 => 9,
-            Self::Nystrom4 => 6,
-            Self::Nystrom6 => 11,
-        }
+        self.row().drifts
     }
 
     /// Returns whether the scheme keeps its order with a free flow of order 2: true for compositions of
     /// [`Strang`](Self::Strang) steps.
     pub const fn composes_steps(self) -> bool {
-        !matches!(self, Self::Nystrom4 | Self::Nystrom6)
+        self.row().first_kicks.is_empty()
     }
 
     /// Returns aᵢ, the length of drift `index` as a fraction of h; `index` is in `0..drifts()`.
     pub fn drift(self, index: usize) -> f64 {
-        let count = self.drifts();
-        let mirrored = index.min(count.saturating_sub(1).saturating_sub(index));
-        let rest = |list: &[f64]| 0.5 - list.iter().sum::<f64>();
-        let whole = |list: &[f64]| 1.0 - 2.0 * list.iter().sum::<f64>();
-        match self {
-            Self::Strang => 1.0,
-            Self::Suzuki4 if mirrored == 2 => 1.0 - 4.0 * SUZUKI,
-            Self::Suzuki4 => SUZUKI,
-            Self::KahanLi6 => KAHAN_LI.get(mirrored).copied().unwrap_or_default(),
-            Self::Nystrom4 => {
-                let list = &NYSTROM_4.1;
-                list.get(mirrored).copied().unwrap_or_else(|| rest(list))
-            }
-            Self::Nystrom6 => {
-                let list = &NYSTROM_6.1;
-                list.get(mirrored).copied().unwrap_or_else(|| whole(list))
-            }
-        }
+        entry(self.row().first_drifts, index, self.drifts())
     }
 
     /// Returns bᵢ, the length of kick `index` as a fraction of h; `index` is in `0..=drifts()`.
     pub fn kick(self, index: usize) -> f64 {
-        let mirrored = index.min(self.drifts().saturating_sub(index));
-        let rest = |list: &[f64]| 0.5 - list.iter().sum::<f64>();
-        let whole = |list: &[f64]| 1.0 - 2.0 * list.iter().sum::<f64>();
-        match self {
-            Self::Nystrom4 => {
-                let list = &NYSTROM_4.0;
-                list.get(mirrored).copied().unwrap_or_else(|| whole(list))
-            }
-            Self::Nystrom6 => {
-                let list = &NYSTROM_6.0;
-                list.get(mirrored).copied().unwrap_or_else(|| rest(list))
-            }
-            _ => {
-                let before = mirrored.checked_sub(1).map_or(0.0, |i| self.drift(i));
-                0.5 * (before + self.drift(mirrored))
-            }
+        let count = self.drifts() + 1;
+        if !self.composes_steps() {
+            return entry(self.row().first_kicks, index, count);
         }
+        let mirrored = index.min(self.drifts().saturating_sub(index));
+        let before = mirrored.checked_sub(1).map_or(0.0, |i| self.drift(i));
+        0.5 * (before + self.drift(mirrored))
     }
 }
 
@@ -138,17 +159,9 @@ impl Scheme {
 mod tests {
     use super::Scheme;
 
-    const ALL: [Scheme; 5] = [
-        Scheme::Strang,
-        Scheme::Suzuki4,
-        Scheme::KahanLi6,
-        Scheme::Nystrom4,
-        Scheme::Nystrom6,
-    ];
-
     #[test]
     fn parts_add_up_to_the_step_and_read_the_same_backwards() {
-        for scheme in ALL {
+        for &scheme in Scheme::ALL {
             let count = scheme.drifts();
             let sum: f64 = (0..count).map(|i| scheme.drift(i)).sum();
             assert!((sum - 1.0).abs() < 1e-15, "{scheme:?}");
@@ -165,7 +178,7 @@ mod tests {
     /// order 2 and 3 include Σ bᵢ cᵢ = 1/2 and Σ bᵢ cᵢ² = 1/3.
     #[test]
     fn times_of_kicks_satisfy_the_conditions_of_quadrature() {
-        for scheme in ALL {
+        for &scheme in Scheme::ALL {
             let (mut time, mut sums) = (0.0, [0.0; 4]);
             for index in 0..=scheme.drifts() {
                 for (power, sum) in sums.iter_mut().enumerate() {

@@ -416,21 +416,12 @@ fn where_matrices_are_taken() {
     }
 }
 
-/// All compositions of free motion and kicks.
-const SCHEMES: [Scheme; 5] = [
-    Scheme::Strang,
-    Scheme::Suzuki4,
-    Scheme::KahanLi6,
-    Scheme::Nystrom4,
-    Scheme::Nystrom6,
-];
-
 /// Splitting methods, for bodies with a fixed point.
 #[test]
 fn splittings() {
     let top = linear::heavy_top::HeavyTop::<f64>::default();
     let start = under_way(&top, &[]);
-    for scheme in SCHEMES {
+    for scheme in Scheme::ALL.iter().copied() {
         let method = Splitting::new(&top, scheme);
         agree(
             &format!("heavy top, {scheme:?}"),
@@ -478,7 +469,7 @@ fn methods_for_long_runs_keep_the_symplectic_form() {
         let worst = worst.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert_eq!(worst < ROUNDING_TOLERANCE * 10.0, kept, "{name}: {worst}");
     };
-    for scheme in SCHEMES {
+    for scheme in Scheme::ALL.iter().copied() {
         let method = Splitting::new(&top, scheme);
         let (end, slopes) = step_slopes(&method, &top, &start, &[], 0.05).expect("a step");
         check(&format!("{scheme:?}"), true, rows(&slopes), &end);
