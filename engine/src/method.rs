@@ -65,6 +65,7 @@ const METHODS: &[MethodEntry] = entries! {
     "splitting6" Method Split |s| split(s, Scheme::Nystrom6), "the same; order 6";
     "suzuki" Method Split |s| split(s, Scheme::Suzuki4), "the same; order 4, of steps of order 2";
     "kahan-li" Method Split |s| split(s, Scheme::KahanLi6), "the same; order 6, of steps of order 2";
+    "kahan-li8" Method Split |s| split(s, Scheme::KahanLi8), "the same; order 8, of steps of order 2";
     "free" Method Free Stepper::closed_form, "bodies without forces; exact at any time";
     "lgvi" Method Split |_| Stepper::Lgvi, "bodies in potentials; variational, order 2";
     "gauss4" Method Momenta |_| Stepper::Gauss4, "long runs where M depends on x; implicit, order 4, no drift";

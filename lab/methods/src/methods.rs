@@ -71,6 +71,7 @@ where
         "splitting6" Method kicks(Scheme::Nystrom6);
         "suzuki" Method kicks(Scheme::Suzuki4);
         "kahan-li" Method kicks(Scheme::KahanLi6);
+        "kahan-li8" Method kicks(Scheme::KahanLi8);
     };
     if Sys::FREE {
         entries.push(closed(problem));

@@ -61,6 +61,8 @@ schemes! {
     Nystrom4 "splitting" 4 6 [&NYSTROM_4.1] [&NYSTROM_4.0];
     /// Order 6, eleven kicks per step; needs the free flow in closed form.
     Nystrom6 "splitting6" 6 11 [&NYSTROM_6.1] [&NYSTROM_6.0];
+    /// Order 8, composed of seventeen steps of [`Strang`](Self::Strang).
+    KahanLi8 "kahan-li8" 8 17 [&KAHAN_LI_8] [&[]];
 }
 
 /// Suzuki's coefficient 1/(4 − ∛4).
@@ -73,6 +75,18 @@ const KAHAN_LI: [f64; 5] = [
     -0.706_246_172_557_639_3,
     0.082_213_596_293_550_8,
     0.798_543_990_934_83,
+];
+
+/// Kahan and Li's coefficients of seventeen stages, the first eight.
+const KAHAN_LI_8: [f64; 8] = [
+    0.130_202_483_088_890_09,
+    0.561_162_981_775_108_4,
+    -0.389_474_962_644_847_3,
+    0.158_841_906_555_155_6,
+    -0.395_903_894_133_237_57,
+    0.184_539_640_978_315_7,
+    0.258_374_387_686_322_04,
+    0.295_011_723_609_310_3,
 ];
 
 /// Kicks and drifts in the first half of Blanes and Moan's SRKN₆ᵇ; those in the middle follow from the sums.

@@ -53,6 +53,9 @@ fn circles_with_a_torque_of_time() {
         ("Kahan-Li", 6.0, 40, &|n| {
             swung(Splitting::new(&system, Scheme::KahanLi6), n)
         }),
+        ("Kahan-Li 8", 8.0, 16, &|n| {
+            swung(Splitting::new(&system, Scheme::KahanLi8), n)
+        }),
         ("Gauss 4", 4.0, 100, &|n| swung(Gauss4, n)),
     ] {
         let errors = [1, 2, 4].map(|f| gap(&run(f * coarsest), &fine));
