@@ -79,7 +79,7 @@ const KAHAN_LI: [f64; 5] = [
 
 /// Kahan and Li's coefficients of seventeen stages, the first eight.
 const KAHAN_LI_8: [f64; 8] = [
-    0.130_202_483_088_890_09,
+    0.130_202_483_088_890_1,
     0.561_162_981_775_108_4,
     -0.389_474_962_644_847_3,
     0.158_841_906_555_155_6,
