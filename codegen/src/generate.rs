@@ -89,7 +89,7 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
 #[cfg(feature = "files")]
 pub fn available_in(system: &ast::System) -> Result<(Generated, Option<LeftOut>), Vec<Diagnostic>> {
     // The hash is that of the printed description, so that the code generated from it is the same.
-    let text = syntax::print::text(system);
+    let text = syntax::print::print_description(system);
     let hash = fingerprint(&canonical(&text));
     let (generated, left_out) = at_some_point(system, |model| Generated::available(model, hash))?;
     Ok((generated.described(&text), left_out))

@@ -1,13 +1,13 @@
 //! Adapter that presents a system as plain ordinary differential equations, for the solvers of other crates.
 //!
 //! This crate does not contain general stiff solvers of its own. The unknowns are y = (x, ξ), a slice of ν + n numbers;
-//! [`Equations`] provides their rates, the product of the Jacobian with a vector, and the conversion of y back to a
+//! [`OdeEquations`] provides their rates, the product of the Jacobian with a vector, and the conversion of y back to a
 //! state. It depends on no solver. The recommended one is `diffsol` (MIT; BDF of variable order, ESDIRK and TR-BDF2
 //! with dense output and events, released every few weeks, described in J. Open Source Softw. 11 (2026) 9384):
 //! `lab/diffsol` of the repository runs a heavy top and a stiff system with it.
 //!
 //! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads back to it, and
-//! [`Equations::state`] projects each state onto it. If λ is far above the rates of the motion, the equations are
+//! [`OdeEquations::state`] projects each state onto it. If λ is far above the rates of the motion, the equations are
 //! stiff, which stiff solvers handle.
 //!
 //! ```
@@ -25,10 +25,10 @@
 //! #     }
 //! # }
 //!
-//! use hamel::{State, adapter::Equations};
+//! use hamel::{State, adapter::OdeEquations};
 //!
 //! let pendulum = Pendulum::<f64>::default();
-//! let equations = Equations::new(&pendulum, |_, _, _| [0.0], 0.0);
+//! let equations = OdeEquations::new(&pendulum, |_, _, _| [0.0], 0.0);
 //! let mut y = vec![0.0; equations.unknowns()];
 //! equations.write(&State::start(&pendulum), &mut y);
 //! // Euler's method, in the place of a solver.
@@ -59,14 +59,14 @@ use crate::system::System;
 /// At a point where ξ̇ does not exist the rates are NaN: the solver shortens its step or gives up, and
 /// [`failure`](Self::failure) returns the cause.
 #[derive(Debug)]
-pub struct Equations<'s, Sys: ?Sized, U> {
+pub struct OdeEquations<'s, Sys: ?Sized, U> {
     system: &'s Sys,
     inputs: U,
     lambda: f64,
     failure: Cell<Option<StepError>>,
 }
 
-impl<'s, Sys, U> Equations<'s, Sys, U>
+impl<'s, Sys, U> OdeEquations<'s, Sys, U>
 where
     Sys: System + ?Sized,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,

@@ -8,7 +8,7 @@ use crate::robot::RobotOptions;
 use crate::source;
 use clap::Args;
 use hamel_engine::evaluate::{Cube, Kinematics, Value, evaluate, requested_jacobians};
-use hamel_engine::state::File;
+use hamel_engine::state::StateFile;
 use hamel_engine::{Evaluation, State};
 use std::path::PathBuf;
 
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let frames = source.frames(&arguments.frame)?;
     let at = arguments.at.as_deref();
-    let at = at.map(|path| File::read(path, &source)).transpose()?;
+    let at = at.map(|path| StateFile::read(path, &source)).transpose()?;
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
         return sample::run(&source, at, &frames);
     }

@@ -8,7 +8,7 @@ use hamel_codegen::generate::Generated;
 use hamel_engine::evaluate::{NamedFrame, kinematics, requested_jacobians};
 use hamel_engine::mechanism::{self, constant_singular, function};
 use hamel_engine::names;
-use hamel_engine::state::{File, JointState, VELOCITY_ORDER, rows};
+use hamel_engine::state::{JointState, StateFile, VELOCITY_ORDER, rows};
 use hamel_engine::{Error, Source, State};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
@@ -32,8 +32,8 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 /// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
 /// friction and other loads of the description are part of it, not added to it. Without a force
 /// the loads of the description act, with zero input.
-pub fn run(source: &Source, at: &File, frames: &[NamedFrame]) -> Result<(), Failure> {
-    let File { path, json } = at;
+pub fn run(source: &Source, at: &StateFile, frames: &[NamedFrame]) -> Result<(), Failure> {
+    let StateFile { path, json } = at;
     let generated = source.derive_only(&FUNCTIONS, &requested_jacobians(frames))?;
     let (list, several) = match json.get("samples") {
         Some(Value::Array(list)) => (list.as_slice(), true),

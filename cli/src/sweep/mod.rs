@@ -43,7 +43,7 @@ use hamel_engine::method;
 use hamel_engine::option_text;
 use hamel_engine::run::{Inputs, Spacing};
 use hamel_engine::source::added_outputs;
-use hamel_engine::state::File;
+use hamel_engine::state::StateFile;
 use hamel_engine::{Error, Source, Stepping};
 use hamel_files::number::group_thousands;
 use manifest::Manifest;
@@ -362,7 +362,7 @@ fn start(
     let Some(at) = &arguments.at else {
         return Ok((Map::new(), State::start(&generated.active)));
     };
-    let file = File::read(at, source)?;
+    let file = StateFile::read(at, source)?;
     let state = file.state(source, generated)?;
     match file.json {
         Value::Object(members) if !file.is_by_joints() => Ok((members, state)),

@@ -62,7 +62,7 @@ impl Fraction {
 }
 
 /// Calculator of bounds on the degrees of the nodes of a graph.
-pub struct Degrees<'a> {
+pub struct DegreeBounds<'a> {
     graph: &'a Graph,
     /// Group of each symbol, by symbol index; only coordinates of a kind with a norm have one.
     groups: Vec<Option<usize>>,
@@ -72,12 +72,12 @@ pub struct Degrees<'a> {
     degrees: Vec<f64>,
 }
 
-impl<'a> Degrees<'a> {
+impl<'a> DegreeBounds<'a> {
     /// Creates a calculator of bounds on the degrees of nodes, as rational functions of the random numbers of a point.
     /// `groups` holds the group of every coordinate of a kind with a norm; symbols
     /// beyond the end of the list have none.
     pub fn new(graph: &'a Graph, groups: Vec<Option<usize>>) -> Self {
-        Degrees {
+        DegreeBounds {
             graph,
             groups,
             fractions: FxHashMap::default(),

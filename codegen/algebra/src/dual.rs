@@ -10,7 +10,7 @@
 //!
 //! Numbers with slopes are numbers themselves, so second derivatives are slopes over [`Duals`].
 
-use super::numbers::{Form, Modular, Numbers, Step};
+use super::numbers::{Arithmetic, Form, Modular, Step};
 use super::residue_pair::ResiduePair;
 use num_traits::Signed;
 
@@ -27,7 +27,7 @@ pub enum Partial<N> {
 
 impl<N: Clone> Partial<N> {
     /// Multiplies a slope by this derivative.
-    fn times<C: Numbers<Number = N>>(&self, numbers: &mut C, slope: &N) -> Option<N> {
+    fn times<C: Arithmetic<Number = N>>(&self, numbers: &mut C, slope: &N) -> Option<N> {
         match self {
             Partial::One => Some(slope.clone()),
             Partial::MinusOne => numbers.make(Step::Neg(slope)),
@@ -37,7 +37,7 @@ impl<N: Clone> Partial<N> {
 }
 
 /// A way to carry slopes through operations.
-pub trait Slopes<C: Numbers> {
+pub trait Slopes<C: Arithmetic> {
     /// The slope that is carried along with a value.
     type Slope: Clone;
     /// Returns the slope of a symbol.
@@ -62,7 +62,7 @@ pub struct Duals<C, S> {
     pub slopes: S,
 }
 
-impl<C: Numbers, S: Slopes<C>> Duals<C, S> {
+impl<C: Arithmetic, S: Slopes<C>> Duals<C, S> {
     fn with_slope(
         &mut self,
         value: C::Number,
@@ -73,7 +73,7 @@ impl<C: Numbers, S: Slopes<C>> Duals<C, S> {
     }
 }
 
-impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
+impl<C: Arithmetic, S: Slopes<C>> Arithmetic for Duals<C, S> {
     type Number = (C::Number, S::Slope);
 
     fn make(&mut self, step: Step<Self::Number>) -> Option<Self::Number> {
@@ -230,7 +230,7 @@ impl<C: Modular, S: Slopes<C>> Modular for Duals<C, S> {
 #[derive(Clone, Debug)]
 pub struct ForwardMode<F>(pub F);
 
-impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for ForwardMode<F> {
+impl<C: Arithmetic, F: Fn(usize) -> C::Number> Slopes<C> for ForwardMode<F> {
     type Slope = C::Number;
 
     fn symbol(&mut self, _: &mut C, index: usize) -> C::Number {
@@ -266,7 +266,7 @@ impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for ForwardMode<F> {
 #[derive(Clone, Debug)]
 pub struct VectorForwardMode<F>(pub F);
 
-impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for VectorForwardMode<F> {
+impl<C: Arithmetic, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for VectorForwardMode<F> {
     type Slope = Vec<C::Number>;
 
     fn symbol(&mut self, numbers: &mut C, index: usize) -> Vec<C::Number> {
@@ -322,7 +322,7 @@ impl<N> Default for Record<N> {
 
 impl<N: Clone> Record<N> {
     /// Computes ∂f/∂xₖ for the first `symbols` symbols by a reverse sweep, for f at a place of the record.
-    pub fn gradient<C: Numbers<Number = N>>(
+    pub fn gradient<C: Arithmetic<Number = N>>(
         &self,
         numbers: &mut C,
         place: Option<usize>,
@@ -353,7 +353,7 @@ impl<N: Clone> Record<N> {
     }
 }
 
-impl<C: Numbers> Slopes<C> for Record<C::Number> {
+impl<C: Arithmetic> Slopes<C> for Record<C::Number> {
     type Slope = Option<usize>;
 
     fn symbol(&mut self, _: &mut C, index: usize) -> Option<usize> {

@@ -14,7 +14,7 @@
 
 use super::external::Component;
 use super::function::{Function, Parity};
-use super::numbers::{Form, Modular, Numbers, Step};
+use super::numbers::{Arithmetic, Form, Modular, Step};
 use super::prime::Residue;
 use super::residue_pair::{Random, ResiduePair};
 use super::roots;
@@ -307,7 +307,7 @@ impl FieldPoint {
     }
 }
 
-impl Numbers for FieldPoint {
+impl Arithmetic for FieldPoint {
     type Number = ResiduePair;
 
     /// Missing square roots are noted (`has_missing_root`).

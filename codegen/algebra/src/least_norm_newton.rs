@@ -34,7 +34,7 @@ pub struct StoppingRule {
 
 /// Reason why Newton's iteration by steps of least norm ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum NewtonTermination {
     /// Steps no longer reduce the residuals.
     Converged,
     /// The number of steps was reached.
@@ -51,7 +51,7 @@ pub struct Outcome {
     /// Point from which the last step was taken, which is as good where that step changed only rounding errors.
     pub before: Vec<f64>,
     /// Reason why it ended.
-    pub end: End,
+    pub end: NewtonTermination,
 }
 
 /// Takes steps h of least norm with r + J h = 0 until the rule stops them.
@@ -66,23 +66,23 @@ pub fn solve(
     let mut before = start.clone();
     let mut point = start;
     let mut last_size = f64::INFINITY;
-    let mut end = End::OutOfSteps;
+    let mut end = NewtonTermination::OutOfSteps;
     for step in 0..rule.max_steps {
         let at = linearize(&point);
         if !at.size.is_finite() {
-            end = End::NoStep;
+            end = NewtonTermination::NoStep;
             break;
         }
         let stagnates = at.size >= rule.stagnation_ratio * last_size;
         if stagnates && at.size <= rule.tolerance && step >= rule.min_steps {
-            end = End::Converged;
+            end = NewtonTermination::Converged;
             break;
         }
         last_size = at.size;
         before.clone_from(&point);
         let target: Vec<f64> = at.residuals.iter().map(|residual| -residual).collect();
         let Some(change) = least_norm(&at.jacobian, &target) else {
-            end = End::NoStep;
+            end = NewtonTermination::NoStep;
             break;
         };
         advance(&mut point, &change);

@@ -35,7 +35,7 @@ const METRIC_REGULARIZATION: f64 = 1e-9;
 
 /// Equations for a point, and its distance from a guess. Directions are the rates (generalized velocities)
 /// along which the point may move.
-pub trait Equations {
+pub trait NearestPointProblem {
     /// Number of directions.
     fn directions(&self) -> usize;
     /// Residuals φ(x), which are 0 at a solution.
@@ -49,7 +49,7 @@ pub trait Equations {
 }
 
 /// Returns the solution nearest to the guess; `None` if none was found.
-pub fn find_nearest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> {
+pub fn find_nearest(problem: &dyn NearestPointProblem, guess: &[f64]) -> Option<Vec<f64>> {
     if largest(&problem.residuals(guess)) <= RESIDUAL_TOLERANCE {
         return Some(guess.to_vec());
     }
@@ -80,7 +80,7 @@ pub fn find_nearest(problem: &dyn Equations, guess: &[f64]) -> Option<Vec<f64>> 
 }
 
 /// Newton's method with the shortest steps in the metric, iterated to full precision.
-fn solve_newton(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn solve_newton(problem: &dyn NearestPointProblem, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut residuals = problem.residuals(&x);
     for _ in 0..MAX_NEWTON_STEPS {
         let step = step(problem, &x, &residuals, false);
@@ -116,7 +116,7 @@ fn solve_newton(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
 }
 
 /// Descends along the set of solutions to where the distance from the guess is least.
-fn descend(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn descend(problem: &dyn NearestPointProblem, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut before = distance(problem, &x);
     for _ in 0..MAX_DESCENT_STEPS {
         let step = step(problem, &x, &problem.residuals(&x), true)?;
@@ -166,7 +166,7 @@ fn descend(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
 /// Refines the end of the descent. Near the minimum, distances differ by less than their rounding errors
 /// while half of the digits are still missing. The steps are more precise: they are taken as long as they
 /// become shorter.
-fn refine(problem: &dyn Equations, mut x: Vec<f64>) -> Option<Vec<f64>> {
+fn refine(problem: &dyn NearestPointProblem, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let ahead = |x: &[f64]| step(problem, x, &problem.residuals(x), true);
     let mut step = ahead(&x)?;
     let mut factor = 1.0;
@@ -206,7 +206,12 @@ fn halve_until<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> 
 
 /// Computes a step h with φ + B h = 0: the shortest one in the metric EᵀE or, if `towards` is set, the one
 /// with the shortest e + E h. B and E are the Jacobians of φ and e.
-fn step(problem: &dyn Equations, x: &[f64], residuals: &[f64], towards: bool) -> Option<Vec<f64>> {
+fn step(
+    problem: &dyn NearestPointProblem,
+    x: &[f64],
+    residuals: &[f64],
+    towards: bool,
+) -> Option<Vec<f64>> {
     let (error, slopes) = problem.error(x);
     let count = problem.directions();
     let column = |i: usize| slopes.iter().map(move |row| row[i]);
@@ -242,7 +247,7 @@ fn step(problem: &dyn Equations, x: &[f64], residuals: &[f64], towards: bool) ->
     Some(backward(&factor, &u))
 }
 
-fn distance(problem: &dyn Equations, x: &[f64]) -> f64 {
+fn distance(problem: &dyn NearestPointProblem, x: &[f64]) -> f64 {
     squared_norm(&problem.error(x).0).sqrt()
 }
 

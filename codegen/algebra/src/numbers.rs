@@ -1,6 +1,6 @@
 //! Arithmetic in numbers of any kind, in which `walk::evaluate` computes the values of nodes.
 //!
-//! A kind of numbers is an implementation of [`Numbers`], which knows the values of the symbols at a point:
+//! A kind of numbers is an implementation of [`Arithmetic`], which knows the values of the symbols at a point:
 //!
 //! | numbers | implementation |
 //! |---|---|
@@ -55,7 +55,7 @@ pub enum Step<'a, N> {
 }
 
 /// Arithmetic at a point.
-pub trait Numbers {
+pub trait Arithmetic {
     /// Type of the numbers.
     type Number: Clone;
 
@@ -209,7 +209,7 @@ pub trait Numbers {
 }
 
 /// Numbers that include the elements of the two fields.
-pub trait Modular: Numbers {
+pub trait Modular: Arithmetic {
     /// Converts an element of the fields.
     fn residue(&mut self, value: ResiduePair) -> Option<Self::Number>;
 }

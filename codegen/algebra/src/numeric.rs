@@ -2,7 +2,7 @@
 
 use super::field_point::FieldPoint;
 use super::graph::{Edge, Graph};
-use super::numbers::{Numbers, Step};
+use super::numbers::{Arithmetic, Step};
 use super::residue_pair::ResiduePair;
 use super::walk;
 use num_traits::ToPrimitive;
@@ -11,7 +11,7 @@ use num_traits::ToPrimitive;
 #[derive(Clone, Copy, Debug)]
 pub struct Floats<'a>(pub &'a [f64]);
 
-impl Numbers for Floats<'_> {
+impl Arithmetic for Floats<'_> {
     type Number = f64;
 
     #[inline]

@@ -4,7 +4,7 @@
 use super::external;
 use super::interval::Interval;
 use super::node::{Edge, Node, NodeId};
-use super::numbers::{Form, Numbers, Step};
+use super::numbers::{Arithmetic, Form, Step};
 use super::reals::{Real, Reals, SAMPLES, contradict};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -218,7 +218,7 @@ impl RealValues {
 /// Arithmetic on real samples, with the samples of the symbols.
 struct Samples<'a>(&'a [Reals]);
 
-impl Numbers for Samples<'_> {
+impl Arithmetic for Samples<'_> {
     type Number = Reals;
 
     fn make(&mut self, step: Step<Reals>) -> Option<Reals> {
@@ -258,7 +258,7 @@ impl Numbers for Samples<'_> {
 /// Interval arithmetic, in which π is the only symbol.
 struct Bounds;
 
-impl Numbers for Bounds {
+impl Arithmetic for Bounds {
     type Number = Interval;
 
     fn make(&mut self, step: Step<Interval>) -> Option<Interval> {

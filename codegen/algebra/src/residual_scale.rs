@@ -1,7 +1,7 @@
 //! Scales of equations, relative to which residuals are large or small, whatever the units.
 
 use super::graph::{Edge, Graph};
-use super::numbers::{Numbers, Step};
+use super::numbers::{Arithmetic, Step};
 use super::numeric::{Floats, evaluate};
 use super::slopes::slopes;
 use super::walk;
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Values, with the sizes of the terms that they are sums of.
 struct Sized<'a>(Floats<'a>);
 
-impl Numbers for Sized<'_> {
+impl Arithmetic for Sized<'_> {
     type Number = (f64, f64);
 
     fn make(&mut self, step: Step<(f64, f64)>) -> Option<(f64, f64)> {

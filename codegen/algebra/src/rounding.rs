@@ -16,7 +16,7 @@ use super::double::Double;
 use super::dual::{Duals, Partial, Slopes};
 use super::external;
 use super::graph::{Edge, Graph};
-use super::numbers::{Numbers, Step};
+use super::numbers::{Arithmetic, Step};
 use super::numeric::Floats;
 use super::walk::evaluate;
 
@@ -43,7 +43,7 @@ impl RoundedValue {
 /// value count as 0.
 struct Doubles<'a>(&'a [f64]);
 
-impl Numbers for Doubles<'_> {
+impl Arithmetic for Doubles<'_> {
     type Number = Double;
 
     fn make(&mut self, step: Step<Double>) -> Option<Double> {
@@ -84,7 +84,7 @@ impl Numbers for Doubles<'_> {
 /// nearest number, so that they are the same on every machine.
 struct RoundedAndExact<'a>(Doubles<'a>);
 
-impl Numbers for RoundedAndExact<'_> {
+impl Arithmetic for RoundedAndExact<'_> {
     type Number = RoundedValue;
 
     fn make(&mut self, step: Step<RoundedValue>) -> Option<RoundedValue> {

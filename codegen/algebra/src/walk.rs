@@ -2,11 +2,11 @@
 
 use super::graph::Graph;
 use super::node::{Edge, Node, NodeId};
-use super::numbers::{Form, Numbers, Step};
+use super::numbers::{Arithmetic, Form, Step};
 use num_rational::BigRational;
 
 /// Evaluates the expressions; `None` if something has no value.
-pub fn evaluate<C: Numbers>(
+pub fn evaluate<C: Arithmetic>(
     graph: &Graph,
     roots: &[Edge],
     numbers: &mut C,

@@ -40,7 +40,7 @@ pub struct Part {
 
 /// The division of a body into parts.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct BodyPartition {
     /// Whether the body is small enough for one function.
     pub whole: bool,
     /// The parts in order; at most one if `whole`.
@@ -56,7 +56,7 @@ pub struct Plan {
 
 /// Splits a body into parts of at most `limit` `let`s, counting statements, numbers, and the name of the constants.
 /// The parts write results when they compute them, or leave them in slots, as `when` says.
-pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) -> Plan {
+pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) -> BodyPartition {
     let none = FxHashMap::default();
     let plan = cut(body, places, time, limit, &none, &FxHashSet::default());
     // The function of constants runs only when parameters change, and a body that fits the cache gains nothing.
@@ -87,7 +87,7 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) 
         return plan;
     }
     let slots = most_used_first(body, &short);
-    Plan {
+    BodyPartition {
         slots,
         results,
         ..short
@@ -139,7 +139,7 @@ fn cut(
     limit: usize,
     results: &FxHashMap<NodeId, usize>,
     last: &FxHashSet<NodeId>,
-) -> Plan {
+) -> BodyPartition {
     let limit = limit.max(SMALLEST);
     let is_number = |edge: &Edge| places.of(edge.node(), time) == Place::Number;
     let mut parts: Vec<Part> = Vec::new();
@@ -170,7 +170,7 @@ fn cut(
         }
     }
     let (slots, size) = slots(body, &parts, results, last);
-    Plan {
+    BodyPartition {
         whole,
         parts,
         slots,
@@ -260,7 +260,7 @@ fn slots(
 }
 
 /// Renumbers slots by how many parts use them: the first ones have shorter offsets, and lie close together.
-fn most_used_first(body: &Body, plan: &Plan) -> FxHashMap<NodeId, usize> {
+fn most_used_first(body: &Body, plan: &BodyPartition) -> FxHashMap<NodeId, usize> {
     let mut uses = vec![0_usize; plan.size];
     for part in &plan.parts {
         let statements = &body.statements[part.statements.clone()];

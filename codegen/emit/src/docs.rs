@@ -62,7 +62,7 @@ pub fn operations(count: Count, end: &str) -> String {
 
 /// Returns the Rust documentation of a function: what it evaluates, its cost, arguments, result and errors.
 pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
-    let mut lines = described(program, function, nodes);
+    let mut lines = summary_and_arguments(program, function, nodes);
     let result = result(function.shape);
     lines.extend([String::new(), format!("Returns {result}.")]);
     if function.fallible {
@@ -130,7 +130,11 @@ pub fn description(text: &str) -> Vec<String> {
 }
 
 /// Returns the lines of a function's documentation on its purpose, cost and arguments; callers add result and errors.
-pub fn described(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
+pub fn summary_and_arguments(
+    program: &Program,
+    function: &Function,
+    nodes: &[NodeId],
+) -> Vec<String> {
     let mut lines = function.docs.clone();
     if lines.is_empty() {
         lines.push(format!("`{}`.", function.name));

@@ -1,6 +1,6 @@
 //! Text of one generated function.
 
-use super::chunk::{Part, Plan, plan};
+use super::chunk::{BodyPartition, Part, plan};
 use super::docs;
 use super::language::{Array, Language, Rust};
 use super::locals::Locals;
@@ -78,7 +78,7 @@ pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
 }
 
 /// Prints the function as Rust, preceded by its parts.
-pub fn text(emitter: &Emitter, spec: &Spec) -> String {
+pub fn print_function(emitter: &Emitter, spec: &Spec) -> String {
     let parameters =
         super::parameters::expressions(emitter.program, &emitter.names.fields, "self.");
     draw(emitter, spec, &Rust, &parameters, |drawing| {
@@ -175,7 +175,7 @@ pub struct Drawing<'a> {
     /// Its statements.
     pub body: &'a Body,
     /// Its division into parts.
-    pub plan: &'a Plan,
+    pub plan: &'a BodyPartition,
     /// Headings of its statements.
     pub headings: &'a Headings,
     /// Results that are read from the array to which they were written.

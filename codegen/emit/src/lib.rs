@@ -216,8 +216,8 @@ fn items(emitter: &Emitter) -> String {
     let together = together::of(emitter).filter(|_| !system.is_empty());
     for (index, spec) in emitter.specs().iter().enumerate() {
         methods.push_str(&match &together {
-            Some((place, both)) if *place == index => together::text(emitter, spec, both),
-            _ => function::text(emitter, spec),
+            Some((place, both)) if *place == index => together::print_pair(emitter, spec, both),
+            _ => function::print_function(emitter, spec),
         });
     }
     methods.push_str(&parameters::accessors(emitter));

@@ -28,7 +28,7 @@ pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
         ],
         ..slopes.clone()
     };
-    let mut lines = docs::described(program, &described, &nodes);
+    let mut lines = docs::summary_and_arguments(program, &described, &nodes);
     lines.extend([
         format!(
             "- `{SLOPES}`: {}, which are written",
@@ -60,7 +60,7 @@ pub fn of<'a>(emitter: &'a Emitter) -> Option<(usize, Spec<'a>)> {
 }
 
 /// Prints `accel_and_linearize`, which computes ξ̇ and [A B] together, and a `linearize` that calls it.
-pub fn text(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
+pub fn print_pair(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
     let given: Vec<&str> = both
         .arguments
         .iter()
@@ -76,5 +76,5 @@ pub fn text(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
         zeros(linearize.shape),
         given.join(", ")
     );
-    function::text(emitter, both) + &function::head(emitter.program, linearize, &body)
+    function::print_function(emitter, both) + &function::head(emitter.program, linearize, &body)
 }

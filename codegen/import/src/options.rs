@@ -104,7 +104,7 @@ impl Imported {
 
     /// Prints the description as an `.eom` text, with comments: changed numbers, warnings, and what was left out.
     pub fn text(&self) -> String {
-        print::text(&self.system)
+        print::print_description(&self.system)
     }
 }
 

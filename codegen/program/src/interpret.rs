@@ -2,7 +2,7 @@
 
 use super::{Argument, Function, Program};
 use hamel_algebra::graph::{Edge, Node, NodeId};
-use hamel_algebra::numbers::{Form, Numbers};
+use hamel_algebra::numbers::{Arithmetic, Form};
 use hamel_algebra::numeric::Floats;
 use num_traits::ToPrimitive;
 use std::ops::Range;

@@ -23,7 +23,7 @@ fn named(name: &str) -> Expr {
 
 /// Returns the scene of a system's statements, if its text reads back as the same statements.
 pub(super) fn checked(system: &System) -> Result<Scene, SceneError> {
-    let text = crate::syntax::print::text(system);
+    let text = crate::syntax::print::print_description(system);
     // Docs may contain anything, one line each.
     let docs = text.split_inclusive('\n').take(system.docs.len());
     let mut errors = strange(&text, docs.map(str::len).sum());

@@ -129,7 +129,7 @@ impl Scene {
 /// Prints the description in the language, one statement per line.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&crate::syntax::print::text(&self.system))
+        f.write_str(&crate::syntax::print::print_description(&self.system))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The solution nearest to a guess is found if there is one.
 
-use hamel_algebra::nearest_solution::{Equations, find_nearest};
+use hamel_algebra::nearest_solution::{NearestPointProblem, find_nearest};
 
 /// A point on a circle about the origin, with its distance from a guess in a diagonal metric.
 struct Circle {
@@ -9,7 +9,7 @@ struct Circle {
     weights: [f64; 2],
 }
 
-impl Equations for Circle {
+impl NearestPointProblem for Circle {
     fn directions(&self) -> usize {
         2
     }
@@ -61,7 +61,7 @@ fn the_nearest_point_of_a_circle_is_found() {
 #[test]
 fn where_there_is_no_solution_none_is_found() {
     struct Unsolvable;
-    impl Equations for Unsolvable {
+    impl NearestPointProblem for Unsolvable {
         fn directions(&self) -> usize {
             1
         }

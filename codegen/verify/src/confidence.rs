@@ -6,7 +6,7 @@
 //! degrees d₁, d₂, … multiply D by Π dᵢ (Bézout); sums and linear solves that combine evaluated expressions in numbers
 //! multiply it by the number of their terms.
 
-use hamel_algebra::degree::Degrees;
+use hamel_algebra::degree::DegreeBounds;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::prime::PRIMES;
 use hamel_language::model::Model;
@@ -38,7 +38,7 @@ impl Confidence {
     ) -> Self {
         let degree = expressions
             .iter()
-            .map(|(graph, roots)| Degrees::new(graph, groups(model)).bound(roots))
+            .map(|(graph, roots)| DegreeBounds::new(graph, groups(model)).bound(roots))
             .sum();
         Confidence::of_degree(degree, solved_degree(model), terms, points, comparisons)
     }
@@ -60,7 +60,7 @@ impl Confidence {
 /// Bounds on the chance that expressions of one graph agree at random points although they differ.
 pub struct ConfidenceBounds<'a> {
     graph: &'a Graph,
-    degrees: Degrees<'a>,
+    degrees: DegreeBounds<'a>,
     solved: f64,
     merging: Option<Confidence>,
 }
@@ -71,7 +71,7 @@ impl<'a> ConfidenceBounds<'a> {
     pub fn new(model: &Model, graph: &'a Graph) -> Self {
         ConfidenceBounds {
             graph,
-            degrees: Degrees::new(graph, groups(model)),
+            degrees: DegreeBounds::new(graph, groups(model)),
             solved: solved_degree(model),
             merging: None,
         }
@@ -107,7 +107,7 @@ fn groups(model: &Model) -> Vec<Option<usize>> {
 fn solved_degree(model: &Model) -> f64 {
     let constraints = model.points.constraints.iter();
     let degrees = constraints.map(|&row| {
-        let mut degrees = Degrees::new(&model.points.free, Vec::new());
+        let mut degrees = DegreeBounds::new(&model.points.free, Vec::new());
         degrees.bound(&[row]).max(1.0)
     });
     degrees.product()

@@ -5,7 +5,7 @@
 //! numbers modulo p, for the bodies of the description together with a body of random inertia on every link, so that no
 //! column is multiplied by 0.
 
-use super::numbers::Numbers;
+use super::numbers::FormEvaluator;
 use super::points::{Disagreement, at_fresh_points};
 use super::verdict::{failure, nowhere};
 use super::violation::{RegressorFault, Violation};
@@ -24,10 +24,10 @@ use hamel_program::{FunctionId, Program};
 ///
 /// # Errors
 /// A fault of the generator.
-pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), RegressorFault> {
+pub fn check_base_parameters(model: &Model, regressor: &Regressor) -> Result<(), RegressorFault> {
     let (heavier, added) =
         with_random_bodies(model, regressor).ok_or(RegressorFault::UnknownLink)?;
-    let numbers = Numbers::new(&heavier).ok_or(RegressorFault::NoForces)?;
+    let numbers = FormEvaluator::new(&heavier).ok_or(RegressorFault::NoForces)?;
     let factors = regressor.base.iter().flat_map(|base| &base.terms);
     let mut edges: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
     edges.extend(regressor.standard.iter().map(|one| one.value));
@@ -51,7 +51,7 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), RegressorFault>
 /// # Errors
 /// A fault of the generator; the program is not emitted.
 pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Result<(), Diagnostic> {
-    prove(model, regressor).map_err(|fault| failure(model, &fault.to_string()))?;
+    check_base_parameters(model, regressor).map_err(|fault| failure(model, &fault.to_string()))?;
     let columns: Vec<&Vec<Edge>> = regressor.base.iter().map(|base| &base.column).collect();
     let n = regressor.model.n();
     let rows = (0..n).flat_map(|row| columns.iter().map(move |column| column[row]));
@@ -140,7 +140,7 @@ fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Ve
 
 /// Compares at a point; `None` if something has no value there.
 fn at(
-    numbers: &Numbers,
+    numbers: &FormEvaluator,
     (tape, added): (&Tape, &[ResiduePair]),
     regressor: &Regressor,
     point: &FieldPoint,

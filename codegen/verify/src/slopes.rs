@@ -58,14 +58,14 @@ const EMITTED: [&str; 4] = [
 ];
 
 /// M, F = f − h − ∂V, A and A ξ at one point, or their derivatives.
-struct Numbers {
+struct SlopeValues {
     mass: Vec<Vec<ResiduePair>>,
     force: Vec<ResiduePair>,
     a: Vec<Vec<ResiduePair>>,
     rate: Vec<ResiduePair>,
 }
 
-impl Numbers {
+impl SlopeValues {
     fn roots(reference: &Reference) -> Vec<Edge> {
         let mut roots = reference.mass.concat();
         for part in [&reference.force, &reference.bias, &reference.slope] {
@@ -82,7 +82,7 @@ impl Numbers {
         let (forces, rest) = rest.split_at(3 * n);
         let (a, rate) = rest.split_at(nu * n);
         let rows = |flat: &[ResiduePair]| matrix(flat, n);
-        Numbers {
+        SlopeValues {
             mass: rows(mass),
             force: (0..n)
                 .map(|i| forces[i] - forces[n + i] - forces[2 * n + i])
@@ -336,13 +336,13 @@ fn derived_at(
 ) -> Option<Result<(), Violation>> {
     let (model, graph) = (&reference.model, &reference.model.graph);
     let n = model.n();
-    let roots = Numbers::roots(reference);
-    let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut point.clone())?);
+    let roots = SlopeValues::roots(reference);
+    let here = SlopeValues::new(reference, &evaluate_at(graph, &roots, &mut point.clone())?);
     // Derivatives of everything along a direction in the symbols.
-    let slope = |direction: &[ResiduePair]| -> Option<Numbers> {
+    let slope = |direction: &[ResiduePair]| -> Option<SlopeValues> {
         let duals = tangent_at(graph, &roots, &mut point.clone(), direction)?;
         let slopes: Vec<ResiduePair> = duals.into_iter().map(|dual| dual.1).collect();
-        Some(Numbers::new(reference, &slopes))
+        Some(SlopeValues::new(reference, &slopes))
     };
     let xi_dot = solve(here.mass.clone(), here.force.clone())?;
     let displaced = Displaced::new(model, &here.rate);

@@ -10,7 +10,7 @@
 //! | `split_momenta` | θ̇ of circles, J ω of rotors |
 //! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
 
-use super::numbers::{Numbers, PointValues};
+use super::numbers::{FormEvaluator, PointValues};
 use super::violation::Violation;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
@@ -55,7 +55,7 @@ impl Proof {
     /// Compares at one point; `None` if something has no value there.
     pub fn at_point(
         &self,
-        numbers: &Numbers,
+        numbers: &FormEvaluator,
         program: &Program,
         point: &FieldPoint,
     ) -> Option<Result<(), Violation>> {
@@ -136,7 +136,7 @@ impl Proof {
     /// Returns d/dt of the momenta and of y along the motion.
     fn slopes(
         &self,
-        numbers: &Numbers,
+        numbers: &FormEvaluator,
         program: &Program,
         moving: &FieldPoint,
     ) -> Option<(Vec<ResiduePair>, Vec<ResiduePair>)> {

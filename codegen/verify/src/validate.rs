@@ -21,7 +21,7 @@ use super::charts::ChartComparison;
 use super::check::failures;
 use super::forms::Symbols;
 use super::kernel::dot;
-use super::numbers::{Numbers, PointValues};
+use super::numbers::{FormEvaluator, PointValues};
 use super::points::{Disagreement, at_fresh_points};
 use super::slopes::DerivativeComparison;
 use super::splitting::Proof;
@@ -69,7 +69,7 @@ pub(super) fn first_failure(
 ) -> Result<(), Disagreement<Violation>> {
     let without = |identity| Disagreement::Differs(Violation::Identity(identity));
     let with_rates = states::with_rates(model, program);
-    let numbers = Numbers::new(model).ok_or_else(|| without("Y A = I"))?;
+    let numbers = FormEvaluator::new(model).ok_or_else(|| without("Y A = I"))?;
     let emitted =
         Emitted::new(model, program).ok_or_else(|| without("that numbers have values"))?;
     let slopes =

@@ -17,7 +17,7 @@ use crate::names;
 use crate::reporter::Reporter;
 use crate::run::{Run, Simulation};
 use crate::source::{OpenOptions, Source};
-use crate::state::{File, State, joints};
+use crate::state::{State, StateFile, joints};
 use event_systems::EventSystemCache;
 use function::compile;
 use hamel::methods::General;
@@ -27,7 +27,7 @@ use hamel_codegen::functions::{Asked, FunctionId, Jacobian, SLOPES, Serves};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::program::Cause;
-use hamel_codegen::proof::regressor::prove;
+use hamel_codegen::proof::regressor::check_base_parameters;
 use hamel_codegen::syntax::ast::CoordKind;
 use hamel_codegen::syntax::suggest::closest;
 use hamel_codegen::tables::regressor::BaseParameters;
@@ -271,7 +271,7 @@ impl Session {
     /// # Errors
     /// All errors in the text.
     pub fn change_state(&self, from: State, json: &str, name: &str) -> Result<State, Error> {
-        File::of(name.into(), json, &self.source)?.changes(from, &self.source, &self.generated)
+        StateFile::of(name.into(), json, &self.source)?.changes(from, &self.source, &self.generated)
     }
 
     /// Returns the names of all available functions, including those that are derived on request.
@@ -523,7 +523,7 @@ pub fn base_parameters(source: &Source) -> Result<BaseParameters, Error> {
         why,
     };
     let regressor = regressor(&model).map_err(|why| refused(why.to_string()))?;
-    prove(&model, &regressor).map_err(|why| refused(why.to_string()))?;
+    check_base_parameters(&model, &regressor).map_err(|why| refused(why.to_string()))?;
     Ok(BaseParameters::new(&regressor))
 }
 

@@ -25,18 +25,18 @@ const OF_EVAL: [(&str, &str); 2] = [
 ];
 
 /// File of a state, parsed as JSON.
-pub struct File {
+pub struct StateFile {
     /// Path as given, or `<stdin>`.
     pub path: String,
     /// Contents.
     pub json: Value,
 }
 
-impl File {
+impl StateFile {
     /// Reads the JSON file of a state of a described system, or standard input if the path is `-`.
     pub fn read(path: &Path, description: &Source) -> Result<Self, Error> {
         let Source { path, text, .. } = description.read_related(path, "state")?;
-        File::of(path, &text, description)
+        StateFile::of(path, &text, description)
     }
 
     /// Parses a text for a description; messages call it `path`.
@@ -47,7 +47,7 @@ impl File {
             Some(_) => Ok(json),
         });
         match json {
-            Ok(json) => Ok(File { path, json }),
+            Ok(json) => Ok(StateFile { path, json }),
             Err(error) => Err(Error::State {
                 path,
                 problems: vec![StateProblem::new("", error.to_string())],

@@ -22,7 +22,7 @@ mod read;
 mod tests;
 
 pub use dependent_velocities::constraint_lines;
-pub use file::File;
+pub use file::StateFile;
 pub use joint_state::{JointState, VELOCITY_ORDER};
 pub use joints::{Joint, joints, rows};
 pub use json::{JsonError, parse};
@@ -70,7 +70,7 @@ impl State {
     /// Reads the start of a description, changed by a file if one is given.
     pub fn read(source: &Source, generated: &Generated, at: Option<&Path>) -> Result<Self, Error> {
         match at {
-            Some(path) => File::read(path, source)?.state(source, generated),
+            Some(path) => StateFile::read(path, source)?.state(source, generated),
             None => Ok(State::start(&generated.active)),
         }
     }

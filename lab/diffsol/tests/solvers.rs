@@ -1,7 +1,7 @@
 //! Integrates generated systems by the solvers of diffsol: a heavy top compared with `Rkmk8`, and a stiff system.
 
 use diffsol::{DenseMatrix, MatrixCommon, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod};
-use hamel::adapter::Equations;
+use hamel::adapter::OdeEquations;
 use hamel::adaptive::Adaptive;
 use hamel::{State, StepError, System};
 
@@ -44,7 +44,7 @@ where
     Sys: System<Scalar = f64>,
 {
     let none = |_, _: &_, _: &_| system.zero_inputs();
-    let equations = Equations::new(system, none, lambda);
+    let equations = OdeEquations::new(system, none, lambda);
     let start = State::start(system);
     let problem = OdeBuilder::<NalgebraMat<f64>>::new()
         .t0(start.t)
@@ -102,7 +102,7 @@ fn a_stiff_system_takes_few_steps() -> Result<(), Box<dyn std::error::Error>> {
 #[test]
 fn the_last_state_is_refused_when_it_is_none() {
     let system = Honey::default();
-    let equations = Equations::new(&system, |_, _: &_, _: &_| system.zero_inputs(), 0.0);
+    let equations = OdeEquations::new(&system, |_, _: &_, _: &_| system.zero_inputs(), 0.0);
     let end = equations.state(1.0, &[f64::NAN; 3]).map(|state| state.t);
     assert_eq!(end, Err(StepError::NonFinite { time: 1.0 }));
 }

@@ -14,7 +14,7 @@ use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::implicit::unknowns::{MAX_REMEMBERED_STEPS, Progress, Unknowns, ratio};
 #[cfg(feature = "std")]
-use crate::methods::implicit::{differences::Differences, equations::Equations};
+use crate::methods::implicit::{differences::Differences, equations::ImplicitStep};
 use crate::methods::{Method, arrive};
 use crate::scalar::Scalar;
 use crate::state::State;
@@ -59,7 +59,7 @@ impl<Sys: Energies + ?Sized> Method<Sys> for BackwardEuler {
         match learnt(system, state, h, inputs) {
             #[cfg(feature = "std")]
             Err(_) => {
-                let equations = Equations {
+                let equations = ImplicitStep {
                     system,
                     state,
                     h,

@@ -2,7 +2,7 @@
 //! [`implicit`](crate::methods::implicit).
 
 use crate::error::StepError;
-use crate::methods::implicit::equations::{Equations, MAX_FIXED_POINT_ITERATIONS, reach};
+use crate::methods::implicit::equations::{ImplicitStep, MAX_FIXED_POINT_ITERATIONS, reach};
 use crate::methods::implicit::exact::{Exact, factored, still, varied};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::methods::{Method, arrive};
@@ -86,7 +86,7 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
     {
         state.check_shape(system)?;
         let tangent = (!Sys::PLAIN).then(|| TangentSystem::new(system));
-        let equations = Equations {
+        let equations = ImplicitStep {
             system,
             state,
             h,
@@ -139,7 +139,7 @@ impl<Sys: Tangent> Method<TangentSystem<Sys>> for StiffEuler {
             values(u.as_mut(), inputs(t, &x_near, &xi_near).as_ref());
             u
         };
-        let equations = Equations {
+        let equations = ImplicitStep {
             system,
             state: &begin,
             h,
@@ -157,7 +157,7 @@ impl<Sys: Tangent> Method<TangentSystem<Sys>> for StiffEuler {
             u: tangent.zero_chart(),
             xi: varied(tangent, &xi),
         };
-        let at = |state| Equations {
+        let at = |state| ImplicitStep {
             system: tangent,
             state,
             h,

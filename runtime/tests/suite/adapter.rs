@@ -2,7 +2,7 @@
 
 use crate::common::points::Points;
 use crate::common::{Reference, Top, distance};
-use hamel::adapter::Equations;
+use hamel::adapter::OdeEquations;
 use hamel::methods::General;
 use hamel::{Singular, State, StepError, System, so3};
 
@@ -15,7 +15,7 @@ fn rates_are_those_of_the_system_with_the_stabilising_term() {
     let system = top();
     let mut state = State::start(&system);
     state.x = state.x.map(|r| 1.01 * r);
-    let equations = Equations::new(&system, |_, _, _| [], 10.0);
+    let equations = OdeEquations::new(&system, |_, _, _| [], 10.0);
     assert_eq!(equations.unknowns(), 12);
     let (mut y, mut y_dot) = ([0.0; 12], [0.0; 12]);
     equations.write(&state, &mut y);
@@ -43,7 +43,7 @@ fn the_jacobian_is_the_derivative() {
         start: ([0.3, -1.2], [0.7, 2.0]),
         accel: |x, v| Ok([-x[0] * x[1] * x[1] - v[1], x[0].sin() + v[0].powi(3)]),
     };
-    let equations = Equations::new(&system, |_, _, _| [], 0.0);
+    let equations = OdeEquations::new(&system, |_, _, _| [], 0.0);
     let y = [0.3_f64, -1.2, 0.7, 2.0];
     let rows = [
         [0.0, 0.0, 1.0, 0.0],
@@ -81,7 +81,7 @@ fn what_fails_is_told() {
             }
         },
     };
-    let equations = Equations::new(&wall, |_, _, _| [], 0.0);
+    let equations = OdeEquations::new(&wall, |_, _, _| [], 0.0);
     let mut y_dot = [0.0; 2];
     equations.rates(0.25, &[0.5, 1.0], &mut y_dot);
     assert_eq!((y_dot, equations.failure()), ([1.0, 0.0], None));
@@ -115,7 +115,7 @@ fn what_fails_is_told() {
 #[test]
 fn a_runge_kutta_method_on_the_unknowns_is_rk4_on_the_entries() {
     let system = top();
-    let equations = Equations::new(&system, |_, _, _| [], 10.0);
+    let equations = OdeEquations::new(&system, |_, _, _| [], 10.0);
     let mut state = State::start(&system);
     let mut y = [0.0; 12];
     equations.write(&state, &mut y);

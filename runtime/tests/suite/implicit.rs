@@ -2,7 +2,7 @@
 //! motion to what rounding leaves.
 
 use crate::common::points::Points;
-use hamel::adapter::Equations;
+use hamel::adapter::OdeEquations;
 use hamel::adaptive::Adaptive;
 use hamel::methods::{BackwardEuler, Gauss4, Gauss6};
 use hamel::{Dual, Method, State, StepError, System, step_slopes};
@@ -298,7 +298,7 @@ fn large_neighbours_change_nothing() -> Result<(), StepError> {
 #[test]
 fn products_with_the_jacobian_beside_large_unknowns() {
     let system = Two::<f64>::default();
-    let equations = Equations::new(&system, |_, _, _| system.zero_inputs(), 0.0);
+    let equations = OdeEquations::new(&system, |_, _, _| system.zero_inputs(), 0.0);
     for x in [0.0, 1e3, 1e6, 1e12] {
         let mut product = [f64::NAN; 4];
         equations.jacobian_product(

@@ -1,6 +1,6 @@
 //! Function bodies in C: a plain sequence of statements, or calls of parts that are functions of their own.
 
-use super::language::{C, Origins};
+use super::language::{CLanguage, Origins};
 use super::nearest::nearest;
 use super::{Texts, comment, helpers, returns_number};
 use crate::chunk::Part;
@@ -235,7 +235,7 @@ impl Printed {
         results: &InParts,
         origins: Origins,
     ) -> Self {
-        let language = C {
+        let language = CLanguage {
             names: &texts.names,
             precision: texts.precision,
             origins,

@@ -20,7 +20,7 @@ pub fn line(text: &str, indent: usize) -> String {
 }
 
 /// Prints one line as a plain comment.
-pub fn remark(text: &str) -> String {
+pub fn print_comment_line(text: &str) -> String {
     format!("/* {} */\n", tame(text))
 }
 

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Returns the header, without the comment that says how it was generated.
-pub fn text(texts: &Texts) -> String {
+pub fn print_header(texts: &Texts) -> String {
     let capitals = &texts.names.capitals;
     let mut declared = String::new();
     for (spec, name) in texts.functions() {

@@ -2,7 +2,7 @@
 //! with the same values as in the Rust runtime.
 
 use super::language::Precision;
-use super::names::Identifiers;
+use super::names::CIdentifiers;
 
 /// Macro for a b + c, fused if the machine has an instruction for it; undefined again by [`END`].
 const FUSED: &str = "\
@@ -241,7 +241,7 @@ static inline @REAL @_cos(@REAL angle)
 ];
 
 /// Returns the text before and the text after these functions.
-pub fn around(functions: &str, names: &Identifiers, precision: Precision) -> [String; 2] {
+pub fn around(functions: &str, names: &CIdentifiers, precision: Precision) -> [String; 2] {
     let called = |text: &str, name: &str| text.contains(&format!("{}(", names.own(name)));
     let spelled = |text: &str| {
         let words = match precision {

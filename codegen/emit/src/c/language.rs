@@ -1,6 +1,6 @@
 //! The C syntax of statements and numbers.
 
-use super::names::Identifiers;
+use super::names::CIdentifiers;
 use super::{comment, returns_number};
 use crate::chunk::When;
 use crate::language::{Array, Language, Operand};
@@ -99,9 +99,9 @@ impl FromStr for Precision {
 }
 
 /// The language C, with the names of one program.
-pub struct C<'a> {
+pub struct CLanguage<'a> {
     /// Names of the program.
-    pub names: &'a Identifiers,
+    pub names: &'a CIdentifiers,
     /// Floating-point type.
     pub precision: Precision,
     /// Origins from which array indices are counted.
@@ -127,7 +127,7 @@ impl Origins {
     }
 }
 
-impl Language for C<'_> {
+impl Language for CLanguage<'_> {
     fn when(&self, shape: Shape, fallible: bool) -> When {
         match returns_number(shape, fallible) {
             true => When::AtTheEnd,
@@ -160,7 +160,7 @@ impl Language for C<'_> {
     }
 
     fn heading(&self, text: &str) -> String {
-        comment::remark(text)
+        comment::print_comment_line(text)
     }
 
     fn zero(&self) -> String {

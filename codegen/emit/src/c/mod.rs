@@ -30,9 +30,9 @@ use super::function::{Spec, draw};
 use super::{Emitter, docs};
 use hamel_algebra::graph::NodeId;
 use hamel_program::{Function, Program};
-use language::C;
+use language::CLanguage;
 pub use language::Precision;
-use names::Identifiers;
+use names::CIdentifiers;
 
 /// Options of the C generator: contents of the file headers, and the floating-point type.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
@@ -63,13 +63,13 @@ pub struct Files {
 /// Everything that is needed to print the files.
 struct Texts<'a> {
     emitter: Emitter<'a>,
-    names: Identifiers,
+    names: CIdentifiers,
     precision: Precision,
 }
 
 impl<'a> Texts<'a> {
     fn new(program: &'a Program, precision: Precision) -> Self {
-        let (identifiers, names) = Identifiers::of(program);
+        let (identifiers, names) = CIdentifiers::of(program);
         let words = identifiers.words();
         // C compilers take functions of any length, so that only functions that run faster that way are split.
         let emitter = Emitter {
@@ -102,10 +102,10 @@ pub fn files(program: &Program, options: &Options) -> Files {
     let description = docs::description(&options.description);
     let described = comment::plain(&[origin.clone(), description].concat());
     let origin = comment::plain(&origin);
-    let rest = source::text(&texts);
+    let rest = source::print_source(&texts);
     let include = format!("#include \"{}\"\n\n", options.header);
     Files {
-        header: format!("{described}\n{}", header::text(&texts)),
+        header: format!("{described}\n{}", header::print_header(&texts)),
         source: format!("{origin}\n{include}{rest}"),
         rest,
     }
@@ -159,14 +159,14 @@ pub fn includable(stem: &str) -> bool {
 /// Returns the linker symbols of a program's functions.
 #[cfg(feature = "files")]
 pub fn functions(program: &Program) -> Vec<String> {
-    let (names, _) = Identifiers::of(program);
+    let (names, _) = CIdentifiers::of(program);
     let own = ["default_parameters", "set_parameters", "start"].map(|name| names.own(name));
     own.into_iter().chain(names.functions).collect()
 }
 
 /// Returns the C documentation of a function: what it evaluates, its cost, arguments and result.
 fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
-    let mut lines = docs::described(program, function, nodes);
+    let mut lines = docs::summary_and_arguments(program, function, nodes);
     let result = docs::result(function.shape);
     if returns_number(function.shape, function.fallible) {
         lines.extend([String::new(), format!("Returns {result}.")]);

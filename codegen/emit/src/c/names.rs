@@ -51,7 +51,7 @@ const OWN: &[&str] = &[
 ];
 
 /// The identifiers of a program.
-pub struct Identifiers {
+pub struct CIdentifiers {
     /// Prefix of all other identifiers.
     pub prefix: String,
     /// The prefix in capitals.
@@ -62,7 +62,7 @@ pub struct Identifiers {
     pub fields: Vec<String>,
 }
 
-impl Identifiers {
+impl CIdentifiers {
     /// Returns the identifiers of a program in C, and its names in Rust, from which they are made.
     pub fn of(program: &Program) -> (Self, Names) {
         let names = Names::beside(program, OWN);
@@ -70,7 +70,7 @@ impl Identifiers {
         // In C++ a member cannot have the name of a type that its struct mentions.
         let own: Vec<String> = OWN.iter().map(|name| format!("{prefix}_{name}")).collect();
         let mut members = Unique::new(&own.iter().map(String::as_str).collect::<Vec<_>>());
-        let identifiers = Identifiers {
+        let identifiers = CIdentifiers {
             capitals: prefix.to_ascii_uppercase(),
             functions: (names.functions.iter())
                 .map(|name| legal(format!("{prefix}_{name}")))

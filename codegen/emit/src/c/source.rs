@@ -3,13 +3,13 @@
 use super::body::{self, indented};
 use super::header::{prototype, prototypes};
 use super::language::Origins;
-use super::{C, Texts, draw, helpers};
+use super::{CLanguage, Texts, draw, helpers};
 use crate::function::statements;
 use crate::parameters;
 use hamel_language::syntax::ast::ShapeKind;
 
 /// Returns the source file without the comment and the `#include` at its top.
-pub fn text(texts: &Texts) -> String {
+pub fn print_source(texts: &Texts) -> String {
     let names = &texts.names;
     let [default, set, start] = prototypes(texts);
     let mut functions = format!(
@@ -52,8 +52,8 @@ pub fn text(texts: &Texts) -> String {
     format!("{headers}\n{everything}{after}")
 }
 
-fn language<'a>(texts: &'a Texts) -> C<'a> {
-    C {
+fn language<'a>(texts: &'a Texts) -> CLanguage<'a> {
+    CLanguage {
         names: &texts.names,
         precision: texts.precision,
         origins: Origins::default(),

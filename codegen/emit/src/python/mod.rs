@@ -14,7 +14,7 @@ mod helpers;
 mod language;
 mod names;
 
-use super::chunk::Plan;
+use super::chunk::BodyPartition;
 use super::docs;
 use super::function::{Drawing, Spec, draw, statements};
 use super::parameters::{expressions, shaped};
@@ -241,7 +241,7 @@ impl Class<'_> {
     }
 
     fn body(&self, drawing: &Drawing) -> String {
-        let (spec, Plan { parts, .. }) = (drawing.spec, drawing.plan);
+        let (spec, BodyPartition { parts, .. }) = (drawing.spec, drawing.plan);
         let mut printer = drawing.printer();
         let mut text = String::new();
         for part in parts {
@@ -298,7 +298,7 @@ const ABOUT: &[&str] = &[
 
 /// Returns the documentation of a function: what it evaluates, its cost, arguments and result.
 fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
-    let mut lines = docs::described(program, function, nodes);
+    let mut lines = docs::summary_and_arguments(program, function, nodes);
     let axes: Vec<String> = extents(function.shape)
         .iter()
         .map(|n| format!(", {n}"))

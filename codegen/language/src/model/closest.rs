@@ -10,7 +10,7 @@ use crate::algebra::dense::{
     apply, backward, cholesky, cholesky_with, dot, forward, gram, least_norm, product,
 };
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::nearest_solution::Equations;
+use crate::algebra::nearest_solution::NearestPointProblem;
 use crate::algebra::numeric::evaluate;
 use crate::algebra::residual_scale::{relative_residual, residual_scales};
 use crate::algebra::slopes::slopes;
@@ -101,7 +101,7 @@ impl<'c, 'a> Loops<'c, 'a> {
     }
 }
 
-impl Equations for Loops<'_, '_> {
+impl NearestPointProblem for Loops<'_, '_> {
     fn directions(&self) -> usize {
         self.free.len()
     }
@@ -217,7 +217,7 @@ impl Constraints<'_> {
     }
 }
 
-impl Equations for Constraints<'_> {
+impl NearestPointProblem for Constraints<'_> {
     fn directions(&self) -> usize {
         self.guess.len()
     }

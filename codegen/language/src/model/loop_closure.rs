@@ -10,7 +10,7 @@ use super::pfaffian::{Kind, Pfaffian};
 use super::{Clock, Coordinate, Model};
 use crate::algebra::dense::{dot, least_norm};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::least_norm_newton::{self, End, Linearized, Outcome, StoppingRule};
+use crate::algebra::least_norm_newton::{self, NewtonTermination, Linearized, Outcome, StoppingRule};
 use crate::algebra::linear::matrix;
 use crate::algebra::nearest_solution::find_nearest;
 use crate::algebra::numeric::evaluate;
@@ -271,12 +271,12 @@ impl<'a> LoopClosure<'a> {
         let Outcome { point, end, .. } =
             least_norm_newton::solve(from.to_vec(), rule, linearize, advance);
         match end {
-            End::Converged => Some(point),
-            End::OutOfSteps => {
+            NewtonTermination::Converged => Some(point),
+            NewtonTermination::OutOfSteps => {
                 let left = size(&self.residuals(&point))?;
                 (left <= RESIDUAL_TOLERANCE).then_some(point)
             }
-            End::NoStep => None,
+            NewtonTermination::NoStep => None,
         }
     }
 

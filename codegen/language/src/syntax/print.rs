@@ -14,7 +14,7 @@ use super::{joint_field, joint_kind};
 const MAX_WIDTH: usize = 110;
 
 /// Returns the text of a description.
-pub fn text(system: &System) -> String {
+pub fn print_description(system: &System) -> String {
     let mut text = String::new();
     for line in &system.docs {
         let line = match line {

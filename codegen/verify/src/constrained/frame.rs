@@ -5,7 +5,7 @@
 //! share none of these rules.
 
 use crate::kernel::places;
-use crate::numbers::Numbers;
+use crate::numbers::FormEvaluator;
 use crate::points::{Disagreement, at_fresh_points};
 use crate::reference::Reference;
 use crate::states;
@@ -225,7 +225,7 @@ pub(super) fn prescribed_values(model: &Model) -> Vec<(usize, Edge)> {
 ///
 /// The points are fresh points of X, or points of a prescribed motion if roots have values only there.
 pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
-    let numbers = Numbers::new(model)?;
+    let numbers = FormEvaluator::new(model)?;
     let mut roots = reference.mass.concat();
     for list in [&reference.bias, &reference.slope, &reference.force] {
         roots.extend(list);

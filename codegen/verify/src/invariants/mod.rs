@@ -37,7 +37,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
     if model.invariants.is_empty() {
         return Ok(());
     }
-    let Some(mut motion) = Equations::new(model) else {
+    let Some(mut motion) = MotionEquations::new(model) else {
         let message = "the invariants cannot be checked: the rates leave A without a left inverse";
         return Err(vec![
             Diagnostic::new(model.span, message).help("check the rates"),
@@ -98,7 +98,7 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     if model.invariants.is_empty() {
         return Vec::new();
     }
-    let Some(mut motion) = Equations::new(model) else {
+    let Some(mut motion) = MotionEquations::new(model) else {
         return Vec::new();
     };
     let mut prover = Prover::new(model);
@@ -141,16 +141,16 @@ pub fn identities(model: &Model) -> Vec<Identity> {
 }
 
 /// Equations of motion with which claims are compared.
-struct Equations {
+struct MotionEquations {
     reference: Reference,
     calculus: Calculus,
 }
 
-impl Equations {
+impl MotionEquations {
     fn new(model: &Model) -> Option<Self> {
         let reference = Reference::new(model)?;
         let calculus = Calculus::new(&reference.model);
-        Some(Equations {
+        Some(MotionEquations {
             reference,
             calculus,
         })

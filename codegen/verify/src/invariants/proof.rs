@@ -5,7 +5,7 @@
 //! energy, an axis for an angular momentum), to which M⁻¹ ∂I/∂ξ simplifies in a graph where equal values are one node;
 //! otherwise, for n ≤ 3, w = ∂I/∂ξ adj M and σ = det M.
 
-use super::Equations;
+use super::MotionEquations;
 use super::remainder::polynomial_text;
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph, Node};
@@ -90,7 +90,7 @@ impl Prover {
     }
 
     /// Tries to prove that an expression of the motion's graph is constant.
-    pub fn prove(&mut self, motion: &mut Equations, claim: &Invariant, entry: Edge) -> Proof {
+    pub fn prove(&mut self, motion: &mut MotionEquations, claim: &Invariant, entry: Edge) -> Proof {
         let covector = self.covector(motion, claim, entry);
         let graph = &motion.reference.model.graph;
         let entry = rebuild(graph, &mut self.model.graph, &[entry])[0];
@@ -121,7 +121,7 @@ impl Prover {
     /// coordinates; `None` if quotients remain.
     fn covector(
         &mut self,
-        motion: &mut Equations,
+        motion: &mut MotionEquations,
         claim: &Invariant,
         entry: Edge,
     ) -> Option<Vec<Edge>> {

@@ -9,7 +9,7 @@ use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
 
 /// A model with tapes of the expressions that are evaluated.
-pub struct Expressions {
+pub struct FormTapes {
     /// The model; its graph contains Y and V.
     pub model: Model,
     /// A by rows, ẋ, Y by rows.
@@ -28,7 +28,7 @@ pub struct Expressions {
     symbols: usize,
 }
 
-impl Expressions {
+impl FormTapes {
     /// Collects what the forms are evaluated from: A, its left inverse Y, poses, energies and loads. `None` if A has no
     /// left inverse, or a number has no image modulo p.
     pub fn new(model: &Model) -> Option<Self> {
@@ -85,7 +85,7 @@ impl Expressions {
         }
         let graph = &model.graph;
         let kinematics = [model.a.concat(), model.rate.clone(), y.concat()].concat();
-        Some(Expressions {
+        Some(FormTapes {
             kinematics: Tape::new(graph, &kinematics)?,
             poses: Tape::new(graph, &poses)?,
             velocity: Tape::new(graph, &velocity)?,
@@ -138,14 +138,14 @@ impl Expressions {
 }
 
 /// Reads values in the order in which their expressions were listed.
-pub struct Reader<'a> {
+pub struct TapeValueReader<'a> {
     rest: std::slice::Iter<'a, ResiduePair>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> TapeValueReader<'a> {
     /// Starts at the first value.
     pub fn new(values: &'a [ResiduePair]) -> Self {
-        Reader {
+        TapeValueReader {
             rest: values.iter(),
         }
     }

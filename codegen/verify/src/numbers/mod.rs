@@ -26,7 +26,7 @@ mod space;
 
 use crate::kernel::dot;
 use crate::violation::Violation;
-use expressions::{Expressions, Reader};
+use expressions::{FormTapes, TapeValueReader};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::jets::{Jet, Seeds};
 use hamel_algebra::residue_pair::ResiduePair;
@@ -40,8 +40,8 @@ use space::{Vec3, scale, sub};
 
 /// Evaluates the left sides of (30a), (30b) and (30c) for a model at points of X, modulo p, without the rules of the
 /// generator.
-pub struct Numbers {
-    expressions: Expressions,
+pub struct FormEvaluator {
+    expressions: FormTapes,
 }
 
 /// Left sides of (30a), (30b), (30c) at one point (x, ξ, ξ̇, u), and the quantities in them, as numbers modulo p.
@@ -170,11 +170,11 @@ impl Kinematics {
     }
 }
 
-impl Numbers {
+impl FormEvaluator {
     /// Prepares the evaluation; `None` if AᵀA is singular, or a number has no image modulo p.
     pub fn new(model: &Model) -> Option<Self> {
-        Some(Numbers {
-            expressions: Expressions::new(model)?,
+        Some(FormEvaluator {
+            expressions: FormTapes::new(model)?,
         })
     }
 
@@ -187,7 +187,7 @@ impl Numbers {
         let model = &all.model;
         let (n, nu) = (model.n(), model.nu());
         let constants = all.constants.values(field_point)?;
-        let mut read = Reader::new(&constants);
+        let mut read = TapeValueReader::new(&constants);
         let (xi, xi_dot) = (read.list(n)?, read.list(n)?);
         let start = all.kinematics.values(field_point)?;
         let (a, rest) = start.split_at_checked(n * nu)?;
@@ -361,7 +361,7 @@ impl Numbers {
     fn forces(
         &self,
         field_point: &FieldPoint,
-        read: &mut Reader,
+        read: &mut TapeValueReader,
         frames: &FxHashMap<usize, MovingFrame>,
         points: &mut dyn Iterator<Item = Moving<Vec3>>,
         xi: &[ResiduePair],

@@ -6,7 +6,7 @@ use std::vec::Vec;
 use crate::error::StepError;
 use crate::methods::factors::{Factors, Square};
 use crate::methods::implicit::Derivative;
-use crate::methods::implicit::equations::{Equations, Point};
+use crate::methods::implicit::equations::{ImplicitStep, Point};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::scalar::Scalar;
 use crate::store::{Store, largest};
@@ -35,7 +35,7 @@ impl<Sys: Energies + ?Sized> Derivative<Sys> for Differences {
 
     fn linear(
         &self,
-        equations: &Equations<'_, Sys>,
+        equations: &ImplicitStep<'_, Sys>,
         z: &mut Unknowns<Sys>,
         iterations: &mut u32,
     ) -> Result<(Point<Sys>, Self::Factors), StepError> {

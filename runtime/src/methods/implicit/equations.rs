@@ -108,7 +108,7 @@ pub(in crate::methods) type Follow<'a, Sys> = dyn Fn(f64, &<Sys as System>::Coor
     + 'a;
 
 /// The equations of a step of length h from a state.
-pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized> {
+pub(in crate::methods) struct ImplicitStep<'a, Sys: System + ?Sized> {
     pub(in crate::methods) system: &'a Sys,
     pub(in crate::methods) state: &'a State<Sys>,
     pub(in crate::methods) h: f64,
@@ -117,7 +117,7 @@ pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized> {
     pub(in crate::methods) weighed: bool,
 }
 
-impl<Sys: Energies + ?Sized> Equations<'_, Sys> {
+impl<Sys: Energies + ?Sized> ImplicitStep<'_, Sys> {
     /// Returns the coordinates to which ξ₁ leads, and the inputs there; the iteration for u starts from the guess in z.
     pub(super) fn place(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);

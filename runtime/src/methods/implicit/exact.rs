@@ -3,7 +3,7 @@
 use crate::error::StepError;
 use crate::methods::factors::{Factors, Part};
 use crate::methods::implicit::Derivative;
-use crate::methods::implicit::equations::{Equations, Point};
+use crate::methods::implicit::equations::{ImplicitStep, Point};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::scalar::Scalar;
 use crate::slopes::{Directions, Tangent, TangentSystem, values};
@@ -63,7 +63,7 @@ impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
 
     fn linear(
         &self,
-        equations: &Equations<'_, Sys>,
+        equations: &ImplicitStep<'_, Sys>,
         z: &mut Unknowns<Sys>,
         iterations: &mut u32,
     ) -> Result<(Point<Sys>, Self::Factors), StepError> {
@@ -112,7 +112,7 @@ impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
             xi: varied(tangent, &z.xi),
         };
         still(near.u.as_mut(), z.u.as_ref());
-        let varying = Equations {
+        let varying = ImplicitStep {
             system: tangent,
             state: &begin,
             h,

@@ -29,7 +29,7 @@ pub(super) mod unknowns;
 
 use crate::error::StepError;
 use crate::system::System;
-use equations::{Equations, Point};
+use equations::{ImplicitStep, Point};
 use unknowns::Unknowns;
 
 /// A way to find ∂g/∂ξ₁.
@@ -43,7 +43,7 @@ pub(super) trait Derivative<Sys: System + ?Sized> {
     /// Returns g and the factors of its derivative; adds the evaluations to `iterations`.
     fn linear(
         &self,
-        equations: &Equations<'_, Sys>,
+        equations: &ImplicitStep<'_, Sys>,
         z: &mut Unknowns<Sys>,
         iterations: &mut u32,
     ) -> Result<(Point<Sys>, Self::Factors), StepError>;

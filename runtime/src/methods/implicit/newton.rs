@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use crate::error::StepError;
 use crate::methods::implicit::Derivative;
-use crate::methods::implicit::equations::{Equations, reach};
+use crate::methods::implicit::equations::{ImplicitStep, reach};
 use crate::methods::implicit::unknowns::{
     CONVERGED_ULPS, MAX_REMEMBERED_STEPS, Progress, Unknowns, ratio,
 };
@@ -28,7 +28,7 @@ const FIRST_FRACTION: f64 = 0.25;
 /// Smallest increment of this fraction.
 const MIN_INCREMENT: f64 = 1e-4;
 
-impl<Sys: Energies + ?Sized> Equations<'_, Sys> {
+impl<Sys: Energies + ?Sized> ImplicitStep<'_, Sys> {
     /// Solves the equations and returns (x₁, ξ₁): starts from ξ, and if that fails, follows the solutions of shorter
     /// steps.
     pub(in crate::methods) fn solve<D: Derivative<Sys>>(
@@ -166,7 +166,7 @@ enum Followed<Sys: System + ?Sized> {
 }
 
 impl<Sys: Energies + ?Sized> Iteration<Sys> {
-    fn new(equations: &Equations<'_, Sys>, xi: Sys::Velocities) -> Self {
+    fn new(equations: &ImplicitStep<'_, Sys>, xi: Sys::Velocities) -> Self {
         let system = equations.system;
         Iteration {
             z: Unknowns {
@@ -186,7 +186,7 @@ impl<Sys: Energies + ?Sized> Iteration<Sys> {
     /// Computes factors at this point, and the correction by them.
     fn begin<D: Derivative<Sys>>(
         &mut self,
-        equations: &Equations<'_, Sys>,
+        equations: &ImplicitStep<'_, Sys>,
         derivative: &D,
         iterations: &mut u32,
     ) -> Result<D::Factors, StepError> {
@@ -204,7 +204,7 @@ impl<Sys: Energies + ?Sized> Iteration<Sys> {
     /// Evaluates the point to which the correction leads; an error, `farther`, if it is no nearer to the solution.
     fn ahead<D: Derivative<Sys>>(
         &self,
-        equations: &Equations<'_, Sys>,
+        equations: &ImplicitStep<'_, Sys>,
         factors: &D::Factors,
         farther: StepError,
     ) -> Result<Ahead<Sys>, StepError> {
@@ -238,7 +238,7 @@ impl<Sys: Energies + ?Sized> Iteration<Sys> {
     }
 
     /// Continues from the point to which a full correction has led.
-    fn follow(&mut self, equations: &Equations<'_, Sys>, ahead: Ahead<Sys>) -> Followed<Sys> {
+    fn follow(&mut self, equations: &ImplicitStep<'_, Sys>, ahead: Ahead<Sys>) -> Followed<Sys> {
         let Ahead { fed, rounding, .. } = ahead;
         let (system, state, h) = (equations.system, equations.state, equations.h);
         let exact = core::mem::take(&mut self.fresh) && !fed;

@@ -2,7 +2,7 @@
 
 use crate::common::Random;
 use hamel_codegen::algebra::graph::Function::Raised;
-use hamel_codegen::algebra::numbers::{Numbers, Step};
+use hamel_codegen::algebra::numbers::{Arithmetic, Step};
 use hamel_codegen::algebra::numeric::Floats;
 use hamel_codegen::algebra::rounding::{RoundedValue, evaluate_rounded};
 use hamel_codegen::algebra::walk::evaluate;
@@ -288,7 +288,7 @@ fn numbers(program: &Program, params: &[f64], [x, xi, u, xi_dot, p]: &State) -> 
 /// Numbers in `f64`, with the factor of `raised` in `float`.
 struct Single<'a>(Floats<'a>);
 
-impl Numbers for Single<'_> {
+impl Arithmetic for Single<'_> {
     type Number = f64;
 
     fn make(&mut self, step: Step<f64>) -> Option<f64> {
