@@ -370,7 +370,7 @@ impl SceneBuilder {
         self.add(load.item());
     }
 
-    /// Adds a spring, a damper, an inerter, or a force along a line.
+    /// Adds a spring, a cable, a damper, an inerter, or a force along a line.
     pub fn element(&mut self, element: Element) {
         self.add(element.0);
     }

@@ -343,7 +343,7 @@ impl From<&Expr> for Between {
     }
 }
 
-/// A spring, a damper, an inerter, or a force along a line.
+/// A spring, a cable, a damper, an inerter, or a force along a line.
 #[derive(Clone, Debug)]
 pub struct Element(pub(super) ItemKind);
 
@@ -367,6 +367,21 @@ impl Element {
             stiffness: stiffness.into(),
             length: Some(length.into()),
             acting: between.into().0,
+        })
+    }
+
+    /// Creates a cable (N/m) with the length up to which it is slack: a spring that only pulls.
+    pub fn cable(
+        stiffness: impl Into<Expr>,
+        length: impl Into<Expr>,
+        from: Point,
+        to: Point,
+    ) -> Element {
+        Element(ItemKind::Cable {
+            stiffness: stiffness.into(),
+            length: length.into(),
+            from: from.0,
+            to: to.0,
         })
     }
 

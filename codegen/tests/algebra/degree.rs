@@ -38,11 +38,20 @@ fn degrees_are_those_of_the_functions() {
     assert_eq!(degrees.bound(&[raised]), 4.0 + 3.0 + 3.0);
     // A coordinate of a circle, the sine of 3 a, and a root.
     let circle = vec![Some(0)];
-    assert_eq!(DegreeBounds::new(&graph, circle).bound(&[a]), 2.0 + 2.0 + 2.0);
+    assert_eq!(
+        DegreeBounds::new(&graph, circle).bound(&[a]),
+        2.0 + 2.0 + 2.0
+    );
     let three = graph.ratio(3, 1);
     let triple = graph.mul(three, a);
     let sine = graph.apply(Function::Sin, triple);
-    assert_eq!(DegreeBounds::new(&graph, Vec::new()).bound(&[sine]), 36.0 * 6.0);
+    assert_eq!(
+        DegreeBounds::new(&graph, Vec::new()).bound(&[sine]),
+        36.0 * 6.0
+    );
     let root = graph.apply(Function::Sqrt, sum);
-    assert_eq!(DegreeBounds::new(&graph, Vec::new()).bound(&[root]), 2.0 * 4.0);
+    assert_eq!(
+        DegreeBounds::new(&graph, Vec::new()).bound(&[root]),
+        2.0 * 4.0
+    );
 }

@@ -290,6 +290,19 @@ fn told(kind: &ItemKind) -> String {
             let (stiffness, length) = (spelled(stiffness), maybe(length));
             format!("spring {stiffness} length {length} {}", acts(acting))
         }
+        Cable {
+            stiffness,
+            length,
+            from,
+            to,
+        } => {
+            let (stiffness, length) = (spelled(stiffness), spelled(length));
+            format!(
+                "cable {stiffness} length {length} from {} to {}",
+                end(from),
+                end(to)
+            )
+        }
         Damper {
             coefficient,
             acting,

@@ -5,6 +5,7 @@
 mod arm;
 mod assembly;
 mod builder_errors;
+mod cable;
 mod claims;
 mod common;
 mod components;

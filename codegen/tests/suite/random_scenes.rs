@@ -312,9 +312,11 @@ fn stated(kind: usize, random: &mut Random, scene: &mut SceneBuilder) -> String 
         28 => {
             let ends = || (Point::of(p, &f), Point::origin(WORLD));
             scene.element(Element::spring_of_length(&e, &f, ends()));
+            scene.element(Element::cable(&e, &f, ends().0, ends().1));
             scene.element(Element::push(e, ends().0, ends().1));
             format!(
                 "spring stiffness {of_e} length {of_f} from {of_f} on {p} to world; \
+                 cable stiffness {of_e} length {of_f} from {of_f} on {p} to world; \
                  force {of_e} from {of_f} on {p} to world;"
             )
         }

@@ -91,6 +91,7 @@ system Everything {
     force t from e on f to world;
     spring stiffness m length 2 from f to e on g;
     spring stiffness m on q - 1;
+    cable stiffness m length 2 from f to e on g;
     damper coefficient m on u;
     inerter inertance m from f to e on g;
     inerter inertance 2 * m on u;

@@ -1,8 +1,8 @@
-//! Springs, dampers, inerters, forces along a line, and dissipation.
+//! Springs, cables, dampers, inerters, forces along a line, and dissipation.
 //!
 //! Between two points with difference d and distance ℓ = |d|, a spring has V = ½ k (ℓ − l)², which is ½ k d·d for
 //! l = 0; a damper has D = ½ c ℓ̇²; a force F pushes the points apart. All of these act as wrenches on the frames of
-//! the two points. On a scalar e, V = ½ k (e − l)² and D = ½ c e². An inerter has T = ½ b ℓ̇² or ½ b e² (Smith 2002),
+//! the two points. A cable is a spring with V = ½ k max(0, ℓ − l)². On a scalar e, V = ½ k (e − l)² and D = ½ c e². An inerter has T = ½ b ℓ̇² or ½ b e² (Smith 2002),
 //! a part of the kinetic energy. The remaining part of D acts through Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
 
 use super::functions::angle_from;
@@ -10,13 +10,13 @@ use super::line::{Line, is_root};
 use super::quadratic::is_quadratic;
 use super::reader::{Dynamics, Reader};
 use super::time;
-use crate::algebra::graph::Edge;
+use crate::algebra::graph::{Edge, Function};
 use crate::algebra::linear::{scale3, sub3};
 use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::elements::{Along, Damper, Push, Spring};
 use crate::model::value::Value;
-use crate::syntax::ast::{Acting, Expr, ExprKind, ItemKind, Span};
+use crate::syntax::ast::{Acting, End, Expr, ExprKind, ItemKind, Span};
 
 impl Reader<'_, '_> {
     /// Adds a statement about one of these elements to energies and forces; ignores other statements. `start` are the
@@ -43,6 +43,17 @@ impl Reader<'_, '_> {
                     *sum = graph.add(*sum, energy);
                 }
                 dynamics.elements.springs.push(spring);
+            }
+            ItemKind::Cable {
+                stiffness,
+                length,
+                from,
+                to,
+            } => {
+                let cable = self.cable(stiffness, length, [from, to], span)?;
+                let energy = self.stored(&cable);
+                dynamics.potential = self.evaluator.graph.add(dynamics.potential, energy);
+                dynamics.elements.springs.push(cable);
             }
             ItemKind::Damper {
                 coefficient,
@@ -173,6 +184,35 @@ impl Reader<'_, '_> {
             length: rest,
             along: line.along(Some(length)),
             wrenches,
+        })
+    }
+
+    /// Reads a cable: a spring whose stiffness is 0 while the distance ℓ of its points is at most l.
+    fn cable(
+        &mut self,
+        stiffness: &Expr,
+        length: &Expr,
+        [from, to]: [&End; 2],
+        span: Span,
+    ) -> Option<Spring> {
+        let stiffness = self.constant_scalar(stiffness, "a stiffness");
+        let limit = self.constant_scalar(length, "the length of a cable");
+        let line = self.line("cable", span, from, to);
+        let (stiffness, limit, line) = (stiffness?, limit?, line?);
+        let graph = &mut *self.evaluator.graph;
+        // Not the smooth distance of points on one straight line, which is negative after they have passed each other.
+        let distance = graph.apply(Function::Sqrt, line.square);
+        let stretch = graph.sub(distance, limit);
+        let share = graph.div(stretch, distance)?;
+        let pull = graph.mul(stiffness, share);
+        let zero = graph.zero();
+        let [stiffness, pull] = [stiffness, pull].map(|taut| graph.select(stretch, taut, zero));
+        let force = scale3(graph, -pull, line.difference);
+        Some(Spring {
+            stiffness,
+            length: limit,
+            along: line.along(Some(distance)),
+            wrenches: self.pair(&line, force),
         })
     }
 

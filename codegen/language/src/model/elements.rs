@@ -35,7 +35,7 @@ pub enum Along {
     Scalar(Edge),
 }
 
-/// A spring, V = ½ k (ℓ − l)².
+/// A spring, V = ½ k (ℓ − l)², or a cable, whose k is 0 while ℓ ≤ l.
 #[derive(Clone, Debug)]
 pub struct Spring {
     /// Stiffness k (N/m, N m/rad).

@@ -10,7 +10,9 @@ use super::pfaffian::{Kind, Pfaffian};
 use super::{Clock, Coordinate, Model};
 use crate::algebra::dense::{dot, least_norm};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::least_norm_newton::{self, NewtonTermination, Linearized, Outcome, StoppingRule};
+use crate::algebra::least_norm_newton::{
+    self, Linearized, NewtonTermination, Outcome, StoppingRule,
+};
 use crate::algebra::linear::matrix;
 use crate::algebra::nearest_solution::find_nearest;
 use crate::algebra::numeric::evaluate;

@@ -73,6 +73,16 @@ impl<'a> Inference<'a> {
                     acting => self.acting(acting, "what a spring acts on"),
                 }
             }
+            ItemKind::Cable {
+                stiffness,
+                length,
+                from,
+                to,
+            } => {
+                self.scalars([stiffness], "a stiffness");
+                self.scalars([length], "the length of a cable");
+                self.ends([from, to]);
+            }
             ItemKind::Damper {
                 coefficient,
                 acting,

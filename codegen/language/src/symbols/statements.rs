@@ -138,6 +138,7 @@ fn statement(item: &Item, checker: &mut Checker) {
         // The points that these act on may be fixed to the world.
         ItemKind::Push { .. }
         | ItemKind::Spring { .. }
+        | ItemKind::Cable { .. }
         | ItemKind::Damper { .. }
         | ItemKind::Inerter { .. } => others(item.clone(), true, checker),
         ItemKind::Generate(all) => {

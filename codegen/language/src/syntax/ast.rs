@@ -424,6 +424,17 @@ pub enum ItemKind {
         /// Points or scalar that it acts on.
         acting: Acting,
     },
+    /// `cable stiffness k length l from p on f to q on g;` a spring that only pulls.
+    Cable {
+        /// The stiffness.
+        stiffness: Expr,
+        /// Length up to which the cable is slack.
+        length: Expr,
+        /// The first point.
+        from: End,
+        /// The second point.
+        to: End,
+    },
     /// `damper coefficient c from p on f to q on g;` or `… on w2 - w1;`
     Damper {
         /// The coefficient.

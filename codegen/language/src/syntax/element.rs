@@ -1,4 +1,4 @@
-//! Parsing of springs, dampers and inerters, and of the two points that they act between.
+//! Parsing of springs, cables, dampers and inerters, and of the two points that they act between.
 
 use super::ast::{Acting, End, ItemKind};
 use super::cursor::{Cursor, Parsed};
@@ -6,7 +6,7 @@ use super::expression::expression;
 use super::path;
 
 /// First words of these statements.
-const WORDS: [&str; 3] = ["spring", "damper", "inerter"];
+const WORDS: [&str; 4] = ["spring", "cable", "damper", "inerter"];
 
 /// Returns whether a word starts one of these statements.
 pub(super) fn is_one(word: &str) -> bool {
@@ -17,6 +17,7 @@ pub(super) fn is_one(word: &str) -> bool {
 pub(super) fn element(word: &str, cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     match word {
         "spring" => spring(cursor),
+        "cable" => cable(cursor),
         "damper" => damper(cursor),
         _ => inerter(cursor),
     }
@@ -35,6 +36,21 @@ fn spring(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
         stiffness,
         length,
         acting: acting(cursor)?,
+    })
+}
+
+/// `stiffness k length l from … to …`
+fn cable(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    cursor.expect_word("stiffness")?;
+    let stiffness = expression(cursor)?;
+    cursor.expect_word("length")?;
+    let length = expression(cursor)?;
+    let (from, to) = ends(cursor)?;
+    Ok(ItemKind::Cable {
+        stiffness,
+        length,
+        from,
+        to,
     })
 }
 

@@ -197,6 +197,18 @@ pub fn statement(item: &Item) -> String {
             let stiffness = written(stiffness);
             format!("spring stiffness {stiffness}{length} {}", on_what(acting))
         }
+        ItemKind::Cable {
+            stiffness,
+            length,
+            from,
+            to,
+        } => {
+            let (stiffness, length) = (written(stiffness), written(length));
+            format!(
+                "cable stiffness {stiffness} length {length} {}",
+                between(from, to)
+            )
+        }
         ItemKind::Damper {
             coefficient,
             acting,

@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// Statements, each with a sentence that shows its syntax.
-const STATEMENTS: [(&str, &str); 41] = [
+const STATEMENTS: [(&str, &str); 42] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -94,6 +94,10 @@ const STATEMENTS: [(&str, &str); 41] = [
     (
         "spring",
         "a spring is written `spring stiffness k length l from p on f to q on g;` or `spring stiffness k on q2 - q1;`",
+    ),
+    (
+        "cable",
+        "a cable is written `cable stiffness k length l from p on f to q on g;`",
     ),
     (
         "damper",

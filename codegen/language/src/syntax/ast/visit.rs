@@ -166,6 +166,16 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
             length.iter_mut().for_each(|e| to.expr(e));
             acting(on, to);
         }
+        ItemKind::Cable {
+            stiffness,
+            length,
+            from,
+            to: end,
+        } => {
+            to.expr(stiffness);
+            to.expr(length);
+            ends(from, end, to);
+        }
         ItemKind::Damper {
             coefficient: factor,
             acting: on,
