@@ -6,7 +6,8 @@ use crate::failure::{self, Failure};
 #[cfg(feature = "sweep")]
 use crate::sweep;
 use crate::{
-    check, compare, draw, emit, eval, import, linearize, ops, regressor, simulate, tables,
+    bode, check, compare, draw, emit, eval, import, linearize, lqr, ops, regressor, simulate, step,
+    tables,
 };
 use clap::{Parser, Subcommand};
 use hamel_engine::CancellationToken;
@@ -18,6 +19,7 @@ Examples:
   hamel tables heavy_top.eom --of gamma,M       the symbols of the equations
   hamel regressor arm.urdf                      the inertial parameters that matter
   hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
+  hamel lqr furuta.eom --at upright.json        a regulator; `hamel step`, `hamel bode`: responses
   hamel simulate heavy_top.eom --until 10       a first run
   hamel draw heavy_top.eom --out top.svg        a picture of the mechanism
   hamel sweep heavy_top.eom --vary … --out runs  many runs with varied parameters and starts
@@ -45,6 +47,9 @@ enum Command {
     Emit(emit::Arguments),
     Eval(eval::Arguments),
     Linearize(linearize::Arguments),
+    Lqr(lqr::Arguments),
+    Step(step::Arguments),
+    Bode(bode::Arguments),
     Simulate(simulate::Arguments),
     Draw(draw::Arguments),
     Sweep(sweep::Arguments),
@@ -93,6 +98,9 @@ impl Command {
             Command::Emit(arguments) => emit::run(arguments),
             Command::Eval(arguments) => eval::run(arguments),
             Command::Linearize(arguments) => linearize::run(arguments),
+            Command::Lqr(arguments) => lqr::run(arguments),
+            Command::Step(arguments) => step::run(arguments),
+            Command::Bode(arguments) => bode::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Draw(arguments) => draw::run(arguments),
             Command::Sweep(arguments) => sweep::run(arguments, None),

@@ -11,6 +11,8 @@ pub enum Json {
     Count(u128),
     /// A text.
     Text(String),
+    /// A truth value.
+    Bool(bool),
     /// No given entries.
     Null,
     /// A list.
@@ -62,6 +64,7 @@ impl Json {
             Json::Number(value) if value.is_finite() => exact(*value),
             Json::Number(_) | Json::Null => "null".into(),
             Json::Count(count) => count.to_string(),
+            Json::Bool(value) => value.to_string(),
             Json::Text(text) => serde_json::Value::from(text.as_str()).to_string(),
             Json::List(items) => {
                 let items: Vec<String> = items.iter().map(Json::line).collect();

@@ -6,7 +6,8 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
+//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `lqr`, `step`, `bode`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
+//! | `linear` | linear systems as `lqr`, `step` and `bode` open them |
 //! | `command` | the command line, with the feature of that name |
 //! | `source`, `robot` | descriptions as the command line opens them, and the options for that |
 //! | `reports` | reports of the commands, for other front ends |
@@ -31,6 +32,8 @@
 
 #[cfg(feature = "command")]
 mod absent;
+#[cfg(feature = "command")]
+mod bode;
 mod check;
 mod columns;
 #[cfg(feature = "command")]
@@ -47,7 +50,11 @@ mod failure;
 mod import;
 mod json;
 #[cfg(feature = "command")]
+mod linear;
+#[cfg(feature = "command")]
 mod linearize;
+#[cfg(feature = "command")]
+mod lqr;
 mod ops;
 #[cfg(feature = "command")]
 mod outputs;
@@ -63,6 +70,8 @@ mod series;
 #[cfg(feature = "command")]
 mod simulate;
 mod source;
+#[cfg(feature = "command")]
+mod step;
 #[cfg(feature = "sweep")]
 mod sweep;
 mod tables;

@@ -14,6 +14,8 @@ pub enum Expected {
     Steps(u64),
     /// A number of steps or a time.
     Interval,
+    /// A range of positive numbers.
+    Range,
     /// A number of members of a sweep.
     Members,
     /// A seed of random numbers.
@@ -41,6 +43,7 @@ impl fmt::Display for Expected {
             Expected::Interval => {
                 f.write_str("expected a number of steps, 1 or greater, or a time as in 0.01s")
             }
+            Expected::Range => f.write_str("expected LOW,HIGH with 0 < LOW < HIGH, as in 0.1,100"),
             Expected::Members => f.write_str("expected a whole number from 1 to 2^63 - 1"),
             Expected::Seed => f.write_str("expected a whole number from 0 to 2^64 - 1"),
             Expected::Part => f.write_str("expected i/N with 1 ≤ i ≤ N, as in 3/16"),

@@ -1,5 +1,6 @@
 //! Errors of the engine as data, which front ends render.
 
+use crate::linear::LinearError;
 use crate::mechanism::SingularState;
 use crate::run::{InputProblem, SamplingProblem, SteppingProblem};
 use crate::source::{ConstantProblem, UnknownLink};
@@ -174,6 +175,8 @@ pub enum Error {
         /// The row, counted from 1.
         row: usize,
     },
+    /// Something that the linear system does not have.
+    Linear(LinearError),
     /// The matrix A has dependent columns.
     NoLeftInverse,
     /// The mass matrix is not finite at a state.
@@ -221,6 +224,12 @@ impl Error {
             | Error::UnknownFunction { .. }
             | Error::NoStepSlopes { .. }
             | Error::NoSuchPoint
+            | Error::Linear(
+                LinearError::UnknownInput(..)
+                | LinearError::UnknownOutput(..)
+                | LinearError::NoInputCost
+                | LinearError::NegativeCost,
+            )
             | Error::Table(_) => true,
             Error::Description { .. }
             | Error::Robot { .. }
@@ -234,6 +243,7 @@ impl Error {
             | Error::RotorInertia
             | Error::NoLinearization(_)
             | Error::LinearizationNotFinite { .. }
+            | Error::Linear(_)
             | Error::NoLeftInverse
             | Error::NoMassMatrix
             | Error::SingularPull
@@ -383,6 +393,7 @@ impl fmt::Display for Error {
                 f,
                 "the linearisation is not finite at this state: row {row} has no value"
             ),
+            Error::Linear(error) => error.fmt(f),
             Error::NoLeftInverse => {
                 f.write_str("the rates of this description leave A without a left inverse")
             }
@@ -408,11 +419,18 @@ impl std::error::Error for Error {
             Error::Constant { problem, .. } => Some(problem),
             Error::Input(problem) => problem.source(),
             Error::Step(error) => Some(error),
+            Error::Linear(error) => Some(error),
             Error::SingularStep { state, .. }
             | Error::SingularParameters(state)
             | Error::NoLinearization(state) => Some(state),
             _ => None,
         }
+    }
+}
+
+impl From<LinearError> for Error {
+    fn from(error: LinearError) -> Self {
+        Error::Linear(error)
     }
 }
 

@@ -13,6 +13,7 @@
 //! | [`baselines`] | methods that serve as baselines of comparisons |
 //! | [`run`] | runs in time: plans, steps, inputs, events, samples |
 //! | [`evaluate`], [`linearize`] | numbers at a state |
+//! | [`linear`] | linear systems: steps, modes, zeros, regulators, responses |
 //! | [`drawing`] | the drawable parts of a mechanism at a state, as numbers |
 //! | [`session`] | a description with everything that can be asked of it |
 //! | [`reporter`] | warnings and progress, for a front end |
@@ -34,6 +35,7 @@ pub mod baselines;
 pub mod drawing;
 pub mod error;
 pub mod evaluate;
+pub mod linear;
 pub mod linearize;
 pub mod mechanism;
 pub mod method;
@@ -48,6 +50,7 @@ pub mod state;
 pub use drawing::{Drawing, ParametrizedDrawing, Scene};
 pub use error::Error;
 pub use evaluate::Evaluation;
+pub use linear::{LinearError, LinearSystem};
 pub use linearize::Linearization;
 pub use reporter::{Quiet, Reporter, Warning, WarningTexts};
 pub use run::{

@@ -1,18 +1,16 @@
 //! `hamel linearize`: linearises the motion at a state, with eigenvalues.
 
+mod formats;
+
 use crate::columns::aligned;
 use crate::failure::{Failure, print};
 use crate::json::Json;
-use crate::robot::RobotOptions;
-use crate::source;
+use crate::linear::{LinearArguments, pairs, rows, unsteady};
 use clap::{Args, ValueEnum};
-use hamel_engine::State;
-use hamel_engine::linearize::{Linearization, linearize};
+use hamel_engine::linear::{LinearSystem, Mode, pair};
+use hamel_engine::linearize::Linearization;
 use hamel_files::number::short;
-use std::path::PathBuf;
-
-/// Largest acceleration that counts as a rounding error of zero.
-const REST_TOLERANCE: f64 = 1e-9;
+use nalgebra::Complex;
 
 /// Prints the linearisation at a state: matrices A and B, and the eigenvalues of A.
 ///
@@ -27,28 +25,32 @@ const REST_TOLERANCE: f64 = 1e-9;
 #[command(after_help = "Examples:
   hamel linearize heavy_top.eom
   hamel linearize heavy_top.eom --at state.json
-  hamel linearize heavy_top.eom --format json")]
+  hamel linearize heavy_top.eom --format json
+  hamel linearize cart_pole.eom --at upright.json --modes
+  hamel linearize cart_pole.eom --at upright.json --step 0.01 --format python")]
 pub struct Arguments {
-    /// Description, or robot in URDF; `-` for standard input.
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
-    /// State, by coordinates or by joints; see `hamel eval --help`.
-    #[arg(long, value_name = "STATE.json")]
-    at: Option<PathBuf>,
+    #[command(flatten)]
+    linear: LinearArguments,
     /// Include all displacements and velocities, even those that constraints determine.
     #[arg(long)]
     full: bool,
-    /// Output format of the matrices.
+    /// List the modes in place of the eigenvalues: their states, damping, and whether inputs reach them and outputs
+    /// show them; then the zeros.
+    #[arg(long)]
+    modes: bool,
+    /// Output format; `csv` is [A B; C D] with names, `matlab` and `python` are programs that make an `ss` with names,
+    /// for MATLAB's Control System Toolbox or Octave, and for python-control.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    #[command(flatten)]
-    robot: RobotOptions,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
     Text,
     Json,
+    Csv,
+    Matlab,
+    Python,
 }
 
 /// Real or imaginary parts below this, relative to the largest entry of A, are shown as zero.
@@ -58,15 +60,36 @@ const PART_TOLERANCE: f64 = 1e-14;
 /// zero of the characteristic polynomial by √ε.
 const EIGENVALUE_TOLERANCE: f64 = 1e-7;
 
+/// Modes and zeros.
+struct Modes {
+    modes: Vec<Mode>,
+    zeros: Vec<Complex<f64>>,
+}
+
 /// Linearises and prints the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = source::open(&arguments.file, &arguments.robot)?.for_evaluation();
-    let generated = source.derive_linearized()?;
-    let state = State::read(&source, &generated, arguments.at.as_deref())?;
-    let linear = linearize(&generated, &state, source.shown(), arguments.full)?;
+    let (mut linear, system) = arguments.linear.open(arguments.full)?;
+    if system.step.is_some() {
+        (linear.a, linear.b) = (rows(&system.matrices.a), rows(&system.matrices.b));
+        let poles = system.poles().ok();
+        linear.eigenvalues =
+            poles.map(|poles| poles.iter().map(|pole| (pole.re, pole.im)).collect());
+    }
+    let modes = arguments
+        .modes
+        .then(|| -> Result<Modes, hamel_engine::LinearError> {
+            Ok(Modes {
+                modes: system.modes()?,
+                zeros: system.zeros()?,
+            })
+        });
+    let modes = modes.transpose().map_err(hamel_engine::Error::from)?;
     print(&match arguments.format {
-        Format::Text => text(&linear),
-        Format::Json => json(&linear).pretty(),
+        Format::Text => text(&linear, &system, modes.as_ref()),
+        Format::Json => json(&linear, system.step, modes.as_ref()).pretty(),
+        Format::Csv => formats::csv(&system),
+        Format::Matlab => formats::matlab(&linear.system, &system),
+        Format::Python => formats::python(&linear.system, &system),
     })?;
     complete(&linear)
 }
@@ -81,9 +104,13 @@ fn complete(linear: &Linearization) -> Result<(), Failure> {
     }
 }
 
-fn text(linear: &Linearization) -> String {
+fn text(linear: &Linearization, system: &LinearSystem, modes: Option<&Modes>) -> String {
+    let rate = match system.step {
+        Some(h) => format!("(h, d) after {} s =", short(h)),
+        None => "d/dt (h, d) =".into(),
+    };
     let mut text = format!(
-        "\x1b[1m{}\x1b[0m  d/dt (h, d) = A (h, d) + B du; displacements h along the columns of A(x), changes d of velocities{}\n",
+        "\x1b[1m{}\x1b[0m  {rate} A (h, d) + B du; displacements h along the columns of A(x), changes d of velocities{}\n",
         linear.system,
         if linear.with_states {
             " and states"
@@ -108,12 +135,85 @@ fn text(linear: &Linearization) -> String {
             text.push_str(&matrix("D", outputs, inputs, &linear.d));
         }
     }
-    text.push_str("\n\x1b[1meigenvalues of A\x1b[0m\n");
-    let size = linear
-        .a
-        .iter()
-        .flatten()
-        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    let size = system.matrices.a.amax();
+    if let Some(Modes { modes, zeros }) = modes {
+        text.push_str(&format!(
+            "\n\x1b[1mmodes\x1b[0m\n{}",
+            modes_table(modes, system)
+        ));
+        let zeros = if zeros.is_empty() {
+            "  none\n".into()
+        } else {
+            spectrum(zeros, size)
+        };
+        text.push_str(&format!("\n\x1b[1mzeros\x1b[0m\n{zeros}"));
+    } else {
+        text.push_str("\n\x1b[1meigenvalues of A\x1b[0m\n");
+        match &linear.eigenvalues {
+            Some(values) => {
+                let values: Vec<Complex<f64>> = values
+                    .iter()
+                    .map(|&(re, im)| Complex::new(re, im))
+                    .collect();
+                text.push_str(&spectrum(&values, size));
+            }
+            None => text.push_str("  not found\n"),
+        }
+    }
+    text + &unsteady(linear)
+}
+
+/// Modes with their natural frequencies, damping ratios and states, one on each line.
+fn modes_table(modes: &[Mode], system: &LinearSystem) -> String {
+    let mut lines = vec![
+        ["eigenvalue", "rad/s", "damping"]
+            .map(String::from)
+            .to_vec(),
+    ];
+    let mut remarks = vec!["states".to_string()];
+    for equal in modes.chunk_by(|a, b| a == b) {
+        let mode = &equal[0];
+        // ln z / h of a mode in steps.
+        let rate = match system.step {
+            Some(h) => {
+                Complex::new(
+                    mode.value.re.hypot(mode.value.im).ln(),
+                    mode.value.im.atan2(mode.value.re),
+                ) / h
+            }
+            None => mode.value,
+        };
+        let size = rate.re.hypot(rate.im);
+        let damping = if size > 0.0 {
+            short(-rate.re / size)
+        } else {
+            "-".into()
+        };
+        let value = match equal.len() {
+            1 => pair(mode.value),
+            count => format!("{}, {count} times", pair(mode.value)),
+        };
+        lines.push(vec![value, short(size), damping]);
+        let mut remark = mode.states.join(", ");
+        if !mode.reachable && !system.inputs.is_empty() {
+            remark += "; not reached by inputs";
+        }
+        if !mode.observable && !system.outputs.is_empty() {
+            remark += "; not shown by outputs";
+        }
+        remarks.push(remark);
+    }
+    let lines = aligned(&lines, "  ");
+    lines
+        .lines()
+        .zip(remarks)
+        .map(|(line, remark)| format!("{line}  {remark}\n"))
+        .collect()
+}
+
+/// Eigenvalues, one or a pair on each line; `size` is the largest entry of the matrix.
+pub fn spectrum(values: &[Complex<f64>], size: f64) -> String {
+    let mut text = String::new();
     let clean = |value: f64| {
         if value.abs() < PART_TOLERANCE * size {
             0.0
@@ -121,14 +221,11 @@ fn text(linear: &Linearization) -> String {
             value
         }
     };
-    if linear.eigenvalues.is_none() {
-        text.push_str("  not found\n");
-    }
-    let values = linear.eigenvalues.iter().flatten();
+    let values = values.iter().map(|value| (value.re, value.im));
     let (zeros, others): (Vec<_>, Vec<_>) =
         values.partition(|(re, im)| re.hypot(*im) <= EIGENVALUE_TOLERANCE * size);
     let mut zeros = zeroes(&zeros, PART_TOLERANCE * size);
-    for &&(re, im) in &others {
+    for (re, im) in others {
         let re = clean(re);
         // Zeros stand at their place in the order.
         if re < 0.0 {
@@ -136,24 +233,16 @@ fn text(linear: &Linearization) -> String {
         }
         // A pair of conjugates on one line.
         if im > 0.0 {
-            text.push_str(&format!("  {} ± {} i\n", short(re), short(im)));
+            text.push_str(&format!("  {}\n", pair(Complex::new(re, im))));
         } else if im == 0.0 {
             text.push_str(&format!("  {}\n", short(re)));
         }
     }
-    text.push_str(&zeros);
-    let largest = linear.xi_dot.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    if largest > REST_TOLERANCE {
-        text.push_str(&format!(
-            "\nthe velocities change here, max |xi_dot| = {}: the matrices hold for this instant\n",
-            short(largest)
-        ));
-    }
-    text
+    text + &zeros
 }
 
 /// Returns all zero eigenvalues on one line, with the largest deviation that rounding left; empty if there are none.
-fn zeroes(zeros: &[&(f64, f64)], rounding: f64) -> String {
+fn zeroes(zeros: &[(f64, f64)], rounding: f64) -> String {
     let off = zeros.iter().map(|(re, im)| re.hypot(*im));
     let off = off.fold(0.0, f64::max);
     let by = match off > rounding {
@@ -168,7 +257,7 @@ fn zeroes(zeros: &[&(f64, f64)], rounding: f64) -> String {
 }
 
 /// Returns a matrix with its name; a zero matrix takes one line.
-fn matrix(name: &str, rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
+pub fn matrix(name: &str, rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
     if values.iter().flatten().all(|&value| value == 0.0) {
         return format!("\n\x1b[1m{name}\x1b[0m = 0\n");
     }
@@ -186,9 +275,16 @@ fn table(rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
     aligned(&lines, "  ")
 }
 
-fn json(linear: &Linearization) -> Json {
-    let pair = |&(re, im): &(f64, f64)| Json::vector(&[re, im]);
-    Json::object([
+fn json(linear: &Linearization, step: Option<f64>, modes: Option<&Modes>) -> Json {
+    let complex = |values: &[(f64, f64)]| {
+        Json::List(
+            values
+                .iter()
+                .map(|&(re, im)| Json::vector(&[re, im]))
+                .collect(),
+        )
+    };
+    let mut members = vec![
         ("system", Json::Text(linear.system.clone())),
         ("states", Json::texts(&linear.states)),
         ("inputs", Json::texts(&linear.inputs)),
@@ -199,13 +295,26 @@ fn json(linear: &Linearization) -> Json {
         ("D", Json::matrix(&linear.d)),
         (
             "eigenvalues",
-            match &linear.eigenvalues {
-                Some(values) => Json::List(values.iter().map(pair).collect()),
-                None => Json::Null,
-            },
+            linear.eigenvalues.as_deref().map_or(Json::Null, complex),
         ),
         ("xi_dot", Json::vector(&linear.xi_dot)),
-    ])
+    ];
+    members.extend(step.map(|step| ("step", Json::Number(step))));
+    if let Some(Modes { modes, zeros }) = modes {
+        let list = modes.iter().map(|mode| {
+            Json::object([
+                ("value", Json::vector(&[mode.value.re, mode.value.im])),
+                ("states", Json::texts(&mode.states)),
+                ("reachable", Json::Bool(mode.reachable)),
+                ("observable", Json::Bool(mode.observable)),
+            ])
+        });
+        members.extend([
+            ("modes", Json::List(list.collect())),
+            ("zeros", pairs(zeros)),
+        ]);
+    }
+    Json::object(members)
 }
 
 #[cfg(test)]
@@ -229,11 +338,11 @@ mod tests {
             eigenvalues: None,
             xi_dot: vec![3.0],
         };
-        let text = text(&linear);
+        let text = text(&linear, &LinearSystem::from(&linear), None);
         for part in ["-2.5", "0.75", "not found", "the velocities change here"] {
             assert!(text.contains(part), "{part}: {text}");
         }
-        let json = json(&linear).pretty();
+        let json = json(&linear, None, None).pretty();
         for part in ["-2.5", "0.75", "\"eigenvalues\": null"] {
             assert!(json.contains(part), "{part}: {json}");
         }

@@ -80,7 +80,7 @@ const FOR_ROBOTS: [&str; 2] = [
 ];
 
 /// Required arguments of commands in addition to a file.
-const NEEDED: [(&str, &str); 5] = [
+const NEEDED: [(&str, &str); 7] = [
     ("simulate", "--until 0.01"),
     ("compare", "--until 0.01 --steps 4 --methods rkmk4"),
     (
@@ -89,10 +89,12 @@ const NEEDED: [(&str, &str); 5] = [
     ),
     ("draw", "--out OUT/robot.svg"),
     ("emit", "--out OUT/robot.rs"),
+    ("step", "CHANNEL"),
+    ("bode", "CHANNEL"),
 ];
 
 /// Uses of all other options, as words separated by spaces; `~` is a space within a word.
-const USES: [&str; 36] = [
+const USES: [&str; 41] = [
     "tables TOY --of A,M --format text --all",
     "tables TOY --format markdown",
     "tables TOY --format latex",
@@ -108,7 +110,12 @@ const USES: [&str; 36] = [
     "emit TOY --language python --out OUT/toy.py",
     "eval TOY --at OUT/state.json --frame rod --tables",
     "linearize TOY --at OUT/state.json --full --format text",
-    "linearize TOY --format json",
+    "linearize TOY --format json --modes",
+    "linearize TOY --format csv --step 0.01",
+    "lqr TOY --at OUT/state.json --step 0.01 --q h=1 --r F=2 --out OUT/gain.rs --format text",
+    "lqr TOY --out OUT/gain.json --format json",
+    "step TOY --at OUT/state.json --from F --to height --step 0.01 --until 2 --out OUT/step.csv --plot OUT/step.svg",
+    "bode TOY --at OUT/state.json --from F --to height --step 0.01 --range 0.1,9 --out OUT/bode.csv --plot OUT/bode.svg",
     "simulate TOY --until 0.05 --step 0.01 --method rk4 --lambda 3 --at OUT/state.json --out OUT/run.csv --every 2",
     "simulate TOY --until 0.05 --tol 1e-6 --method rkmk54 --times OUT/times.csv --tables --plot OUT/run.svg",
     "simulate TOY --until 0.05 --inputs OUT/inputs.csv --hold",
@@ -311,15 +318,20 @@ fn uses() -> Vec<String> {
         let needed = NEEDED.iter().find(|(of, _)| *of == command);
         let needed = needed.map_or("", |(_, needed)| *needed);
         for robots in FOR_ROBOTS {
-            let varied = match robots.contains("--params") {
-                true => "one_mass~=~uniform(1,~2)",
-                false => "start~root_joint_w~=~uniform([0,0,0],~[1,1,1])",
+            let (varied, channel) = match robots.contains("--params") {
+                true => ("one_mass~=~uniform(1,~2)", "--from a_tau --to h(a_dot)"),
+                false => (
+                    "start~root_joint_w~=~uniform([0,0,0],~[1,1,1])",
+                    "--from root_joint_force[1] --to h(root_joint_v[1])",
+                ),
             };
-            let needed = needed.replace("VARIED", varied);
+            let needed = needed.replace("VARIED", varied).replace("CHANNEL", channel);
             all.push(format!("{command} ROBOT {needed} {robots}"));
         }
         if command != "import" {
-            let needed = needed.replace("VARIED", "m~=~uniform(1,~2)");
+            let needed = needed
+                .replace("VARIED", "m~=~uniform(1,~2)")
+                .replace("CHANNEL", "");
             all.push(format!("{command} TOY {needed} --const n=3"));
         }
     }

@@ -25,6 +25,7 @@ mod inputs;
 #[path = "common/installed.rs"]
 mod installed;
 mod kept;
+mod linear;
 mod linearize;
 mod massless;
 mod methods;

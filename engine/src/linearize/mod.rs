@@ -1,6 +1,6 @@
 //! Linearises the motion at a state, and computes eigenvalues.
 
-mod eigenvalues;
+pub(crate) mod eigenvalues;
 mod minimal;
 
 use crate::error::Error;

@@ -73,6 +73,15 @@ impl Axis {
         }
     }
 
+    /// Creates a logarithmic axis for exactly this range of positive values.
+    pub fn exact_logarithmic(low: f64, high: f64) -> Self {
+        Axis {
+            logarithmic: true,
+            exponent: 0,
+            ..Axis::exact(low, high)
+        }
+    }
+
     /// Returns the least value shown.
     pub fn low(&self) -> f64 {
         self.low

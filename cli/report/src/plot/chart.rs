@@ -26,8 +26,23 @@ pub fn height(lines: usize) -> f64 {
     LABEL_SPACING * lines.saturating_sub(1) as f64
 }
 
-/// Draws a panel; the last one has the labels of the time axis.
-pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool) -> DrawResult {
+/// What panels share along their lower edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Across {
+    /// The time.
+    Time,
+    /// The angular frequency, on a logarithmic axis.
+    Frequency,
+}
+
+/// Draws a panel; the last one has the labels of the lower axis.
+pub fn panel(
+    area: &Area,
+    panel: &Panel,
+    (kind, time): (Across, &[f64]),
+    frame: Frame,
+    last: bool,
+) -> DrawResult {
     let (from, to) = match time {
         [first, .., last] if last > first => (*first, *last),
         _ => (0.0, 1.0),
@@ -38,7 +53,10 @@ pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool)
         .flat_map(|(_, values)| values.iter().copied());
     let axes = Axes {
         frame,
-        across: Axis::exact(from, to),
+        across: match kind {
+            Across::Time => Axis::exact(from, to),
+            Across::Frequency => Axis::exact_logarithmic(from, to),
+        },
         up: Axis::with_margin(values),
     };
     axes.draw(area, last)?;
@@ -46,7 +64,10 @@ pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool)
     let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
     if last {
         let style = letters(12.0, theme::SOFT.0, Anchor::Start, false);
-        let name = format!("t{}", axes.across.factor());
+        let name = match kind {
+            Across::Time => format!("t{}", axes.across.factor()),
+            Across::Frequency => "rad/s".into(),
+        };
         write(area, &name, (right + 26.0, bottom + 14.0), &style)?;
     }
     let mut ends = Vec::new();

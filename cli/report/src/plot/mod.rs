@@ -24,6 +24,7 @@ pub use width::width;
 pub use windows::drifts;
 
 use axes::Frame;
+use chart::Across;
 use figure::draw_heading;
 
 /// Lines over time that share a vertical axis.
@@ -87,6 +88,18 @@ const SPHERE_RADIUS: f64 = 140.0;
 /// # Errors
 /// If the drawing library fails; no case is known.
 pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
+    draw(picture, Across::Time)
+}
+
+/// Draws a picture with frequencies (rad/s) in place of times, on a logarithmic axis.
+///
+/// # Errors
+/// If the drawing library fails; no case is known.
+pub fn bode(picture: &Picture) -> Result<Figure, PlotError> {
+    draw(picture, Across::Frequency)
+}
+
+fn draw(picture: &Picture, across_axis: Across) -> Result<Figure, PlotError> {
     let spheres = usize::from(picture.path.is_some()) + usize::from(picture.poinsot.is_some());
     let across = if spheres > 0 { 446.0 } else { 656.0 };
     let lines = picture.panels.iter().flat_map(|panel| &panel.lines);
@@ -121,7 +134,7 @@ pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
                 height: height_of(index),
             };
             let last = index + 1 == picture.panels.len();
-            chart::panel(area, panel, &picture.time, frame, last)?;
+            chart::panel(area, panel, (across_axis, &picture.time), frame, last)?;
             top += frame.height + PANEL_GAP;
         }
         let end = picture.time.last().copied().unwrap_or(0.0);
