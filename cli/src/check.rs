@@ -5,8 +5,8 @@ use crate::robot::RobotOptions;
 use crate::source;
 use clap::Args;
 use hamel_codegen::derive::geometry::Inspection;
-use hamel_codegen::derive::numerical_loss::{ADVICE, DOCUMENTED_LOSS, losses};
-use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::derive::numerical_loss::{DOCUMENTED_LOSS, LOSS_ADVICE, losses};
+use hamel_codegen::derive::structure::choice::choose_method;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::proof::check::{Identity, Verdict, check};
@@ -182,7 +182,7 @@ fn rounding_report(generated: &Generated) -> String {
     let lines = lossy.iter().map(|(function, digits)| {
         let digits = *digits;
         let help = if digits >= DOCUMENTED_LOSS {
-            format!(". {ADVICE}")
+            format!(". {LOSS_ADVICE}")
         } else {
             String::new()
         };
@@ -226,7 +226,7 @@ fn methods(generated: &Generated) -> String {
     let structure = &generated.program.structure;
     let mut lines = structure.lines();
     if generated.program.function(FunctionId::Accel).is_some() {
-        lines.push(format!("method {}", choose(structure, None)));
+        lines.push(format!("method {}", choose_method(structure, None)));
     }
     lines.iter().map(|line| format!("  {line}\n")).collect()
 }

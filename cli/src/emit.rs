@@ -6,8 +6,8 @@ use crate::robot::RobotOptions;
 use crate::source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::builder;
-use hamel_codegen::emit::c::{Files, Precision, includable};
-use hamel_codegen::emit::trace::Traced;
+use hamel_codegen::emit::c::{CFiles, Precision, is_includable};
+use hamel_codegen::emit::trace::AnnotatedStatement;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::trace::Places;
 use serde_json::{Value, json};
@@ -154,7 +154,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// file.
 fn traced(generated: &Generated, text: &str, path: &str) -> String {
     let mut places = Places::of(generated, text);
-    let mut statement = |traced: &Traced| {
+    let mut statement = |traced: &AnnotatedStatement| {
         let mut value = json!({ "name": traced.name, "expression": traced.expression });
         if let Some(origin) = &traced.origin {
             value["quantity"] = json!(origin.quantity);
@@ -180,7 +180,7 @@ fn traced(generated: &Generated, text: &str, path: &str) -> String {
 }
 
 /// Writes header and source to their files, or both as one source to the terminal.
-fn write_c(arguments: &Arguments, files: &Files, stem: Option<&str>) -> Result<(), Failure> {
+fn write_c(arguments: &Arguments, files: &CFiles, stem: Option<&str>) -> Result<(), Failure> {
     let (Some(out), Some(stem)) = (&arguments.out, stem) else {
         return print(&format!("{}\n{}", files.header, files.rest));
     };
@@ -208,7 +208,7 @@ fn stem(out: &Path) -> Result<String, Failure> {
         stem.unwrap_or(name)
     });
     match stem {
-        Some(stem) if includable(stem) => Ok(stem.into()),
+        Some(stem) if is_includable(stem) => Ok(stem.into()),
         _ => Err(Failure::usage(format!(
             "{}: not a name that C can include, or the name of a C header; give it without the extension, as in `-o src/arm`",
             out.display()

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::ops;
 use crate::tables::{Format, written};
 use hamel_codegen::builder;
-use hamel_codegen::emit::c::{Files, Precision};
+use hamel_codegen::emit::c::{CFiles, Precision};
 use hamel_engine::{Error, Session, State, method};
 
 /// Returns the results of `hamel check`: the identities with their verdicts, and the lines below them.
@@ -44,7 +44,7 @@ pub fn rust(session: &Session, name: &str) -> Result<String, Error> {
 ///
 /// # Errors
 /// Errors of the derivation or of the generated code.
-pub fn c(session: &Session, name: &str, stem: &str) -> Result<Files, Error> {
+pub fn c(session: &Session, name: &str, stem: &str) -> Result<CFiles, Error> {
     let generated = session.source().derive()?;
     builder::written_in_c(&generated, name, Some(stem), Precision::default())
         .map_err(|errors| session.source().description_error(&errors))

@@ -142,7 +142,7 @@ impl Builder {
             return Err(BuildProblem::NoFileName(path));
         };
         let stem = stem.to_string_lossy().into_owned();
-        if self.c.is_some() && !emit::c::includable(&stem) {
+        if self.c.is_some() && !emit::c::is_includable(&stem) {
             return Err(BuildProblem::NotIncludable { path, stem });
         }
         if let Some(other) = stems.get(&stem) {
@@ -328,7 +328,7 @@ fn apart(
     shown: &str,
     named: &mut BTreeMap<String, String>,
 ) -> Result<(), Diagnostic> {
-    let names = emit::c::functions(&generated.program);
+    let names = emit::c::linker_symbols(&generated.program);
     if let Some((name, other)) = names.iter().find_map(|name| named.get_key_value(name)) {
         let message = format!("`{name}` in C would also be a function of {other}");
         return Err(Diagnostic::new(generated.model.span, message)
@@ -359,7 +359,7 @@ pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnost
         description: generated.text.clone(),
         ..Default::default()
     };
-    emit::file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
+    emit::rust_file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
 }
 
 /// Generates C99 for a system that is derived already. `name` appears in the command that the header shows; `stem` is
@@ -369,7 +369,7 @@ pub fn written_in_c(
     name: &str,
     stem: Option<&str>,
     precision: Precision,
-) -> Result<emit::c::Files, Vec<Diagnostic>> {
+) -> Result<emit::c::CFiles, Vec<Diagnostic>> {
     without_externals(generated, "C")?;
     let numbers = match precision {
         Precision::Double => "",
@@ -401,7 +401,7 @@ pub fn written_in_python(
         command: format!("hamel emit --language python {}{out}", quoted(name)),
         description: generated.text.clone(),
     };
-    Ok(emit::python::file(&generated.program, &options))
+    Ok(emit::python::python_module(&generated.program, &options))
 }
 
 /// Refuses external functions in Rust, which other languages cannot call.

@@ -30,7 +30,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
         Ok(generated) => generated,
         Err(errors) => return to_compile_errors(&errors, &places),
     };
-    let statements = emit::statements(&generated.program);
+    let statements = emit::statement_count(&generated.program);
     if statements > MACRO_STATEMENTS {
         let error = Diagnostic::new(
             generated.model.span,
@@ -39,7 +39,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
         .help("put the description in an `.eom` file and call `hamel_codegen::Builder` in build.rs");
         return to_compile_errors(&[error], &places);
     }
-    match emit::tokens(&generated.program, &emit::Options::default()) {
+    match emit::rust_tokens(&generated.program, &emit::Options::default()) {
         Ok(tokens) => {
             let warnings = to_compile_warnings(&generated.model.warnings, &places);
             tokens.into_iter().chain(read).chain(warnings).collect()

@@ -3,10 +3,10 @@
 use crate::algebra::graph::{Function, Graph, Node};
 use crate::derive;
 use crate::derive::assemble::assemble;
-use crate::derive::reduction::{Reduction, reduce, warnings};
+use crate::derive::reduction::{Reduction, dropped_row_warnings, reduce};
 use crate::derive::regressor::Regressor;
 use crate::diagnostics::Diagnostic;
-use crate::emit::NotRust;
+use crate::emit::InvalidRust;
 use crate::functions::{Asked, FunctionId, Needs};
 use crate::inertia;
 use crate::lower;
@@ -246,7 +246,7 @@ impl Generated {
     }
 
     /// Returns the error for generated text that is not valid Rust.
-    pub fn fault(&self, error: &NotRust) -> Diagnostic {
+    pub fn fault(&self, error: &InvalidRust) -> Diagnostic {
         let name = &self.model.name;
         let message = format!("internal check failed for `{name}`: {error}");
         Diagnostic::new(self.model.span, message).help(
@@ -271,7 +271,7 @@ impl Generated {
             model.constraints[row].redundant = true;
         }
         let dropped: Vec<usize> = dropped.copied().collect();
-        let warnings = warnings(&model.constraints, &dropped);
+        let warnings = dropped_row_warnings(&model.constraints, &dropped);
         let warnings = model.origins.located_all(warnings);
         model.warnings.extend(warnings);
         let regressor = regressor(&model).map_err(|error| vec![error])?;

@@ -1,6 +1,6 @@
 //! Every statement of the generated code with the quantity that it serves, the equation, and the place in the description.
 
-use crate::emit::trace::{Trace, Traced, trace};
+use crate::emit::trace::{AnnotatedStatement, FunctionStatements, annotated_statements};
 use crate::generate::Generated;
 use crate::program::provenance::Origin;
 use std::collections::HashMap;
@@ -38,7 +38,7 @@ impl<'a> Places<'a> {
 
     /// Returns the place of the statement of the description that a generated statement belongs to; `None` if the
     /// description has no text.
-    pub fn place(&mut self, traced: &Traced) -> Option<Place> {
+    pub fn place(&mut self, traced: &AnnotatedStatement) -> Option<Place> {
         let origin = traced.origin.as_ref()?;
         let place = || place(self.generated, self.text, origin);
         let known = self.known.entry(Rc::as_ptr(origin));
@@ -48,8 +48,8 @@ impl<'a> Places<'a> {
 
 impl Generated {
     /// Traces the generated functions, as [`crate::builder::written`] prints them.
-    pub fn trace(&self) -> Vec<Trace> {
-        trace(&self.program)
+    pub fn trace(&self) -> Vec<FunctionStatements> {
+        annotated_statements(&self.program)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::mechanism::{Instance, Numbers};
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, General, Lgvi, Method, Scheme, Splitting};
 use hamel::{Canonical, Energies, Split, State, StepError, System};
-use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::derive::structure::choice::choose_method;
 use hamel_codegen::program::structure::Structure;
 use hamel_files::number::short;
 
@@ -121,7 +121,7 @@ impl ChosenMethod {
     ) -> Result<Self, Error> {
         let (name, reason) = match name {
             AUTO => {
-                let choice = choose(structure, Some(steps));
+                let choice = choose_method(structure, Some(steps));
                 (choice.method, Some(choice.reason))
             }
             name => (name, None),

@@ -1,6 +1,6 @@
 //! Generates the systems of the hard cases from `tests/models/`.
 
-use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::derive::structure::choice::choose_method;
 use std::path::PathBuf;
 
 /// The models that the cases use.
@@ -41,7 +41,7 @@ fn choices() -> Result<String, Box<dyn std::error::Error>> {
         let text = std::fs::read_to_string(format!("../models/{stem}.eom"))?;
         let generated =
             hamel_codegen::generate::from_text(&text).map_err(|errors| format!("{errors:?}"))?;
-        let choice = choose(&generated.program.structure, None);
+        let choice = choose_method(&generated.program.structure, None);
         rows.push_str(&format!(
             "({stem:?}, {:?}, {:?}),\n",
             choice.method, choice.reason

@@ -3,7 +3,7 @@
 //! fifth of them if `HAMEL_PART` is 0, 1, 2, 3 or 4, since all at once take more memory than small machines have.
 
 use common::Random;
-use hamel_codegen::emit::{self, Options, names::Names};
+use hamel_codegen::emit::{self, Options, names::ProgramNames};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::Group;
 use hamel_codegen::program::{Argument, Function, Program, Shape};
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             chunk,
             ..Options::default()
         };
-        let code = emit::file(&generated.program, &options)?;
+        let code = emit::rust_file(&generated.program, &options)?;
         std::fs::write(folder.join(format!("case{case}.eom")), text)?;
         std::fs::write(folder.join(format!("case{case}.rs")), code)?;
         writeln!(
@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Writes `fn calls7`, which calls all functions of system 7 at a state for each lane.
 fn calls(program: &Program, case: usize) -> String {
-    let names = Names::new(program);
+    let names = ProgramNames::new(program);
     let of = format!("case{case}::{}", names.type_name);
     let values: Vec<String> = program
         .params

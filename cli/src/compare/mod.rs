@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use hamel::Method;
 use hamel::adaptive::Adaptive;
 use hamel::methods::General;
-use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::derive::structure::choice::choose_method;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::structure::Structure;
 use hamel_engine::State;
@@ -348,7 +348,7 @@ fn best(methods: &[NamedMethod]) -> &NamedMethod {
 
 /// Returns the choice of `--method auto`.
 fn choice(structure: &Structure) -> Choice {
-    let choice = choose(structure, None);
+    let choice = choose_method(structure, None);
     Choice {
         method: auto::entry(choice.method),
         reason: choice.reason.into(),

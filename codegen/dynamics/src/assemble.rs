@@ -2,7 +2,7 @@
 //! it is returned.
 
 use super::accel::cheapest::MassAndForces;
-use super::accel::{Acceleration, forward_dynamics, mass_and_forces};
+use super::accel::{AccelerationCandidate, forward_dynamics, mass_and_forces};
 use super::calculus::Calculus;
 use super::candidates::{Candidates, SHORT_SEARCH_NODES};
 use super::multipliers::with_accelerations;
@@ -23,7 +23,7 @@ use hamel_program::structure::Structure;
 use hamel_program::{Argument, Cause, Function, FunctionId, Program};
 use rustc_hash::FxHashSet;
 
-/// Derives the requested functions of a model.
+/// Derives the expressions of all requested functions of a model, and returns them as a program.
 ///
 /// `reduction` solves its constraints; `regressor` contains its base parameters, if they are
 /// requested. The program is the cheapest one or, if that loses too many digits to rounding, one
@@ -50,7 +50,7 @@ pub fn assemble(
     // emitted.
     if !model.overconstrained {
         let mut losses = numerical_loss::losses(model, &program);
-        let excess = numerical_loss::excess(model, &program, &mass, &losses);
+        let excess = numerical_loss::excess_loss(model, &program, &mass, &losses);
         if excess > 0.0 {
             let (careful, mass) = build_program(
                 full,
@@ -60,11 +60,11 @@ pub fn assemble(
                 &NumericalLoss::at_states_of(model),
             )?;
             let kept = numerical_loss::losses(model, &careful);
-            if numerical_loss::excess(model, &careful, &mass, &kept) < excess {
+            if numerical_loss::excess_loss(model, &careful, &mass, &kept) < excess {
                 (program, losses) = (careful, kept);
             }
         }
-        numerical_loss::note(&mut program, &losses);
+        numerical_loss::add_loss_remarks(&mut program, &losses);
     }
     Ok(program)
 }
@@ -88,7 +88,7 @@ fn build_program(
     let alone = (!inverts)
         .then(|| mass_and_forces(model, numerical_loss))
         .flatten()
-        .map(|computed| (Acceleration::none(model.graph.clone()), computed));
+        .map(|computed| (AccelerationCandidate::none(model.graph.clone()), computed));
     let Some((chosen, computed)) = alone.or_else(|| forward_dynamics(model, numerical_loss)) else {
         // Elimination at the start configuration shows which velocity is the first without inertia.
         let (graph, mass) = match mass_and_forces(model, numerical_loss) {
@@ -134,13 +134,13 @@ fn build_program(
         builder.projections();
     }
     let MassAndForces { graph, parts } = &builder.shared;
-    let found = structure::analyse(full, model, graph, parts);
+    let found = structure::analyse_structure(full, model, graph, parts);
     let mut others = Vec::new();
     if found.functions.is_some() && model.n() <= MAX_LITERAL_VELOCITIES {
         // In a graph without the computation of ξ̇.
         let mut apart = model.graph.clone();
         let parts = builder.parts.rebuild_in(&builder.graph, &mut apart);
-        others.extend(structure::analyse(full, model, &apart, &parts).functions);
+        others.extend(structure::analyse_structure(full, model, &apart, &parts).functions);
     }
     let structure = builder.splitting(found, &others)?;
     let mass = builder.parts.mass.clone();
@@ -326,7 +326,7 @@ impl ProgramBuilder<'_> {
         if let (Some(functions), true) =
             (&found.functions, model.asked.wants(FunctionId::Splitting))
         {
-            let pivots = functions.add(others, self);
+            let pivots = functions.add_to_program(others, self);
             let graph = &self.graph;
             let varies = |pivot: &Edge| !graph.is_free(pivot.node());
             if self.chosen.pivots.iter().any(varies) {

@@ -6,7 +6,7 @@ use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, apply_transposed};
 use hamel_language::model::Model;
 
-/// The derivations of a model, which remember the derivatives that they have computed.
+/// The derivatives ∂₁ … ∂ₙ along the columns of A and d/dt of expressions of a model; computed ones are remembered.
 #[derive(Clone, Debug)]
 pub struct Calculus {
     directions: Vec<Derivation>,
@@ -14,7 +14,7 @@ pub struct Calculus {
 }
 
 impl Calculus {
-    /// Creates the derivations ∂₁ … ∂ₙ and d/dt.
+    /// Creates the derivatives ∂ᵢ along the columns of A, and d/dt along ẋ = A ξ at ξ̇ = 0.
     pub fn new(model: &Model) -> Self {
         let direction = |i: usize| {
             Derivation::new(
@@ -55,17 +55,17 @@ impl Calculus {
         self.directions.len()
     }
 
-    /// Returns ∂ᵢ f.
+    /// Returns ∂ᵢ f, the derivative of an expression along the i-th column of A.
     pub fn along(&mut self, graph: &mut Graph, i: usize, f: Edge) -> Edge {
         self.directions[i].of(graph, f)
     }
 
-    /// Returns df/dt at ξ̇ = 0.
+    /// Returns df/dt of an expression at ξ̇ = 0, or at the ξ̇ of [`with_drift`](Self::with_drift).
     pub fn rate(&mut self, graph: &mut Graph, f: Edge) -> Edge {
         self.time.of(graph, f)
     }
 
-    /// Returns dv/dt at ξ̇ = 0.
+    /// Returns dv/dt of a vector, entry by entry, as [`rate`](Self::rate) does.
     pub fn rate3(&mut self, graph: &mut Graph, v: Vec3) -> Vec3 {
         v.map(|entry| self.time.of(graph, entry))
     }
@@ -84,7 +84,7 @@ impl Calculus {
             .collect()
     }
 
-    /// Returns vee(Rᵀ ∂ᵢR).
+    /// Returns vee(Rᵀ ∂ᵢR), the i-th column of the Jacobian of the body angular velocity.
     pub fn spin_along(&mut self, graph: &mut Graph, i: usize, rotation: &Mat3) -> Vec3 {
         let change = rotation.map(|row| row.map(|entry| self.along(graph, i, entry)));
         spin(graph, rotation, &change)

@@ -13,7 +13,7 @@ pub(crate) const MAX_SEARCHED_VELOCITIES: usize = 8;
 /// its expressions, and two elimination orders are tried alone. Each trial would take as long as the graph is large.
 pub(crate) const SHORT_SEARCH_NODES: usize = 3000;
 
-/// The cheapest computation so far.
+/// The cheapest of several computations of the same expressions, of those offered so far.
 ///
 /// It stays in the graph in which it was built, so that its expressions are not replaced by longer
 /// ones of other functions.
@@ -31,7 +31,7 @@ struct Computed<'a> {
 }
 
 impl<'a> Candidates<'a> {
-    /// Starts without any candidate.
+    /// Creates an empty collection; candidates are compared by operations and by their loss of digits.
     pub fn new(numerical_loss: &NumericalLoss) -> Self {
         Candidates {
             numerical_loss: numerical_loss.clone(),
@@ -56,7 +56,7 @@ impl<'a> Candidates<'a> {
         self.keep(cost, Cow::Owned(graph), roots);
     }
 
-    /// Adds a candidate, and its form after resubstitution if that finds anything.
+    /// Adds a candidate, and its form after resubstitution if that finds anything to replace.
     ///
     /// `base` contains what is computed in any case.
     pub fn offer_polished(&mut self, graph: Graph, roots: Vec<Edge>, base: &Graph) {

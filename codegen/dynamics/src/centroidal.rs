@@ -15,7 +15,7 @@ use super::calculus::Calculus;
 use super::candidates::Candidates;
 use super::frames::{Twist, by_velocities, matrix_by_rows, twist_entries, twist_rate};
 use super::program::ProgramBuilder;
-use super::quantity::{MovingMass, motions};
+use super::quantity::{MovingMass, mass_motions};
 use super::tree::Placement;
 use super::tree::draft::has_more_inertia;
 use hamel_algebra::graph::{Edge, Graph};
@@ -102,15 +102,15 @@ impl ProgramBuilder<'_> {
 
 /// Returns the masses that depend on the configuration.
 fn moving_masses(model: &mut Model, calculus: &mut Calculus) -> Vec<MovingMass> {
-    let all = motions(model, calculus, None);
-    let moves = which_move(model);
+    let all = mass_motions(model, calculus, None);
+    let moves = bodies_that_move(model);
     let kept = all.into_iter().zip(moves).filter(|(_, moves)| *moves);
     kept.map(|(motion, _)| motion).collect()
 }
 
-/// Returns for each body and then for each particle whether it depends on the configuration, rather
-/// than being fixed in the world.
-pub fn which_move(model: &Model) -> Vec<bool> {
+/// Returns for each body and then for each particle whether its position depends on the configuration, rather than
+/// being fixed in the world.
+pub fn bodies_that_move(model: &Model) -> Vec<bool> {
     let depends = |edges: &[Edge]| {
         let class = |class, edge: &Edge| class | model.graph.class(edge.node());
         edges.iter().fold(0, class) & class::CONFIGURATION != 0

@@ -5,7 +5,8 @@ use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::Edge;
 use hamel_language::model::Model;
 
-/// Returns `γ[i][j][k]` = γᵢⱼᵏ = (∂ᵢAⱼ^β − ∂ⱼAᵢ^β) Y_β^k, KR18 (12), where `y` is Y, n × ν.
+/// Returns the Hamel coefficients `γ[i][j][k]` = γᵢⱼᵏ = (∂ᵢAⱼ^β − ∂ⱼAᵢ^β) Y_β^k, KR18 (12), as expressions, where `y`
+/// is Y, n × ν.
 pub fn gamma(model: &mut Model, calculus: &mut Calculus, y: &[Vec<Edge>]) -> Vec<Vec<Vec<Edge>>> {
     let (n, zero) = (model.n(), model.graph.zero());
     let mut gamma = vec![vec![vec![zero; n]; n]; n];
@@ -32,8 +33,8 @@ pub fn gamma(model: &mut Model, calculus: &mut Calculus, y: &[Vec<Edge>]) -> Vec
     gamma
 }
 
-/// Returns `γ[i][j][k]` = (∂Y_α^k/∂x^β − ∂Y_β^k/∂x^α) Aᵢ^α Aⱼ^β, KR18 (13), which must agree with
-/// (12) on X.
+/// Returns the Hamel coefficients `γ[i][j][k]` = (∂Y_α^k/∂x^β − ∂Y_β^k/∂x^α) Aᵢ^α Aⱼ^β from the rows of Y, KR18 (13),
+/// which must agree with (12) on X.
 ///
 /// The curl of Y is contracted with tangent vectors on both sides; with A held fixed each half is
 /// the derivative of Y(x) a along b for constant a, b, so no derivative off X is taken:

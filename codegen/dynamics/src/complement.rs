@@ -11,7 +11,8 @@ use hamel_language::model::Model;
 use hamel_language::model::charts::{all_tangents, jacobian};
 use hamel_language::model::layout::Block;
 
-/// Matrices Φ and Ψ, in which the constraints of coordinate kinds precede those of the description.
+/// The matrices Φ = ∂φ/∂x and Ψ of [A Ψ] = [Y; Φ]⁻¹, in which the constraints of coordinate kinds precede those of the
+/// description.
 #[derive(Clone, Debug, Default)]
 pub struct Complement {
     /// Indices of the rows of φ that Φ consists of.

@@ -4,7 +4,8 @@ use super::calculus::Calculus;
 use hamel_algebra::graph::Edge;
 use hamel_language::model::Model;
 
-/// Returns `Γ[i][j][k]` = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si).
+/// Returns the connection `Γ[i][j][k]` = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si), KR18 (23),
+/// as expressions.
 pub fn connection(
     model: &mut Model,
     calculus: &mut Calculus,
@@ -62,11 +63,11 @@ pub fn connection(
         .collect()
 }
 
-/// Returns hᵢ = Γᵢⱼₖ ξʲ ξᵏ without forming Γ.
+/// Returns the bias forces hᵢ = Γᵢⱼₖ ξʲ ξᵏ, Coriolis and centrifugal, without forming Γ and without gravity.
 ///
 /// hᵢ = Ṁ_ij ξʲ − ½ ∂ᵢM_jk ξʲ ξᵏ + γᵢⱼˢ ξʲ p_s with p = M ξ (the antisymmetric term of (23) drops
 /// out); this is Hamel's form of KR18 (30a).
-pub fn quadratic(
+pub fn bias_forces(
     model: &mut Model,
     calculus: &mut Calculus,
     mass: &[Vec<Edge>],

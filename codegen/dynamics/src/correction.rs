@@ -12,7 +12,8 @@ use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
 
-/// Returns −Ψ φ in the graph with unconstrained points.
+/// Returns −Ψ φ, the change of x that returns it to X to first order, as expressions in the graph with unconstrained
+/// points.
 ///
 /// It is −½ (|x|² − 1) x for circle and quaternion, −½ R (RᵀR − I) for rotations, and −Ψ φ with the
 /// Ψ valid on X for everything else.

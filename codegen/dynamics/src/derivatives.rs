@@ -3,7 +3,7 @@
 
 use super::accel::branches::BranchFactors;
 use super::accel::context::DerivationContext;
-use super::accel::recursions;
+use super::accel::tree_recursions;
 use super::candidates::Candidates;
 use super::linearize::Displacements;
 use super::program::{MAX_LITERAL_VELOCITIES, ProgramBuilder};
@@ -35,7 +35,7 @@ impl ProgramBuilder<'_> {
         let mut columns = 0;
         let mut recursive = false;
         if reduction.is_none() {
-            for recursion in recursions(
+            for recursion in tree_recursions(
                 &DerivationContext::in_given_velocities(model),
                 &self.numerical_loss,
             ) {
@@ -155,9 +155,9 @@ impl ProgramBuilder<'_> {
             return None;
         }
         let (mut graph, parts) = (self.shared.graph.clone(), &self.shared.parts);
-        let right = parts.right(&mut graph);
+        let right = parts.right_hand_side(&mut graph);
         let mut along = derivations(&graph, symbols);
-        let branches = BranchFactors::of(&mut graph, &parts.mass, &[])?;
+        let branches = BranchFactors::factorize(&mut graph, &parts.mass, &[])?;
         let columns: Vec<Vec<Edge>> = (along.iter_mut())
             .map(|along| {
                 let changes = parts.mass.iter().zip(&right).map(|(row, &force)| {

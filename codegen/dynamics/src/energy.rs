@@ -6,7 +6,8 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::linear::{add3, apply3};
 use hamel_language::model::Model;
 
-/// Returns V(x): potentials given by the user, and −m ⟨g, p⟩ of bodies and particles, KR18 (48).
+/// Returns the potential energy V(x) as an expression: potentials given by the user, and −m ⟨g, p⟩ of bodies and
+/// particles, KR18 (48).
 pub fn potential(model: &mut Model) -> Edge {
     let graph = &mut model.graph;
     let mut potential = model.potential;
@@ -30,7 +31,7 @@ pub fn potential(model: &mut Model) -> Edge {
     potential
 }
 
-/// Returns T = ½ ξᵀ M ξ.
+/// Returns the kinetic energy T = ½ ξᵀ M ξ as an expression.
 pub fn kinetic(model: &mut Model, mass: &[Vec<Edge>]) -> Edge {
     let graph = &mut model.graph;
     let momentum: Vec<Edge> = mass.iter().map(|row| graph.dot(row, &model.xi)).collect();
@@ -81,7 +82,7 @@ pub fn kinetic_in_energy(model: &mut Model, kinetic: Edge) -> Edge {
 ///
 /// This is ṫ times the derivative of T by the rate ṫ of time at fixed rates of all other
 /// coordinates, Σ Yⁱₜ ∂T/∂ξⁱ, where Y is given by rows.
-pub fn gyroscopic(model: &mut Model, y: &[Vec<Edge>]) -> Edge {
+pub fn gyroscopic_energy(model: &mut Model, y: &[Vec<Edge>]) -> Edge {
     let Some(clock) = model.clock else {
         return model.graph.zero();
     };
@@ -92,7 +93,7 @@ pub fn gyroscopic(model: &mut Model, y: &[Vec<Edge>]) -> Edge {
     graph.mul(model.xi[clock.xi], sum)
 }
 
-/// Returns p = ∂T/∂ξ.
+/// Returns the generalised momenta p = ∂T/∂ξ of a kinetic energy as expressions.
 pub fn momentum(model: &mut Model, kinetic: Edge) -> Vec<Edge> {
     let graph = &mut model.graph;
     let one = graph.one();

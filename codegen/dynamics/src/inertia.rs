@@ -21,7 +21,7 @@ const DOUBTFUL_PIVOT: f64 = 1e-11;
 /// Relative size above which a pivot is not zero even if nothing is exact.
 const NONZERO_PIVOT: f64 = 1e-9;
 
-/// Returns M, computed in the axes and about the origins of the bodies' frames.
+/// Returns the mass matrix M, n × n, as expressions, computed in the axes and about the origins of the bodies' frames.
 ///
 /// For the free body this is [[m I, m ŝᵀ], [m ŝ, Θ]], KR18 (42).
 pub fn mass_matrix(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
@@ -29,19 +29,19 @@ pub fn mass_matrix(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>>
     let mut mass = vec![vec![model.graph.zero(); n]; n];
     for body in model.bodies.clone() {
         let part = body_mass(model, calculus, &body);
-        accumulate(&mut model.graph, &mut mass, &part);
+        add_matrix(&mut model.graph, &mut mass, &part);
     }
     for particle in model.particles.clone() {
         let part = particle_mass(&mut model.graph, calculus, &particle);
-        accumulate(&mut model.graph, &mut mass, &part);
+        add_matrix(&mut model.graph, &mut mass, &part);
     }
-    let part = kinetic_mass(model);
-    accumulate(&mut model.graph, &mut mass, &part);
+    let part = written_mass_matrix(model);
+    add_matrix(&mut model.graph, &mut mass, &part);
     mass
 }
 
-/// Adds the matrix `part` to `sum`.
-pub fn accumulate(graph: &mut Graph, sum: &mut [Vec<Edge>], part: &[Vec<Edge>]) {
+/// Adds the matrix `part` to `sum`, entry by entry.
+pub fn add_matrix(graph: &mut Graph, sum: &mut [Vec<Edge>], part: &[Vec<Edge>]) {
     for (row, other) in sum.iter_mut().zip(part) {
         for (entry, &term) in row.iter_mut().zip(other) {
             *entry = graph.add(*entry, term);
@@ -70,7 +70,7 @@ fn body_mass(model: &mut Model, calculus: &mut Calculus, body: &Body) -> Vec<Vec
         .iter()
         .map(|&w| apply3(graph, &body.inertia_origin, w))
         .collect();
-    symmetric(n, |i, j| {
+    build_symmetric(n, |i, j| {
         let linear = graph.dot(&velocities[i], &velocities[j]);
         let terms = [
             graph.mul(body.mass, linear),
@@ -88,14 +88,14 @@ fn particle_mass(
     particle: &Particle,
 ) -> Vec<Vec<Edge>> {
     let columns = calculus.point_jacobian(graph, particle.position);
-    symmetric(columns.len(), |i, j| {
+    build_symmetric(columns.len(), |i, j| {
         let product = graph.dot(&columns[i], &columns[j]);
         graph.mul(particle.mass, product)
     })
 }
 
-/// Returns ∂²T/∂ξⁱ∂ξʲ of the kinetic energy given by the user.
-pub fn kinetic_mass(model: &mut Model) -> Vec<Vec<Edge>> {
+/// Returns the part of M that belongs to the kinetic energy that the user wrote, ∂²T/∂ξⁱ∂ξʲ.
+pub fn written_mass_matrix(model: &mut Model) -> Vec<Vec<Edge>> {
     let graph = &mut model.graph;
     let mut by: Vec<Derivation> = model
         .xi
@@ -104,11 +104,11 @@ pub fn kinetic_mass(model: &mut Model) -> Vec<Vec<Edge>> {
         .collect();
     let energy = model.kinetic;
     let momentum: Vec<Edge> = by.iter_mut().map(|d| d.of(graph, energy)).collect();
-    symmetric(momentum.len(), |i, j| by[j].of(graph, momentum[i]))
+    build_symmetric(momentum.len(), |i, j| by[j].of(graph, momentum[i]))
 }
 
 /// Builds a symmetric matrix from its lower triangle.
-pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<Vec<Edge>> {
+pub fn build_symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<Vec<Edge>> {
     let mut rows: Vec<Vec<Edge>> = Vec::with_capacity(n);
     for i in 0..n {
         let row = (0..=i).map(|j| entry(i, j)).collect();
@@ -123,11 +123,11 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
         .collect()
 }
 
-/// Returns whether there are velocities without inertia that constraints have to determine.
+/// Returns whether M is singular because some velocities have no inertia, so that constraints have to determine them.
 ///
 /// That is the case if M is singular on all of X, or so close to singular at the start, with the
 /// default parameters, that rounding may decide.
-pub fn is_singular(model: &Model) -> bool {
+pub fn is_mass_matrix_singular(model: &Model) -> bool {
     if model.n() <= MAX_EXACT_VELOCITIES && is_rank_deficient(model) {
         return true;
     }
@@ -163,7 +163,7 @@ fn is_rank_deficient(model: &Model) -> bool {
     }
     let mut mass = mass_matrix(&mut model, &mut calculus);
     if let Some(terms) = terms {
-        accumulate(&mut model.graph, &mut mass, &terms.mass);
+        add_matrix(&mut model.graph, &mut mass, &terms.mass);
     }
     let value = |entry: &Edge| model.graph.value(*entry);
     let rows = mass.iter().map(|row| row.iter().map(value).collect());
@@ -198,7 +198,8 @@ fn generic_configuration(model: &Model) -> Option<Vec<f64>> {
         .then_some(x)
 }
 
-/// Returns the rows of B in B ξ̇ = b: those of the constraints, then one for each given rate.
+/// Returns the rows of B in B ξ̇ = b, one list of n expressions each: those of the constraints, then one for each given
+/// rate.
 pub fn constraint_rows(model: &Model) -> Vec<Vec<Edge>> {
     let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
     let constraints = model.constraints.iter().map(|c| c.row.clone());
@@ -214,7 +215,7 @@ pub fn constraint_rows(model: &Model) -> Vec<Vec<Edge>> {
 ///
 /// Using this matrix, and adding this force to f, changes neither ξ̇ nor λ, and provides pivots for
 /// velocities that only constraints determine.
-pub fn augment(
+pub fn augment_mass_matrix(
     graph: &mut Graph,
     mass: &[Vec<Edge>],
     rows: &[Vec<Edge>],
@@ -229,7 +230,7 @@ pub fn augment(
             column.map(|entry| graph.mul(weight, entry)).collect()
         })
         .collect();
-    let sum = symmetric(n, |i, j| {
+    let sum = build_symmetric(n, |i, j| {
         let part = graph.dot(&weighed[i], &column(j));
         graph.add(mass[i][j], part)
     });
@@ -272,7 +273,7 @@ pub fn check_positive_definite(
     if model.augmented {
         let rows = constraint_rows(model);
         let right = vec![graph.zero(); rows.len()];
-        if let Some((sum, _)) = augment(&mut graph, &mass, &rows, &right) {
+        if let Some((sum, _)) = augment_mass_matrix(&mut graph, &mass, &rows, &right) {
             mass = sum;
         }
     }
@@ -305,7 +306,7 @@ pub fn check_positive_definite(
         .iter()
         .find(|s| s.node == model.xi[pivot].node())
         .map_or("", |s| s.name.as_str());
-    let help = inertialess_motion::advice(model, &mass_at(&model.start_x), pivot);
+    let help = inertialess_motion::advise_on_singular_mass(model, &mass_at(&model.start_x), pivot);
     let help = help.unwrap_or_else(|| {
         "every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and similar selections do not need its inverse".into()
     });

@@ -8,11 +8,12 @@ use hamel_language::syntax::ast::JointKind;
 /// Relative size below which an entry of a direction v, or of M v, counts as 0.
 const NEGLIGIBLE_ENTRY: f64 = 1e-6;
 
-/// Suggests how to change a description whose mass matrix M is singular because a single joint can move without resistance.
+/// Suggests how to change a description whose mass matrix M is singular because a single joint can move without
+/// resistance; `None` if there is another reason.
 ///
 /// `mass` holds the numbers of M by rows, and `pivot` is the index of the first velocity whose pivot in the elimination of M is
 /// zero. The result is `None` if a motion without resistance takes several joints, or if these numbers do not determine it.
-pub fn advice(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
+pub fn advise_on_singular_mass(model: &Model, mass: &[f64], pivot: usize) -> Option<String> {
     let direction = kernel(mass, model.n(), pivot)?;
     let moving = |place: &usize| direction[*place] != 0.0;
     let moved: Vec<usize> = (0..direction.len()).filter(moving).collect();

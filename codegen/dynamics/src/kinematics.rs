@@ -6,7 +6,7 @@ use hamel_algebra::linear::{multiply, solve_symmetric, transpose};
 use hamel_language::model::Model;
 use hamel_language::model::layout::{Block, chart_rate};
 
-/// Returns the canonical quasi-velocities η = C(x) ẋ of all blocks for a given ẋ.
+/// Returns the chart rates η = C(x) ẋ of all blocks for a given ẋ, as expressions.
 pub fn chart_rates(graph: &mut Graph, blocks: &[Block], x: &[Edge], rate: &[Edge]) -> Vec<Edge> {
     let mut place = 0;
     let mut rates = Vec::new();
@@ -18,7 +18,7 @@ pub fn chart_rates(graph: &mut Graph, blocks: &[Block], x: &[Edge], rate: &[Edge
     rates
 }
 
-/// Returns Y, n × ν: the rows given in the description, the others derived from A.
+/// Returns Y with Y A = I, n × ν, as expressions: the rows given in the description, the others derived from A.
 pub fn left_inverse(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
     let given = model.completion.y.clone();
     if given.len() == model.n()

@@ -8,14 +8,14 @@
 
 use super::accel::best::MAX_POLISHED_COST_RATIO;
 use super::accel::context::DerivationContext;
-use super::accel::recursions;
 use super::accel::recursive::{AccelerationDerivatives, TreeRecursion};
+use super::accel::tree_recursions;
 use super::calculus::Calculus;
 use super::multipliers::with_accelerations;
 use super::numerical_loss::NumericalLoss;
 use super::reduction::Reduction;
 use super::{commutation, kinematics};
-use crate::normal::{NormalForms, build};
+use crate::normal::{NormalForms, build_expression};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph, NodeId};
 use hamel_algebra::linear::solve_symmetric;
@@ -121,7 +121,7 @@ pub struct Displacements {
 }
 
 impl Displacements {
-    /// Derives the displacement frame of a model in the graph of its program.
+    /// Derives the frame A(x) of the displacements h, δx = A h, for a model in the graph of its program.
     pub fn new(full: &Model, reduction: Option<&Reduction>, graph: &mut Graph) -> Option<Self> {
         let mut own = full.clone();
         let mut calculus = Calculus::new(&own);
@@ -157,7 +157,7 @@ impl Displacements {
 /// Moves the columns of the states z before those of u, and appends the rows of ż: (h, δξ, δz).
 ///
 /// `xi_dot` (F) is given in the graph of the rows.
-pub fn with_states(
+pub fn append_states(
     model: &Model,
     displacements: &Displacements,
     (graph, mut rows): (&mut Graph, Vec<Vec<Edge>>),
@@ -168,7 +168,7 @@ pub fn with_states(
         row[inputs..].rotate_left(model.m());
     }
     let changes = rows[displacements.n()..].to_vec();
-    let below = slopes(
+    let below = output_derivatives(
         model,
         displacements,
         graph,
@@ -179,10 +179,10 @@ pub fn with_states(
     rows
 }
 
-/// Returns the derivatives of expressions of the model by (h, δξ, δz, δu), by rows.
+/// Returns the derivatives of outputs, or of other expressions of the model, by (h, δξ, δz, δu), by rows: `[C D]`.
 ///
 /// The graph extends the model's. ξ̇ is F there, and `changes` are the rows of δξ̇.
-pub fn slopes(
+pub fn output_derivatives(
     model: &Model,
     displacements: &Displacements,
     graph: &mut Graph,
@@ -216,7 +216,8 @@ pub fn slopes(
         .collect()
 }
 
-/// Linearises the dynamics; `model` is that of the active velocities.
+/// Derives `[A B]` of ḣ and δξ̇ for (h, δξ, δu), δx = A h, by the cheapest of four ways; `model` is that of the active
+/// velocities.
 ///
 /// The cheapest of four ways is chosen:
 ///
@@ -230,7 +231,7 @@ pub fn linearize(
     numerical_loss: &NumericalLoss,
 ) -> Linearization {
     let upper = displacement_rows(model, motion);
-    let recursions = recursions(
+    let recursions = tree_recursions(
         &DerivationContext::in_given_velocities(model),
         numerical_loss,
     );
@@ -243,7 +244,7 @@ pub fn linearize(
         .collect();
     if candidates.is_empty() || !(long || model.n() > MAX_EXPANDED_VELOCITIES) {
         let explicit = differentiate(model, motion, &upper);
-        if model.n() <= MAX_EXPANDED_VELOCITIES && !numerical_loss.comes_first() {
+        if model.n() <= MAX_EXPANDED_VELOCITIES && !numerical_loss.is_compared_first() {
             candidates.extend(expand_entries(model, &explicit, motion));
         }
         candidates.extend(differentiate_implicitly(model, motion, &upper));
@@ -442,7 +443,7 @@ fn expand_entries(
     }
     let built: Vec<Edge> = polynomials
         .iter()
-        .map(|polynomial| build(&mut source, polynomial))
+        .map(|polynomial| build_expression(&mut source, polynomial))
         .collect();
     let mut graph = motion.graph.clone();
     let entries = rebuild(&source, &mut graph, &built);

@@ -6,9 +6,9 @@ use hamel_algebra::linear::{add3, cross};
 use hamel_language::model::{Model, Wrench};
 use hamel_language::syntax::ast::Axes;
 
-/// Returns the generalised force F·(vᵢ + ωᵢ × at) + τ·ωᵢ of one wrench, in the axes in which it is
+/// Returns the n entries F·(vᵢ + ωᵢ × at) + τ·ωᵢ of the generalised force of one wrench, in the axes in which it is
 /// given.
-pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Vec<Edge> {
+pub fn wrench_force(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Vec<Edge> {
     let frame = model.frames[wrench.frame].clone();
     let graph = &mut model.graph;
     let spins = calculus.spin_jacobian(graph, &frame.rotation);
@@ -51,19 +51,19 @@ pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Ve
     }
 }
 
-/// Returns −∂ᵢV of everything except gravity on bodies, which is computed separately.
-pub fn potential(model: &mut Model, calculus: &mut Calculus, potential: Edge) -> Vec<Edge> {
+/// Returns the force −∂ᵢV of a potential, without gravity on bodies, which is computed separately.
+pub fn potential_force(model: &mut Model, calculus: &mut Calculus, potential: Edge) -> Vec<Edge> {
     (0..model.n())
         .map(|i| -calculus.along(&mut model.graph, i, potential))
         .collect()
 }
 
-/// Returns the same −∂ᵢV as [`potential`], but with springs along lines acting by their wrenches.
-pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
-    let mut sum = potential(model, calculus, model.elements.scalar_potential);
+/// Returns the same −∂ᵢV as [`potential_force`], but with springs along lines acting by their wrenches.
+pub fn elastic_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+    let mut sum = potential_force(model, calculus, model.elements.scalar_potential);
     for spring in model.elements.springs.clone() {
         for load in &spring.wrenches {
-            let force = wrench(model, calculus, load);
+            let force = wrench_force(model, calculus, load);
             for (sum, force) in sum.iter_mut().zip(force) {
                 *sum = model.graph.add(*sum, force);
             }
@@ -77,7 +77,7 @@ pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
 pub fn applied_force_terms(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     let mut loads: Vec<Vec<Edge>> = Vec::new();
     for load in model.wrenches.clone() {
-        loads.push(wrench(model, calculus, &load));
+        loads.push(wrench_force(model, calculus, &load));
     }
     if model
         .generalized
@@ -89,7 +89,7 @@ pub fn applied_force_terms(model: &mut Model, calculus: &mut Calculus) -> Vec<Ve
     loads
 }
 
-/// Returns the sum of the applied forces, as a reference for validation.
+/// Returns the sum of the applied forces fᴱ, n entries, without those of potentials, as a reference for validation.
 pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     let all = applied_force_terms(model, calculus);
     (0..model.n())

@@ -17,7 +17,7 @@ use hamel_program::count::count;
 /// computed from the quantities traced for ξ̇.
 pub const MAX_EXPLICIT_VELOCITIES: usize = 8;
 
-/// Returns ṗ in the graph of `parts`.
+/// Returns the rates ṗ of the momenta p = ∂T/∂ξ as expressions in (x, ξ, u), in the graph of `parts`.
 ///
 /// The cheapest of these is chosen: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with the terms
 /// that ξ̇ needs anyway and M either written out or as traced. −∂V and the applied forces are then

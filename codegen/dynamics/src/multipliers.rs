@@ -3,7 +3,7 @@
 //! The multipliers of rows that are kept come from the solution for ξ̇. The others follow from the
 //! equations of motion of the velocities that were solved for, by the pivots of the reduction.
 
-use super::accel::Acceleration;
+use super::accel::AccelerationCandidate;
 use super::accel::parts::{ReferencePoint, TracingVariant, trace_terms};
 use super::calculus::Calculus;
 use super::reduction::Reduction;
@@ -13,10 +13,15 @@ use hamel_algebra::transplant::{map_symbols, rebuild};
 use hamel_language::model::{Model, class};
 use hamel_language::syntax::ast::Axes;
 
-/// Returns M ξ̇ + h + ∂V − f for some velocities of the full frame, with ξ̇ₐ as symbols.
+/// Returns M ξ̇ + h + ∂V − f, the force of constraints and drives, for some velocities of the full frame, with ξ̇ₐ as
+/// symbols.
 ///
 /// The bodies are traced in the full frame.
-pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (Graph, Vec<Edge>) {
+pub fn force_residuals(
+    full: &Model,
+    reduction: &Reduction,
+    velocities: &[usize],
+) -> (Graph, Vec<Edge>) {
     let mut model = full.clone();
     model.graph = reduction.graph.clone();
     let mut calculus = Calculus::new(&model);
@@ -48,7 +53,7 @@ pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (
 pub fn multipliers(
     full: &Model,
     reduction: &Reduction,
-    chosen: &Acceleration,
+    chosen: &AccelerationCandidate,
     (from, residuals): (&Graph, &[Edge]),
     graph: &mut Graph,
 ) -> Option<Vec<Edge>> {

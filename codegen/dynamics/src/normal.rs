@@ -15,7 +15,7 @@ use hamel_language::model::points::Points;
 use num_rational::BigRational;
 use std::collections::BTreeMap;
 
-/// Polynomials with their normal forms modulo the ideal of φ.
+/// Expander of expressions to polynomials with their normal forms modulo the ideal of φ, over the rationals.
 ///
 /// One instance serves one graph, which may grow.
 pub struct NormalForms {
@@ -124,12 +124,12 @@ impl NormalForms {
         self
     }
 
-    /// Expands an expression to a polynomial, without reduction.
+    /// Expands an expression to a polynomial, without reduction modulo φ; `None` if it is none, or too large.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         self.expander.expand(graph, edge)
     }
 
-    /// Returns the normal form of a polynomial.
+    /// Returns the normal form of a polynomial modulo the ideal of φ.
     pub fn reduce(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> Poly<BigRational> {
         self.ideal.reduce(graph, polynomial.clone())
     }
@@ -214,12 +214,14 @@ pub fn variable_node(graph: &Graph, var: Var) -> Edge {
 
 /// Polynomial in the variables that vary at run time, with expressions that do not vary as
 /// coefficients.
-pub type Collected = BTreeMap<Monomial, Edge>;
+pub type RunTimePolynomial = BTreeMap<Monomial, Edge>;
 
-/// Collects the terms of a polynomial by run-time monomials; the coefficients are built in the
-/// graph.
-pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
-    let mut collected = Collected::new();
+/// Groups the terms of a polynomial by monomials in what varies at run time; the coefficients are built in the graph.
+pub fn collect_run_time_terms(
+    graph: &mut Graph,
+    polynomial: &Poly<BigRational>,
+) -> RunTimePolynomial {
+    let mut collected = RunTimePolynomial::new();
     for (monomial, number) in polynomial.terms() {
         let mut coefficient = graph.rational(number);
         let mut powers = Vec::new();
@@ -242,11 +244,11 @@ pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
     collected
 }
 
-/// Rewrites an expression that is constant on X without coordinates.
+/// Rewrites an expression that is constant on X so that it contains no coordinates; returns it unchanged if that fails.
 ///
 /// If all ∂ᵢf = 0, no coordinate is left in the normal form. Other expressions are returned
 /// unchanged. The bases are computed when they are first needed.
-pub fn without_coordinates(
+pub fn eliminate_coordinates(
     graph: &mut Graph,
     calculus: &mut Calculus,
     points: &Points,
@@ -264,7 +266,7 @@ pub fn without_coordinates(
         return edge;
     };
     let reduced = forms.reduce(graph, &polynomial);
-    let result = build(graph, &reduced);
+    let result = build_expression(graph, &reduced);
     if graph.class(result.node()) & coord == 0 {
         result
     } else {
@@ -273,8 +275,8 @@ pub fn without_coordinates(
 }
 
 /// Builds the expression of a polynomial, term by term.
-pub fn build(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Edge {
-    let collected = collect(graph, polynomial);
+pub fn build_expression(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Edge {
+    let collected = collect_run_time_terms(graph, polynomial);
     let mut sum = graph.zero();
     for (monomial, coefficient) in collected {
         let mut term = coefficient;

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-/// Returns the largest absolute row sum.
+/// Returns the row-sum norm ‖M‖_∞ of a matrix of numbers: its largest sum of absolute entries in a row.
 pub fn row_sum_norm(rows: &[Vec<f64>]) -> f64 {
     max_or_infinite(rows.iter().map(|row| row.iter().map(|e| e.abs()).sum()))
 }
@@ -17,7 +17,7 @@ pub fn max_or_infinite(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns the inverse of a positive definite matrix, by Gauss-Jordan elimination without pivoting.
-pub fn inverse(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+pub fn inverse_positive_definite(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let n = rows.len();
     for k in 0..n {
         let pivot = std::mem::replace(&mut rows[k][k], 1.0);

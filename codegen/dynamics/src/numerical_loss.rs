@@ -5,7 +5,7 @@
 //! too, long expansions do not, and of two candidates the one that keeps more digits is preferred to the cheaper
 //! one.
 
-use super::norms::{inverse, max_or_infinite, row_sum_norm};
+use super::norms::{inverse_positive_definite, max_or_infinite, row_sum_norm};
 use super::tree::Placement;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::matrix;
@@ -19,7 +19,7 @@ use hamel_program::rounding::{Measured, digits_lost};
 /// Smallest number of lost digits that the documentation of an emitted function mentions.
 pub const DOCUMENTED_LOSS: f64 = 6.0;
 /// Advice to users whose functions lose digits by every candidate.
-pub const ADVICE: &str =
+pub const LOSS_ADVICE: &str =
     "Frames close to their bodies and no differences of large terms lose fewer digits.";
 /// Largest number of digits that a function may lose without a new choice of candidates by their losses.
 const ACCEPTED_LOSS: f64 = 2.5;
@@ -47,13 +47,13 @@ impl NumericalLoss {
     }
 
     /// Returns whether losses are compared before operations.
-    pub fn comes_first(&self) -> bool {
+    pub fn is_compared_first(&self) -> bool {
         !self.states.is_empty()
     }
 
     /// Returns the placements of link frames to try.
-    pub fn placements(&self) -> &'static [Placement] {
-        match self.comes_first() {
+    pub fn link_placements(&self) -> &'static [Placement] {
+        match self.is_compared_first() {
             true => &[Placement::Chosen, Placement::Parallel, Placement::Described],
             false => &[Placement::Chosen, Placement::Parallel],
         }
@@ -64,7 +64,7 @@ impl NumericalLoss {
     /// This is 0 if cost alone decides, and counts all digits if the candidate has no value at any
     /// state.
     pub fn loss(&self, graph: &Graph, outputs: &[Edge], guards: &[Edge]) -> usize {
-        if !self.comes_first() {
+        if !self.is_compared_first() {
             return 0;
         }
         let measured = Measured { outputs, guards };
@@ -100,7 +100,12 @@ pub fn losses(model: &Model, program: &Program) -> Vec<Option<f64>> {
 ///
 /// Functions that solve with M may lose additional digits, as many as the condition number of M
 /// has.
-pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Option<f64>]) -> f64 {
+pub fn excess_loss(
+    model: &Model,
+    program: &Program,
+    mass: &[Vec<Edge>],
+    losses: &[Option<f64>],
+) -> f64 {
     let mut condition = None;
     let mut worst = 0.0_f64;
     for (function, digits) in program.functions.iter().zip(losses) {
@@ -117,14 +122,14 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Op
     worst
 }
 
-/// Adds a remark to the documentation of functions that lose many digits, with advice.
-pub fn note(program: &mut Program, losses: &[Option<f64>]) {
+/// Adds a remark to the documentation of those functions of a program that lose many digits, with advice.
+pub fn add_loss_remarks(program: &mut Program, losses: &[Option<f64>]) {
     for (function, digits) in program.functions.iter_mut().zip(losses) {
         if let Some(digits) = digits.filter(|&digits| digits >= DOCUMENTED_LOSS) {
             let digits = digits.min(16.0);
             function.docs.extend([
                 String::new(),
-                format!("Rounding loses about {digits:.0} of its 16 digits at the start or near it. {ADVICE}"),
+                format!("Rounding loses about {digits:.0} of its 16 digits at the start or near it. {LOSS_ADVICE}"),
             ]);
         }
     }
@@ -137,7 +142,10 @@ fn condition_digits(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64
         let values = evaluate_rounded(&program.graph, &mass.concat(), &state);
         let entries: Vec<f64> = values.iter().map(|entry| entry.exact.to_f64()).collect();
         let rows = matrix(&entries, mass.len());
-        let of = [most, row_sum_norm(&rows) * row_sum_norm(&inverse(rows))];
+        let of = [
+            most,
+            row_sum_norm(&rows) * row_sum_norm(&inverse_positive_definite(rows)),
+        ];
         most = max_or_infinite(of.into_iter());
     }
     most.log10()

@@ -1,6 +1,6 @@
 //! Builder of the functions of a program.
 
-use super::accel::Acceleration;
+use super::accel::AccelerationCandidate;
 use super::accel::cheapest::MassAndForces;
 use super::accel::parts::EquationTerms;
 use super::numerical_loss::NumericalLoss;
@@ -24,7 +24,7 @@ pub(super) struct ProgramBuilder<'a> {
     /// Graph of all functions.
     pub(super) graph: Graph,
     /// Computation of ξ̇.
-    pub(super) chosen: Acceleration,
+    pub(super) chosen: AccelerationCandidate,
     /// M and the forces.
     pub(super) parts: EquationTerms,
     /// M and the forces in a graph in which only ξ̇ is computed, sharing as much as possible with
@@ -48,7 +48,7 @@ pub(super) struct ProgramBuilder<'a> {
 impl<'a> ProgramBuilder<'a> {
     pub(super) fn new(
         model: &'a Model,
-        chosen: Acceleration,
+        chosen: AccelerationCandidate,
         computed: MassAndForces,
         numerical_loss: &NumericalLoss,
     ) -> Self {
@@ -108,7 +108,7 @@ impl<'a> ProgramBuilder<'a> {
     }
 
     /// Returns the meaning of the pivots of a computation of ξ̇.
-    pub(super) fn causes_of(&self, motion: &Acceleration) -> Vec<Cause> {
+    pub(super) fn causes_of(&self, motion: &AccelerationCandidate) -> Vec<Cause> {
         let n = self.model.n();
         let of = |number: usize| match number.checked_sub(n) {
             None if motion.twist => Cause::Mass,

@@ -10,10 +10,11 @@ use hamel_language::model::Model;
 use hamel_language::model::invariants::Quantity;
 use hamel_language::model::value::Value;
 
-/// Returns the value of the quantity that an invariant names.
+/// Returns the quantity that an invariant names, such as a momentum of some bodies, as expressions; `energies` are T
+/// and V.
 ///
 /// `energies` are the part of T in the energy, and V.
-pub fn value(
+pub fn quantity_value(
     model: &mut Model,
     calculus: &mut Calculus,
     energies: (Edge, Edge),
@@ -23,14 +24,14 @@ pub fn value(
         Quantity::Energy => Value::Scalar(model.graph.add(energies.0, energies.1)),
         Quantity::LinearMomentum { of, along } => {
             let mut total = zero3(&model.graph);
-            for motion in motions(model, calculus, *of) {
+            for motion in mass_motions(model, calculus, *of) {
                 total = add3(&mut model.graph, total, motion.momentum);
             }
             component(model, total, along.as_ref())
         }
         Quantity::AngularMomentum { of, about, along } => {
             let mut total = zero3(&model.graph);
-            for motion in motions(model, calculus, *of) {
+            for motion in mass_motions(model, calculus, *of) {
                 let graph = &mut model.graph;
                 let arm = sub3(graph, motion.centre, *about);
                 let lever = cross(graph, arm, motion.momentum);
@@ -43,9 +44,9 @@ pub fn value(
     }
 }
 
-/// Returns the value from the total linear momentum, and the angular momentum about the origin of
-/// the world; `None` for quantities that these do not determine.
-pub fn of_total(
+/// Returns the quantity that an invariant names from the total linear momentum, and the angular momentum about the
+/// origin of the world; `None` for quantities that these do not determine.
+pub fn quantity_of_total(
     graph: &mut Graph,
     (linear, angular): (Vec3, Vec3),
     quantity: &Quantity,
@@ -81,8 +82,12 @@ pub struct MovingMass {
     pub spin: Vec3,
 }
 
-/// Returns the motions of the bodies on a frame, or of all bodies and particles.
-pub fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec<MovingMass> {
+/// Returns mass, centre and momenta of each body on a frame, or of all bodies and particles for `None`.
+pub fn mass_motions(
+    model: &mut Model,
+    calculus: &mut Calculus,
+    of: Option<usize>,
+) -> Vec<MovingMass> {
     let graph = &mut model.graph;
     let mut all = Vec::new();
     for body in &model.bodies {

@@ -1,9 +1,9 @@
 //! Functions of systems with constraints: the multipliers, and projections onto the constraints.
 
 use super::accel::context::DerivationContext;
-use super::accel::recursions;
+use super::accel::tree_recursions;
 use super::candidates::Candidates;
-use super::multipliers::{multipliers, residuals};
+use super::multipliers::{force_residuals, multipliers};
 use super::program::ProgramBuilder;
 use super::reduction::Reduction;
 use super::undetermined::undetermined_multipliers;
@@ -46,11 +46,11 @@ impl ProgramBuilder<'_> {
         let mut traced: Vec<(Graph, Vec<Edge>)> = Vec::new();
         if whole {
             let given = DerivationContext::in_given_velocities(self.model);
-            let recursions = recursions(&given, &self.numerical_loss);
+            let recursions = tree_recursions(&given, &self.numerical_loss);
             traced.extend(recursions.iter().map(|of| of.residuals(&velocities)));
         }
         if traced.is_empty() {
-            traced.push(residuals(full, reduction, &velocities));
+            traced.push(force_residuals(full, reduction, &velocities));
         }
         let mut candidates = Candidates::new(&self.numerical_loss);
         let contexts = [self.shared.graph.clone(), self.graph.clone()];

@@ -3,11 +3,11 @@
 use super::accel::cheapest::MassAndForces;
 use super::accel::context::DerivationContext;
 use super::accel::recursive::TreeRecursion;
-use super::accel::{Acceleration, recursions};
+use super::accel::{AccelerationCandidate, tree_recursions};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
 use super::linearize::{
-    Displacements, ForwardDynamics, Linearization, linearize, slopes, with_states,
+    Displacements, ForwardDynamics, Linearization, append_states, linearize, output_derivatives,
 };
 use super::program::{MAX_LITERAL_VELOCITIES, ProgramBuilder, shape_of};
 use super::reduction::Reduction;
@@ -30,7 +30,7 @@ impl ProgramBuilder<'_> {
             return;
         }
         let given = DerivationContext::in_given_velocities(self.model);
-        let recursions = recursions(&given, &self.numerical_loss);
+        let recursions = tree_recursions(&given, &self.numerical_loss);
         if self.model.asked.wants(FunctionId::MomentumRate) {
             self.momentum_rate(&recursions);
         }
@@ -106,7 +106,7 @@ impl ProgramBuilder<'_> {
     /// compute it, whichever gives the cheaper derivatives.
     pub(super) fn linearize(&mut self, full: &Model, reduction: Option<&Reduction>) {
         let shared = &self.shared;
-        let apart = |motion: &Acceleration| {
+        let apart = |motion: &AccelerationCandidate| {
             let mut graph = motion.graph.clone();
             let parts = shared.parts.rebuild_in(&shared.graph, &mut graph);
             MassAndForces { graph, parts }
@@ -122,7 +122,7 @@ impl ProgramBuilder<'_> {
             let Some(displacements) = Displacements::new(full, reduction, &mut graph) else {
                 return;
             };
-            let right = parts.right(&mut graph);
+            let right = parts.right_hand_side(&mut graph);
             let varying = |edge: &Edge| !graph.is_free(edge.node());
             let causes = self.causes_of(motion).into_iter();
             let known = motion.pivots.iter().copied().zip(causes);
@@ -155,7 +155,7 @@ impl ProgramBuilder<'_> {
                 return;
             };
             let xi_dot = &self.chosen.xi_dot;
-            rows = with_states(self.model, &displacements, (&mut self.graph, rows), xi_dot);
+            rows = append_states(self.model, &displacements, (&mut self.graph, rows), xi_dot);
             if !rates.is_empty() {
                 rates.extend(self.state_rates(&rates));
             }
@@ -198,7 +198,7 @@ impl ProgramBuilder<'_> {
                 false => &[],
             };
             let xi_dot: &[Edge] = if follows { &self.chosen.xi_dot } else { &[] };
-            let rows = slopes(
+            let rows = output_derivatives(
                 model,
                 &displacements,
                 &mut graph,
@@ -317,12 +317,14 @@ impl ProgramBuilder<'_> {
                 (Quantity::Energy, Some(energy)) => (Shape::Scalar, vec![energy]),
                 (quantity, _) => {
                     let zero = model.graph.zero();
-                    let value = quantity::value(&mut model, &mut calculus, (zero, zero), quantity);
+                    let value =
+                        quantity::quantity_value(&mut model, &mut calculus, (zero, zero), quantity);
                     let mut candidates = Candidates::new(&self.numerical_loss);
                     candidates.offer_both(model.graph.clone(), value.entries(), &self.graph);
                     if let Some((graph, linear, angular)) = &total {
                         let mut graph = graph.clone();
-                        let found = quantity::of_total(&mut graph, (*linear, *angular), quantity);
+                        let found =
+                            quantity::quantity_of_total(&mut graph, (*linear, *angular), quantity);
                         // The result has to agree with the definition at the graph's point, in two
                         // finite fields.
                         let values = |graph: &Graph, entries: &[Edge]| -> Vec<ResiduePair> {

@@ -2,15 +2,15 @@
 
 use super::calculus::Calculus;
 use super::complement::{Complement, complement};
-use super::normal::without_coordinates;
+use super::normal::eliminate_coordinates;
 use super::{commutation, connection, energy, inertia, kinematics};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 
-/// All quantities of the formalism for one model.
+/// Y, Φ, Ψ, γ, M, Γ and V of a model as expressions, with the graph that contains them.
 #[derive(Clone, Debug)]
-pub struct Geometry {
+pub struct EquationTables {
     /// Model, whose graph contains the expressions below.
     pub model: Model,
     /// Derivations ∂ᵢ and d/dt.
@@ -29,9 +29,9 @@ pub struct Geometry {
     pub potential: Edge,
 }
 
-impl Geometry {
-    /// Derives all quantities; `None` if AᵀA or [Y; Φ] is singular, which the model's checks
-    /// exclude.
+impl EquationTables {
+    /// Derives Y, Φ, Ψ, γ, M, Γ and V of a model as expressions; `None` if AᵀA or [Y; Φ] is singular, which the model's
+    /// checks exclude.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);
@@ -41,7 +41,7 @@ impl Geometry {
         let mut mass = inertia::mass_matrix(&mut model, &mut calculus);
         let mut forms = None;
         for entry in mass.iter_mut().flatten() {
-            *entry = without_coordinates(
+            *entry = eliminate_coordinates(
                 &mut model.graph,
                 &mut calculus,
                 &model.points,
@@ -51,7 +51,7 @@ impl Geometry {
         }
         let connection = connection::connection(&mut model, &mut calculus, &mass, &gamma);
         let potential = energy::potential(&mut model);
-        Some(Geometry {
+        Some(EquationTables {
             model,
             calculus,
             y,
@@ -85,7 +85,7 @@ impl Geometry {
         let mass = inertia::mass_matrix(&mut free, &mut calculus);
         let connection = connection::connection(&mut free, &mut calculus, &mass, &gamma);
         let potential = energy::potential(&mut free);
-        Some(Geometry {
+        Some(EquationTables {
             model: free,
             calculus,
             y,

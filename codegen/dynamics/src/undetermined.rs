@@ -4,7 +4,7 @@
 //! independent of all others. Rows that were dropped as redundant count, too: they share the force
 //! of the rows from which they follow.
 
-use super::reduction::{independent_rows, normalize};
+use super::reduction::{independent_rows, normalize_row};
 use hamel_algebra::numeric::evaluate;
 use hamel_algebra::residue_pair::Random;
 use hamel_language::model::Model;
@@ -16,9 +16,8 @@ const EXAMINED_DISTANCE: f64 = 0.1;
 /// Number of such configurations.
 const EXAMINED_CONFIGURATIONS: u64 = 3;
 
-/// Returns whether the force is not determined where the loops are closed, singular positions
-/// excepted, for each non-redundant constraint of the full frame and then for each drive with a
-/// prescribed rate.
+/// Returns, for each non-redundant constraint of the full frame and then for each drive with a prescribed rate, whether
+/// its force is not determined where the loops are closed, singular positions excepted.
 pub fn undetermined_multipliers(full: &Model) -> Vec<bool> {
     let shown = || {
         let constraints = full.constraints.iter().map(|row| !row.redundant);
@@ -91,7 +90,7 @@ fn normalized_rows(full: &Model, x: &[f64]) -> Vec<Vec<f64>> {
         if let Some(time) = time {
             row[time] = 0.0;
         }
-        normalize(&row)
+        normalize_row(&row)
     })
     .collect()
 }

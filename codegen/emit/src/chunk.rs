@@ -29,7 +29,7 @@ const FITS: usize = 3000;
 /// Threshold for short parts, as (values, statements): used if more than 21 values per 20 statements cross parts.
 const MANY: (usize, usize) = (21, 20);
 
-/// A range of statements that becomes one function.
+/// A range of statements of a long function that becomes a function of its own.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
     /// Its statements, as indices into the body.
@@ -56,11 +56,17 @@ pub struct BodyPartition {
 
 /// Splits a body into parts of at most `limit` `let`s, counting statements, numbers, and the name of the constants.
 /// The parts write results when they compute them, or leave them in slots, as `when` says.
-pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) -> BodyPartition {
+pub fn partition_body(
+    body: &Body,
+    places: &Places,
+    time: Time,
+    limit: usize,
+    when: ResultWriting,
+) -> BodyPartition {
     let none = FxHashMap::default();
     let plan = cut(body, places, time, limit, &none, &FxHashSet::default());
     // The function of constants runs only when parameters change, and a body that fits the cache gains nothing.
-    if time != Time::Call || when == When::Whole || body.statements.len() <= FITS {
+    if time != Time::Call || when == ResultWriting::Whole || body.statements.len() <= FITS {
         return plan;
     }
     let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
@@ -69,12 +75,12 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) 
     let mut results: FxHashMap<NodeId, usize> =
         computed.map(|(place, node)| (node, place)).rev().collect();
     let kept = match when {
-        When::AtOnce => 0,
-        When::BehindPivots => {
+        ResultWriting::AtOnce => 0,
+        ResultWriting::BehindPivots => {
             let pivot = body.statements.iter().rposition(|s| !s.is_let());
             pivot.unwrap_or(0)
         }
-        When::AtTheEnd | When::Whole => body.statements.len(),
+        ResultWriting::AtTheEnd | ResultWriting::Whole => body.statements.len(),
     };
     let kept = body.statements[..kept].iter();
     let known = kept.flat_map(|statement| statement.defined());
@@ -96,7 +102,7 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) 
 
 /// When the parts of a function write its results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum When {
+pub enum ResultWriting {
     /// Where they are computed.
     AtOnce,
     /// Results computed before the last pivot check are written after all parts, the others where they are computed.

@@ -12,9 +12,9 @@ use std::rc::Rc;
 /// Largest number of characters of an expression that is written out.
 const WIDTH: usize = 80;
 
-/// Finds the constant that each statement of their function serves, by the nodes that the statements define. The
-/// quantity of a constant is its expression, such as `k[2] = m * g`.
-pub fn origins(emitter: &Emitter, body: &Body) -> FxHashMap<NodeId, Rc<Origin>> {
+/// Returns, for the function that computes the kept constants, the constant that each of its statements serves, by the
+/// nodes that the statements define. The quantity of a constant is its expression, such as `k[2] = m * g`.
+pub fn constant_origins(emitter: &Emitter, body: &Body) -> FxHashMap<NodeId, Rc<Origin>> {
     let kept = emitter.kept.iter().enumerate();
     let places: FxHashMap<NodeId, usize> = kept.map(|(place, edge)| (edge.node(), place)).collect();
     let origins: Vec<Rc<Origin>> = (0..emitter.kept.len())

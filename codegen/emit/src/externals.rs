@@ -1,12 +1,13 @@
 //! External functions, which the user implements in Rust: the trait that declares them, over which the generated type
 //! is generic. A description without external functions has neither the trait nor the type parameter.
 
-use super::structure::ALLOW_TYPE;
+use super::structure::TYPE_LINTS;
 use super::{Emitter, docs};
 use hamel_algebra::external::External;
 
-/// Returns the generics of an `impl`: `<S: ::hamel::Scalar>`, plus the bound `F` if there are external functions.
-pub fn generics(emitter: &Emitter) -> String {
+/// Returns the generics of an `impl` of the generated type: `<S: ::hamel::Scalar>`, plus the bound `F` if there are
+/// external functions.
+pub fn impl_generics(emitter: &Emitter) -> String {
     match bound(emitter) {
         Some(bound) => format!("<S: ::hamel::Scalar, {bound}>"),
         None => "<S: ::hamel::Scalar>".into(),
@@ -19,23 +20,23 @@ fn bound(emitter: &Emitter) -> Option<String> {
     (!names.methods.is_empty()).then(|| format!("{}: {}<S>", names.parameter, names.of))
 }
 
-/// Returns the type with its arguments: `Name<S>` or `Name<S, F>`.
-pub fn applied(emitter: &Emitter) -> String {
+/// Returns the generated type with its generic arguments: `Name<S>` or `Name<S, F>`.
+pub fn type_with_arguments(emitter: &Emitter) -> String {
     let name = &emitter.names.type_name;
-    match has(emitter) {
+    match has_externals(emitter) {
         true => format!("{name}<S, {}>", emitter.names.externals.parameter),
         false => format!("{name}<S>"),
     }
 }
 
-/// Whether there are external functions.
-pub fn has(emitter: &Emitter) -> bool {
+/// Whether the description declares external functions, `extern fn`.
+pub fn has_externals(emitter: &Emitter) -> bool {
     !emitter.names.externals.methods.is_empty()
 }
 
 /// Returns the `where` clause that `impl Default` needs if there are external functions.
-pub fn default_where(emitter: &Emitter) -> String {
-    match has(emitter) {
+pub fn default_where_clause(emitter: &Emitter) -> String {
+    match has_externals(emitter) {
         true => format!(
             " where {}: ::core::default::Default",
             emitter.names.externals.parameter
@@ -44,9 +45,9 @@ pub fn default_where(emitter: &Emitter) -> String {
     }
 }
 
-/// Prints the trait, with the formula and the shape of each function.
-pub fn functions(emitter: &Emitter) -> String {
-    if !has(emitter) {
+/// Prints the Rust trait that users implement for the external functions, with the formula and the shape of each.
+pub fn print_external_trait(emitter: &Emitter) -> String {
+    if !has_externals(emitter) {
         return String::new();
     }
     let names = &emitter.names.externals;
@@ -67,8 +68,8 @@ pub fn functions(emitter: &Emitter) -> String {
         let [first, second] = documentation(external);
         methods.push_str(&format!(
             "{}fn {value}(&self, {given}) -> {result};\n\n{}fn {slopes}(&self, {given}) -> {matrix};\n\n",
-            docs::comment(&first),
-            docs::comment(&second),
+            docs::doc_comment(&first),
+            docs::doc_comment(&second),
         ));
     }
     let public = if emitter.program.public { "pub " } else { "" };
@@ -79,8 +80,8 @@ pub fn functions(emitter: &Emitter) -> String {
         "is not that of its slopes, the linearisation is wrong and nothing says so.".into(),
     ];
     format!(
-        "{}{ALLOW_TYPE}{public}trait {}<S: ::hamel::Scalar>: ::core::clone::Clone {{\n{methods}}}\n\n",
-        docs::comment(&lines),
+        "{}{TYPE_LINTS}{public}trait {}<S: ::hamel::Scalar>: ::core::clone::Clone {{\n{methods}}}\n\n",
+        docs::doc_comment(&lines),
         names.of
     )
 }
@@ -112,10 +113,10 @@ fn documentation(external: &External) -> [Vec<String>; 2] {
     }
 }
 
-/// Prints the struct field that holds the external functions.
+/// Prints the struct print_external_field that holds the external functions.
 pub fn field(emitter: &Emitter) -> String {
     let names = &emitter.names.externals;
-    match has(emitter) {
+    match has_externals(emitter) {
         true => format!(
             "/// The functions that the description does not define.\n{}: {},\n",
             names.field, names.parameter

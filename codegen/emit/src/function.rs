@@ -1,10 +1,10 @@
 //! Text of one generated function.
 
-use super::chunk::{BodyPartition, Part, plan};
+use super::chunk::{BodyPartition, Part, partition_body};
 use super::docs;
-use super::language::{Array, Language, Rust};
+use super::language::{Language, Rust, SharedArray};
 use super::locals::Locals;
-use super::print::{Headings, Printer, Used, Written};
+use super::print::{Headings, Printer, UsedNames, WrittenResult};
 use super::{Emitter, constants, names};
 use hamel_algebra::graph::{Edge, NodeId};
 use hamel_program::origins::origins;
@@ -15,11 +15,11 @@ use hamel_program::{Argument, Cause, Function, Program, Shape, tape};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 
-/// Argument to which slopes are written in addition to the result.
-pub const SLOPES: &str = Array::Slopes.name();
+/// Name of the argument to which slopes are written in addition to the result, `slopes`.
+pub const SLOPES_ARGUMENT: &str = SharedArray::Slopes.name();
 
-/// Specification of a generated function.
-pub struct Spec<'a> {
+/// What a generated function has to compute, before it is lowered: name, arguments, outputs, guards.
+pub struct FunctionSpec<'a> {
     /// Name.
     pub name: String,
     /// Whether it is `pub`.
@@ -46,20 +46,20 @@ pub struct Spec<'a> {
     pub time: Time,
 }
 
-impl Spec<'_> {
-    /// Returns the array that holds an output, its shape, and the index of the output there.
-    pub fn place(&self, result: usize) -> (Array, Shape, usize) {
+impl FunctionSpec<'_> {
+    /// Returns, for an output by its index, the array that holds it, the shape of the array, and the index there.
+    pub fn result_place(&self, result: usize) -> (SharedArray, Shape, usize) {
         let entries = self.shape.entries();
         match self.beside.filter(|_| result >= entries) {
-            Some(shape) => (Array::Slopes, shape, result - entries),
-            None => (Array::Out, self.shape, result),
+            Some(shape) => (SharedArray::Slopes, shape, result - entries),
+            None => (SharedArray::Out, self.shape, result),
         }
     }
 }
 
-/// Lowers a function to statements, and names the values that the user has named.
-pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
-    let locals = Locals::new(&emitter.words, &emitter.program.names, &spec.nodes);
+/// Lowers a function to statements, and gives the values that the description names these names.
+pub fn lower_function(emitter: &Emitter, spec: &FunctionSpec) -> (Locals, Body) {
+    let locals = Locals::with_user_names(&emitter.words, &emitter.program.names, &spec.nodes);
     let named = tape::named(emitter.program, &spec.nodes);
     let places = &emitter.places;
     let guards = spec.guards.iter();
@@ -78,27 +78,28 @@ pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
 }
 
 /// Prints the function as Rust, preceded by its parts.
-pub fn print_function(emitter: &Emitter, spec: &Spec) -> String {
+pub fn print_function(emitter: &Emitter, spec: &FunctionSpec) -> String {
     let parameters =
-        super::parameters::expressions(emitter.program, &emitter.names.fields, "self.");
-    draw(emitter, spec, &Rust, &parameters, |drawing| {
+        super::parameters::parameter_expressions(emitter.program, &emitter.names.fields, "self.");
+    with_prepared(emitter, spec, &Rust, &parameters, |drawing| {
         if drawing.plan.whole {
             drawing.whole()
         } else {
-            drawing.split()
+            drawing.print_in_parts()
         }
     })
 }
 
-/// Lowers, names and splits a function, and passes it to `text`, which prints it in a language.
-pub fn draw<T>(
+/// Lowers a function to statements, names its values and divides it into parts for a language, and returns what `text`
+/// prints of it.
+pub fn with_prepared<T>(
     emitter: &Emitter,
-    spec: &Spec,
+    spec: &FunctionSpec,
     language: &dyn Language,
     parameters: &[String],
-    text: impl FnOnce(&Drawing) -> T,
+    text: impl FnOnce(&PreparedFunction) -> T,
 ) -> T {
-    let (mut locals, body) = lower(emitter, spec);
+    let (mut locals, body) = lower_function(emitter, spec);
     let read = body
         .statements
         .iter()
@@ -106,16 +107,16 @@ pub fn draw<T>(
     let numbers = read.chain(body.outputs.iter().copied()).map(Edge::node);
     locals.fill(&body.statements, numbers, &emitter.places);
     let when = language.when(spec.shape, spec.fallible);
-    let plan = plan(&body, &emitter.places, spec.time, emitter.chunk, when);
+    let plan = partition_body(&body, &emitter.places, spec.time, emitter.chunk, when);
     let places = plan.results.iter();
     let written = places.map(|(&node, &place)| {
-        let written = Written {
-            place: spec.place(place),
+        let written = WrittenResult {
+            place: spec.result_place(place),
             negative: body.outputs[place].is_negative(),
         };
         (node, written)
     });
-    text(&Drawing {
+    text(&PreparedFunction {
         emitter,
         spec,
         language,
@@ -129,13 +130,18 @@ pub fn draw<T>(
 }
 
 /// Returns the headings of the statements of a function: the quantity that each serves, and its equation.
-fn headings(emitter: &Emitter, spec: &Spec, language: &dyn Language, body: &Body) -> Headings {
+fn headings(
+    emitter: &Emitter,
+    spec: &FunctionSpec,
+    language: &dyn Language,
+    body: &Body,
+) -> Headings {
     if !emitter.headings {
         return Headings::default();
     }
     let constants = spec.functions.is_empty();
     let origins = match constants {
-        true => constants::origins(emitter, body),
+        true => constants::constant_origins(emitter, body),
         false => origins(emitter.program, &spec.functions, body),
     };
     let mut texts: FxHashMap<*const Origin, Rc<str>> = FxHashMap::default();
@@ -162,12 +168,12 @@ pub fn shape_type(shape: Shape) -> String {
     }
 }
 
-/// A function with everything that is needed to print it.
-pub struct Drawing<'a> {
+/// A generated function that is ready to be printed: statements, names of values, parts.
+pub struct PreparedFunction<'a> {
     /// The program.
     pub emitter: &'a Emitter<'a>,
     /// The function.
-    pub spec: &'a Spec<'a>,
+    pub spec: &'a FunctionSpec<'a>,
     /// Target language.
     pub language: &'a dyn Language,
     /// Names of its values.
@@ -179,12 +185,12 @@ pub struct Drawing<'a> {
     /// Headings of its statements.
     pub headings: &'a Headings,
     /// Results that are read from the array to which they were written.
-    pub written: &'a FxHashMap<NodeId, Written>,
+    pub written: &'a FxHashMap<NodeId, WrittenResult>,
     /// The parameters as expressions.
     pub parameters: &'a [String],
 }
 
-impl Drawing<'_> {
+impl PreparedFunction<'_> {
     /// Returns a printer that has printed nothing yet.
     pub fn printer(&self) -> Printer<'_> {
         Printer {
@@ -201,7 +207,7 @@ impl Drawing<'_> {
             headings: self.headings,
             heading: "",
             here: FxHashSet::default(),
-            used: Used::default(),
+            used: UsedNames::default(),
         }
     }
 
@@ -210,7 +216,7 @@ impl Drawing<'_> {
         let mut printer = self.printer();
         let mut text = String::new();
         for part in &self.plan.parts {
-            text.push_str(&statements(&mut printer, self.body, part, |_, _| {
+            text.push_str(&print_statements(&mut printer, self.body, part, |_, _| {
                 String::new()
             }));
         }
@@ -218,28 +224,31 @@ impl Drawing<'_> {
             .body
             .outputs
             .iter()
-            .map(|&edge| printer.signed(edge))
+            .map(|&edge| printer.signed_value(edge))
             .collect();
         let (results, besides) = results.split_at(self.spec.shape.entries());
         if let Some(shape) = self.spec.beside {
-            text.push_str(&format!("*{SLOPES} = {};\n", shaped(shape, besides)));
+            text.push_str(&format!(
+                "*{SLOPES_ARGUMENT} = {};\n",
+                shaped(shape, besides)
+            ));
         }
         let value = shaped(self.spec.shape, results);
         let kept = self.bind_kept(&printer.used);
-        let body = format!("{kept}{text}{}", self.value(&value));
-        self.head(&body)
+        let body = format!("{kept}{text}{}", self.final_expression(&value));
+        self.print_with_body(&body)
     }
 
     /// Binds the array of kept constants to `k`, if it is used.
-    pub fn bind_kept(&self, used: &Used) -> String {
+    pub fn bind_kept(&self, used: &UsedNames) -> String {
         match used.kept {
             true => format!("let k = &self.{};\n", self.emitter.names.kept),
             false => String::new(),
         }
     }
 
-    /// Returns the final expression of the function.
-    pub fn value(&self, value: &str) -> String {
+    /// Returns the final expression of the Rust function, such as `Ok(out)`, for this value.
+    pub fn final_expression(&self, value: &str) -> String {
         if self.spec.fallible {
             format!("::core::result::Result::Ok({value})\n")
         } else {
@@ -247,9 +256,9 @@ impl Drawing<'_> {
         }
     }
 
-    /// Wraps a body in the signature of the function.
-    pub fn head(&self, body: &str) -> String {
-        head(self.emitter.program, self.spec, body)
+    /// Puts a body of Rust into the signature of this function, below its documentation.
+    pub fn print_with_body(&self, body: &str) -> String {
+        wrap_in_signature(self.emitter.program, self.spec, body)
     }
 }
 
@@ -259,7 +268,7 @@ fn shaped(shape: Shape, entries: &[String]) -> String {
     match shape {
         Shape::Scalar => entries.join(""),
         Shape::Vector(_) => list(entries),
-        Shape::Matrix(_, 0) => zeros(shape),
+        Shape::Matrix(_, 0) => zero_of_shape(shape),
         Shape::Matrix(_, columns) => {
             let rows: Vec<String> = entries.chunks(columns).map(list).collect();
             list(&rows)
@@ -267,15 +276,15 @@ fn shaped(shape: Shape, entries: &[String]) -> String {
     }
 }
 
-/// Wraps a body in the signature of a function.
-pub fn head(program: &Program, spec: &Spec, body: &str) -> String {
+/// Puts a body of Rust into the signature of a function, below its documentation.
+pub fn wrap_in_signature(program: &Program, spec: &FunctionSpec, body: &str) -> String {
     let mut arguments = vec!["&self".to_string()];
     arguments.extend(spec.arguments.iter().map(|&argument| {
-        let (name, length) = (names::argument(argument), program.length(argument));
+        let (name, length) = (names::argument_name(argument), program.length(argument));
         format!("{name}: &[S; {length}]")
     }));
     if let Some(shape) = spec.beside {
-        arguments.push(format!("{SLOPES}: &mut {}", shape_type(shape)));
+        arguments.push(format!("{SLOPES_ARGUMENT}: &mut {}", shape_type(shape)));
     }
     let result = shape_type(spec.shape);
     let result = match spec.fallible {
@@ -289,14 +298,14 @@ pub fn head(program: &Program, spec: &Spec, body: &str) -> String {
     let public = if spec.public { "pub " } else { "" };
     format!(
         "{}{attributes}{public}fn {}({}) -> {result} {{\n{body}}}\n\n",
-        docs::comment(&spec.docs),
+        docs::doc_comment(&spec.docs),
         spec.name,
         arguments.join(", ")
     )
 }
 
 /// Prints the statements of a part; `after` returns the text that follows each value.
-pub fn statements(
+pub fn print_statements(
     printer: &mut Printer,
     body: &Body,
     part: &Part,
@@ -318,8 +327,8 @@ pub fn statements(
     text
 }
 
-/// Returns the zero of a shape.
-pub fn zeros(shape: Shape) -> String {
+/// Returns the Rust expression of a result that is all zeros, such as `[S::default(); 3]`.
+pub fn zero_of_shape(shape: Shape) -> String {
     match shape {
         Shape::Scalar => "S::default()".into(),
         Shape::Vector(0) | Shape::Matrix(0, _) => "[]".into(),

@@ -1,11 +1,11 @@
 //! The syntax of statements: everything that Rust and C spell differently.
 
-use super::chunk::When;
+use super::chunk::ResultWriting;
 use super::{layout, number};
 use hamel_algebra::graph::{Function, Graph, NodeId};
 use hamel_program::{Cause, Program, Shape};
 
-/// An operand of an operation.
+/// Text of an operand of an operation, with its sign apart.
 pub struct Operand {
     /// The value without its sign.
     pub value: String,
@@ -14,8 +14,8 @@ pub struct Operand {
 }
 
 impl Operand {
-    /// The operand with its sign, as an argument or a term.
-    pub fn signed(&self) -> String {
+    /// Returns the operand's text with its sign, as an argument or a term of a sum.
+    pub fn with_sign(&self) -> String {
         let sign = if self.negative { "-" } else { "" };
         format!("{sign}{}", self.value)
     }
@@ -31,7 +31,7 @@ impl Operand {
 
 /// An array that is shared by the parts of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Array {
+pub enum SharedArray {
     /// Intermediate values that later parts read.
     Slots,
     /// Results.
@@ -40,13 +40,13 @@ pub enum Array {
     Slopes,
 }
 
-impl Array {
-    /// Name of the array in the generated text.
+impl SharedArray {
+    /// Returns the name of the array in the generated text.
     pub const fn name(self) -> &'static str {
         match self {
-            Array::Slots => "slots",
-            Array::Out => "out",
-            Array::Slopes => "slopes",
+            SharedArray::Slots => "slots",
+            SharedArray::Out => "out",
+            SharedArray::Slopes => "slopes",
         }
     }
 }
@@ -54,9 +54,9 @@ impl Array {
 /// Syntax of the statements of functions in a target language.
 pub trait Language {
     /// Tells when the parts of a function write its result, given its shape and whether the function can fail.
-    fn when(&self, shape: Shape, fallible: bool) -> When;
+    fn when(&self, shape: Shape, fallible: bool) -> ResultWriting;
     /// Entry of a shared array of this shape, by its index, as a part refers to it.
-    fn entry(&self, array: Array, shape: Shape, place: usize) -> String;
+    fn entry(&self, array: SharedArray, shape: Shape, place: usize) -> String;
     /// A number as a literal.
     fn literal(&self, graph: &Graph, node: NodeId) -> String;
     /// A number as an operand; `name` is the name of its binding.
@@ -88,11 +88,11 @@ pub trait Language {
 pub struct Rust;
 
 impl Language for Rust {
-    fn when(&self, _: Shape, _: bool) -> When {
-        When::AtOnce
+    fn when(&self, _: Shape, _: bool) -> ResultWriting {
+        ResultWriting::AtOnce
     }
 
-    fn entry(&self, array: Array, shape: Shape, place: usize) -> String {
+    fn entry(&self, array: SharedArray, shape: Shape, place: usize) -> String {
         let array = array.name();
         match shape {
             Shape::Scalar => format!("(*{array})"),
@@ -105,7 +105,7 @@ impl Language for Rust {
     }
 
     fn literal(&self, graph: &Graph, node: NodeId) -> String {
-        number::of(graph, node)
+        number::constant_expression(graph, node)
     }
 
     fn number(&self, _: &Graph, _: NodeId, name: &str) -> String {
@@ -117,11 +117,11 @@ impl Language for Rust {
     }
 
     fn heading(&self, text: &str) -> String {
-        layout::heading(text)
+        layout::heading_marker(text)
     }
 
     fn zero(&self) -> String {
-        number::scalar(0.0)
+        number::scalar_expression(0.0)
     }
 
     fn binding(&self, name: &str, value: &str) -> String {
@@ -134,16 +134,26 @@ impl Language for Rust {
     }
 
     fn fused(&self, [a, b, c]: &[Operand; 3]) -> String {
-        format!("{}.mul_add({}, {})", a.receiver(), b.signed(), c.signed())
+        format!(
+            "{}.mul_add({}, {})",
+            a.receiver(),
+            b.with_sign(),
+            c.with_sign()
+        )
     }
 
     fn atan2(&self, [y, x]: &[Operand; 2]) -> String {
-        format!("{}.atan2({})", y.receiver(), x.signed())
+        format!("{}.atan2({})", y.receiver(), x.with_sign())
     }
 
     fn select(&self, [c, a, b]: &[Operand; 3]) -> String {
         let method = Function::Select.row().rust;
-        format!("{}.{method}({}, {})", c.receiver(), a.signed(), b.signed())
+        format!(
+            "{}.{method}({}, {})",
+            c.receiver(),
+            a.with_sign(),
+            b.with_sign()
+        )
     }
 
     fn function(&self, function: Function, operand: &Operand) -> String {

@@ -1,18 +1,18 @@
 //! Parsing of generated text, which finds defects of the generator, and formatting for files.
 
-use super::docs::spelled;
+use super::docs::escape_bidi_controls;
 use std::fmt;
 
 /// The generated text is not valid Rust: a defect of the generator, whatever the description is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NotRust {
+pub struct InvalidRust {
     /// Message of the parser.
     pub why: String,
     /// The offending line, if known.
     pub line: Option<String>,
 }
 
-impl fmt::Display for NotRust {
+impl fmt::Display for InvalidRust {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "the generated text is no Rust: {}", self.why)?;
         match &self.line {
@@ -22,14 +22,14 @@ impl fmt::Display for NotRust {
     }
 }
 
-impl std::error::Error for NotRust {}
+impl std::error::Error for InvalidRust {}
 
-/// Parses a text as a Rust file.
+/// Parses generated text as a Rust file.
 ///
 /// # Errors
 /// If the text is not valid Rust.
-pub fn parsed(text: &str) -> Result<syn::File, NotRust> {
-    syn::parse_file(text).map_err(|error| NotRust {
+pub fn parse_file(text: &str) -> Result<syn::File, InvalidRust> {
+    syn::parse_file(text).map_err(|error| InvalidRust {
         why: error.to_string(),
         line: line_of(&error, text),
     })
@@ -39,18 +39,18 @@ pub fn parsed(text: &str) -> Result<syn::File, NotRust> {
 /// have a space there.
 const HEADING: &str = "///~";
 
-/// Returns a line that [`formatted`] turns into a comment above the next statement.
-pub fn heading(text: &str) -> String {
-    format!("{HEADING} {}\n", spelled(text))
+/// Returns a line that [`format_file`] turns into a comment above the next statement.
+pub fn heading_marker(text: &str) -> String {
+    format!("{HEADING} {}\n", escape_bidi_controls(text))
 }
 
-/// Formats a text for a file.
+/// Formats generated Rust for a file, with headings as comments.
 ///
 /// # Errors
 /// If the text is not valid Rust.
 #[cfg(feature = "files")]
-pub fn formatted(text: &str) -> Result<String, NotRust> {
-    let text = prettyplease::unparse(&parsed(text)?);
+pub fn format_file(text: &str) -> Result<String, InvalidRust> {
+    let text = prettyplease::unparse(&parse_file(text)?);
     let lines = text.split_inclusive('\n').map(|line| {
         let indent = line.len() - line.trim_start().len();
         match line[indent..].strip_prefix(HEADING) {
@@ -75,7 +75,7 @@ fn line_of(_: &syn::Error, _: &str) -> Option<String> {
 
 #[cfg(all(test, feature = "files"))]
 mod tests {
-    use super::{NotRust, formatted};
+    use super::{InvalidRust, format_file};
 
     #[test]
     fn text_that_is_no_rust_is_refused() {
@@ -88,14 +88,14 @@ mod tests {
             "fn f() -> A {\n[a, k[3]\n}\n",
             "fn f() -> A {\nlet a = b;\n[[a, b], [c, type]]\n}\n",
         ] {
-            assert!(formatted(text).is_err(), "{text}");
+            assert!(format_file(text).is_err(), "{text}");
         }
     }
 
     #[test]
     fn faults_name_their_line() {
         let text = "fn f() {\nlet a = 1;\nlet b = a c;\n}\n";
-        let Err(NotRust { line, .. }) = formatted(text) else {
+        let Err(InvalidRust { line, .. }) = format_file(text) else {
             panic!("refused");
         };
         assert_eq!(line.as_deref(), Some("let b = a c;"));

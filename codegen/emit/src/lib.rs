@@ -61,13 +61,13 @@ mod together;
 pub mod trace;
 mod views;
 
-use function::Spec;
+use function::FunctionSpec;
 use hamel_algebra::graph::{Edge, NodeId};
 use hamel_program::places::{Places, Time};
 use hamel_program::schedule::Schedule;
 use hamel_program::{Function, Program};
-pub use layout::NotRust;
-use names::{Names, Words};
+pub use layout::InvalidRust;
+use names::{ProgramNames, ReservedWords};
 use proc_macro2::TokenStream;
 
 /// Options of the generator: contents of the file header, and the size of functions.
@@ -102,8 +102,8 @@ struct Emitter<'a> {
     schedule: Schedule,
     /// Constants stored in the field `k`, in order, including the pivots of a constant mass matrix.
     kept: Vec<Edge>,
-    names: Names,
-    words: Words,
+    names: ProgramNames,
+    words: ReservedWords,
     document: Document,
     chunk: usize,
     /// Whether statements have headings; they are comments, which tokens cannot have.
@@ -115,15 +115,21 @@ type Document = fn(&Program, &Function, &[NodeId]) -> Vec<String>;
 
 impl<'a> Emitter<'a> {
     fn new(program: &'a Program, chunk: usize) -> Self {
-        let names = Names::new(program);
-        Emitter::with(program, chunk, names, Words::rust(), docs::function)
+        let names = ProgramNames::new(program);
+        Emitter::with(
+            program,
+            chunk,
+            names,
+            ReservedWords::of_rust(),
+            docs::function_docs,
+        )
     }
 
     fn with(
         program: &'a Program,
         chunk: usize,
-        names: Names,
-        words: Words,
+        names: ProgramNames,
+        words: ReservedWords,
         document: Document,
     ) -> Self {
         let schedule = Schedule::of(program);
@@ -143,15 +149,15 @@ impl<'a> Emitter<'a> {
     }
 
     /// `fn constants`, which computes everything that depends on parameters alone.
-    fn constants(&self) -> Spec<'_> {
+    fn constants(&self) -> FunctionSpec<'_> {
         let count = hamel_program::count::count_nodes(&self.program.graph, &self.schedule.hoisted);
-        Spec {
+        FunctionSpec {
             name: self.names.constants.clone(),
             public: false,
             docs: vec![
                 "What depends on parameters alone.".into(),
                 String::new(),
-                docs::operations(count, ""),
+                docs::operation_counts(count, ""),
             ],
             arguments: &[],
             shape: hamel_program::Shape::Vector(self.kept.len()),
@@ -166,7 +172,7 @@ impl<'a> Emitter<'a> {
     }
 
     /// A function that is evaluated while the system moves.
-    fn function(&self, index: usize, function: &'a Function) -> Spec<'a> {
+    fn function(&self, index: usize, function: &'a Function) -> FunctionSpec<'a> {
         let guards = if function.fallible {
             function.guards.clone()
         } else {
@@ -174,7 +180,7 @@ impl<'a> Emitter<'a> {
         };
         let roots: Vec<Edge> = function.outputs.iter().chain(&guards).copied().collect();
         let nodes = self.program.graph.varying_nodes(&roots);
-        Spec {
+        FunctionSpec {
             name: self.names.functions[index].clone(),
             public: true,
             docs: (self.document)(self.program, function, &nodes),
@@ -190,9 +196,9 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    fn specs(&self) -> Vec<Spec<'_>> {
+    fn specs(&self) -> Vec<FunctionSpec<'_>> {
         let functions = self.program.functions.iter().enumerate();
-        let mut specs: Vec<Spec<'_>> = functions
+        let mut specs: Vec<FunctionSpec<'_>> = functions
             .map(|(index, function)| self.function(index, function))
             .collect();
         if !self.kept.is_empty() {
@@ -203,71 +209,77 @@ impl<'a> Emitter<'a> {
 }
 
 /// Returns the generated type as Rust items, without a file header.
-pub fn rust(program: &Program, options: &Options) -> String {
+pub fn rust_items(program: &Program, options: &Options) -> String {
     items(&Emitter::new(program, options.chunk))
 }
 
 /// Prints the generated items.
 fn items(emitter: &Emitter) -> String {
     let program = emitter.program;
-    let mut methods = structure::sizes(emitter);
-    methods.push_str(&limits::constants(program));
-    let system = system::implementations(emitter);
-    let together = together::of(emitter).filter(|_| !system.is_empty());
+    let mut methods = structure::print_sizes_and_new(emitter);
+    methods.push_str(&limits::limit_constants(program));
+    let system = system::system_implementations(emitter);
+    let together = together::pair_spec(emitter).filter(|_| !system.is_empty());
     for (index, spec) in emitter.specs().iter().enumerate() {
         methods.push_str(&match &together {
             Some((place, both)) if *place == index => together::print_pair(emitter, spec, both),
             _ => function::print_function(emitter, spec),
         });
     }
-    methods.push_str(&parameters::accessors(emitter));
-    let mut text = structure::structure(emitter);
-    text.push_str(&externals::functions(emitter));
-    text.push_str(&views::parameters(emitter));
-    text.push_str(&views::state(emitter, !system.is_empty()));
-    text.push_str(&views::inputs(emitter));
-    text.push_str(structure::ALLOW);
+    methods.push_str(&parameters::print_accessors(emitter));
+    let mut text = structure::print_struct(emitter);
+    text.push_str(&externals::print_external_trait(emitter));
+    text.push_str(&views::print_parameter_struct(emitter));
+    text.push_str(&views::print_state_struct(emitter, !system.is_empty()));
+    text.push_str(&views::print_input_struct(emitter));
+    text.push_str(structure::FUNCTION_LINTS);
     text.push_str(&format!(
         "impl{} {} {{\n{methods}}}\n",
-        externals::generics(emitter),
-        externals::applied(emitter)
+        externals::impl_generics(emitter),
+        externals::type_with_arguments(emitter)
     ));
-    text.push_str(&structure::default(emitter));
+    text.push_str(&structure::print_default(emitter));
     if !system.is_empty() {
         text.push_str(&system);
-        text.push_str(&methods::implementations(emitter, together.is_some()));
+        text.push_str(&methods::method_trait_implementations(
+            emitter,
+            together.is_some(),
+        ));
     }
     text
 }
 
-/// Returns the text of [`rust`] as tokens, after parsing it.
+/// Returns the text of [`rust_items`] as tokens, after parsing it.
 ///
 /// # Errors
 /// If the text is not valid Rust, which is a defect of the generator.
-pub fn tokens(program: &Program, options: &Options) -> Result<TokenStream, NotRust> {
-    let text = rust(program, options);
-    layout::parsed(&text)?;
+pub fn rust_tokens(program: &Program, options: &Options) -> Result<TokenStream, InvalidRust> {
+    let text = rust_items(program, options);
+    layout::parse_file(&text)?;
     text.parse()
-        .map_err(|error: proc_macro2::LexError| NotRust {
+        .map_err(|error: proc_macro2::LexError| InvalidRust {
             why: error.to_string(),
             line: None,
         })
 }
 
-/// Returns the text of [`rust`], formatted, below a header that says how it was generated.
+/// Returns the text of [`rust_items`], formatted, below a header that says how it was generated.
 ///
 /// # Errors
 /// If the text is not valid Rust, which is a defect of the generator.
 #[cfg(feature = "files")]
-pub fn file(program: &Program, options: &Options) -> Result<String, NotRust> {
+pub fn rust_file(program: &Program, options: &Options) -> Result<String, InvalidRust> {
     let emitter = Emitter {
         headings: true,
         ..Emitter::new(program, options.chunk)
     };
-    let text = layout::formatted(&items(&emitter))?;
+    let text = layout::format_file(&items(&emitter))?;
     let mut header = String::new();
-    let origin = docs::origin(options.source_hash, &docs::spelled(&options.command));
-    for line in [origin, docs::description(&options.description)].concat() {
+    let origin = docs::generation_notice(
+        options.source_hash,
+        &docs::escape_bidi_controls(&options.command),
+    );
+    for line in [origin, docs::description_lines(&options.description)].concat() {
         header.push_str(format!("// {line}").trim_end());
         header.push('\n');
     }
@@ -275,11 +287,11 @@ pub fn file(program: &Program, options: &Options) -> Result<String, NotRust> {
 }
 
 /// Counts the statements of all functions, a measure of the size of the generated code.
-pub fn statements(program: &Program) -> usize {
+pub fn statement_count(program: &Program) -> usize {
     let emitter = Emitter::new(program, Options::default().chunk);
     let specs = emitter.specs();
     specs
         .iter()
-        .map(|spec| function::lower(&emitter, spec).1.statements.len())
+        .map(|spec| function::lower_function(&emitter, spec).1.statements.len())
         .sum()
 }

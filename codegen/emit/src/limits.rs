@@ -1,14 +1,14 @@
 //! Joint limits as constants of the generated type: they document the machine, and no function uses
 //! them.
 
-use super::names::{Unique, snake};
+use super::names::{UniqueNames, to_snake_case};
 use super::number::literal;
 use hamel_language::model::joints::Joint;
 use hamel_language::syntax::ast::JointKind;
 use hamel_program::Program;
 
-/// A joint limit, generated as a documented constant.
-pub struct Limit {
+/// A limit of a joint's position, speed or force, generated as a documented constant.
+pub struct JointLimit {
     /// Name of the constant.
     pub name: String,
     /// Text of its doc comment.
@@ -17,14 +17,14 @@ pub struct Limit {
     pub values: Vec<f64>,
 }
 
-/// Returns all limits of a program, in the order of its joints.
-pub fn limits(program: &Program) -> Vec<Limit> {
-    let mut names = Unique::default();
+/// Returns the limits of all joints of a program, in the order of its joints.
+pub fn joint_limits(program: &Program) -> Vec<JointLimit> {
+    let mut names = UniqueNames::default();
     let mut all = Vec::new();
     for joint in &program.joints {
         let mut push = |ending: &str, what: String, values: Vec<f64>| {
-            let wanted = format!("{}_{ending}", snake(&joint.name)).to_ascii_uppercase();
-            all.push(Limit {
+            let wanted = format!("{}_{ending}", to_snake_case(&joint.name)).to_ascii_uppercase();
+            all.push(JointLimit {
                 name: names.claim(&wanted),
                 title: format!("Joint `{}`: {what}.", joint.name),
                 values,
@@ -47,9 +47,10 @@ pub fn limits(program: &Program) -> Vec<Limit> {
     all
 }
 
-/// Prints the limits as constants, such as `pub const ELBOW_LIMIT: [f64; 2] = [-2.0, 2.0];`.
-pub fn constants(program: &Program) -> String {
-    let constant = |limit: Limit| {
+/// Prints joint limits (position, speed, force) as associated constants of Rust, such as `pub const ELBOW_LIMIT: [f64;
+/// 2] = [-2.0, 2.0];`.
+pub fn limit_constants(program: &Program) -> String {
+    let constant = |limit: JointLimit| {
         let (kind, value) = match limit.values.as_slice() {
             &[lower, upper] => (
                 "[f64; 2]",
@@ -57,10 +58,10 @@ pub fn constants(program: &Program) -> String {
             ),
             values => ("f64", values.iter().map(|&value| literal(value)).collect()),
         };
-        let Limit { name, title, .. } = limit;
+        let JointLimit { name, title, .. } = limit;
         format!("/// {title}\npub const {name}: {kind} = {value};\n\n")
     };
-    limits(program).into_iter().map(constant).collect()
+    joint_limits(program).into_iter().map(constant).collect()
 }
 
 /// Units of coordinate, velocity and force of a joint.

@@ -1,6 +1,6 @@
 //! Local names of the values within one function.
 
-use super::names::{Unique, Words, snake};
+use super::names::{ReservedWords, UniqueNames, to_snake_case};
 use super::number;
 use hamel_algebra::graph::{Edge, NodeId};
 use hamel_program::places::Places;
@@ -10,14 +10,19 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// Names of the temporaries and numbers of one function.
 #[derive(Clone, Debug)]
 pub struct Locals {
-    scope: Unique,
+    scope: UniqueNames,
     legal: fn(String) -> String,
     names: FxHashMap<NodeId, String>,
 }
 
 impl Locals {
-    /// Creates the names of a function that computes `nodes`. Expressions that the user named keep their names.
-    pub fn new(words: &Words, named: &[(String, Edge)], nodes: &[NodeId]) -> Self {
+    /// Names those of `nodes`, the values of a function, that the description names; [`fill`](Self::fill) names the
+    /// others.
+    pub fn with_user_names(
+        words: &ReservedWords,
+        named: &[(String, Edge)],
+        nodes: &[NodeId],
+    ) -> Self {
         let here: FxHashSet<NodeId> = nodes.iter().copied().collect();
         let mut locals = Locals {
             scope: words.locals.clone(),
@@ -28,18 +33,18 @@ impl Locals {
             let node = edge.node();
             if here.contains(&node) && !locals.names.contains_key(&node) {
                 let sign = if edge.is_negative() { "minus_" } else { "" };
-                locals.claim(node, &format!("{sign}{}", snake(name)));
+                locals.claim(node, &format!("{sign}{}", to_snake_case(name)));
             }
         }
         locals
     }
 
-    /// Name of a value; empty if it has none.
-    pub fn name(&self, node: NodeId) -> &str {
+    /// Returns the name that a value was given, `t3` or the user's; empty before it was named.
+    pub fn name_of(&self, node: NodeId) -> &str {
         self.names.get(&node).map_or("", String::as_str)
     }
 
-    /// Names the values of all statements, and the numbers in order of first use.
+    /// Names all values that have no name yet, `t1`, `t2` …, and the numbers, `c1` …, in order of first use.
     pub fn fill(
         &mut self,
         statements: &[Statement],
@@ -51,7 +56,7 @@ impl Locals {
             if self.names.contains_key(&node) {
                 continue;
             }
-            match number::name(places.graph(), node) {
+            match number::constant_name(places.graph(), node) {
                 Some(name) => self.claim(node, name),
                 None => self.count(node, "c", &mut count),
             }
@@ -80,7 +85,7 @@ impl Locals {
     ) {
         let entry = places.entry(angle.node()).filter(|_| !angle.is_negative());
         let suffix = match entry {
-            Some(entry) => format!("_{}", snake(entry)),
+            Some(entry) => format!("_{}", to_snake_case(entry)),
             None => {
                 *count += 1;
                 count.to_string()

@@ -9,9 +9,9 @@ use hamel_program::structure::{Inertia, RotorForm, Symmetry};
 use hamel_program::{Argument, FunctionId, Program, Shape};
 use num_traits::{One, Zero};
 
-/// Prints the implementations for a type that implements `System`.
-/// `together` tells whether one function computes both ξ̇ and [A B].
-pub fn implementations(emitter: &Emitter, together: bool) -> String {
+/// Prints the implementations of `Split`, `Canonical` and `Tangent` for a type that implements `System`. `together`
+/// tells whether one function computes both ξ̇ and [A B].
+pub fn method_trait_implementations(emitter: &Emitter, together: bool) -> String {
     let all = [
         split(emitter),
         canonical(emitter),
@@ -28,16 +28,16 @@ fn generated<'a>(emitter: &'a Emitter, name: &str) -> Option<&'a str> {
 }
 
 fn head(emitter: &Emitter, of: &str, body: &str) -> String {
-    format!("{} {{\n{body}}}\n\n", header(emitter, of))
+    format!("{} {{\n{body}}}\n\n", impl_header(emitter, of))
 }
 
 /// Returns the first line of the implementation of a trait of `hamel`, with its attributes.
-pub fn header(emitter: &Emitter, of: &str) -> String {
+pub fn impl_header(emitter: &Emitter, of: &str) -> String {
     format!(
         "{}impl{} ::hamel::{of} for {}",
-        structure::ALLOW_TRAIT,
-        externals::generics(emitter),
-        externals::applied(emitter)
+        structure::TRAIT_LINTS,
+        externals::impl_generics(emitter),
+        externals::type_with_arguments(emitter)
     )
 }
 
@@ -143,7 +143,9 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
     let call = |id: FunctionId| -> Option<(String, String)> {
         let index = program.functions.iter().position(|f| f.id == Some(id))?;
         let arguments = &program.functions[index].arguments;
-        let given = arguments.iter().map(|&argument| names::argument(argument));
+        let given = arguments
+            .iter()
+            .map(|&argument| names::argument_name(argument));
         let given = given.collect::<Vec<_>>().join(", ");
         let x = if arguments.is_empty() { "_" } else { "x" };
         let name = &emitter.names.functions[index];
@@ -166,15 +168,15 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
         _ => format!("{field}: self.{field}.map(|row| row.map({constant})),\n"),
     });
     let mut fields: String = fields.collect();
-    if structure::has_kept(emitter) {
+    if structure::has_constants_field(emitter) {
         let kept = &emitter.names.kept;
         fields += &format!("{kept}: self.{kept}.map({constant}),\n");
     }
     let number = format!("::hamel::Dual<S, {columns}>");
     let sparsity = Sparsity::of(program)?;
     let mut few = format!("::hamel::Dual<S, {}>", sparsity.directions());
-    let mut generics = externals::generics(emitter);
-    if externals::has(emitter) {
+    let mut generics = externals::impl_generics(emitter);
+    if externals::has_externals(emitter) {
         // External functions take dual numbers, too, but of one length only.
         let names = &emitter.names.externals;
         let own = format!("{}<S>", names.of);
@@ -182,7 +184,7 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
         fields += &format!("{0}: self.{0}.clone(),\n", names.field);
         few.clone_from(&number);
     }
-    let of = externals::applied(emitter);
+    let of = externals::type_with_arguments(emitter);
     let [applied, compressed] =
         [&number, &few].map(|number| of.replacen("<S", &format!("<{number}"), 1));
     let name = &emitter.names.type_name;
@@ -215,7 +217,7 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
     );
     Some(format!(
         "{}impl{generics} ::hamel::Tangent for {of} {{\n{body}}}\n\n",
-        structure::ALLOW_TRAIT
+        structure::TRAIT_LINTS
     ))
 }
 
@@ -246,7 +248,7 @@ fn slopes(emitter: &Emitter, together: bool) -> Option<String> {
     let function = &functions[index];
     let argument = |argument: Argument, of: &str| {
         let name = match function.arguments.contains(&argument) {
-            true => names::argument(argument),
+            true => names::argument_name(argument),
             false => "_",
         };
         format!("{name}: &Self::{of}")
@@ -256,12 +258,12 @@ fn slopes(emitter: &Emitter, together: bool) -> Option<String> {
         argument(Argument::Velocities, "Velocities"),
         argument(Argument::Inputs, "Inputs"),
     ];
-    let given = function.arguments.iter().map(|&a| names::argument(a));
+    let given = function.arguments.iter().map(|&a| names::argument_name(a));
     let given = given.collect::<Vec<_>>().join(", ");
     let call = |index: usize| format!("self.{}({given})", emitter.names.functions[index]);
     let (table, rates, fallible) = match together {
         true => {
-            let both = format!("self.{}({given}, slopes)", together::NAME);
+            let both = format!("self.{}({given}, slopes)", together::PAIR_NAME);
             (String::new(), both, function.fallible)
         }
         false => {

@@ -83,7 +83,7 @@ const METHODS: &[&str] = &[
     "constraint_norm",
     "forward_dynamics",
     "rotors",
-    super::together::NAME,
+    super::together::PAIR_NAME,
 ];
 
 /// Local names that a function may use in addition to the names of its values.
@@ -97,8 +97,8 @@ const TYPES: &[&str] = &[
     "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize",
 ];
 
-/// Returns the name of an argument.
-pub fn argument(argument: Argument) -> &'static str {
+/// Returns the name of an argument of generated functions, such as `x` or `xi_dot`.
+pub fn argument_name(argument: Argument) -> &'static str {
     match argument {
         Argument::Coordinates => "x",
         Argument::Velocities => "xi",
@@ -109,7 +109,7 @@ pub fn argument(argument: Argument) -> &'static str {
 }
 
 /// Converts a name to lower snake case; never empty, never a keyword.
-pub fn snake(name: &str) -> String {
+pub fn to_snake_case(name: &str) -> String {
     let mut text = String::new();
     let mut last = ' ';
     for letter in name.trim_start_matches("r#").chars() {
@@ -147,9 +147,9 @@ pub fn type_name(name: &str) -> String {
 }
 
 /// Converts names to lower snake case; if two differ by case alone, the one with capitals gets `_upper`.
-pub fn cased(names: &[&str]) -> Vec<String> {
+pub fn to_distinct_snake_case(names: &[&str]) -> Vec<String> {
     let is_lower = |name: &str| !name.chars().any(char::is_uppercase);
-    let snakes: Vec<String> = names.iter().map(|name| snake(name)).collect();
+    let snakes: Vec<String> = names.iter().map(|name| to_snake_case(name)).collect();
     let each = || names.iter().zip(&snakes);
     let lower = each().filter(|(name, _)| is_lower(name));
     let lower: FxHashSet<&String> = lower.map(|(_, snake)| snake).collect();
@@ -187,14 +187,14 @@ fn legal(text: String, reserved: &[&str]) -> String {
 
 /// The names of one scope, each given out once.
 #[derive(Clone, Debug, Default)]
-pub struct Unique {
+pub struct UniqueNames {
     taken: FxHashSet<String>,
 }
 
-impl Unique {
+impl UniqueNames {
     /// Creates a scope in which some names are taken.
     pub fn new(taken: &[&str]) -> Self {
-        Unique {
+        UniqueNames {
             taken: taken.iter().map(|&name| name.into()).collect(),
         }
     }
@@ -207,7 +207,7 @@ impl Unique {
     }
 
     /// Returns the name that `claim` would give, without taking it.
-    pub fn free(&self, wanted: &str) -> String {
+    pub fn free_name(&self, wanted: &str) -> String {
         self.free_where(wanted, |_| true)
     }
 
@@ -227,20 +227,20 @@ impl Unique {
     }
 }
 
-/// Words that cannot be names of values in a function.
+/// Words of the target language that cannot be names of values in a function.
 #[derive(Clone, Debug)]
-pub(crate) struct Words {
+pub(crate) struct ReservedWords {
     /// Names that are taken in every function.
-    pub locals: Unique,
+    pub locals: UniqueNames,
     /// Replaces a reserved word; the identity for Rust, where names in snake case are legal already.
     pub legal: fn(String) -> String,
 }
 
-impl Words {
-    /// The reserved words of Rust.
-    pub fn rust() -> Self {
-        Words {
-            locals: Unique::new(LOCALS),
+impl ReservedWords {
+    /// Returns the reserved words of Rust.
+    pub fn of_rust() -> Self {
+        ReservedWords {
+            locals: UniqueNames::new(LOCALS),
             legal: |name| name,
         }
     }
@@ -262,14 +262,14 @@ pub struct ExternalNames {
 }
 
 impl ExternalNames {
-    fn new(program: &Program, type_name: &str, fields: &mut Unique) -> Self {
+    fn new(program: &Program, type_name: &str, fields: &mut UniqueNames) -> Self {
         let externals = program.graph.externals();
         if externals.is_empty() {
             return ExternalNames::default();
         }
-        let mut methods = Unique::new(METHODS);
+        let mut methods = UniqueNames::new(METHODS);
         let written: Vec<&str> = externals.iter().map(|one| one.name.as_str()).collect();
-        let values: Vec<String> = cased(&written)
+        let values: Vec<String> = to_distinct_snake_case(&written)
             .iter()
             .map(|wanted| methods.claim(wanted))
             .collect();
@@ -278,9 +278,12 @@ impl ExternalNames {
             [value, slopes]
         });
         let arguments = externals.iter().map(|one| {
-            let mut own = Unique::default();
+            let mut own = UniqueNames::default();
             let wanted: Vec<&str> = one.arguments.iter().map(String::as_str).collect();
-            cased(&wanted).iter().map(|name| own.claim(name)).collect()
+            to_distinct_snake_case(&wanted)
+                .iter()
+                .map(|name| own.claim(name))
+                .collect()
         });
         ExternalNames {
             of: format!("{type_name}Functions"),
@@ -292,9 +295,9 @@ impl ExternalNames {
     }
 }
 
-/// The names of a program's type, fields and methods.
+/// The Rust names of a program's type, fields and methods.
 #[derive(Clone, Debug)]
-pub struct Names {
+pub struct ProgramNames {
     /// The type.
     pub type_name: String,
     /// Functions, in order.
@@ -311,23 +314,25 @@ pub struct Names {
     pub update: String,
     /// Names related to external functions.
     pub externals: ExternalNames,
-    methods: Unique,
+    methods: UniqueNames,
 }
 
-impl Names {
-    /// Names everything that is public, then everything that is private.
+impl ProgramNames {
+    /// Chooses the Rust names of a program: first those that are public, then the private ones.
     pub fn new(program: &Program) -> Self {
-        Names::beside(program, &[])
+        ProgramNames::with_reserved_names(program, &[])
     }
 
-    /// Does the same with more names reserved than those of methods.
-    pub(crate) fn beside(program: &Program, taken: &[&str]) -> Self {
-        let mut methods = Unique::new(&[METHODS, taken].concat());
+    /// Chooses the Rust names of a program, none of which is one of `taken`, besides the names that methods of every
+    /// generated type have.
+    pub(crate) fn with_reserved_names(program: &Program, taken: &[&str]) -> Self {
+        let mut methods = UniqueNames::new(&[METHODS, taken].concat());
         let known = FunctionId::ALL.iter();
         methods.taken.extend(known.map(|id| id.name().to_string()));
-        let mut fields = Unique::default();
+        let mut fields = UniqueNames::default();
         let groups = program.params.iter();
-        let params = cased(&groups.map(|group| group.name.as_str()).collect::<Vec<_>>());
+        let params =
+            to_distinct_snake_case(&groups.map(|group| group.name.as_str()).collect::<Vec<_>>());
         let mut accessors = Vec::new();
         for wanted in &params {
             let setter = |name: &str| format!("set_{name}");
@@ -338,7 +343,7 @@ impl Names {
         }
         let own = program.functions.iter().filter(|f| f.id.is_none());
         let own: Vec<&str> = own.map(|function| function.name.as_str()).collect();
-        let mut own = cased(&own).into_iter();
+        let mut own = to_distinct_snake_case(&own).into_iter();
         let mut named = Vec::new();
         for function in &program.functions {
             let wanted = match function.id {
@@ -354,7 +359,7 @@ impl Names {
         let type_name = type_name(&program.name);
         let all = params.iter().map(|wanted| fields.claim(wanted)).collect();
         let kept = fields.claim("k");
-        Names {
+        ProgramNames {
             externals: ExternalNames::new(program, &type_name, &mut fields),
             type_name,
             functions: named,
@@ -367,10 +372,10 @@ impl Names {
         }
     }
 
-    /// Returns the name of a part of a function; parts are counted from 1.
-    pub fn part(&self, function: &str, number: usize) -> String {
+    /// Returns the name of the function for one part of a long function; parts are counted from 1.
+    pub fn part_name(&self, function: &str, number: usize) -> String {
         // Two parts never want the same name, so nothing has to be remembered.
         let function = function.trim_end_matches('_');
-        self.methods.free(&format!("{function}_part{number}"))
+        self.methods.free_name(&format!("{function}_part{number}"))
     }
 }

@@ -15,7 +15,7 @@ const NAMES: &[(i32, i32, &str)] = &[
     (1, 4, "quarter"),
 ];
 
-/// Returns the shortest literal that parses to this number.
+/// Returns the shortest Rust literal that parses to this `f64`.
 pub fn literal(value: f64) -> String {
     if value.is_nan() {
         "f64::NAN".into()
@@ -27,21 +27,22 @@ pub fn literal(value: f64) -> String {
     }
 }
 
-/// Returns a number as an expression of the generated scalar type.
-pub fn scalar(value: f64) -> String {
+/// Returns an `f64` as a Rust expression of the generated scalar type, such as `S::from_f64(0.5)`.
+pub fn scalar_expression(value: f64) -> String {
     format!("S::from_f64({})", literal(value))
 }
 
-/// Returns a constant node as an expression of the scalar type: the double nearest to an exact rational, or π.
-pub fn of(graph: &Graph, node: NodeId) -> String {
+/// Returns a constant node of the graph as a Rust expression of the scalar type: the double nearest to an exact
+/// rational, or π.
+pub fn constant_expression(graph: &Graph, node: NodeId) -> String {
     match graph.node(node) {
-        Node::Constant(_) => scalar(tape::number(graph, node)),
+        Node::Constant(_) => scalar_expression(tape::number(graph, node)),
         _ => "S::from_f64(::core::f64::consts::PI)".into(),
     }
 }
 
-/// Returns the name of a number, if it has one.
-pub fn name(graph: &Graph, node: NodeId) -> Option<&'static str> {
+/// Returns the name under which a constant node is bound, such as `pi`; `None` for most numbers.
+pub fn constant_name(graph: &Graph, node: NodeId) -> Option<&'static str> {
     let Node::Constant(index) = graph.node(node) else {
         return Some("pi");
     };

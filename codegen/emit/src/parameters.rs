@@ -19,8 +19,9 @@ pub fn group_type(shape: ShapeKind) -> String {
     }
 }
 
-/// Returns the index expressions of the entries of a group, in the order of its symbols.
-pub fn indices(shape: ShapeKind) -> Vec<String> {
+/// Returns the Rust index expressions of the entries of a parameter group, such as `[0][1]`, in the order of its
+/// symbols.
+pub fn index_expressions(shape: ShapeKind) -> Vec<String> {
     let matrix = |n: usize, first: fn(usize) -> usize| {
         let rows = (0..n).flat_map(move |i| (first(i)..n).map(move |j| format!("[{i}][{j}]")));
         rows.collect()
@@ -34,10 +35,10 @@ pub fn indices(shape: ShapeKind) -> Vec<String> {
 }
 
 /// Returns all parameters as expressions, in the order of their symbols; `owner` is the prefix of the field names.
-pub fn expressions(program: &Program, fields: &[String], owner: &str) -> Vec<String> {
+pub fn parameter_expressions(program: &Program, fields: &[String], owner: &str) -> Vec<String> {
     let groups = program.params.iter().zip(fields);
     let of = |(group, field): (&Group, &String)| -> Vec<String> {
-        let indices = indices(group.shape).into_iter();
+        let indices = index_expressions(group.shape).into_iter();
         indices
             .map(|index| format!("{owner}{field}{index}"))
             .collect()
@@ -45,8 +46,8 @@ pub fn expressions(program: &Program, fields: &[String], owner: &str) -> Vec<Str
     groups.flat_map(of).collect()
 }
 
-/// Returns an expression in the shape of a group, with entries given by row and column.
-pub fn shaped(shape: ShapeKind, entry: impl Fn(usize, usize) -> String) -> String {
+/// Returns a Rust expression in the shape of a parameter group, with entries given by row and column.
+pub fn shaped_expression(shape: ShapeKind, entry: impl Fn(usize, usize) -> String) -> String {
     let row = |i: usize, n: usize| (0..n).map(|j| entry(i, j)).collect::<Vec<_>>().join(", ");
     match shape {
         ShapeKind::Scalar => entry(0, 0),
@@ -58,19 +59,20 @@ pub fn shaped(shape: ShapeKind, entry: impl Fn(usize, usize) -> String) -> Strin
     }
 }
 
-/// Returns the value to store for a given parameter: only the upper triangle of a symmetric matrix is read.
-pub fn kept_value(group: &Group, name: &str) -> String {
+/// Returns the Rust expression of the value to store for a given parameter: only the upper triangle of a symmetric
+/// matrix is read.
+pub fn value_to_store(group: &Group, name: &str) -> String {
     match group.shape {
-        ShapeKind::Symmetric(_) => shaped(group.shape, |i, j| {
+        ShapeKind::Symmetric(_) => shaped_expression(group.shape, |i, j| {
             format!("{name}[{}][{}]", i.min(j), i.max(j))
         }),
         _ => name.into(),
     }
 }
 
-/// Returns the section on errors of a function that sets parameters.
-pub fn errors(program: &Program) -> [String; 3] {
-    docs::errors(program, &program.constant_guards, "the parameters")
+/// Returns the `# Errors` section of the documentation of a function that sets parameters.
+pub fn setter_error_section(program: &Program) -> [String; 3] {
+    docs::error_section(program, &program.constant_guards, "the parameters")
 }
 
 /// Whether setting parameters requires constants to be computed or pivots to be checked.
@@ -79,7 +81,7 @@ pub fn needs_update(emitter: &Emitter) -> bool {
 }
 
 /// Prints the accessors of all parameters, and the function that updates the kept constants.
-pub fn accessors(emitter: &Emitter) -> String {
+pub fn print_accessors(emitter: &Emitter) -> String {
     let groups = 0..emitter.program.params.len();
     groups
         .map(|index| accessor(emitter, index))
@@ -93,13 +95,13 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
         &emitter.names.fields[index],
         &emitter.names.accessors[index],
     );
-    let (written, shape) = (&group.name, docs::shape(group.shape));
+    let (written, shape) = (&group.name, docs::shape_in_words(group.shape));
     let of = group_type(group.shape);
-    let value = kept_value(group, "value");
+    let value = value_to_store(group, "value");
     let mut lines = vec![format!(
         "Sets parameter `{written}`; on an error nothing changes."
     )];
-    lines.extend(errors(emitter.program));
+    lines.extend(setter_error_section(emitter.program));
     let body = match needs_update(emitter) {
         true => format!(
             "let mut next = self.clone();\nnext.{field} = {value};\nnext.{}()?;\n*self = next;\n",
@@ -109,7 +111,7 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
     };
     format!(
         "/// Parameter `{written}`, {shape}.\n#[must_use]\npub fn {name}(&self) -> {of} {{\nself.{field}\n}}\n\n{}pub fn set_{name}(&mut self, value: {of}) -> {RESULT} {{\n{body}::core::result::Result::Ok(())\n}}\n\n",
-        docs::comment(&lines)
+        docs::doc_comment(&lines)
     )
 }
 
@@ -127,11 +129,11 @@ fn update(emitter: &Emitter) -> String {
         ));
     }
     let kept = format!("self.{}", names.kept);
-    body.push_str(&checks(
+    body.push_str(&print_pivot_checks(
         emitter,
         &Rust,
         &kept,
-        &expressions(emitter.program, &names.fields, "self."),
+        &parameter_expressions(emitter.program, &names.fields, "self."),
     ));
     format!(
         "/// Brings the kept constants in step with the parameters.\nfn {}(&mut self) -> {RESULT} {{\n{body}::core::result::Result::Ok(())\n}}\n\n",
@@ -140,7 +142,7 @@ fn update(emitter: &Emitter) -> String {
 }
 
 /// Prints the checks of the pivots that depend on parameters alone, in the order of their numbers.
-pub fn checks(
+pub fn print_pivot_checks(
     emitter: &Emitter,
     language: &dyn Language,
     kept: &str,

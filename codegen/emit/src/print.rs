@@ -1,6 +1,6 @@
 //! Prints statements: everything that all languages share, such as the places of values, and signs.
 
-use super::language::{Array, Language, Operand};
+use super::language::{Language, Operand, SharedArray};
 use super::locals::Locals;
 use super::names::{self, ExternalNames};
 use hamel_algebra::graph::{Edge, NodeId};
@@ -13,27 +13,27 @@ use std::rc::Rc;
 
 /// The arguments, constants and arrays that a text uses, in addition to its own values.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Used {
+pub struct UsedNames {
     /// Arguments read.
     pub arguments: BTreeSet<Argument>,
     /// Whether kept constants are read.
     pub kept: bool,
     /// Entries of arrays that are read or written, once for each access.
-    pub entries: Vec<(Array, usize)>,
+    pub entries: Vec<(SharedArray, usize)>,
     /// Access to each array.
-    access: BTreeMap<Array, Access>,
+    access: BTreeMap<SharedArray, ArrayAccess>,
     /// Whether the text can return an error.
     pub checks: bool,
 }
 
-impl Used {
+impl UsedNames {
     /// Returns how an array is accessed.
-    pub fn access(&self, array: Array) -> Access {
+    pub fn access(&self, array: SharedArray) -> ArrayAccess {
         self.access.get(&array).copied().unwrap_or_default()
     }
 
-    /// Records that an entry is read or written.
-    pub fn touch(&mut self, array: Array, place: usize, access: Access) {
+    /// Records that an entry of an array is read or written.
+    pub fn record_access(&mut self, array: SharedArray, place: usize, access: ArrayAccess) {
         self.entries.push((array, place));
         let known = self.access.entry(array).or_default();
         *known = access.max(*known);
@@ -42,7 +42,7 @@ impl Used {
 
 /// How a text accesses an array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Access {
+pub enum ArrayAccess {
     /// Not at all.
     #[default]
     None,
@@ -53,9 +53,9 @@ pub enum Access {
 }
 
 /// A result that is read from the output array to which it was written.
-pub struct Written {
+pub struct WrittenResult {
     /// The array, its shape, and the index of the entry.
-    pub place: (Array, Shape, usize),
+    pub place: (SharedArray, Shape, usize),
     /// Whether the entry is the negative of the value.
     pub negative: bool,
 }
@@ -84,7 +84,7 @@ pub struct Printer<'a> {
     /// Slots of values that cross parts.
     pub slots: &'a FxHashMap<NodeId, usize>,
     /// Results that are read from the output array.
-    pub written: &'a FxHashMap<NodeId, Written>,
+    pub written: &'a FxHashMap<NodeId, WrittenResult>,
     /// Headings of statements, by the nodes that they define; empty if there are to be none.
     pub headings: &'a Headings,
     /// The heading printed last.
@@ -92,7 +92,7 @@ pub struct Printer<'a> {
     /// Values computed by statements printed so far.
     pub here: FxHashSet<NodeId>,
     /// What was used so far.
-    pub used: Used,
+    pub used: UsedNames,
 }
 
 impl Printer<'_> {
@@ -106,7 +106,7 @@ impl Printer<'_> {
             }
             Place::Argument(argument, index) => {
                 self.used.arguments.insert(argument);
-                format!("{}[{index}]", names::argument(argument))
+                format!("{}[{index}]", names::argument_name(argument))
             }
             Place::Parameter(index) => self.parameters[index].clone(),
             Place::Kept(index) => {
@@ -114,12 +114,12 @@ impl Printer<'_> {
                 format!("k[{index}]")
             }
             Place::Number => {
-                let name = self.locals.name(node);
+                let name = self.locals.name_of(node);
                 self.language.number(self.places.graph(), node, name)
             }
-            Place::Temporary if self.here.contains(&node) => self.locals.name(node).into(),
+            Place::Temporary if self.here.contains(&node) => self.locals.name_of(node).into(),
             Place::Temporary => match self.slots.get(&node) {
-                Some(&slot) => self.slot(slot, Access::Read),
+                Some(&slot) => self.slot(slot, ArrayAccess::Read),
                 // Not valid in any language, so that the text never leaves the generator.
                 None => format!("no value for node {node}"),
             },
@@ -127,15 +127,15 @@ impl Printer<'_> {
     }
 
     /// Returns the slot of a value, and records the access.
-    fn slot(&mut self, slot: usize, access: Access) -> String {
-        self.used.touch(Array::Slots, slot, access);
+    fn slot(&mut self, slot: usize, access: ArrayAccess) -> String {
+        self.used.record_access(SharedArray::Slots, slot, access);
         let shape = Shape::Vector(self.slots.len());
-        self.language.entry(Array::Slots, shape, slot)
+        self.language.entry(SharedArray::Slots, shape, slot)
     }
 
     /// Returns a value with its sign, as an argument or a term: `-x` has no parentheses.
-    pub fn signed(&mut self, edge: Edge) -> String {
-        self.operand(edge).signed()
+    pub fn signed_value(&mut self, edge: Edge) -> String {
+        self.operand(edge).with_sign()
     }
 
     fn operand(&mut self, edge: Edge) -> Operand {
@@ -148,7 +148,7 @@ impl Printer<'_> {
         {
             Some(written) => {
                 let (array, shape, place) = written.place;
-                self.used.touch(array, place, Access::Read);
+                self.used.record_access(array, place, ArrayAccess::Read);
                 Operand {
                     value: self.language.entry(array, shape, place),
                     negative: negative != written.negative,
@@ -162,20 +162,20 @@ impl Printer<'_> {
     }
 
     /// Returns a result that is written separately: numbers are literals.
-    pub fn result(&mut self, edge: Edge) -> String {
+    pub fn result_expression(&mut self, edge: Edge) -> String {
         match self.places.of(edge.node(), self.time) {
             Place::Number => {
                 let sign = if edge.is_negative() { "-" } else { "" };
                 let literal = self.language.literal(self.places.graph(), edge.node());
                 format!("{sign}{literal}")
             }
-            _ => self.signed(edge),
+            _ => self.signed_value(edge),
         }
     }
 
-    /// Returns the binding of a number.
+    /// Returns the statement that binds a number to its name.
     pub fn number(&self, node: NodeId) -> String {
-        let name = self.locals.name(node);
+        let name = self.locals.name_of(node);
         self.language
             .number_binding(self.places.graph(), node, name)
     }
@@ -187,7 +187,7 @@ impl Printer<'_> {
             let operand = self.operand(edge);
             return self.language.check(&operand, cause, self.program);
         }
-        let name = |node: NodeId| self.locals.name(node);
+        let name = |node: NodeId| self.locals.name_of(node);
         let heading = self.heading_of(statement);
         let mut text = match &statement.operation {
             Operation::SinCos(angle) => {
@@ -209,8 +209,8 @@ impl Printer<'_> {
         for node in statement.defined() {
             self.here.insert(node);
             if let Some(&slot) = self.slots.get(&node) {
-                let slot = self.slot(slot, Access::Written);
-                text.push_str(&format!("{slot} = {};\n", self.locals.name(node)));
+                let slot = self.slot(slot, ArrayAccess::Written);
+                text.push_str(&format!("{slot} = {};\n", self.locals.name_of(node)));
             }
         }
         text
@@ -232,7 +232,7 @@ impl Printer<'_> {
 
     /// Returns the pattern that binds the result of an external function; a matrix of slopes by rows.
     fn pattern(&self, call: &Call) -> String {
-        let name = |node: &Option<NodeId>| node.map_or("_", |node| self.locals.name(node));
+        let name = |node: &Option<NodeId>| node.map_or("_", |node| self.locals.name_of(node));
         let list = |nodes: &[Option<NodeId>]| {
             let names: Vec<&str> = nodes.iter().map(name).collect();
             format!("[{}]", names.join(", "))
@@ -257,10 +257,14 @@ impl Printer<'_> {
                     std::mem::swap(&mut a, &mut b);
                 }
                 let sign = if b.negative { "-" } else { "+" };
-                format!("{} {sign} {}", a.signed(), b.value)
+                format!("{} {sign} {}", a.with_sign(), b.value)
             }
-            Operation::Multiply(a, b) => format!("{} * {}", self.signed(a), self.signed(b)),
-            Operation::Divide(a, b) => format!("{} / {}", self.signed(a), self.signed(b)),
+            Operation::Multiply(a, b) => {
+                format!("{} * {}", self.signed_value(a), self.signed_value(b))
+            }
+            Operation::Divide(a, b) => {
+                format!("{} / {}", self.signed_value(a), self.signed_value(b))
+            }
             Operation::Fused(a, b, c) => {
                 let operands = [a, b, c].map(|edge| self.operand(edge));
                 self.language.fused(&operands)
@@ -278,9 +282,13 @@ impl Printer<'_> {
                 self.language.function(function, &operand)
             }
             // Printed by `statement` as statements of their own.
-            Operation::SinCos(a) | Operation::Check(_, a) => self.signed(a),
+            Operation::SinCos(a) | Operation::Check(_, a) => self.signed_value(a),
             Operation::Call(ref call) => {
-                let given: Vec<String> = call.arguments.iter().map(|&a| self.signed(a)).collect();
+                let given: Vec<String> = call
+                    .arguments
+                    .iter()
+                    .map(|&a| self.signed_value(a))
+                    .collect();
                 let [value, slopes] = &self.externals.methods[call.function];
                 let method = if call.slopes { slopes } else { value };
                 let field = &self.externals.field;

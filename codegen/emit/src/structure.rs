@@ -1,13 +1,13 @@
 //! The generated type: its fields, sizes, constructor and defaults.
 
-use super::function::zeros;
-use super::parameters::{errors, group_type, kept_value, needs_update};
+use super::function::zero_of_shape;
+use super::parameters::{group_type, needs_update, setter_error_section, value_to_store};
 use super::{Emitter, docs, externals};
 use hamel_program::{FunctionId, Shape};
 
 /// Lint attributes for generated functions, which cannot satisfy these lints in general. A file that is included has no
 /// inner attributes, so that each item has its own.
-pub const ALLOW: &str = concat!(
+pub const FUNCTION_LINTS: &str = concat!(
     "#[rustfmt::skip]\n",
     "#[allow(dead_code, unreachable_pub, unused_qualifications, unused_variables, clippy::approx_constant, \
      clippy::let_and_return, clippy::nursery, clippy::pedantic, clippy::too_many_arguments, clippy::type_complexity, \
@@ -15,29 +15,29 @@ pub const ALLOW: &str = concat!(
 );
 
 /// Lint attributes for generated types and traits.
-pub const ALLOW_TYPE: &str = concat!(
+pub const TYPE_LINTS: &str = concat!(
     "#[rustfmt::skip]\n",
     "#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, \
      clippy::too_many_arguments, reason = \"the description's names and uses\")]\n",
 );
 
 /// Lint attributes for generated trait implementations, which cannot satisfy these lints in general.
-pub const ALLOW_TRAIT: &str = r#"#[rustfmt::skip]
+pub const TRAIT_LINTS: &str = r#"#[rustfmt::skip]
 #[allow(unused_qualifications, clippy::approx_constant, clippy::nursery, clippy::pedantic, reason = "full paths are right whatever is imported")]
 "#;
 
-/// Whether there is a field of constants. There is one even without constants if there are no parameters, so that the
-/// type has at least one field.
-pub fn has_kept(emitter: &Emitter) -> bool {
+/// Whether the generated type has a field of kept constants. There is one even without constants if there are no
+/// parameters, so that the type has at least one field.
+pub fn has_constants_field(emitter: &Emitter) -> bool {
     !emitter.kept.is_empty() || emitter.program.params.is_empty()
 }
 
 fn zero_constants(emitter: &Emitter) -> String {
-    zeros(Shape::Vector(emitter.kept.len()))
+    zero_of_shape(Shape::Vector(emitter.kept.len()))
 }
 
-/// Prints the type: `struct Name<S> { … }`.
-pub fn structure(emitter: &Emitter) -> String {
+/// Prints the generated Rust type: `struct Name<S> { … }`.
+pub fn print_struct(emitter: &Emitter) -> String {
     let program = emitter.program;
     let mut lines = program.docs.clone();
     if lines.is_empty() {
@@ -55,7 +55,7 @@ pub fn structure(emitter: &Emitter) -> String {
             group_type(group.shape)
         ));
     }
-    if has_kept(emitter) {
+    if has_constants_field(emitter) {
         let (kept, n) = (&emitter.names.kept, emitter.kept.len());
         fields.push_str(&format!(
             "/// What depends on parameters alone.\n{kept}: [S; {n}],\n"
@@ -64,22 +64,22 @@ pub fn structure(emitter: &Emitter) -> String {
     fields.push_str(&externals::field(emitter));
     let public = if program.public { "pub " } else { "" };
     format!(
-        "{}{ALLOW_TYPE}#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
-        docs::comment(&lines),
-        externals::applied(emitter)
+        "{}{TYPE_LINTS}#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
+        docs::doc_comment(&lines),
+        externals::type_with_arguments(emitter)
     )
 }
 
-/// Prints the size constants and `new`.
-pub fn sizes(emitter: &Emitter) -> String {
+/// Prints the size constants and the function `new` of the generated Rust type.
+pub fn print_sizes_and_new(emitter: &Emitter) -> String {
     let program = emitter.program;
     let [params, x, ..] = program.symbols();
-    let mut sizes = docs::sizes(program);
+    let mut sizes = docs::size_constants(program);
     let what = "The number of parameters, entry by entry.";
     sizes.push(("PARAMETERS", what, params, x - params));
     let mut text = String::new();
     for (name, what, first, size) in sizes {
-        let lines = docs::comment(&docs::entries(program, what, first, size));
+        let lines = docs::doc_comment(&docs::entry_lines(program, what, first, size));
         text.push_str(&format!("{lines}pub const {name}: usize = {size};\n\n"));
     }
     text + &constructor(emitter)
@@ -88,7 +88,7 @@ pub fn sizes(emitter: &Emitter) -> String {
 fn constructor(emitter: &Emitter) -> String {
     let groups = || emitter.program.params.iter().zip(&emitter.names.fields);
     let mut lines = vec!["The system with given parameters.".to_string()];
-    lines.extend(errors(emitter.program));
+    lines.extend(setter_error_section(emitter.program));
     let mut arguments = Vec::new();
     if !emitter.program.params.is_empty() {
         arguments.push(format!(
@@ -96,14 +96,14 @@ fn constructor(emitter: &Emitter) -> String {
             emitter.names.type_name
         ));
     }
-    if externals::has(emitter) {
+    if externals::has_externals(emitter) {
         let names = &emitter.names.externals;
         arguments.push(format!("{}: {}", names.field, names.parameter));
         lines[0] = "The system with given parameters and functions.".into();
     }
     let argument = arguments.join(", ");
     let values = groups().map(|(group, field)| {
-        let value = kept_value(group, &format!("parameters.{field}"));
+        let value = value_to_store(group, &format!("parameters.{field}"));
         format!("{field}: {value}")
     });
     let (mutable, update) = match needs_update(emitter) {
@@ -112,29 +112,29 @@ fn constructor(emitter: &Emitter) -> String {
     };
     format!(
         "{}pub fn new({argument}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}::core::result::Result::Ok(system)\n}}\n\n",
-        docs::comment(&lines),
+        docs::doc_comment(&lines),
         literal(emitter, values.collect(), None)
     )
 }
 
 /// Returns `Self { … }` with the constants not yet computed.
 fn literal(emitter: &Emitter, mut fields: Vec<String>, functions: Option<&str>) -> String {
-    if has_kept(emitter) {
+    if has_constants_field(emitter) {
         fields.push(format!(
             "{}: {}",
             emitter.names.kept,
             zero_constants(emitter)
         ));
     }
-    if externals::has(emitter) {
+    if externals::has_externals(emitter) {
         let field = &emitter.names.externals.field;
         fields.push(functions.map_or_else(|| field.clone(), |value| format!("{field}: {value}")));
     }
     format!("Self {{ {} }}", fields.join(", "))
 }
 
-/// Prints `impl Default`.
-pub fn default(emitter: &Emitter) -> String {
+/// Prints `impl Default` of the generated Rust type, with the default parameters.
+pub fn print_default(emitter: &Emitter) -> String {
     let program = emitter.program;
     let fields = emitter.names.fields.iter();
     let fields = fields.map(|field| format!("{field}: parameters.{field}"));
@@ -156,9 +156,9 @@ pub fn default(emitter: &Emitter) -> String {
         ),
     };
     format!(
-        "{ALLOW_TRAIT}impl{} ::core::default::Default for {}{} {{\n/// The parameters of the description.\nfn default() -> Self {{\n{body}\n}}\n}}\n\n",
-        externals::generics(emitter),
-        externals::applied(emitter),
-        externals::default_where(emitter)
+        "{TRAIT_LINTS}impl{} ::core::default::Default for {}{} {{\n/// The parameters of the description.\nfn default() -> Self {{\n{body}\n}}\n}}\n\n",
+        externals::impl_generics(emitter),
+        externals::type_with_arguments(emitter),
+        externals::default_where_clause(emitter)
     )
 }

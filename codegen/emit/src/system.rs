@@ -1,6 +1,6 @@
 //! `impl hamel::System` and `impl hamel::Energies`, each if all functions that it needs are generated.
 
-use super::methods::header;
+use super::methods::impl_header;
 use super::{Emitter, docs, names, number};
 use hamel_program::{Argument, Shape};
 
@@ -30,13 +30,13 @@ const ENERGIES: &[Method] = &[
     ("potential_energy", &[X], "S"),
 ];
 
-/// Prints the implementations; empty if a function of `System` is missing.
-pub fn implementations(emitter: &Emitter) -> String {
+/// Prints the implementations of `System` and `Energies`; empty if a function of `System` is missing.
+pub fn system_implementations(emitter: &Emitter) -> String {
     let Some(motion) = methods(emitter, SYSTEM) else {
         return String::new();
     };
     let energies = methods(emitter, ENERGIES)
-        .map(|methods| format!("\n{} {{\n{methods}}}\n", header(emitter, "Energies")));
+        .map(|methods| format!("\n{} {{\n{methods}}}\n", impl_header(emitter, "Energies")));
     system(emitter, motion) + &energies.unwrap_or_default()
 }
 
@@ -79,15 +79,18 @@ fn system(emitter: &Emitter, mut methods: String) -> String {
     let blocks: Vec<String> = program
         .blocks
         .iter()
-        .map(|&block| docs::block(block))
+        .map(|&block| docs::block_expression(block))
         .collect();
     let [x, xi] = [&program.start_x, &program.start_xi].map(|start| {
-        let entries: Vec<String> = start.iter().map(|&value| number::scalar(value)).collect();
+        let entries: Vec<String> = start
+            .iter()
+            .map(|&value| number::scalar_expression(value))
+            .collect();
         entries.join(", ")
     });
     format!(
         "{} {{\ntype Scalar = S;\n{types}\nfn blocks(&self) -> &[::hamel::Block] {{\n&[{}]\n}}\n\nfn start(&self) -> (Self::Coordinates, Self::Velocities) {{\n([{x}], [{xi}])\n}}\n\n{methods}}}\n",
-        header(emitter, "System"),
+        impl_header(emitter, "System"),
         blocks.join(", ")
     )
 }
@@ -112,7 +115,7 @@ fn method(emitter: &Emitter, row: &Method) -> Option<String> {
     let given = arguments.iter().map(|argument| {
         let used = function.arguments.contains(argument);
         let name = if used {
-            names::argument(*argument)
+            names::argument_name(*argument)
         } else {
             "_"
         };
@@ -127,7 +130,7 @@ fn method(emitter: &Emitter, row: &Method) -> Option<String> {
     let values: Vec<&str> = function
         .arguments
         .iter()
-        .map(|&argument| names::argument(argument))
+        .map(|&argument| names::argument_name(argument))
         .collect();
     let call = format!("self.{generated}({})", values.join(", "));
     if name != "accel" && function.fallible

@@ -7,16 +7,16 @@
 //! | `NameState<S>` | x, ξ, and the states after ξ | initial state of the description |
 //! | `NameInputs<S>` | u | zeros |
 
-use super::names::{Unique, cased};
-use super::parameters::{group_type, shaped};
-use super::structure::{ALLOW, ALLOW_TRAIT, ALLOW_TYPE};
+use super::names::{UniqueNames, to_distinct_snake_case};
+use super::parameters::{group_type, shaped_expression};
+use super::structure::{FUNCTION_LINTS, TRAIT_LINTS, TYPE_LINTS};
 use super::{Emitter, docs, externals, number};
 use hamel_language::model::{Coordinate, Group};
 use hamel_language::syntax::ast::{CoordKind, ShapeKind};
 use hamel_program::Program;
 
-/// A named range of entries of an array.
-pub struct Field {
+/// A field of a generated structure: a named range of entries of x, ξ, u or the parameters.
+pub struct NamedRange {
     /// Its name in the generated text.
     pub name: String,
     /// Text of its doc comment.
@@ -29,7 +29,7 @@ pub struct Field {
     pub offset: usize,
 }
 
-impl Field {
+impl NamedRange {
     /// Returns the number of its entries.
     pub fn length(&self) -> usize {
         match self.shape {
@@ -42,7 +42,7 @@ impl Field {
 
     /// Returns its value; `entry` returns an entry by its index in the array.
     fn value(&self, entry: impl Fn(usize) -> String) -> String {
-        shaped(self.shape, |i, j| {
+        shaped_expression(self.shape, |i, j| {
             entry(
                 self.offset
                     + match self.shape {
@@ -56,18 +56,22 @@ impl Field {
 
     /// Returns its entries in the order of the array, as expressions.
     fn entries(&self) -> Vec<String> {
-        let indices = super::parameters::indices(self.shape).into_iter();
+        let indices = super::parameters::index_expressions(self.shape).into_iter();
         let name = &self.name;
         indices.map(|index| format!("self.{name}{index}")).collect()
     }
 }
 
 /// Returns the fields of groups of symbols.
-fn groups(groups: &[Group], what: &str, array: &'static str) -> Vec<(String, Field)> {
+fn groups(groups: &[Group], what: &str, array: &'static str) -> Vec<(String, NamedRange)> {
     let field = |group: &Group| {
-        let field = Field {
+        let field = NamedRange {
             name: String::new(),
-            docs: format!("{what} `{}`, {}.", group.name, docs::shape(group.shape)),
+            docs: format!(
+                "{what} `{}`, {}.",
+                group.name,
+                docs::shape_in_words(group.shape)
+            ),
             shape: group.shape,
             array,
             offset: group.offset,
@@ -78,12 +82,12 @@ fn groups(groups: &[Group], what: &str, array: &'static str) -> Vec<(String, Fie
 }
 
 /// Returns the fields of a coordinate: one, or two for a pose, namely its position and its rotation.
-fn coordinate(coordinate: &Coordinate) -> Vec<(String, Field)> {
+fn coordinate(coordinate: &Coordinate) -> Vec<(String, NamedRange)> {
     let Coordinate {
         name, kind, offset, ..
     } = coordinate;
     let field = |suffix: &str, shape: ShapeKind, what: &str, behind: usize| {
-        let field = Field {
+        let field = NamedRange {
             name: String::new(),
             docs: format!("Coordinate `{name}`{what}."),
             shape,
@@ -121,12 +125,12 @@ fn coordinate(coordinate: &Coordinate) -> Vec<(String, Field)> {
 }
 
 /// Gives the fields their names in Rust.
-fn named(fields: Vec<(String, Field)>) -> Vec<Field> {
+fn named(fields: Vec<(String, NamedRange)>) -> Vec<NamedRange> {
     let written: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
-    let names = cased(&written);
-    let mut unique = Unique::default();
+    let names = to_distinct_snake_case(&written);
+    let mut unique = UniqueNames::default();
     let fields = fields.into_iter().zip(names);
-    let field = |((_, field), name): ((String, Field), String)| Field {
+    let field = |((_, field), name): ((String, NamedRange), String)| NamedRange {
         name: unique.claim(&name),
         ..field
     };
@@ -138,23 +142,23 @@ struct View<'a> {
     name: String,
     docs: String,
     default: &'a str,
-    fields: &'a [Field],
+    fields: &'a [NamedRange],
 }
 
 impl View<'_> {
     /// Prints the structure and its `Default`.
-    fn text(&self, public: &str, value: impl Fn(&Field, usize) -> String) -> String {
+    fn text(&self, public: &str, value: impl Fn(&NamedRange, usize) -> String) -> String {
         let View {
             name,
             docs,
             default,
             fields,
         } = self;
-        let field = |field: &Field| {
+        let field = |field: &NamedRange| {
             let of = group_type(field.shape);
             format!(
                 "/// {}\npub {}: {of},\n",
-                docs::spelled(&field.docs),
+                docs::escape_bidi_controls(&field.docs),
                 field.name
             )
         };
@@ -165,8 +169,8 @@ impl View<'_> {
         });
         let values: Vec<String> = values.collect();
         format!(
-            "{docs}{ALLOW_TYPE}#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
-             {ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::default::Default for {name}<S> {{\n/// {default}\nfn default() -> Self {{\nSelf {{ {} }}\n}}\n}}\n\n",
+            "{docs}{TYPE_LINTS}#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
+             {TRAIT_LINTS}impl<S: ::hamel::Scalar> ::core::default::Default for {name}<S> {{\n/// {default}\nfn default() -> Self {{\nSelf {{ {} }}\n}}\n}}\n\n",
             values.join(", ")
         )
     }
@@ -176,15 +180,15 @@ fn public(program: &Program) -> &'static str {
     if program.public { "pub " } else { "" }
 }
 
-/// Prints the structure of parameters; empty if there are none.
-pub fn parameters(emitter: &Emitter) -> String {
+/// Prints the Rust structure `NameParameters` with a field for each parameter; empty if there are none.
+pub fn print_parameter_struct(emitter: &Emitter) -> String {
     let program = emitter.program;
     if program.params.is_empty() {
         return String::new();
     }
     let fields = groups(&program.params, "Parameter", "");
-    let fields: Vec<Field> = (fields.into_iter().zip(&emitter.names.fields))
-        .map(|((_, field), name)| Field {
+    let fields: Vec<NamedRange> = (fields.into_iter().zip(&emitter.names.fields))
+        .map(|((_, field), name)| NamedRange {
             name: name.clone(),
             ..field
         })
@@ -200,24 +204,25 @@ pub fn parameters(emitter: &Emitter) -> String {
     }
     let view = View {
         name: format!("{of}Parameters"),
-        docs: docs::comment(&lines),
+        docs: docs::doc_comment(&lines),
         default: "The parameters of the description.",
         fields: &fields,
     };
     view.text(public(program), |_, place| {
-        number::scalar(program.defaults.get(place).copied().unwrap_or_default())
+        number::scalar_expression(program.defaults.get(place).copied().unwrap_or_default())
     })
 }
 
-/// Prints the structure of x and ξ; `system` tells whether the type implements `System`.
-pub fn state(emitter: &Emitter, system: bool) -> String {
+/// Prints the Rust structure `NameState` with a field for each coordinate and velocity; `system` tells whether the type
+/// implements `System`.
+pub fn print_state_struct(emitter: &Emitter, system: bool) -> String {
     let program = emitter.program;
     let of = &emitter.names.type_name;
     let fields = state_fields(program);
     let name = format!("{of}State");
     let view = View {
         name: name.clone(),
-        docs: docs::comment(&[format!(
+        docs: docs::doc_comment(&[format!(
             "A state of `{of}`: coordinates and velocities by name."
         )]),
         default: "The start of the description.",
@@ -228,13 +233,13 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
             "x" => &program.start_x,
             _ => &program.start_xi,
         };
-        number::scalar(start.get(place).copied().unwrap_or_default())
+        number::scalar_expression(start.get(place).copied().unwrap_or_default())
     });
     let (nu, n) = (program.nu, program.n + program.n_z);
     let entries = |array: &str| {
         let fields = fields.iter().filter(|field| field.array == array);
         fields
-            .flat_map(Field::entries)
+            .flat_map(NamedRange::entries)
             .collect::<Vec<_>>()
             .join(", ")
     };
@@ -245,7 +250,7 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
             format!("{}: {value}", field.name)
         })
         .collect();
-    let mut ranges = Unique::default();
+    let mut ranges = UniqueNames::default();
     let ranges: String = fields
         .iter()
         .map(|field| {
@@ -260,24 +265,27 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
     text.push_str(&format!(
         "{}impl<S: ::hamel::Scalar> {name}<S> {{\n{ranges}/// The state that x and ξ are.\n#[must_use]\npub fn from_arrays(x: &[S; {nu}], xi: &[S; {n}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
          /// x and ξ, as the functions of `{of}` take them.\n#[must_use]\npub fn to_arrays(&self) -> ([S; {nu}], [S; {n}]) {{\n([{}], [{}])\n}}\n}}\n\n",
-        ALLOW,
+        FUNCTION_LINTS,
         values.join(", "),
         entries("x"),
         entries("xi"),
     ));
     if system {
-        let (generics, of) = (externals::generics(emitter), externals::applied(emitter));
+        let (generics, of) = (
+            externals::impl_generics(emitter),
+            externals::type_with_arguments(emitter),
+        );
         text.push_str(&format!(
-            "{ALLOW_TRAIT}impl{generics} ::core::convert::From<{name}<S>> for ::hamel::State<{of}> {{\n/// The state at t = 0.\nfn from(state: {name}<S>) -> Self {{\nlet (x, xi) = state.to_arrays();\nSelf {{ t: 0.0, x, xi }}\n}}\n}}\n\n\
-             {ALLOW_TRAIT}impl{generics} ::core::convert::From<&::hamel::State<{of}>> for {name}<S> {{\nfn from(state: &::hamel::State<{of}>) -> Self {{\nSelf::from_arrays(&state.x, &state.xi)\n}}\n}}\n\n"
+            "{TRAIT_LINTS}impl{generics} ::core::convert::From<{name}<S>> for ::hamel::State<{of}> {{\n/// The state at t = 0.\nfn from(state: {name}<S>) -> Self {{\nlet (x, xi) = state.to_arrays();\nSelf {{ t: 0.0, x, xi }}\n}}\n}}\n\n\
+             {TRAIT_LINTS}impl{generics} ::core::convert::From<&::hamel::State<{of}>> for {name}<S> {{\nfn from(state: &::hamel::State<{of}>) -> Self {{\nSelf::from_arrays(&state.x, &state.xi)\n}}\n}}\n\n"
         ));
     }
     text
 }
 
 /// Returns the entries of x and ξ by name; the states z are part of ξ.
-pub fn state_fields(program: &Program) -> Vec<Field> {
-    let mut fields: Vec<(String, Field)> =
+pub fn state_fields(program: &Program) -> Vec<NamedRange> {
+    let mut fields: Vec<(String, NamedRange)> =
         program.coordinates.iter().flat_map(coordinate).collect();
     fields.extend(groups(&program.velocities, "Velocity", "xi"));
     fields.extend(groups(
@@ -289,12 +297,12 @@ pub fn state_fields(program: &Program) -> Vec<Field> {
 }
 
 /// Returns the entries of u by name.
-pub fn input_fields(program: &Program) -> Vec<Field> {
+pub fn input_fields(program: &Program) -> Vec<NamedRange> {
     named(groups(&program.inputs, "Input", "u"))
 }
 
-/// Prints the structure of the inputs u; empty if there are none.
-pub fn inputs(emitter: &Emitter) -> String {
+/// Prints the Rust structure `NameInputs` with a field for each input; empty if there are none.
+pub fn print_input_struct(emitter: &Emitter) -> String {
     let program = emitter.program;
     if program.inputs.is_empty() {
         return String::new();
@@ -304,13 +312,13 @@ pub fn inputs(emitter: &Emitter) -> String {
     let name = format!("{of}Inputs");
     let view = View {
         name: name.clone(),
-        docs: docs::comment(&[format!("The inputs of `{of}`, by name.")]),
+        docs: docs::doc_comment(&[format!("The inputs of `{of}`, by name.")]),
         default: "No input: zeros.",
         fields: &fields,
     };
     let mut text = view.text(public(program), |_, _| "S::default()".into());
     let m = program.m;
-    let entries: Vec<String> = fields.iter().flat_map(Field::entries).collect();
+    let entries: Vec<String> = fields.iter().flat_map(NamedRange::entries).collect();
     let values = fields.iter().map(|field| {
         let value = field.value(|place| format!("u[{place}]"));
         format!("{}: {value}", field.name)
@@ -319,7 +327,7 @@ pub fn inputs(emitter: &Emitter) -> String {
     text.push_str(&format!(
         "{}impl<S: ::hamel::Scalar> {name}<S> {{\n/// The inputs that u is.\n#[must_use]\npub fn from_array(u: &[S; {m}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
          /// u, as the functions of `{of}` take it.\n#[must_use]\npub fn to_array(&self) -> [S; {m}] {{\n[{}]\n}}\n}}\n\n",
-        ALLOW,
+        FUNCTION_LINTS,
         values.join(", "),
         entries.join(", "),
     ));

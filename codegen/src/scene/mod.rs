@@ -121,7 +121,7 @@ impl Scene {
             source_hash: generated.hash,
             ..Default::default()
         };
-        emit::file(&generated.program, &options)
+        emit::rust_file(&generated.program, &options)
             .map_err(|error| SceneError::new(vec![generated.fault(&error)], &self.text))
     }
 }

@@ -8,7 +8,7 @@ use super::simplify::Simplifier;
 use crate::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_dynamics::loads::applied_force;
-use hamel_dynamics::tables::Geometry;
+use hamel_dynamics::tables::EquationTables;
 use hamel_language::functions::FunctionId;
 use hamel_language::model::Model;
 use hamel_language::model::value::Value;
@@ -16,7 +16,7 @@ use hamel_language::model::value::Value;
 /// Derives the requested tables; the geometry is derived when the first table needs it.
 pub struct Collector<'a> {
     derivation: Derivation<'a>,
-    geometry: Option<(Geometry, Simplifier)>,
+    geometry: Option<(EquationTables, Simplifier)>,
 }
 
 impl<'a> Collector<'a> {
@@ -123,7 +123,8 @@ impl<'a> Collector<'a> {
             Some(derived) => derived,
             underived => {
                 let model = self.derivation.model;
-                let geometry = Geometry::new(model).ok_or(TableError::DependentColumns(table))?;
+                let geometry =
+                    EquationTables::new(model).ok_or(TableError::DependentColumns(table))?;
                 underived.insert((geometry, Simplifier::modulo(&model.points)))
             }
         };
@@ -139,7 +140,7 @@ impl<'a> Collector<'a> {
     }
 }
 
-fn cells(geometry: &mut Geometry, table: Table) -> (Vec<usize>, Vec<Cell>) {
+fn cells(geometry: &mut EquationTables, table: Table) -> (Vec<usize>, Vec<Cell>) {
     let (n, nu) = (geometry.model.n(), geometry.model.nu());
     match table {
         Table::Y => (vec![n, nu], matrix(&geometry.y)),
@@ -169,7 +170,7 @@ fn cells(geometry: &mut Geometry, table: Table) -> (Vec<usize>, Vec<Cell>) {
 }
 
 /// Returns the bias forces Γᵢⱼₖ ξʲ ξᵏ.
-fn bias(geometry: &mut Geometry) -> Vec<Edge> {
+fn bias(geometry: &mut EquationTables) -> Vec<Edge> {
     let xi = geometry.model.xi.clone();
     let graph = &mut geometry.model.graph;
     let row = |graph: &mut Graph, rows: &[Vec<Edge>]| {

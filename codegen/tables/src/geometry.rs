@@ -6,10 +6,10 @@
 //! "commuting": [names], "pattern": [rows of "." zero, "c" constant, "x" varying],
 //! "inertia_blocks": [[names]] }`; what is unknown is null.
 
-use hamel_dynamics::geometry::blocks::Entry;
+use hamel_dynamics::geometry::blocks::EntryDependence;
 use hamel_dynamics::geometry::side::Side;
 use hamel_dynamics::geometry::symmetry::Symmetry;
-use hamel_dynamics::geometry::{Block, Inspection};
+use hamel_dynamics::geometry::{Inspection, VelocityBlock};
 use serde_json::{Value, json as object};
 
 /// Size of the largest mass matrix whose pattern is drawn.
@@ -58,7 +58,7 @@ fn integrability(inspection: &Inspection) -> Vec<Row> {
     if !others.is_empty() {
         rows.push(row(
             "not integrable (quasi-velocities)",
-            inspection.list(&others),
+            inspection.join_names(&others),
         ));
     }
     rows
@@ -66,19 +66,23 @@ fn integrability(inspection: &Inspection) -> Vec<Row> {
 
 fn algebra(inspection: &Inspection) -> Vec<Row> {
     let mut rows = Vec::new();
-    let whole = match inspection.algebra() {
+    let whole = match inspection.algebra_name() {
         Some(name) => format!("{name}: γ is constant"),
         None => "none with a name: see the blocks of γ".into(),
     };
     rows.push(row("Lie algebra of the ∂ᵢ", whole));
     for block in &inspection.blocks {
-        let text = format!("{}: {}", inspection.list(&block.members), describe(block));
+        let text = format!(
+            "{}: {}",
+            inspection.join_names(&block.members),
+            describe(block)
+        );
         rows.push(row("blocks of γ", text));
     }
     if !inspection.blocks.is_empty() && !inspection.commuting.is_empty() {
         let text = format!(
             "{}: commute with all others",
-            inspection.list(&inspection.commuting)
+            inspection.join_names(&inspection.commuting)
         );
         rows.push(row("blocks of γ", text));
     }
@@ -91,7 +95,7 @@ fn algebra(inspection: &Inspection) -> Vec<Row> {
     rows
 }
 
-fn describe(block: &Block) -> String {
+fn describe(block: &VelocityBlock) -> String {
     let mut text = match &block.algebra {
         Some(name) => name.text(),
         None if block.constant => return "γ is constant, a function of parameters".into(),
@@ -108,12 +112,12 @@ fn describe(block: &Block) -> String {
 
 /// Returns the side on which T is invariant: M is constant in a left- or right-invariant frame of a group.
 fn invariant(inspection: &Inspection) -> Option<Side> {
-    let is_group = inspection.constant_mass() && inspection.algebra().is_some();
+    let is_group = inspection.has_constant_mass_matrix() && inspection.algebra_name().is_some();
     is_group.then(|| inspection.side()).flatten()
 }
 
 fn inertia(inspection: &Inspection) -> Vec<Row> {
-    let varying = match (inspection.constant_mass(), invariant(inspection)) {
+    let varying = match (inspection.has_constant_mass_matrix(), invariant(inspection)) {
         (false, _) => "depends on x".to_string(),
         (true, None) => "constant".into(),
         (true, Some(Side::Left)) => "constant: T is left-invariant".into(),
@@ -123,7 +127,7 @@ fn inertia(inspection: &Inspection) -> Vec<Row> {
     let blocks: Vec<String> = inspection
         .inertia_blocks
         .iter()
-        .map(|members| format!("{{{}}}", inspection.list(members)))
+        .map(|members| format!("{{{}}}", inspection.join_names(members)))
         .collect();
     if blocks.len() > 1 {
         rows.push(row("M in blocks", blocks.join(" ")));
@@ -139,13 +143,13 @@ fn inertia(inspection: &Inspection) -> Vec<Row> {
     rows
 }
 
-fn draw_pattern(line: &[Entry], between: &str) -> String {
+fn draw_pattern(line: &[EntryDependence], between: &str) -> String {
     let letters: Vec<&str> = line
         .iter()
         .map(|entry| match entry {
-            Entry::Zero => ".",
-            Entry::Constant => "c",
-            Entry::Varying => "x",
+            EntryDependence::Zero => ".",
+            EntryDependence::Constant => "c",
+            EntryDependence::Varying => "x",
         })
         .collect();
     letters.join(between)
@@ -159,7 +163,7 @@ fn symmetries(inspection: &Inspection) -> Vec<Row> {
         match members.len() {
             0 => "none".to_string(),
             all if all == inspection.velocities.len() && all > 1 => "all".into(),
-            _ => inspection.list(&members),
+            _ => inspection.join_names(&members),
         }
     };
     let potential = row("flows of ∂ᵢ that keep V", having(|s| s.keeps_potential));
@@ -207,9 +211,9 @@ pub fn json(inspection: &Inspection) -> Value {
     let inertia = inspection.inertia_blocks.iter();
     let inertia: Vec<Vec<&str>> = inertia.map(|members| names(members)).collect();
     object!({
-        "algebra": inspection.algebra(),
+        "algebra": inspection.algebra_name(),
         "christoffel": inspection.coordinate_rates,
-        "constant_mass": with_inertia.then(|| inspection.constant_mass()),
+        "constant_mass": with_inertia.then(|| inspection.has_constant_mass_matrix()),
         "invariant": side(invariant(inspection).filter(|_| with_inertia)),
         "velocities": velocities.collect::<Vec<Value>>(),
         "blocks": blocks.collect::<Vec<Value>>(),

@@ -11,7 +11,7 @@ use super::write::Writer;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::numeric::evaluate;
 use hamel_dynamics::regressor::{
-    DIAGONAL_PARAMETERS, Kind, Regressor, SECOND_MOMENT_NAMES, StandardParameter,
+    DIAGONAL_PARAMETERS, ParameterKind, Regressor, SECOND_MOMENT_NAMES, StandardParameter,
 };
 use hamel_program::count::count;
 use num_bigint::BigInt;
@@ -38,7 +38,7 @@ pub fn pseudo_inertia(ten: [f64; 10]) -> [[f64; 4]; 4] {
 /// A base parameter with its factors as expressions.
 struct Row {
     name: String,
-    kind: Kind,
+    kind: ParameterKind,
     value: f64,
     /// Terms of the sum: index of the standard parameter, factor, and the factor's number.
     terms: Vec<(usize, Term, f64)>,
@@ -63,7 +63,7 @@ fn shown(
 ) -> Vec<(Shown, Edge)> {
     let zero = graph.zero();
     let first = |k: usize| match standard[k].kind {
-        Kind::Inertia(place) if DIAGONAL_PARAMETERS.contains(&place) => Some(k - place),
+        ParameterKind::Inertia(place) if DIAGONAL_PARAMETERS.contains(&place) => Some(k - place),
         _ => None,
     };
     let mut all = Vec::new();
@@ -202,7 +202,7 @@ impl BaseParameters {
 
     /// Counts the base parameters of inertia and those of joints.
     fn counts(&self) -> (usize, usize) {
-        let inertial = |row: &&Row| matches!(row.kind, Kind::Inertia(_));
+        let inertial = |row: &&Row| matches!(row.kind, ParameterKind::Inertia(_));
         let own = self.rows.iter().filter(inertial).count();
         (own, self.rows.len() - own)
     }
@@ -408,15 +408,15 @@ pub fn latex(all: &BaseParameters) -> String {
 fn symbol(standard: &StandardParameter) -> String {
     let of = standard.of.replace('_', r"\_");
     let own = match standard.kind {
-        Kind::Inertia(9) => "m".to_string(),
-        Kind::Inertia(place @ 6..) => format!("h_{{{}}}", ["x", "y", "z"][place - 6]),
-        Kind::Inertia(place) => format!(
+        ParameterKind::Inertia(9) => "m".to_string(),
+        ParameterKind::Inertia(place @ 6..) => format!("h_{{{}}}", ["x", "y", "z"][place - 6]),
+        ParameterKind::Inertia(place) => format!(
             r"\Theta_{{{}}}",
             ["xx", "xy", "xz", "yy", "yz", "zz"][place]
         ),
-        Kind::Armature => "J".into(),
-        Kind::Damping => "c".into(),
-        Kind::Stiffness => "k".into(),
+        ParameterKind::Armature => "J".into(),
+        ParameterKind::Damping => "c".into(),
+        ParameterKind::Stiffness => "k".into(),
     };
     format!(r"{own}^{{\text{{{of}}}}}")
 }

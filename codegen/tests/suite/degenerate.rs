@@ -1,7 +1,7 @@
 //! Degenerate systems: only time, only states, everything prescribed. No stage panics.
 
 use hamel_codegen::emit::c::{Options, Precision, files};
-use hamel_codegen::emit::rust;
+use hamel_codegen::emit::rust_items;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::proof::check::{Verdict, check};
 
@@ -41,7 +41,7 @@ fn no_stage_panics() {
                 "{body}: {identity:?}"
             );
         }
-        rust(&generated.program, &Default::default());
+        rust_items(&generated.program, &Default::default());
         for precision in [Precision::Double, Precision::Float] {
             let options = Options {
                 precision,

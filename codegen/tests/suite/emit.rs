@@ -7,8 +7,8 @@ mod sketch;
 
 use evaluate::Values;
 use hamel_codegen::emit::c;
-use hamel_codegen::emit::names::{Names, snake, type_name};
-use hamel_codegen::emit::{Options, rust, statements, tokens};
+use hamel_codegen::emit::names::{ProgramNames, to_snake_case, type_name};
+use hamel_codegen::emit::{Options, rust_items, rust_tokens, statement_count};
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Program, Shape};
 use hamel_codegen::syntax::ast::ShapeKind;
@@ -47,7 +47,7 @@ fn lets(function: &syn::ImplItemFn) -> usize {
 }
 
 fn parse(program: &Program, options: &Options) -> syn::File {
-    let text = rust(program, options);
+    let text = rust_items(program, options);
     syn::parse_file(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -60,9 +60,9 @@ fn every_node_is_printed_and_parsed() {
             ..Options::default()
         };
         parse(&program, &options);
-        assert!(tokens(&program, &options).is_ok());
+        assert!(rust_tokens(&program, &options).is_ok());
     }
-    let text = rust(&program, &Options::default());
+    let text = rust_items(&program, &Options::default());
     for part in [
         ".sin_cos()",
         ".sqrt()",
@@ -91,7 +91,7 @@ fn every_node_is_printed_and_parsed() {
 
 #[test]
 fn pendulum_is_a_system() {
-    let text = rust(&pendulum(), &Options::default());
+    let text = rust_items(&pendulum(), &Options::default());
     let file = parse(&pendulum(), &Options::default());
     assert!(text.contains("::hamel::System for Pendulum<S>"));
     assert!(
@@ -109,10 +109,13 @@ fn pendulum_is_a_system() {
 #[test]
 fn text_is_the_same_every_time() {
     let options = Options::default();
-    assert_eq!(rust(&everything(), &options), rust(&everything(), &options));
     assert_eq!(
-        rust(&random(3000, 5), &options),
-        rust(&random(3000, 5), &options)
+        rust_items(&everything(), &options),
+        rust_items(&everything(), &options)
+    );
+    assert_eq!(
+        rust_items(&random(3000, 5), &options),
+        rust_items(&random(3000, 5), &options)
     );
 }
 
@@ -123,8 +126,8 @@ fn all_doors_give_the_same_functions() {
         command: "hamel emit\na.eom".into(),
         ..Options::default()
     };
-    let file = hamel_codegen::emit::file(&everything(), &options).expect("Rust");
-    let tokens = tokens(&everything(), &options).expect("Rust");
+    let file = hamel_codegen::emit::rust_file(&everything(), &options).expect("Rust");
+    let tokens = rust_tokens(&everything(), &options).expect("Rust");
     let parsed = syn::parse2::<syn::File>(tokens).expect("tokens are items");
     let lines = file.split_inclusive('\n');
     let code = lines.filter(|line| !line.trim_start().starts_with("// "));
@@ -159,8 +162,8 @@ fn names_are_legal() {
         ("θ1", "theta1"),
         ("gen", "gen_"),
     ] {
-        assert_eq!(snake(written), expected, "{written}");
-        syn::parse_str::<syn::Ident>(&snake(written)).expect(written);
+        assert_eq!(to_snake_case(written), expected, "{written}");
+        syn::parse_str::<syn::Ident>(&to_snake_case(written)).expect(written);
     }
     assert_eq!(type_name("S"), "S_");
     assert_eq!(type_name("rustfmt"), "rustfmt_");
@@ -180,7 +183,7 @@ fn comments_are_what_rustc_takes() {
         docs: lines.into(),
         ..pendulum()
     };
-    let text = rust(&program, &Options::default());
+    let text = rust_items(&program, &Options::default());
     assert!(
         text.starts_with("/// plain é 名\n/// a\n/// b\n/// c\n/// x\\u{202e}y\\u{2066}\n///\n"),
         "{text}"
@@ -236,7 +239,7 @@ fn named(params: &[&str], functions: &[&str]) -> (Vec<String>, Vec<String>) {
     let (mut program, _) = sketch("A", &declared);
     let of = |name: &&str| function(name, &[], Shape::Vector(0), Vec::new());
     program.functions = functions.iter().map(of).collect();
-    let names = Names::new(&program);
+    let names = ProgramNames::new(&program);
     assert_eq!(names.fields, names.accessors);
     (names.accessors, names.functions)
 }
@@ -276,7 +279,7 @@ fn names_of_parameters_do_not_depend_on_what_is_generated() {
         inputs: &[],
     };
     let (program, _) = sketch("A", &declared);
-    let names = Names::new(&program);
+    let names = ProgramNames::new(&program);
     assert_eq!(names.fields, ["energy"]);
     assert_eq!(names.accessors, ["energy_2"]);
 }
@@ -286,7 +289,7 @@ fn names_of_parameters_do_not_depend_on_what_is_generated() {
 #[test]
 fn long_functions_are_cut() {
     for (program, limit) in [(random(3000, 5), 70), (reaching(3000, 5, 12), 500)] {
-        assert!(statements(&program) > 3000);
+        assert!(statement_count(&program) > 3000);
         let file = parse(&program, &Options::default());
         let methods = methods(&file);
         let parts = methods.iter().filter(|method| {
@@ -297,7 +300,7 @@ fn long_functions_are_cut() {
         assert!(sizes.iter().all(|&size| size <= limit), "{sizes:?}");
         let full = sizes.iter().filter(|&&size| 10 * size > 9 * limit);
         assert!(4 * full.count() > 3 * (sizes.len() - 1), "{sizes:?}");
-        let text = rust(&program, &Options::default());
+        let text = rust_items(&program, &Options::default());
         assert!(text.contains("#[inline(never)]") && text.contains("?;\n"));
 
         let arguments = [("x", 8, 0.9), ("xi", 8, -0.7), ("u", 4, 0.4), ("p", 4, 0.3)];
@@ -377,7 +380,7 @@ fn only_what_is_called_often_is_in_short_parts() {
 
 #[test]
 fn short_functions_are_whole() {
-    assert!(!rust(&random(250, 2), &Options::default()).contains("_part1"));
-    let parts = rust(&random(1000, 2), &Options::default());
+    assert!(!rust_items(&random(250, 2), &Options::default()).contains("_part1"));
+    let parts = rust_items(&random(1000, 2), &Options::default());
     assert!(parts.contains("#[inline]\nfn accel_part1("));
 }

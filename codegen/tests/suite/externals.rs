@@ -13,7 +13,7 @@ fn generated(text: &str) -> Generated {
 
 fn code(text: &str) -> String {
     let options = emit::Options::default();
-    emit::file(&generated(text).program, &options).expect("Rust")
+    emit::rust_file(&generated(text).program, &options).expect("Rust")
 }
 
 /// A top with an external load, redundant coordinates and velocity constraints.
@@ -95,7 +95,7 @@ fn names_do_not_collide() {
         ("G", "lift_jacobian", "S"),
     ] {
         if let Ok(generated) = from_text(&text(name, function, parameter)) {
-            let text = emit::rust(&generated.program, &emit::Options::default());
+            let text = emit::rust_items(&generated.program, &emit::Options::default());
             syn::parse_file(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         }
     }

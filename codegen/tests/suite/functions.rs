@@ -28,7 +28,7 @@ fn body(statements: &str, drag: &str, spring: &str, place: &str) -> String {
 fn code(text: &str) -> String {
     let generated = from_text(text).unwrap_or_else(|errors| panic!("{text}: {errors:#?}"));
     let options = emit::Options::default();
-    emit::file(&generated.program, &options).expect("Rust")
+    emit::rust_file(&generated.program, &options).expect("Rust")
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use hamel_codegen::algebra::poly::field::Field;
 use hamel_codegen::derive::geometry::lie_algebra::LieAlgebra;
-use hamel_codegen::derive::geometry::recognise::recognise;
+use hamel_codegen::derive::geometry::recognise::identify_algebra;
 use num_rational::BigRational;
 
 /// Returns an algebra given by its brackets (i, j, k, c): [eᵢ, eⱼ] = c eₖ + …, in a sheared basis.
@@ -25,11 +25,11 @@ fn algebra(n: usize, brackets: &[(usize, usize, usize, i64)]) -> LieAlgebra {
             (0..n).map(entry).collect()
         })
         .collect();
-    plain.restricted(&sheared).expect("a basis")
+    plain.subalgebra(&sheared).expect("a basis")
 }
 
 fn name(n: usize, brackets: &[(usize, usize, usize, i64)]) -> String {
-    recognise(&algebra(n, brackets)).text()
+    identify_algebra(&algebra(n, brackets)).text()
 }
 
 const SO3: [(usize, usize, usize, i64); 3] = [(0, 1, 2, 1), (1, 2, 0, 1), (2, 0, 1, 1)];

@@ -8,10 +8,10 @@ use hamel_codegen::derive::regressor::regressor as derived;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::lower::build;
 use hamel_codegen::program::{FunctionId, Program};
-use hamel_codegen::proof::constrained::frame::agrees;
-use hamel_codegen::proof::forms::Symbols;
+use hamel_codegen::proof::constrained::frame::reference_agrees;
+use hamel_codegen::proof::forms::ComparedQuantities;
 use hamel_codegen::proof::numbers::FormEvaluator;
-use hamel_codegen::proof::reference::Reference;
+use hamel_codegen::proof::reference::ReferenceQuantities;
 use hamel_codegen::proof::{correction, prove, regressor, validate};
 use hamel_codegen::syntax::parse_text;
 
@@ -48,7 +48,7 @@ const ALL_ROUTES: &str = "system Whole {
 fn the_numbers_are_those_of_the_symbolic_derivations() {
     let system = parse_text(ALL_ROUTES).expect("a description");
     let model = build(&system).expect("a model");
-    let symbols = Symbols::new(&model).expect("Y");
+    let symbols = ComparedQuantities::new(&model).expect("Y");
     let graph = &symbols.geometry.model.graph;
     let numbers = FormEvaluator::new(&model).expect("Y");
     for seed in 1..4 {
@@ -73,7 +73,7 @@ fn a_wrong_term_of_any_function_is_refused() {
     assert!(validate::validate(&model, &program).is_ok());
     let mut refused = 0;
     for index in 0..program.functions.len() {
-        if !validate::COMPARED.contains(&program.functions[index].name.as_str()) {
+        if !validate::COMPARED_FUNCTIONS.contains(&program.functions[index].name.as_str()) {
             continue;
         }
         let last = program.functions[index].outputs.len() - 1;
@@ -283,20 +283,20 @@ fn a_wrong_sign_in_the_full_frame_is_noticed() {
     }";
     let system = parse_text(text).expect("a description");
     let model = build(&system).expect("a model");
-    let reference = Reference::new(&model).expect("regular");
-    assert_eq!(agrees(&model, &reference), Some(true));
+    let reference = ReferenceQuantities::new(&model).expect("regular");
+    assert_eq!(reference_agrees(&model, &reference), Some(true));
     let zero = model.graph.zero();
     let mut broken = 0;
     for list in 0..3 {
         for place in 0..model.n() {
-            let mut wrong = Reference::new(&model).expect("regular");
+            let mut wrong = ReferenceQuantities::new(&model).expect("regular");
             let list = [&mut wrong.bias, &mut wrong.slope, &mut wrong.force]
                 .into_iter()
                 .nth(list)
                 .expect("three");
             if list[place] != zero {
                 list[place] = -list[place];
-                assert_eq!(agrees(&model, &wrong), Some(false), "{place}");
+                assert_eq!(reference_agrees(&model, &wrong), Some(false), "{place}");
                 broken += 1;
             }
         }

@@ -5,7 +5,7 @@ use hamel_codegen::algebra::graph::{Edge, Graph};
 use hamel_codegen::derive::accel::branches::BranchFactors;
 use hamel_codegen::derive::accel::parts::{ReferencePoint, TracingVariant, trace_terms};
 use hamel_codegen::derive::calculus::Calculus;
-use hamel_codegen::derive::tree::inverse::{inverse_dynamics, wrenches};
+use hamel_codegen::derive::tree::inverse::{inverse_dynamics, required_wrenches};
 use hamel_codegen::derive::tree::{Placement, Tree, articulated, composite, slopes};
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::Axes;
@@ -124,16 +124,17 @@ fn agree_placed(mut model: Model, placement: Placement, steady: bool) {
     let mass = composite::mass_matrix(&mut graph, &tree, n);
     if tree.is_plain(&graph, n, &[]) {
         let still = vec![zero; n];
-        let forces = wrenches(&mut graph, &tree, &xi, &still, gravity);
+        let forces = required_wrenches(&mut graph, &tree, &xi, &still, gravity);
         let bias = inverse_dynamics(&mut graph, &tree, &xi, &still, gravity);
-        let found = articulated::forward(&mut graph, &tree, &[], &forces, &still).expect("solves");
+        let found = articulated::articulated_body_dynamics(&mut graph, &tree, &[], &forces, &still)
+            .expect("solves");
         for i in 0..n {
             let inertial = graph.dot(&mass[i], &found.xi_dot);
             assert_eq!(graph.add(inertial, bias[i]), zero, "row {i} of M ξ̇ + h");
         }
     }
     let mut graph = model.graph.clone();
-    let found = slopes::slopes(&mut graph, &tree, &xi, &xi_dot, gravity);
+    let found = slopes::inverse_dynamics_derivatives(&mut graph, &tree, &xi, &xi_dot, gravity);
     assert_eq!(found.is_some(), steady);
     let Some(found) = found else { return };
     let one = model.graph.one();
@@ -215,7 +216,7 @@ fn branches_answer_as_the_mass_matrix_does() {
                     twin.of
                 );
             }
-            let branches = BranchFactors::of(graph, &mass, &twins).expect("M is regular");
+            let branches = BranchFactors::factorize(graph, &mass, &twins).expect("M is regular");
             let unit = |graph: &Graph, i: usize| -> Vec<Edge> {
                 let entry = |j| if i == j { graph.one() } else { zero };
                 (0..n).map(entry).collect()

@@ -6,7 +6,7 @@ use crate::common::{Random, generated, size, value};
 use hamel_codegen::algebra::double::Double;
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::derive::numerical_loss::losses;
-use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::derive::tables::EquationTables;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
 
@@ -76,7 +76,7 @@ fn errors(arm: &Arm, system: &Generated, seed: u64) -> [f64; 4] {
 /// Returns the error of M in the printed tables, KR18 (20).
 fn error_of_tables(arm: &Arm, system: &Generated, seed: u64) -> f64 {
     let n = arm.0.len();
-    let geometry = Geometry::new(&system.model).expect("velocities that determine the rates");
+    let geometry = EquationTables::new(&system.model).expect("velocities that determine the rates");
     let model = &geometry.model;
     let mut random = Random::new(seed);
     let (x, still) = (random.numbers(n), vec![0.0; n]);

@@ -4,9 +4,9 @@
 use crate::common::{Random, difference, generated, size, value};
 use crate::tree::{ALL, Kind, Link, Tree, humanoid, text};
 use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::derive::tables::EquationTables;
 use hamel_codegen::generate::Generated;
-use hamel_codegen::proof::levi_civita::{contract, levi_civita};
+use hamel_codegen::proof::levi_civita::{contract_connection, explicit_form};
 
 /// Rounding of a few thousand operations, with forces of order 100.
 const TOLERANCE: f64 = 1e-10;
@@ -132,13 +132,14 @@ fn obeys_newton(links: &[Link], seed: u64, close: f64) -> Generated {
 
 /// Checks that M ξ̇ + Γ ξ ξ + ∂V, assembled from the tables of M, γ and Γ, agrees with the recursion.
 fn obeys_the_tables(system: &Generated, seed: u64) {
-    let mut geometry = Geometry::new(&system.model).expect("velocities that determine the rates");
+    let mut geometry =
+        EquationTables::new(&system.model).expect("velocities that determine the rates");
     let (mass, connection) = (geometry.mass.clone(), geometry.connection.clone());
     let dot = geometry.model.xi_dot.clone();
     let (model, calculus) = (&mut geometry.model, &mut geometry.calculus);
-    let bias = contract(model, &connection);
+    let bias = contract_connection(model, &connection);
     let potential = geometry.potential;
-    let whole = levi_civita(model, calculus, &mass, &bias, potential, &dot);
+    let whole = explicit_form(model, calculus, &mass, &bias, potential, &dot);
     let mut random = Random::new(seed);
     for _ in 0..STATES_PER_TREE {
         let state = State::random(&mut random, system);

@@ -10,7 +10,7 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tangent::tangent_at;
-use hamel_dynamics::centroidal::which_move;
+use hamel_dynamics::centroidal::bodies_that_move;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
@@ -27,7 +27,8 @@ struct Part {
     moment: V,
 }
 
-/// Returns whether the emitted functions are those of the model; `point` assigns values to the symbols of both.
+/// Returns whether the emitted centre of mass, its velocity and the centroidal momentum have the values of the model at
+/// a point modulo p; `point` assigns values to the symbols of both.
 pub(super) fn holds(model: &Model, program: &Program, point: &FieldPoint) -> Option<bool> {
     let emitted = |id: FunctionId| program.function(id).map(|f| f.outputs.as_slice());
     if FunctionId::CENTROIDAL
@@ -123,7 +124,7 @@ fn sum_over_bodies(
     }
     let moving = parts
         .iter()
-        .zip(which_move(model))
+        .zip(bodies_that_move(model))
         .filter(|(_, moves)| *moves);
     let moving: Vec<&Part> = moving.map(|(part, _)| part).collect();
     let total = |term: &dyn Fn(&Part) -> ResiduePair| {

@@ -5,8 +5,8 @@
 //! compared by normal forms modulo φ ("proved").
 
 use super::confidence::{Confidence, ConfidenceBounds};
-use super::forms::Symbols;
-use super::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
+use super::forms::ComparedQuantities;
+use super::points::{COMPARED_POINTS, Disagreement, compare_at_fresh_points};
 use super::verdict::Sides;
 pub use super::verdict::{Identity, Verdict};
 use super::{constrained, invariants, motion};
@@ -17,7 +17,7 @@ use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::transplant::rebuild;
 use hamel_dynamics::normal::NormalForms;
 use hamel_dynamics::reduction::reduce;
-use hamel_dynamics::tables::Geometry;
+use hamel_dynamics::tables::EquationTables;
 use hamel_language::model::{Model, class};
 use hamel_program::Program;
 
@@ -29,9 +29,10 @@ const MAX_EXPANDED_NODES: usize = 20_000;
 /// long polynomials.
 const MAX_NODES_WITH_RATES: usize = 640;
 
-/// Checks all identities of a model and its program.
+/// Compares both sides of every identity of a model, and the emitted functions with them, at random points modulo p,
+/// tries to prove the small ones by normal forms, and returns one verdict for each, for `hamel check`.
 pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
-    match Symbols::new(model) {
+    match ComparedQuantities::new(model) {
         Some(symbols) => verdicts(model, program, symbols, Some(Proofs::new(model))),
         None => vec![Identity {
             label: "(6)",
@@ -41,8 +42,13 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
     }
 }
 
-/// Returns the identities that the given symbols of a model do not satisfy at points of X.
-pub fn failures(model: &Model, program: &Program, symbols: Symbols) -> Vec<Identity> {
+/// Returns the identities that do not hold at random points modulo p if these quantities, which a test may have
+/// changed, stand for those of the model; no proof is tried.
+pub fn failed_identities(
+    model: &Model,
+    program: &Program,
+    symbols: ComparedQuantities,
+) -> Vec<Identity> {
     let mut identities = verdicts(model, program, symbols, None);
     identities.retain(|identity| matches!(identity.verdict, Verdict::Failed(_)));
     identities
@@ -52,7 +58,7 @@ pub fn failures(model: &Model, program: &Program, symbols: Symbols) -> Vec<Ident
 fn verdicts(
     model: &Model,
     program: &Program,
-    mut symbols: Symbols,
+    mut symbols: ComparedQuantities,
     mut proofs: Option<Proofs>,
 ) -> Vec<Identity> {
     let mut all = description_sides(&mut symbols);
@@ -80,7 +86,7 @@ fn verdicts(
         })
         .collect();
     if !model.is_constrained() {
-        identities.extend(invariants::identities(model));
+        identities.extend(invariants::check_invariants(model));
     } else {
         identities.extend(with_constraints(model, program));
     }
@@ -92,8 +98,8 @@ fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
     match reduce(model) {
         Ok(None) => Vec::new(),
         Ok(Some(reduction)) => {
-            let mut all = constrained::identities(model, &reduction, program);
-            all.extend(invariants::constrained::identities(
+            let mut all = constrained::check_constrained(model, &reduction, program);
+            all.extend(invariants::constrained::check_constrained_invariants(
                 &reduction.model,
                 program,
             ));
@@ -108,7 +114,7 @@ fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
 }
 
 /// Returns the identities that do not involve the emitted program.
-fn description_sides(symbols: &mut Symbols) -> Vec<Sides> {
+fn description_sides(symbols: &mut ComparedQuantities) -> Vec<Sides> {
     let mut all = kinematic(symbols);
     all.extend(jacobi(&mut symbols.geometry));
     if !symbols.geometry.model.has_inertia {
@@ -137,7 +143,7 @@ impl Proofs {
         if model.n() > MAX_PROVED_VELOCITIES {
             return proofs;
         }
-        let Some(mut symbols) = Symbols::unreduced(model) else {
+        let Some(mut symbols) = ComparedQuantities::unreduced(model) else {
             return proofs;
         };
         proofs.sides = description_sides(&mut symbols);
@@ -176,7 +182,7 @@ impl Proofs {
 }
 
 /// Returns the sides of (6), (7), (12) = (13).
-fn kinematic(symbols: &mut Symbols) -> Vec<Sides> {
+fn kinematic(symbols: &mut ComparedQuantities) -> Vec<Sides> {
     let geometry = &mut symbols.geometry;
     let n = geometry.model.n();
     let (mut left, mut right) = (Vec::new(), Vec::new());
@@ -206,7 +212,7 @@ fn kinematic(symbols: &mut Symbols) -> Vec<Sides> {
 }
 
 /// Returns the sides of Φ Ψ = I, Y Ψ = 0, A Y + Ψ Φ = I.
-fn inverses(geometry: &mut Geometry) -> Vec<Sides> {
+fn inverses(geometry: &mut EquationTables) -> Vec<Sides> {
     let complement = &geometry.complement;
     // Without constraints there is no Φ, and Y is A⁻¹.
     let (phi, psi) = (&complement.phi, &complement.psi);
@@ -262,7 +268,7 @@ fn inverses(geometry: &mut Geometry) -> Vec<Sides> {
 }
 
 /// Returns the sides of (∂φ/∂x) A = 0: the derivatives are taken with free coordinates and compared on X.
-fn tangent(geometry: &mut Geometry) -> Sides {
+fn tangent(geometry: &mut EquationTables) -> Sides {
     let mut free = geometry.model.points.free.clone();
     let first = geometry.model.points.first;
     let x: Vec<Edge> = (first..first + geometry.model.nu())
@@ -290,7 +296,7 @@ fn tangent(geometry: &mut Geometry) -> Sides {
 }
 
 /// Returns the sides of the Jacobi identity: Σ over cyclic i, j, k of ∂ᵢγⱼₖˡ + γⱼₖˢ γᵢₛˡ = 0.
-fn jacobi(geometry: &mut Geometry) -> Vec<Sides> {
+fn jacobi(geometry: &mut EquationTables) -> Vec<Sides> {
     let n = geometry.model.n();
     let graph = &mut geometry.model.graph;
     let gamma = &geometry.gamma;
@@ -341,7 +347,7 @@ fn nonzero(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<Vec<usize>>> {
 }
 
 /// Returns the sides of (21a) and (21b).
-fn metric(geometry: &mut Geometry) -> Vec<Sides> {
+fn metric(geometry: &mut EquationTables) -> Vec<Sides> {
     let n = geometry.model.n();
     let graph = &mut geometry.model.graph;
     let (mass, gamma, connection) = (&geometry.mass, &geometry.gamma, &geometry.connection);
@@ -403,7 +409,7 @@ fn confidence(compared: &mut ConfidenceBounds<'_>, graph: &Graph, sides: &Sides)
 /// Describes where both sides differ at a point of X; `None` if they agree.
 fn at_points(model: &Model, graph: &Graph, sides: &Sides) -> Option<String> {
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
-    let compared = at_fresh_points(
+    let compared = compare_at_fresh_points(
         |number| model.points.lane(0xc4ec + number),
         |point, _| {
             let values = evaluate_at(graph, &roots, &mut point.clone())?;

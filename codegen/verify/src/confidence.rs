@@ -23,7 +23,8 @@ pub struct Confidence {
 }
 
 impl Confidence {
-    /// Bounds the chance that a graph merged nodes that differ: each pair could be equal at its point by chance.
+    /// Bounds the chance that any pair of nodes that a graph merged, because their values modulo p agreed, is
+    /// different.
     pub fn of_merging(model: &Model, graph: &Graph) -> Self {
         ConfidenceBounds::new(model, graph).merging()
     }

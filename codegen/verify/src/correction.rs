@@ -1,7 +1,7 @@
 //! Proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
 
 use super::kernel::multiply;
-use super::points::{Disagreement, at_fresh_points};
+use super::points::{Disagreement, compare_at_fresh_points};
 use super::verdict::{failure, nowhere};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
@@ -13,7 +13,8 @@ use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 use hamel_program::{FunctionId, Program};
 
-/// Proves the emitted φ of coordinates and the emitted correction.
+/// Checks at random points modulo p that the emitted φ of coordinates is that of the model and that the emitted
+/// correction −Ψ φ has the derivative A Y − I on X.
 ///
 /// φ is compared off X, at random x. The correction is compared at fresh points of X: there it is 0, and its derivative
 /// is −Ψ Φ = A Y − I, KR18 (6), along any direction, tangent or not; random directions are taken.
@@ -32,7 +33,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     let (n, nu) = (model.n(), model.nu());
     let mut roots = on_x.a.concat();
     roots.extend(y.iter().flatten());
-    at_fresh_points(
+    compare_at_fresh_points(
         |number| model.points.lane(0xc0_44ec + number),
         |point, number| {
             let values = evaluate_at(&on_x.graph, &roots, &mut point.clone())?;
@@ -67,7 +68,7 @@ fn constraint(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         return Err(failure(model, "φ as described"));
     };
     let emitted = rebuild(&program.graph, &mut free, outputs);
-    at_fresh_points(
+    compare_at_fresh_points(
         |number| {
             let mut point = model.points.lane(0xf1_0ff + number)?;
             let mut random = Random::new(0x0f_f2e + number);

@@ -3,15 +3,16 @@
 use super::{gibbs, hamel_form, virtual_power};
 use hamel_algebra::graph::Edge;
 use hamel_dynamics::calculus::Calculus;
-use hamel_dynamics::tables::Geometry;
+use hamel_dynamics::tables::EquationTables;
 use hamel_dynamics::{commutation, loads};
 use hamel_language::model::Model;
 
-/// The quantities that `check` compares. They are plain fields, so that a test can break one.
+/// Expressions of the quantities that `check` compares, each derived in its own way. They are plain fields, so that a
+/// test can break one.
 #[derive(Clone, Debug)]
-pub struct Symbols {
+pub struct ComparedQuantities {
     /// Y, γ by (12), M by (20), Γ by (23), V, and the graph that contains everything here.
-    pub geometry: Geometry,
+    pub geometry: EquationTables,
     /// γ by (13).
     pub gamma_of_rows: Vec<Vec<Vec<Edge>>>,
     /// T from velocities of bodies and particles.
@@ -26,18 +27,20 @@ pub struct Symbols {
     pub virtual_work: Vec<Edge>,
 }
 
-impl Symbols {
-    /// Derives all quantities of a model; `None` if AᵀA is singular, which the model's checks exclude.
+impl ComparedQuantities {
+    /// Derives the quantities of a model in a graph whose points satisfy φ; `None` if AᵀA is singular, which the
+    /// model's checks exclude.
     pub fn new(model: &Model) -> Option<Self> {
-        Some(Symbols::of(Geometry::new(model)?))
+        Some(ComparedQuantities::of(EquationTables::new(model)?))
     }
 
-    /// Derives the same with free coordinates, where nothing is merged modulo φ, as a start for proofs by normal forms.
+    /// Derives the quantities with free coordinates, where nothing is merged modulo φ, as a start for proofs by normal
+    /// forms.
     pub fn unreduced(model: &Model) -> Option<Self> {
-        Some(Symbols::of(Geometry::unreduced(model)?))
+        Some(ComparedQuantities::of(EquationTables::unreduced(model)?))
     }
 
-    fn of(mut geometry: Geometry) -> Self {
+    fn of(mut geometry: EquationTables) -> Self {
         let gamma_of_rows = commutation::gamma_from_rows(&mut geometry.model, &geometry.y);
         let model = &mut geometry.model;
         let mut motion = Calculus::with_drift(model, &model.xi_dot);
@@ -54,7 +57,7 @@ impl Symbols {
         let mut graph = model.graph.clone();
         let virtual_work = virtual_power::applied_forces(model, &mut graph, &mut geometry.calculus);
         model.graph = graph;
-        Symbols {
+        ComparedQuantities {
             geometry,
             gamma_of_rows,
             kinetic,

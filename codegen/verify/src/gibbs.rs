@@ -25,7 +25,8 @@ pub enum Coverage {
     None,
 }
 
-/// Returns how much of T (30b) covers independently of M and Γ.
+/// Returns how much of the kinetic energy belongs to bodies and particles, for which (30b) follows from accelerations,
+/// without M and Γ.
 pub fn coverage(model: &Model) -> Coverage {
     let traced = !model.bodies.is_empty() || !model.particles.is_empty();
     match (model.kinetic == model.graph.zero(), traced) {
@@ -35,7 +36,8 @@ pub fn coverage(model: &Model) -> Coverage {
     }
 }
 
-/// Returns S(x, ξ, ξ̇) of bodies and particles. `motion` is d/dt along ẋ = A ξ with ξ̇ as symbols.
+/// Returns the energy of accelerations S(x, ξ, ξ̇) = Σ ½ m ‖a‖² + … of bodies and particles as an expression. `motion`
+/// is d/dt along ẋ = A ξ with ξ̇ as symbols.
 pub fn acceleration_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
     let half = model.graph.ratio(1, 2);
     let mut terms = Vec::new();
@@ -70,7 +72,8 @@ pub fn acceleration_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
     model.graph.sum(&terms)
 }
 
-/// Returns the left side of (30b) at (x, ξ, ξ̇). `gamma` is used for a kinetic energy that the user wrote.
+/// Returns the left side of the Gibbs-Appell equations (30b), ∂S/∂ξ̇ + ∂V, as expressions in (x, ξ, ξ̇). `gamma` is
+/// used for a kinetic energy that the user wrote.
 pub fn gibbs_appell(
     model: &mut Model,
     motion: &mut Calculus,
@@ -97,9 +100,9 @@ pub fn gibbs_appell(
         })
         .collect();
     if coverage(model) != Coverage::Whole {
-        let mass = inertia::kinetic_mass(model);
+        let mass = inertia::written_mass_matrix(model);
         let mut resting = Calculus::new(model);
-        let bias = connection::quadratic(model, &mut resting, &mass, gamma);
+        let bias = connection::bias_forces(model, &mut resting, &mass, gamma);
         let graph = &mut model.graph;
         for (i, force) in forces.iter_mut().enumerate() {
             let inertial = graph.dot(&mass[i], &xi_dot);

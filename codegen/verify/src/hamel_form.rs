@@ -9,7 +9,8 @@ use hamel_algebra::linear::{add3, apply3, cross};
 use hamel_dynamics::calculus::{Calculus, into_frame};
 use hamel_language::model::Model;
 
-/// Returns T(x, ξ) = Σ ½ m ‖v_c‖² + ½ ω·Θω + Σ ½ m ‖ṙ‖² plus the kinetic energy that the user wrote (J).
+/// Returns the kinetic energy T(x, ξ) = Σ ½ m ‖v_c‖² + ½ ω·Θω + Σ ½ m ‖ṙ‖², plus the kinetic energy that the user wrote
+/// (J), as an expression.
 ///
 /// v_c and ω are in body axes, Θ is about the centre of mass. `motion` is d/dt along ẋ = A ξ.
 pub fn kinetic_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
@@ -40,8 +41,8 @@ pub fn kinetic_energy(model: &mut Model, motion: &mut Calculus) -> Edge {
     graph.add(energy, model.kinetic)
 }
 
-/// Returns ∂f/∂ξⁱ for all i.
-pub fn by_velocity(model: &mut Model, f: Edge) -> Vec<Edge> {
+/// Returns the derivatives ∂f/∂ξⁱ of an expression by the velocity coordinates, for all i.
+pub fn velocity_gradient(model: &mut Model, f: Edge) -> Vec<Edge> {
     let graph = &mut model.graph;
     let one = graph.one();
     model
@@ -51,7 +52,8 @@ pub fn by_velocity(model: &mut Model, f: Edge) -> Vec<Edge> {
         .collect()
 }
 
-/// Returns the left side of (30a) at (x, ξ, ξ̇). `motion` is d/dt along ẋ = A ξ with ξ̇ as symbols.
+/// Returns the left side of Hamel's equations (30a), d/dt ∂T/∂ξⁱ + γᵢⱼᵏ ξʲ ∂T/∂ξᵏ − ∂ᵢ(T − V), as expressions in (x, ξ,
+/// ξ̇). `motion` is d/dt along ẋ = A ξ with ξ̇ as symbols.
 pub fn hamel_form(
     model: &mut Model,
     motion: &mut Calculus,
@@ -60,7 +62,7 @@ pub fn hamel_form(
     potential: Edge,
 ) -> Vec<Edge> {
     // V does not depend on ξ: ∂L/∂ξ = ∂T/∂ξ.
-    let momentum = by_velocity(model, kinetic);
+    let momentum = velocity_gradient(model, kinetic);
     let xi = model.xi.clone();
     let graph = &mut model.graph;
     let lagrangian = graph.sub(kinetic, potential);

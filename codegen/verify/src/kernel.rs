@@ -119,14 +119,15 @@ pub(super) fn virtual_velocity(
     )
 }
 
-/// Returns Σ aᵢ bᵢ.
+/// Returns the sum Σ aᵢ bᵢ of numbers modulo p.
 pub fn dot(a: &[ResiduePair], b: &[ResiduePair]) -> ResiduePair {
     a.iter()
         .zip(b)
         .fold(ResiduePair::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// Returns a matrix, given by rows, times a vector; `count` zeros if the vector is empty.
+/// Returns a matrix of numbers modulo p, given by rows one after another, times a vector; `count` zeros if the vector
+/// is empty.
 pub fn multiply(count: usize, rows: &[ResiduePair], vector: &[ResiduePair]) -> Vec<ResiduePair> {
     match vector.len() {
         0 => vec![ResiduePair::ZERO; count],

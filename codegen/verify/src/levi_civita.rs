@@ -5,8 +5,8 @@ use hamel_algebra::graph::Edge;
 use hamel_dynamics::calculus::Calculus;
 use hamel_language::model::Model;
 
-/// Returns Γᵢⱼₖ ξʲ ξᵏ, contracted from the table of Γ.
-pub fn contract(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
+/// Returns the expressions Γᵢⱼₖ ξʲ ξᵏ for all i, contracted from the table of Γ.
+pub fn contract_connection(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
     let xi = model.xi.clone();
     let graph = &mut model.graph;
     connection
@@ -18,8 +18,8 @@ pub fn contract(model: &mut Model, connection: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
         .collect()
 }
 
-/// Returns the left side of (30c) at (x, ξ, ξ̇), given h = Γ ξ ξ.
-pub fn levi_civita(
+/// Returns the left side of the explicit form (30c), M ξ̇ + h + ∂V with h = Γ ξ ξ, as expressions in (x, ξ, ξ̇).
+pub fn explicit_form(
     model: &mut Model,
     calculus: &mut Calculus,
     mass: &[Vec<Edge>],

@@ -95,7 +95,9 @@ pub fn prove(
         regressor::validate(model, derived, program).map_err(one)?;
     }
     match reduction {
-        Some(reduction) => invariants::constrained::refute(&reduction.model, motion),
-        None => invariants::refute(model),
+        Some(reduction) => {
+            invariants::constrained::reject_false_constrained_invariants(&reduction.model, motion)
+        }
+        None => invariants::reject_false_invariants(model),
     }
 }

@@ -1,29 +1,29 @@
 //! Identities of the equations of motion: T against M (20), loads (28), the three forms (30) against one another, and
 //! the emitted ξ̇ inserted in them.
 
-use super::forms::Symbols;
+use super::forms::ComparedQuantities;
 use super::gibbs::{Coverage, coverage};
-use super::hamel_form::by_velocity;
-use super::levi_civita::{contract, levi_civita};
+use super::hamel_form::velocity_gradient;
+use super::levi_civita::{contract_connection, explicit_form};
 use super::verdict::Sides;
 use super::virtual_power;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::{rebuild, substitute};
 use hamel_dynamics::calculus::Calculus;
-use hamel_dynamics::tables::Geometry;
+use hamel_dynamics::tables::EquationTables;
 use hamel_program::Program;
 
 /// Returns the sides of ∂²T/∂ξⁱ∂ξʲ = M_ij, of fᵢ by virtual work, and of (30a) = (30b) and (30a) = (30c) for all ξ̇.
-pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
+pub(super) fn forms(symbols: &mut ComparedQuantities) -> Vec<Sides> {
     let geometry = &mut symbols.geometry;
-    let momentum = by_velocity(&mut geometry.model, symbols.kinetic);
+    let momentum = velocity_gradient(&mut geometry.model, symbols.kinetic);
     let hessian: Vec<Edge> = momentum
         .iter()
-        .flat_map(|&entry| by_velocity(&mut geometry.model, entry))
+        .flat_map(|&entry| velocity_gradient(&mut geometry.model, entry))
         .collect();
-    let bias = contract(&mut geometry.model, &geometry.connection);
+    let bias = contract_connection(&mut geometry.model, &geometry.connection);
     let xi_dot = geometry.model.xi_dot.clone();
-    let explicit = levi_civita(
+    let explicit = explicit_form(
         &mut geometry.model,
         &mut geometry.calculus,
         &geometry.mass,
@@ -60,7 +60,7 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
 }
 
 /// Returns the sides of fᵢ by virtual work.
-pub(super) fn loads(symbols: &Symbols) -> Sides {
+pub(super) fn loads(symbols: &ComparedQuantities) -> Sides {
     Sides {
         label: "(28)",
         equation: "fᵢ of the loads is their virtual work Σ ⟨F_p, ∂ᵢr_p⟩",
@@ -70,7 +70,7 @@ pub(super) fn loads(symbols: &Symbols) -> Sides {
 }
 
 /// Returns the sides of (30c) and d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇, and those of emitted ż and loads.
-pub(super) fn emitted_sides(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
+pub(super) fn emitted_sides(symbols: &mut ComparedQuantities, program: &Program) -> Vec<Sides> {
     let Some(xi_dot) = program.xi_dot() else {
         return Vec::new();
     };
@@ -78,8 +78,8 @@ pub(super) fn emitted_sides(symbols: &mut Symbols, program: &Program) -> Vec<Sid
     let xi = geometry.model.xi.clone();
     let xi_dot = rebuild(&program.graph, &mut geometry.model.graph, xi_dot);
     let mut calculus = Calculus::new(&geometry.model);
-    let bias = contract(&mut geometry.model, &geometry.connection);
-    let forces = levi_civita(
+    let bias = contract_connection(&mut geometry.model, &geometry.connection);
+    let forces = explicit_form(
         &mut geometry.model,
         &mut calculus,
         &geometry.mass,
@@ -134,7 +134,7 @@ pub(super) fn emitted_sides(symbols: &mut Symbols, program: &Program) -> Vec<Sid
 
 /// Returns the sides of (28) for emitted forces, of 2 D, and of the motions of points, each derived from single
 /// particles.
-fn of_loads(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
+fn of_loads(geometry: &mut EquationTables, program: &Program) -> Vec<Sides> {
     let mut graph = geometry.model.graph.clone();
     let graph = &mut graph;
     let model = &geometry.model;
@@ -159,7 +159,7 @@ fn of_loads(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
         side("(28)", equation, (force, virtual_force));
     }
     if let Some(slope) = emitted(graph, "potential_force") {
-        let force = virtual_power::conservative(model, graph, calculus);
+        let force = virtual_power::conservative_forces(model, graph, calculus);
         let force = force.into_iter().map(|edge| -edge).collect();
         let equation = "−∂ᵢV = Σ ⟨F_p, ∂ᵢr_p⟩ of weights and springs";
         side("(28)", equation, (slope, force));
@@ -172,13 +172,13 @@ fn of_loads(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
         let power = vec![virtual_power::dissipated_power(model, graph, calculus)];
         side("Rayleigh", "2 D = −fᵢ ξⁱ of dampers", (twice, power));
     }
-    let lengths = virtual_power::lengths(model, graph);
+    let lengths = virtual_power::squared_lengths(model, graph);
     side(
         "lines",
         "ℓ² = d·d of springs and forces along lines",
         lengths,
     );
-    let motions = virtual_power::motions(model, graph, calculus);
+    let motions = virtual_power::observed_motions(model, graph, calculus);
     let equation = "ṙ and r̈ of points from ∂ᵢr and ∂ᵢ∂ⱼr";
     side("motion", equation, motions);
     let zero = graph.zero();

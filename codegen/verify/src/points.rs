@@ -22,10 +22,11 @@ pub enum Disagreement<E> {
     Nowhere,
 }
 
-/// Compares at fresh points until both sides differ, or have had values at [`COMPARED_POINTS`] points.
+/// Compares two sides by `at` at random points that `point` draws by number, until they differ or have had values at
+/// [`COMPARED_POINTS`] points.
 ///
 /// `point` creates the point of a number, and `at` compares there; either returns `None` if there are no values.
-pub fn at_fresh_points<E>(
+pub fn compare_at_fresh_points<E>(
     point: impl Fn(u64) -> Option<FieldPoint>,
     mut at: impl FnMut(&FieldPoint, u64) -> Option<Result<(), E>>,
 ) -> Result<(), Disagreement<E>> {

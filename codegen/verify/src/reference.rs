@@ -9,8 +9,8 @@ use hamel_dynamics::calculus::Calculus;
 use hamel_dynamics::{commutation, connection, energy, inertia, kinematics};
 use hamel_language::model::Model;
 
-/// M, h = Γ ξ ξ, ∂V, f, T, V, D of a model.
-pub struct Reference {
+/// Expressions of M, h = Γ ξ ξ, ∂V, f, T, V, D of a model, derived by other routes than the emitted functions.
+pub struct ReferenceQuantities {
     /// The model; its graph contains the expressions below.
     pub model: Model,
     /// Mass matrix M.
@@ -29,15 +29,16 @@ pub struct Reference {
     pub dissipation: Edge,
 }
 
-impl Reference {
-    /// Derives the explicit form (30c), with forces by virtual work; `None` if AᵀA is singular.
+impl ReferenceQuantities {
+    /// Derives the quantities from kinematics and inertia of a model, with forces by virtual work; `None` if AᵀA is
+    /// singular.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);
         let mass = inertia::mass_matrix(&mut model, &mut calculus);
         let rows = kinematics::left_inverse(&mut model)?;
         let gamma = commutation::gamma(&mut model, &mut calculus, &rows);
-        let bias = connection::quadratic(&mut model, &mut calculus, &mass, &gamma);
+        let bias = connection::bias_forces(&mut model, &mut calculus, &mass, &gamma);
         let potential = energy::potential(&mut model);
         let slope = (0..model.n())
             .map(|i| calculus.along(&mut model.graph, i, potential))
@@ -49,7 +50,7 @@ impl Reference {
         let dissipation = graph.mul(half, power);
         model.graph = graph;
         let kinetic = energy::kinetic(&mut model, &mass);
-        Some(Reference {
+        Some(ReferenceQuantities {
             model,
             mass,
             bias,

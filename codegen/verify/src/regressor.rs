@@ -6,7 +6,7 @@
 //! column is multiplied by 0.
 
 use super::numbers::FormEvaluator;
-use super::points::{Disagreement, at_fresh_points};
+use super::points::{Disagreement, compare_at_fresh_points};
 use super::verdict::{failure, nowhere};
 use super::violation::{RegressorFault, Violation};
 use hamel_algebra::field_point::FieldPoint;
@@ -14,7 +14,7 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::numeric::evaluate_at;
 use hamel_algebra::residue_pair::{Random, ResiduePair};
 use hamel_algebra::tape::Tape;
-use hamel_dynamics::regressor::{INERTIA_ENTRIES, Kind, Regressor};
+use hamel_dynamics::regressor::{INERTIA_ENTRIES, ParameterKind, Regressor};
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::{Body, Model};
 use hamel_program::{FunctionId, Program};
@@ -35,7 +35,7 @@ pub fn check_base_parameters(model: &Model, regressor: &Regressor) -> Result<(),
     edges.extend(regressor.base.iter().flat_map(|base| &base.column));
     edges.extend(&regressor.other_potentials);
     let tape = Tape::new(&regressor.model.graph, &edges).ok_or(RegressorFault::NoColumns)?;
-    let compared = at_fresh_points(
+    let compared = compare_at_fresh_points(
         |seed| model.points.lane(seed),
         |point, seed| at(&numbers, (&tape, &added), regressor, point, seed),
     );
@@ -59,7 +59,7 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
     let values: Vec<Edge> = regressor.standard.iter().map(|one| one.value).collect();
     let terms = regressor.base.iter().flat_map(|base| &base.terms);
     let factors: Vec<Edge> = terms.map(|&(_, factor)| factor).collect();
-    let compared = at_fresh_points(
+    let compared = compare_at_fresh_points(
         |seed| model.points.lane(0x4e_9e55 + seed),
         |point, _| {
             let of =
@@ -114,7 +114,7 @@ fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Ve
             })
         });
         for (value, one) in added.iter_mut().zip(&regressor.standard) {
-            if let Kind::Inertia(place) = one.kind
+            if let ParameterKind::Inertia(place) = one.kind
                 && one.of == *link
             {
                 let number = match place {
@@ -190,7 +190,7 @@ fn at(
         .collect();
     let mut force = based(&all);
     for (k, one) in regressor.standard.iter().enumerate() {
-        if one.kind == Kind::Damping {
+        if one.kind == ParameterKind::Damping {
             increase(&mut force, column(k), -given[k]);
         }
     }

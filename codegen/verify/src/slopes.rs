@@ -7,7 +7,7 @@
 
 use super::hamel_form;
 use super::kernel::dot;
-use super::reference::Reference;
+use super::reference::ReferenceQuantities;
 use super::violation::Violation;
 use super::{centroidal, derivatives, frames, outputs, states};
 use hamel_algebra::field_point::FieldPoint;
@@ -32,7 +32,8 @@ fn rates_at(program: &Program, point: &FieldPoint) -> Option<bool> {
     Some(value(&linearize.rates)? == value(&accel.outputs)?)
 }
 
-/// Comparison of linearisations and invariants with dual numbers, at one point after another.
+/// Comparison of the emitted linearisation `[A B]` and invariants with values and dual numbers modulo p, at one point
+/// after another.
 pub struct DerivativeComparison {
     /// Names of the invariants with their entries in the graph of `model`.
     invariants: Vec<(String, Vec<Edge>)>,
@@ -46,7 +47,7 @@ enum DifferentiatedFunctions {
     /// The functions of the program.
     Emitted,
     /// An independent derivation.
-    Derived(Box<Reference>),
+    Derived(Box<ReferenceQuantities>),
 }
 
 /// Emitted functions that together determine the derivatives of ξ̇.
@@ -66,7 +67,7 @@ struct SlopeValues {
 }
 
 impl SlopeValues {
-    fn roots(reference: &Reference) -> Vec<Edge> {
+    fn roots(reference: &ReferenceQuantities) -> Vec<Edge> {
         let mut roots = reference.mass.concat();
         for part in [&reference.force, &reference.bias, &reference.slope] {
             roots.extend(part);
@@ -76,7 +77,7 @@ impl SlopeValues {
         roots
     }
 
-    fn new(reference: &Reference, values: &[ResiduePair]) -> Self {
+    fn new(reference: &ReferenceQuantities, values: &[ResiduePair]) -> Self {
         let (n, nu) = (reference.model.n(), reference.model.nu());
         let (mass, rest) = values.split_at(n * n);
         let (forces, rest) = rest.split_at(3 * n);
@@ -109,7 +110,8 @@ impl DerivativeComparison {
             let kinetic = hamel_form::kinetic_energy(&mut own, &mut calculus);
             let energies = (kinetic, energy::potential(&mut own));
             for claim in claims {
-                let value = quantity::value(&mut own, &mut calculus, energies, &claim.quantity);
+                let value =
+                    quantity::quantity_value(&mut own, &mut calculus, energies, &claim.quantity);
                 invariants.push((claim.name.clone(), value.entries()));
             }
         }
@@ -117,9 +119,9 @@ impl DerivativeComparison {
         let source = match linear {
             false => None,
             true if emitted => Some(DifferentiatedFunctions::Emitted),
-            true => Some(DifferentiatedFunctions::Derived(Box::new(Reference::new(
-                model,
-            )?))),
+            true => Some(DifferentiatedFunctions::Derived(Box::new(
+                ReferenceQuantities::new(model)?,
+            ))),
         };
         Some(DerivativeComparison {
             invariants,
@@ -128,7 +130,8 @@ impl DerivativeComparison {
         })
     }
 
-    /// Compares at one point; `None` if something has no value there.
+    /// Compares the emitted invariants and `[A B]` with the reference at one point; `Err` names the first that
+    /// disagrees, `None` if something has no value there.
     pub fn at_point(&self, program: &Program, point: &FieldPoint) -> Option<Result<(), Violation>> {
         let value = |name: &str| {
             let function = program.function(name)?;
@@ -330,7 +333,7 @@ impl Displaced {
 
 /// Compares [A B] with the derivatives of an independent derivation.
 fn derived_at(
-    reference: &Reference,
+    reference: &ReferenceQuantities,
     program: &Program,
     point: &FieldPoint,
 ) -> Option<Result<(), Violation>> {

@@ -23,8 +23,9 @@ use hamel_language::model::Model;
 use hamel_program::structure::Structure;
 use hamel_program::{FunctionId, Program};
 
-/// Quantities with which the functions of a splitting are compared.
-pub struct Proof {
+/// Comparison of the emitted functions of a splitting (`kick`, `split_momenta`, `centre` …) with the model, at one
+/// point modulo p after another.
+pub struct SplittingComparison {
     parts: Vec<CoordinateBlock>,
     /// The model; its graph contains the rates of the coordinates.
     model: Model,
@@ -36,13 +37,13 @@ pub struct Proof {
     p: Vec<usize>,
 }
 
-impl Proof {
-    /// Prepares the comparison; `None` if the program has no splitting.
+impl SplittingComparison {
+    /// Prepares the comparison for a program; `None` if the program has no splitting.
     pub fn new(model: &Model, program: &Program) -> Option<Self> {
         program.function(FunctionId::Kick)?;
         let mut model = model.clone();
         let rates = chart_rates(&mut model.graph, &model.blocks, &model.x, &model.rate);
-        Some(Proof {
+        Some(SplittingComparison {
             parts: coordinate_blocks(&model),
             rates,
             x: model.graph.symbol_places(&model.x),
@@ -52,7 +53,8 @@ impl Proof {
         })
     }
 
-    /// Compares at one point; `None` if something has no value there.
+    /// Compares the functions of the splitting with the reference at one point; `Err` names the first that disagrees,
+    /// `None` if something has no value there.
     pub fn at_point(
         &self,
         numbers: &FormEvaluator,
@@ -97,7 +99,7 @@ impl Proof {
         for part in &self.parts {
             let here = part.rates();
             let entries = part.first..part.first + part.block.len();
-            if !part.turns() {
+            if !part.is_rotor() {
                 let plain = part.block.len() == part.block.dimension();
                 let rate = if plain {
                     &y_dot[entries]

@@ -18,13 +18,13 @@
 //! | `velocity_from_momentum` | the ξ with M ξ = p |
 
 use super::charts::ChartComparison;
-use super::check::failures;
-use super::forms::Symbols;
+use super::check::failed_identities;
+use super::forms::ComparedQuantities;
 use super::kernel::dot;
 use super::numbers::{FormEvaluator, PointValues};
-use super::points::{Disagreement, at_fresh_points};
+use super::points::{Disagreement, compare_at_fresh_points};
 use super::slopes::DerivativeComparison;
-use super::splitting::Proof;
+use super::splitting::SplittingComparison;
 use super::states;
 use super::verdict::{failure, nowhere};
 use super::violation::Violation;
@@ -41,7 +41,7 @@ use rustc_hash::FxHashMap;
 /// Largest number of velocities of a model for which a failure is explained by the identities that are broken.
 const MAX_EXPLAINED_VELOCITIES: usize = 8;
 
-/// Validates the functions of a program.
+/// Compares the emitted functions of a program without constraints with independent values at random points modulo p.
 ///
 /// # Errors
 /// A fault of the generator; the program is not emitted. The message also names the broken identities of the symbols,
@@ -53,9 +53,9 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         };
         let mut broken = vec![what.to_string()];
         if model.n() <= MAX_EXPLAINED_VELOCITIES
-            && let Some(symbols) = Symbols::new(model)
+            && let Some(symbols) = ComparedQuantities::new(model)
         {
-            let identities = failures(model, program, symbols);
+            let identities = failed_identities(model, program, symbols);
             broken.extend(identities.iter().map(|identity| identity.label.to_string()));
         }
         failure(model, &broken.join(", "))
@@ -74,7 +74,7 @@ pub(super) fn first_failure(
         Emitted::new(model, program).ok_or_else(|| without("that numbers have values"))?;
     let slopes =
         DerivativeComparison::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
-    let splitting = Proof::new(model, program);
+    let splitting = SplittingComparison::new(model, program);
     let charts = ChartComparison::new(program).ok_or_else(|| without("that charts have values"))?;
     let at_point = |point: &FieldPoint| -> Option<Result<(), Violation>> {
         let values = match numbers.at(point)? {
@@ -100,7 +100,7 @@ pub(super) fn first_failure(
         ];
         Some(all.into_iter().collect())
     };
-    at_fresh_points(
+    compare_at_fresh_points(
         |number| model.points.lane(0x7a11 + number),
         |point, _| at_point(point),
     )
@@ -113,8 +113,8 @@ struct Emitted {
     tape: Tape,
 }
 
-/// Functions that are compared here, in addition to the outputs of the description.
-pub const COMPARED: [&str; 14] = [
+/// Names of the emitted functions that are compared here, in addition to the outputs of the description.
+pub const COMPARED_FUNCTIONS: [&str; 14] = [
     "accel",
     "bias",
     "dissipation",
@@ -134,7 +134,8 @@ pub const COMPARED: [&str; 14] = [
 impl Emitted {
     fn new(model: &Model, program: &Program) -> Option<Self> {
         let compared = |name: &str| {
-            COMPARED.contains(&name) || model.outputs.iter().any(|(output, _)| output == name)
+            COMPARED_FUNCTIONS.contains(&name)
+                || model.outputs.iter().any(|(output, _)| output == name)
         };
         let functions = || program.functions.iter().filter(|f| compared(&f.name));
         let roots: Vec<Edge> = functions().flat_map(|f| f.outputs.clone()).collect();

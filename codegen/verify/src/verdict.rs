@@ -6,7 +6,7 @@ use hamel_algebra::graph::Edge;
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::model::Model;
 
-/// Result for one identity.
+/// Whether an identity is proved, agrees at random points, or fails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Both sides have the same normal form modulo φ over the rationals.
@@ -17,7 +17,7 @@ pub enum Verdict {
     Failed(String),
 }
 
-/// An identity with its verdict.
+/// An identity, by its number and its equation in text, with its verdict.
 #[derive(Clone, Debug)]
 pub struct Identity {
     /// Number of the equation in KR18, or a name.

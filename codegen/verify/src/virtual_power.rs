@@ -92,7 +92,8 @@ impl<'a> Forces<'a> {
     }
 }
 
-/// Derives expressions of fᵢ of all loads: wrenches, forces along lines, dampers, dissipation, generalised forces.
+/// Derives the generalised forces fᵢ of all loads as expressions, by virtual work of forces on points: wrenches, forces
+/// along lines, dampers, dissipation, generalised forces.
 pub fn applied_forces(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
     let mut forces = Forces::none(graph, calculus);
     forces.add(&model.elements.generalized);
@@ -151,7 +152,7 @@ fn add_resistance(model: &Model, forces: &mut Forces) {
     forces.add(&resistance);
 }
 
-/// Derives the expression of 2 D, the power −fᵢ ξⁱ that dampers and dissipation take.
+/// Derives 2 D, the power −fᵢ ξⁱ that dampers and dissipation take, as an expression.
 pub fn dissipated_power(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Edge {
     let mut forces = Forces::none(graph, calculus);
     add_resistance(model, &mut forces);
@@ -159,8 +160,9 @@ pub fn dissipated_power(model: &Model, graph: &mut Graph, calculus: &mut Calculu
     -graph.dot(&sum, &model.xi)
 }
 
-/// Returns −∂ᵢV: weights and springs as forces on points, and the given potential.
-pub fn conservative(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
+/// Returns the conservative forces −∂ᵢV as expressions, by virtual work: weights and springs as forces on points, and
+/// the given potential.
+pub fn conservative_forces(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
     let minus = -graph.one();
     let mut forces = Forces::none(graph, calculus);
     for body in &model.bodies {
@@ -200,8 +202,9 @@ pub fn conservative(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -
     forces.sum
 }
 
-/// Returns ℓ² and d·d of springs and forces along lines, where ℓ is an expression of the model.
-pub fn lengths(model: &Model, graph: &mut Graph) -> (Vec<Edge>, Vec<Edge>) {
+/// Returns, for springs and forces along lines whose length ℓ is an expression of the model, all ℓ² and then all d·d,
+/// which must be equal.
+pub fn squared_lengths(model: &Model, graph: &mut Graph) -> (Vec<Edge>, Vec<Edge>) {
     let elements = &model.elements;
     let springs = elements.springs.iter().map(|spring| &spring.along);
     let pushes = elements.pushes.iter().map(|push| &push.along);
@@ -221,11 +224,12 @@ pub fn lengths(model: &Model, graph: &mut Graph) -> (Vec<Edge>, Vec<Edge>) {
     (left, right)
 }
 
-/// Returns the motions that expressions of the description ask for, and the same motions from Jacobians.
+/// Returns the velocities and accelerations that expressions of the description use, as the model has them, and the
+/// same ones derived from Jacobians.
 ///
 /// v = (∂ᵢr + ∂ᵢR p) ξⁱ, and, by the formula of rigid bodies, a = r̈ + ω̇ × R p + ω × (ω × R p) with
 /// r̈ = ∂ᵢr ξ̇ⁱ + ∂ⱼ(∂ᵢr ξⁱ) ξʲ.
-pub fn motions(
+pub fn observed_motions(
     model: &Model,
     graph: &mut Graph,
     calculus: &mut Calculus,

@@ -2,8 +2,8 @@
 
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::generate::{Generated, from_text};
-use hamel_codegen::proof::check::failures;
-use hamel_codegen::proof::forms::Symbols;
+use hamel_codegen::proof::check::failed_identities;
+use hamel_codegen::proof::forms::ComparedQuantities;
 use std::path::Path;
 
 /// Constant and varying γ, constant and varying M, bodies, particles, a given T, and all kinds of loads.
@@ -23,13 +23,13 @@ fn model(name: &str) -> Generated {
 }
 
 /// Selects an entry of a symbol with at most three indices.
-type Entry = for<'a> fn(&'a mut Symbols, usize, usize, usize) -> &'a mut Edge;
+type Entry = for<'a> fn(&'a mut ComparedQuantities, usize, usize, usize) -> &'a mut Edge;
 
 /// Flips the sign of every nonzero entry in turn; each flip must break all of `broken`. Returns the number of flips.
 fn flips(name: &str, symbol: &str, rank: u32, entry: Entry, broken: &[&str]) -> usize {
     let Generated { model, program, .. } = model(name);
-    let symbols = Symbols::new(&model).expect("Y");
-    assert!(failures(&model, &program, symbols.clone()).is_empty());
+    let symbols = ComparedQuantities::new(&model).expect("Y");
+    assert!(failed_identities(&model, &program, symbols.clone()).is_empty());
     let (n, zero) = (model.n(), model.graph.zero().node());
     let mut flipped = 0;
     for place in 0..n.pow(rank) {
@@ -41,7 +41,7 @@ fn flips(name: &str, symbol: &str, rank: u32, entry: Entry, broken: &[&str]) -> 
         }
         *edge = -*edge;
         flipped += 1;
-        let failed: Vec<&str> = failures(&model, &program, wrong)
+        let failed: Vec<&str> = failed_identities(&model, &program, wrong)
             .iter()
             .map(|identity| identity.label)
             .collect();

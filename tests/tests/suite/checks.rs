@@ -2,7 +2,7 @@
 
 use crate::derived::{self, model};
 use hamel_codegen::algebra::graph::Node;
-use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::derive::tables::EquationTables;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::proof::check::{Identity, Verdict, check};
 use hamel_codegen::proof::correction::validate;
@@ -186,7 +186,7 @@ fn a_wrong_correction_is_refused() {
 #[test]
 fn rows_of_a_free_body_give_the_tables_of_the_paper() {
     let generated = model("free_body_rows").generated();
-    let geometry = Geometry::new(&generated.model).expect("Y");
+    let geometry = EquationTables::new(&generated.model).expect("Y");
     let graph = &geometry.model.graph;
     let rates = model("free_body").generated();
     for (row, other) in geometry.model.a.iter().zip(&rates.model.a) {
@@ -218,8 +218,8 @@ fn rows_of_a_free_body_give_the_tables_of_the_paper() {
 /// fields.
 #[test]
 fn world_frame_has_opposite_structure_constants() {
-    let body = Geometry::new(&model("heavy_top").generated().model).expect("Y");
-    let world = Geometry::new(&model("heavy_top_world").generated().model).expect("Y");
+    let body = EquationTables::new(&model("heavy_top").generated().model).expect("Y");
+    let world = EquationTables::new(&model("heavy_top_world").generated().model).expect("Y");
     for i in 0..3 {
         for j in 0..3 {
             for k in 0..3 {

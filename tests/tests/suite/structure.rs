@@ -7,7 +7,7 @@ mod case;
 
 use crate::derived::model;
 use case::{Case, cases};
-use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::derive::structure::choice::choose_method;
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::program::structure::{Inertia, Reason, Splitting, Symmetry};
 use hamel_codegen::proof::validate::validate;
@@ -352,10 +352,10 @@ fn verdicts() {
         for line in structure.lines() {
             let _ = writeln!(text, "  {line}");
         }
-        let _ = writeln!(text, "  {}", choose(structure, None));
+        let _ = writeln!(text, "  {}", choose_method(structure, None));
         let (short, long) = (
-            choose(structure, Some(1000)),
-            choose(structure, Some(1_000_000)),
+            choose_method(structure, Some(1000)),
+            choose_method(structure, Some(1_000_000)),
         );
         if short != long {
             let _ = writeln!(text, "  a million steps: {long}");

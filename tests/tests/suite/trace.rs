@@ -4,8 +4,8 @@ use crate::derived::{Derived, models};
 use hamel_codegen::algebra::graph::{Edge, Function};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::algebra::residue_pair::Random;
-use hamel_codegen::emit::names::Names;
-use hamel_codegen::emit::trace::Traced;
+use hamel_codegen::emit::names::ProgramNames;
+use hamel_codegen::emit::trace::AnnotatedStatement;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::states::states;
 use hamel_codegen::program::Program;
@@ -49,7 +49,7 @@ fn arguments(program: &Program, symbols: &[f64]) -> Known {
     }
     let states = (0..program.n_z).map(|i| (format!("xi[{}]", program.n + i), symbols[z + i]));
     known.extend(states);
-    let names = Names::new(program);
+    let names = ProgramNames::new(program);
     let mut next = params;
     for (group, field) in program.params.iter().zip(&names.fields) {
         let matrix = |n: usize, first: fn(usize) -> usize| -> Vec<String> {
@@ -207,7 +207,7 @@ fn compare(name: &str, generated: &Generated) {
             scale = scale.max(value.abs());
             known.insert(traced.name.clone(), value);
         }
-        let Some(Traced {
+        let Some(AnnotatedStatement {
             name: statement,
             node: Some(node),
             ..

@@ -1,6 +1,6 @@
 //! Correct descriptions give no warnings: those of the models, of the examples, and of imports.
 
-use hamel_codegen::derive::reduction::{reduce, warnings as redundant};
+use hamel_codegen::derive::reduction::{dropped_row_warnings as redundant, reduce};
 use hamel_codegen::lower::build;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::warnings;

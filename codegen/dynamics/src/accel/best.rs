@@ -8,9 +8,9 @@ use hamel_language::model::Model;
 use hamel_language::syntax::ast::Axes;
 use hamel_program::count::{Count, count};
 
-/// Candidate for ξ̇: its expressions in a graph of its own, their pivots and their cost.
+/// Computation of ξ̇ that is compared with others: its expressions in a graph of its own, their pivots and their cost.
 #[derive(Clone, Debug)]
-pub struct Acceleration {
+pub struct AccelerationCandidate {
     /// Graph of the expressions: the model's graph with the nodes of the route added.
     pub graph: Graph,
     /// Accelerations ξ̇.
@@ -35,10 +35,10 @@ pub struct Acceleration {
     /// Description of the chosen route, for people to read.
     pub route: String,
     /// Candidate that was cheapest before polishing, if another one was cheaper afterwards.
-    pub other: Option<Box<Acceleration>>,
+    pub other: Option<Box<AccelerationCandidate>>,
 }
 
-impl Acceleration {
+impl AccelerationCandidate {
     /// Creates a candidate and counts its operations.
     pub(super) fn with_counts(
         graph: Graph,
@@ -48,7 +48,7 @@ impl Acceleration {
     ) -> Self {
         let mut roots = xi_dot.clone();
         roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
-        Acceleration {
+        AccelerationCandidate {
             other: None,
             count: count(&graph, &roots),
             depth: graph.depth(&roots),
@@ -65,7 +65,7 @@ impl Acceleration {
 
     /// Returns an empty computation, for models whose ξ̇ is not needed, in a graph of the model's symbols.
     pub fn none(graph: Graph) -> Self {
-        Acceleration {
+        AccelerationCandidate {
             graph,
             xi_dot: Vec::new(),
             pivots: Vec::new(),
@@ -105,7 +105,7 @@ pub(super) enum CandidateFamily {
 /// Best candidates so far, one for each family.
 pub(super) struct BestCandidates<'a> {
     numerical_loss: &'a NumericalLoss,
-    families: Vec<(CandidateFamily, Acceleration)>,
+    families: Vec<(CandidateFamily, AccelerationCandidate)>,
 }
 
 impl<'a> BestCandidates<'a> {
@@ -117,7 +117,7 @@ impl<'a> BestCandidates<'a> {
     }
 
     /// Keeps a candidate if it is better than the best of its family.
-    pub(super) fn keep(&mut self, family: CandidateFamily, mut candidate: Acceleration) {
+    pub(super) fn keep(&mut self, family: CandidateFamily, mut candidate: AccelerationCandidate) {
         candidate.loss =
             self.numerical_loss
                 .loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
@@ -135,13 +135,13 @@ impl<'a> BestCandidates<'a> {
     }
 
     /// Returns the best candidate without polishing.
-    pub(super) fn cheapest(self) -> Option<Acceleration> {
+    pub(super) fn cheapest(self) -> Option<AccelerationCandidate> {
         let all = self.families.into_iter().map(|(_, best)| best);
-        all.min_by_key(Acceleration::cost)
+        all.min_by_key(AccelerationCandidate::cost)
     }
 
     /// Returns the best candidate after resubstitution.
-    pub(super) fn into_polished(self, model: &Model) -> Option<Acceleration> {
+    pub(super) fn into_polished(self, model: &Model) -> Option<AccelerationCandidate> {
         let numerical_loss = self.numerical_loss;
         let costs = self.families.iter().map(|(_, best)| best.cost());
         let (loss, weight, depth) = costs.min()?;
@@ -152,13 +152,13 @@ impl<'a> BestCandidates<'a> {
             usize::MAX,
         );
         let all = self.families.into_iter().map(|(_, best)| best);
-        let near: Vec<Acceleration> = all.filter(|best| best.cost() <= most).collect();
-        let mut places = near.iter().map(Acceleration::cost);
+        let near: Vec<AccelerationCandidate> = all.filter(|best| best.cost() <= most).collect();
+        let mut places = near.iter().map(AccelerationCandidate::cost);
         let plain = places.position(|cost| cost == (loss, weight, depth))?;
         let all = near
             .into_iter()
             .map(|best| polish(best, model, numerical_loss));
-        let mut all: Vec<Acceleration> = all.collect();
+        let mut all: Vec<AccelerationCandidate> = all.collect();
         let (first, _) = all.iter().enumerate().min_by_key(|(_, best)| best.cost())?;
         let other = (first != plain).then(|| Box::new(all[plain].clone()));
         let mut best = all.swap_remove(first);
@@ -168,7 +168,11 @@ impl<'a> BestCandidates<'a> {
 }
 
 /// Returns a candidate after resubstitution, or unchanged if that does not make it cheaper.
-fn polish(chosen: Acceleration, model: &Model, numerical_loss: &NumericalLoss) -> Acceleration {
+fn polish(
+    chosen: AccelerationCandidate,
+    model: &Model,
+    numerical_loss: &NumericalLoss,
+) -> AccelerationCandidate {
     let roots: Vec<Edge> = chosen
         .xi_dot
         .iter()
@@ -184,7 +188,7 @@ fn polish(chosen: Acceleration, model: &Model, numerical_loss: &NumericalLoss) -
         .copied()
         .filter(|edge| !graph.is_free(edge.node()))
         .collect::<Vec<_>>();
-    let polished = Acceleration {
+    let polished = AccelerationCandidate {
         loss: numerical_loss.loss(&graph, xi_dot, pivots),
         count: count(&graph, &varying),
         depth: graph.depth(&varying),
@@ -197,7 +201,7 @@ fn polish(chosen: Acceleration, model: &Model, numerical_loss: &NumericalLoss) -
         projections: None,
         graph,
     };
-    let cost = |a: &Acceleration| (a.loss, a.count.weight());
+    let cost = |a: &AccelerationCandidate| (a.loss, a.count.weight());
     if cost(&polished) < cost(&chosen) {
         polished
     } else {

@@ -48,8 +48,8 @@ struct KnownColumn {
 }
 
 impl BranchFactors {
-    /// Factors M; `None` if a pivot vanishes identically.
-    pub fn of(
+    /// Factors a mass matrix into U D Uᵀ, branch by branch; `None` if a pivot vanishes identically.
+    pub fn factorize(
         graph: &mut Graph,
         mass: &[Vec<Edge>],
         equivalent: &[EquivalentMotion],

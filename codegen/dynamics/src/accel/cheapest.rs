@@ -21,7 +21,8 @@ pub struct MassAndForces {
 /// Entries of the functions M, −Γ ξ ξ, −∂V, ∂T/∂ξ and M ξ̇ + Γ ξ ξ + ∂V.
 type Functions = [Vec<Edge>; 5];
 
-/// Picks, for each function, the cheapest of several computations.
+/// Returns M and the forces, each taken from that one of several computations in which it is cheapest; `None` if there
+/// are none.
 ///
 /// Each computation is considered both as traced and as it becomes in the graph `chosen`, where the expressions of
 /// ξ̇ can be shared. The momentum ∂T/∂ξ and M ξ̇ + Γ ξ ξ + ∂V may also be composed from the cheapest of the other

@@ -33,8 +33,8 @@ pub(super) const SERIES_COEFFICIENTS: [i64; 3] = [1, 3, 6];
 /// raised, since a single row may vanish along the motion.
 const SHARE_DENOMINATOR: i64 = 1024;
 
-/// Returns for each row the rows whose diagonal entries of S raise its own: all constraints for a row of a loop,
-/// and only the row itself otherwise.
+/// Returns for each row of constraints the indices of the rows whose diagonal entries of S = B M⁻¹ Bᵀ raise its own:
+/// all constraints for a row of a loop, and only the row itself otherwise.
 ///
 /// `more` rows of given rates follow the constraints.
 pub fn regularization_rows(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {

@@ -6,8 +6,8 @@ use super::parts::EquationTerms;
 use hamel_algebra::graph::Edge;
 use hamel_language::model::Model;
 
-/// Returns the places of the velocities whose rates are not given.
-pub fn free_places(model: &Model) -> Vec<usize> {
+/// Returns the indices in ξ of the velocities whose rates are not given.
+pub fn free_velocities(model: &Model) -> Vec<usize> {
     let given = |i: &usize| model.accelerated.iter().any(|(place, _)| place == i);
     (0..model.n()).filter(|i| !given(i)).collect()
 }
@@ -18,7 +18,7 @@ pub fn restrict_to_free(mut traced: Model, parts: &EquationTerms) -> (Model, Equ
     if traced.accelerated.is_empty() {
         return (traced, parts.clone());
     }
-    let places = free_places(&traced);
+    let places = free_velocities(&traced);
     let of = |list: &[Edge]| places.iter().map(|&i| list[i]).collect::<Vec<Edge>>();
     let graph = &mut traced.graph;
     let driven: Vec<Edge> = (places.iter())
@@ -40,8 +40,8 @@ pub fn restrict_to_free(mut traced: Model, parts: &EquationTerms) -> (Model, Equ
     (traced, free)
 }
 
-/// Returns ξ̇ of all velocities from that of the free ones.
-pub fn all_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
+/// Extends ξ̇ of the velocities whose rates are not given to all velocities, by the given rates.
+pub fn expand_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     if model.accelerated.is_empty() {
         return free;
     }
@@ -52,11 +52,11 @@ pub fn all_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
         .collect()
 }
 
-/// Returns the pivots of all velocities from those of the free ones; 1 for a velocity whose rate is given, which
-/// requires no inertia.
-pub fn all_pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
+/// Extends the pivots of the velocities whose rates are not given to all velocities: 1 for a velocity whose rate is
+/// given, which requires no inertia.
+pub fn expand_pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     let mut all = vec![model.graph.one(); model.n()];
-    for (place, pivot) in free_places(model).into_iter().zip(free) {
+    for (place, pivot) in free_velocities(model).into_iter().zip(free) {
         all[place] = pivot;
     }
     all

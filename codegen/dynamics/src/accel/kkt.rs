@@ -203,7 +203,7 @@ pub fn unaugmented_multipliers(
     .collect()
 }
 
-/// Projections onto the constraints.
+/// Step of x and projected ξ by which a state returns to the constraints that multipliers enforce, as expressions.
 #[derive(Clone, Debug)]
 pub struct Projections {
     /// Position step −M⁻¹ Bᵀ S⁻¹ φ(x), with the velocities of given rates held: the step along A that closes the

@@ -19,7 +19,7 @@ pub mod solve;
 use crate::candidates::MAX_SEARCHED_VELOCITIES;
 use crate::inertia;
 use crate::numerical_loss::NumericalLoss;
-pub use best::Acceleration;
+pub use best::AccelerationCandidate;
 use best::{BestCandidates, CandidateFamily};
 use cheapest::{MassAndForces, cheapest_of_each_function};
 use context::DerivationContext;
@@ -40,13 +40,13 @@ const MAX_TRACED_OPERATIONS: usize = 1000;
 pub fn forward_dynamics(
     model: &Model,
     numerical_loss: &NumericalLoss,
-) -> Option<(Acceleration, MassAndForces)> {
+) -> Option<(AccelerationCandidate, MassAndForces)> {
     let mut best = BestCandidates::new(numerical_loss);
     let given = DerivationContext::in_given_velocities(model);
     if !model.constraints.is_empty() {
         return constrained(&given, numerical_loss);
     }
-    let recursions = recursions(&given, numerical_loss);
+    let recursions = tree_recursions(&given, numerical_loss);
     for recursion in &recursions {
         recursion.search(&mut best);
     }
@@ -65,9 +65,9 @@ pub fn forward_dynamics(
         search(&twist, &mut best);
     }
     let expands = (model.spans || model.is_affine()) && model.accelerated.is_empty();
-    if model.n() <= MAX_SEARCHED_VELOCITIES && expands && !numerical_loss.comes_first() {
+    if model.n() <= MAX_SEARCHED_VELOCITIES && expands && !numerical_loss.is_compared_first() {
         let most = best.min_operations();
-        for candidate in polynomial::candidates(model, most) {
+        for candidate in polynomial::polynomial_candidates(model, most) {
             best.keep(CandidateFamily::Polynomial, candidate);
         }
     }
@@ -91,7 +91,7 @@ pub fn mass_and_forces(model: &Model, numerical_loss: &NumericalLoss) -> Option<
             MassAndForces { graph, parts }
         });
     }
-    let recursions = recursions(&given, numerical_loss);
+    let recursions = tree_recursions(&given, numerical_loss);
     let mut computations = Vec::new();
     if !is_long(&given, &recursions) {
         for variant in tracing_variants(model, model.n() <= MAX_SEARCHED_VELOCITIES) {
@@ -105,8 +105,11 @@ pub fn mass_and_forces(model: &Model, numerical_loss: &NumericalLoss) -> Option<
 
 /// Returns the recursions over links, one for each frame placement; empty if the bodies do not form a tree of
 /// links.
-pub fn recursions(given: &DerivationContext, numerical_loss: &NumericalLoss) -> Vec<TreeRecursion> {
-    let placements = numerical_loss.placements().iter();
+pub fn tree_recursions(
+    given: &DerivationContext,
+    numerical_loss: &NumericalLoss,
+) -> Vec<TreeRecursion> {
+    let placements = numerical_loss.link_placements().iter();
     placements
         .filter_map(|&placement| TreeRecursion::of(given, placement, numerical_loss))
         .collect()
@@ -132,20 +135,21 @@ fn is_long(given: &DerivationContext, recursions: &[TreeRecursion]) -> bool {
 fn constrained(
     context: &DerivationContext,
     numerical_loss: &NumericalLoss,
-) -> Option<(Acceleration, MassAndForces)> {
+) -> Option<(AccelerationCandidate, MassAndForces)> {
     let n = context.model.n();
     let rows = inertia::constraint_rows(&context.model);
     let constraints = &context.model.constraints;
     let raising = dependent::regularization_rows(constraints, rows.len() - constraints.len());
     let raising = context.model.overconstrained.then_some(&raising[..]);
-    let mut best: Option<(Acceleration, EquationTerms)> = None;
+    let mut best: Option<(AccelerationCandidate, EquationTerms)> = None;
     for variant in tracing_variants(&context.model, n <= MAX_SEARCHED_VELOCITIES) {
         let (mut traced, parts) = trace(context, variant);
         let mut right = kkt::constraint_accelerations(&mut traced, &mut context.calculus.clone());
         right.extend(traced.accelerated.iter().map(|(_, rate)| *rate));
         let mut solved = parts.clone();
         if traced.augmented {
-            let augmented = inertia::augment(&mut traced.graph, &parts.mass, &rows, &right)?;
+            let augmented =
+                inertia::augment_mass_matrix(&mut traced.graph, &parts.mass, &rows, &right)?;
             solved.mass = augmented.0;
             solved.groups.push(augmented.1);
         }
@@ -188,7 +192,7 @@ fn constrained(
                     kkt::unaugmented_multipliers(&mut graph, weight, (&rows, &right), &solution)
                 }
             };
-            let acceleration = Acceleration {
+            let acceleration = AccelerationCandidate {
                 other: None,
                 graph,
                 xi_dot: hybrid::insert_given_rates(&context.model, solution.xi_dot),
@@ -290,12 +294,12 @@ fn candidate(
     parts: &EquationTerms,
     plan: &EliminationPlan,
     variant: &TracingVariant,
-) -> Option<Acceleration> {
+) -> Option<AccelerationCandidate> {
     let mut graph = traced.graph.clone();
     let solution = solve(&mut graph, parts, plan)?;
-    let xi_dot = hybrid::all_rates(&context.model, solution.xi_dot);
+    let xi_dot = hybrid::expand_rates(&context.model, solution.xi_dot);
     let xi_dot = context.to_given_velocities(&mut graph, xi_dot);
-    let pivots = hybrid::all_pivots(&context.model, solution.pivots);
+    let pivots = hybrid::expand_pivots(&context.model, solution.pivots);
     let mut roots = xi_dot.clone();
     roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
     let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
@@ -303,7 +307,7 @@ fn candidate(
     if context.back.is_some() {
         route = route.replacen("traced", "traced in its own twist", 1);
     }
-    Some(Acceleration {
+    Some(AccelerationCandidate {
         other: None,
         graph,
         xi_dot,

@@ -5,9 +5,9 @@
 
 use crate::calculus::{Calculus, into_frame};
 use crate::commutation::gamma;
-use crate::connection::quadratic;
-use crate::inertia::{accumulate, kinetic_mass, symmetric};
-use crate::normal::without_coordinates;
+use crate::connection::bias_forces;
+use crate::inertia::{add_matrix, build_symmetric, written_mass_matrix};
+use crate::normal::eliminate_coordinates;
 use crate::{energy, kinematics, loads};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
@@ -27,7 +27,7 @@ pub enum ReferencePoint {
 
 impl EquationTerms {
     /// Returns the right-hand side f − Γ ξ ξ − ∂V.
-    pub fn right(&self, graph: &mut Graph) -> Vec<Edge> {
+    pub fn right_hand_side(&self, graph: &mut Graph) -> Vec<Edge> {
         (0..self.inertia.len())
             .map(|i| graph.sum(&[self.inertia[i], self.conservative[i], self.applied[i]]))
             .collect()
@@ -91,7 +91,8 @@ pub struct EquationTerms {
 }
 
 impl EquationTerms {
-    /// Returns the contribution of T to the energy.
+    /// Returns the part of the energy that comes from T: ½ ξ · p with p = `momentum`, unless a kinetic energy that the
+    /// user wrote has terms of other degrees.
     pub fn kinetic_of(&self, graph: &mut Graph, model: &Model, momentum: &[Edge]) -> Edge {
         if let Some(kinetic) = self.kinetic {
             return kinetic;
@@ -101,7 +102,7 @@ impl EquationTerms {
         graph.mul(half, twice)
     }
 
-    /// Returns the momentum ∂T/∂ξ.
+    /// Returns the generalised momenta p = ∂T/∂ξ as expressions.
     pub fn momentum_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
         match &self.momentum {
             Some(momentum) => momentum.clone(),
@@ -112,7 +113,7 @@ impl EquationTerms {
         }
     }
 
-    /// Returns the inverse dynamics M ξ̇ + Γ ξ ξ + ∂V.
+    /// Returns the inverse dynamics M ξ̇ + Γ ξ ξ + ∂V as expressions, without applied forces.
     pub fn inverse_dynamics_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
         if let Some(traced) = &self.inverse_dynamics {
             return traced.clone();
@@ -162,32 +163,32 @@ pub fn trace_terms(
             inertia[i] = graph.sub(inertia[i], h);
             gravity[i] = graph.add(gravity[i], g);
         }
-        let part = symmetric(n, |i, j| {
+        let part = build_symmetric(n, |i, j| {
             let product = graph.dot(&columns[i], &columns[j]);
             graph.mul(particle.mass, product)
         });
-        accumulate(graph, &mut mass, &part);
+        add_matrix(graph, &mut mass, &part);
     }
     if let Some(terms) = model.kinetic_terms.clone() {
         for (sum, &h) in inertia.iter_mut().zip(&terms.bias) {
             *sum = model.graph.sub(*sum, h);
         }
-        accumulate(&mut model.graph, &mut mass, &terms.mass);
+        add_matrix(&mut model.graph, &mut mass, &terms.mass);
     } else if model.kinetic != zero {
-        let part = kinetic_mass(model);
+        let part = written_mass_matrix(model);
         let rows = kinematics::left_inverse(model).unwrap_or_default();
         let gamma = gamma(model, calculus, &rows);
-        let h = quadratic(model, calculus, &part, &gamma);
+        let h = bias_forces(model, calculus, &part, &gamma);
         let graph = &mut model.graph;
         for i in 0..n {
             inertia[i] = graph.sub(inertia[i], h[i]);
         }
-        accumulate(graph, &mut mass, &part);
+        add_matrix(graph, &mut mass, &part);
     }
     if n <= crate::candidates::MAX_SEARCHED_VELOCITIES {
         let mut forms = None;
         for entry in mass.iter_mut().flatten() {
-            *entry = without_coordinates(
+            *entry = eliminate_coordinates(
                 &mut model.graph,
                 calculus,
                 &model.points,
@@ -201,7 +202,7 @@ pub fn trace_terms(
         .then(|| energy::kinetic_of_bodies(model, calculus));
     let momentum = kinetic.map(|kinetic| energy::momentum(model, kinetic));
     let kinetic = kinetic.map(|kinetic| energy::kinetic_in_energy(model, kinetic));
-    let potential = loads::elastic(model, calculus);
+    let potential = loads::elastic_force(model, calculus);
     let loads = loads::applied_force_terms(model, calculus);
     let graph = &mut model.graph;
     let conservative = (0..n)
@@ -390,7 +391,7 @@ impl BodyTerms {
                 }
             })
             .collect();
-        let part = symmetric(n, |i, j| {
+        let part = build_symmetric(n, |i, j| {
             let linear = graph.dot(&self.linear[i], &self.linear[j]);
             let terms = [
                 graph.mul(self.mass, linear),
@@ -400,7 +401,7 @@ impl BodyTerms {
             ];
             graph.sum(&terms)
         });
-        accumulate(graph, mass, &part);
+        add_matrix(graph, mass, &part);
     }
 }
 

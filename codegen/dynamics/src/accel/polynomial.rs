@@ -3,13 +3,13 @@
 //!
 //! This gives the shortest code for small systems. If M is constant, M⁻¹ can be multiplied into the coefficients.
 
-use super::best::Acceleration;
+use super::best::AccelerationCandidate;
 use super::parts::EquationTerms;
 use super::parts::{ReferencePoint, TracingVariant, trace_terms};
 use super::solve::{EliminationPlan, solve};
 use super::solve::{all_plans, describe_order};
 use crate::calculus::Calculus;
-use crate::normal::{Collected, NormalForms, collect, variable_node};
+use crate::normal::{NormalForms, RunTimePolynomial, collect_run_time_terms, variable_node};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::solve_symmetric;
 use hamel_algebra::poly::factor::{Coefficient, Operand, Step, Term, Value, factor};
@@ -29,8 +29,9 @@ const MAX_CONSTANT_MASS_TERMS: usize = 40;
 /// Number of products and sums of terms after which the expansion is abandoned in favour of the traced expressions.
 const MAX_TERM_OPERATIONS: usize = 1_000_000;
 
-/// Returns the candidates of this route that may cost less than `most`; empty if the system is too large to expand.
-pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
+/// Returns computations of ξ̇ from M and forces that are expanded to polynomials, of those that may cost less than
+/// `most`; empty if the system is too large to expand.
+pub fn polynomial_candidates(model: &Model, most: usize) -> Vec<AccelerationCandidate> {
     let mut traced = model.clone();
     let variant = TracingVariant {
         axes: Axes::World,
@@ -63,9 +64,9 @@ pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
 /// coefficients.
 struct System {
     graph: Graph,
-    right: Vec<Collected>,
+    right: Vec<RunTimePolynomial>,
     /// Varying entries of the lower triangle of M, with their row and column.
-    varying: Vec<(usize, usize, Collected)>,
+    varying: Vec<(usize, usize, RunTimePolynomial)>,
     /// Mass matrix M; only its constant entries are filled in.
     mass: Vec<Vec<Edge>>,
     /// Expressions in `graph` for the variables that are not symbols.
@@ -83,7 +84,7 @@ impl System {
     ) -> Option<Self> {
         let n = model.n();
         let mut source = traced.graph.clone();
-        let mut polynomial = |source: &mut Graph, edges: &[Edge]| -> Option<Collected> {
+        let mut polynomial = |source: &mut Graph, edges: &[Edge]| -> Option<RunTimePolynomial> {
             let mut sum = hamel_algebra::poly::polynomial::Poly::zero();
             for &edge in edges {
                 sum = sum.add(&forms.expand(source, edge)?);
@@ -93,7 +94,7 @@ impl System {
             } else {
                 sum
             };
-            let collected = collect(source, &normal);
+            let collected = collect_run_time_terms(source, &normal);
             (collected.len() <= MAX_TERMS).then_some(collected)
         };
         let mut graph = model.graph.clone();
@@ -144,7 +145,7 @@ impl System {
     }
 
     /// Builds ξ̇ = M⁻¹ f with the constant M⁻¹ multiplied into the coefficients of f.
-    fn inverted(&self, most: usize) -> Option<Acceleration> {
+    fn inverted(&self, most: usize) -> Option<AccelerationCandidate> {
         if !self.varying.is_empty() {
             return None;
         }
@@ -158,9 +159,9 @@ impl System {
             })
             .collect();
         let inverse = solve_symmetric(&mut graph, &self.mass, &identity)?;
-        let polynomials: Vec<Collected> = (0..n)
+        let polynomials: Vec<RunTimePolynomial> = (0..n)
             .map(|i| {
-                let mut sum = Collected::new();
+                let mut sum = RunTimePolynomial::new();
                 for j in 0..n {
                     if inverse[i][j] == graph.zero() {
                         continue;
@@ -200,10 +201,10 @@ impl System {
     }
 
     /// Builds candidates that solve M ξ̇ = f, with f and the varying entries of M factored together.
-    fn solved(&self, model: &Model, most: usize) -> Vec<Acceleration> {
+    fn solved(&self, model: &Model, most: usize) -> Vec<AccelerationCandidate> {
         let n = self.mass.len();
         let mut graph = self.graph.clone();
-        let polynomials: Vec<Collected> = self
+        let polynomials: Vec<RunTimePolynomial> = self
             .right
             .iter()
             .chain(self.varying.iter().map(|(_, _, c)| c))
@@ -245,12 +246,12 @@ impl System {
         xi_dot: Vec<Edge>,
         pivots: Vec<Edge>,
         how: &str,
-    ) -> Acceleration {
+    ) -> AccelerationCandidate {
         let mut roots = xi_dot.clone();
         roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
         let (count, depth) = (count(&graph, &roots), graph.depth(&roots));
         let modulo = if self.reduced { " modulo φ" } else { "" };
-        Acceleration {
+        AccelerationCandidate {
             other: None,
             loss: 0,
             multipliers: Vec::new(),
@@ -266,7 +267,7 @@ impl System {
     }
 
     /// Builds the polynomials as expressions with few operations.
-    fn factored(&self, graph: &mut Graph, polynomials: &[Collected]) -> Vec<Edge> {
+    fn factored(&self, graph: &mut Graph, polynomials: &[RunTimePolynomial]) -> Vec<Edge> {
         // Coefficient 0 is the number 1; the others are numbered by first use.
         let mut coefficients = vec![graph.one()];
         let terms: Vec<Vec<Term>> = polynomials
@@ -334,7 +335,7 @@ impl System {
 /// Every coefficient other than 1 takes part in a product. Terms whose coefficient occurs in only one polynomial
 /// cannot be summed anywhere else. Polynomials that have such terms of degree two or more are independent, so each
 /// of them needs a product of variables of its own.
-fn min_operations(graph: &Graph, polynomials: &[Collected]) -> usize {
+fn min_operations(graph: &Graph, polynomials: &[RunTimePolynomial]) -> usize {
     let mut rows: BTreeMap<Edge, BTreeSet<usize>> = BTreeMap::new();
     for (row, collected) in polynomials.iter().enumerate() {
         for coefficient in collected.values() {

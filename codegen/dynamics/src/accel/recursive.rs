@@ -1,6 +1,6 @@
 //! Recursion over a tree of links: ξ̇, M and forces.
 
-use super::best::{Acceleration, BestCandidates, CandidateFamily};
+use super::best::{AccelerationCandidate, BestCandidates, CandidateFamily};
 use super::branches::BranchFactors;
 use super::cheapest::MassAndForces;
 use super::context::DerivationContext;
@@ -10,11 +10,11 @@ use crate::calculus::Calculus;
 use crate::loads;
 use crate::numerical_loss::NumericalLoss;
 use crate::tree::inverse::{
-    Motion, TENSOR_ROUTES, TENSOR_ROUTES_WITH_ALPHA, inverse_dynamics, wrenches,
+    Motion, TENSOR_ROUTES, TENSOR_ROUTES_WITH_ALPHA, inverse_dynamics, required_wrenches,
 };
 use crate::tree::link::TensorRoute;
-use crate::tree::momentum::{columns, quadratic_rate, total};
-use crate::tree::slopes::{InverseDynamicsDerivatives, slopes};
+use crate::tree::momentum::{momentum_columns, quadratic_momentum_rate, total_momentum};
+use crate::tree::slopes::{InverseDynamicsDerivatives, inverse_dynamics_derivatives};
 use crate::tree::uniform::CommonMotion;
 use crate::tree::wrench::Wrench;
 use crate::tree::{Placement, Tree, articulated, composite};
@@ -79,7 +79,7 @@ impl TreeRecursion {
             None => (reduced.clone(), context.calculus.clone(), None),
         };
         let tree = Tree::of(&mut model, &mut calculus, placement)?;
-        let elastic = loads::elastic(&mut model, &mut calculus);
+        let elastic = loads::elastic_force(&mut model, &mut calculus);
         let loads = loads::applied_force_terms(&mut model, &mut calculus);
         let applied = (0..model.n())
             .map(|i| {
@@ -90,7 +90,7 @@ impl TreeRecursion {
         Some(TreeRecursion {
             model,
             tree,
-            careful: numerical_loss.comes_first(),
+            careful: numerical_loss.is_compared_first(),
             elastic,
             applied,
             free,
@@ -184,14 +184,16 @@ impl TreeRecursion {
             let mut graph = self.model.graph.clone();
             self.tree.register_polar_moments(&mut graph);
             let load = self.load(&mut graph);
-            let forces = wrenches(&mut graph, &tree, xi, &rates, gravity);
-            let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
+            let forces = required_wrenches(&mut graph, &tree, xi, &rates, gravity);
+            let solution = articulated::articulated_body_dynamics(
+                &mut graph, &self.tree, &given, &forces, &load,
+            );
             if let Some(Solution { xi_dot, pivots }) = solution {
                 let route = "links traced, articulated bodies".to_string();
                 let xi_dot = self.driven(&active, |i| xi_dot[i]);
                 let pivots = active.iter().map(|&i| pivots[i]).collect();
                 let (graph, [xi_dot, pivots]) = self.in_active_velocities(graph, [xi_dot, pivots]);
-                let candidate = Acceleration::with_counts(graph, xi_dot, pivots, route);
+                let candidate = AccelerationCandidate::with_counts(graph, xi_dot, pivots, route);
                 best.keep(CandidateFamily::Links, candidate);
             }
         }
@@ -232,13 +234,13 @@ impl TreeRecursion {
                     .map(|&i| place(i).map_or(one, |at| pivots[at]));
                 let pivots = pivots.collect();
                 let (graph, [xi_dot, pivots]) = self.in_active_velocities(graph, [xi_dot, pivots]);
-                let candidate = Acceleration::with_counts(graph, xi_dot, pivots, route);
+                let candidate = AccelerationCandidate::with_counts(graph, xi_dot, pivots, route);
                 best.keep(CandidateFamily::Links, candidate);
             }
         }
     }
 
-    /// Returns M and the forces.
+    /// Returns M and the generalised forces by the composite-body and Newton-Euler recursions, in a graph of their own.
     pub fn mass_and_forces(&self) -> MassAndForces {
         let mut graph = self.model.graph.clone();
         let n = self.model.n();
@@ -321,7 +323,7 @@ impl TreeRecursion {
         }
         let mut graph = self.model.graph.clone();
         let still = vec![graph.zero(); self.model.n()];
-        let quadratic = quadratic_rate(&mut graph, &self.tree, &self.model.xi)?;
+        let quadratic = quadratic_momentum_rate(&mut graph, &self.tree, &self.model.xi)?;
         let weight = inverse_dynamics(&mut graph, &self.tree, &still, &still, self.model.gravity);
         let load = self.load(&mut graph);
         let rate = (0..self.model.n()).map(|i| {
@@ -338,7 +340,7 @@ impl TreeRecursion {
     /// The links must be those of the description: equivalent links have the same motion but different momenta.
     pub fn total_momentum(&self) -> (Graph, Vec3, Vec3) {
         let mut graph = self.model.graph.clone();
-        let (linear, angular) = total(&mut graph, &self.tree, &self.model.xi);
+        let (linear, angular) = total_momentum(&mut graph, &self.tree, &self.model.xi);
         let (graph, [linear, angular]) =
             self.in_active_velocities(graph, [linear.to_vec(), angular.to_vec()]);
         let three = |list: &[Edge]| std::array::from_fn(|i| list[i]);
@@ -351,7 +353,7 @@ impl TreeRecursion {
             return None;
         }
         let mut graph = self.model.graph.clone();
-        let columns = columns(&mut graph, &self.tree, self.model.n());
+        let columns = momentum_columns(&mut graph, &self.tree, self.model.n());
         Some((graph, columns))
     }
 
@@ -371,7 +373,13 @@ impl TreeRecursion {
         };
         let wrenches = vec![nothing; self.tree.links.len()];
         let momenta = &self.model.momenta;
-        let solution = articulated::forward(&mut graph, &self.tree, &[], &wrenches, momenta)?;
+        let solution = articulated::articulated_body_dynamics(
+            &mut graph,
+            &self.tree,
+            &[],
+            &wrenches,
+            momenta,
+        )?;
         Some((graph, solution))
     }
 
@@ -391,7 +399,7 @@ impl TreeRecursion {
             ..
         } = &self.model;
         let tree = self.cheapest(&TENSOR_ROUTES_WITH_ALPHA, &graph, (xi, xi_dot, *gravity));
-        let found = slopes(&mut graph, &tree, xi, xi_dot, *gravity)?;
+        let found = inverse_dynamics_derivatives(&mut graph, &tree, xi, xi_dot, *gravity)?;
         let mut columns = self.changes(&self.elastic, &mut graph, &found);
         columns.truncate(2 * self.model.n());
         let row = |i: usize| columns.iter().map(|column| -column[i]).collect();
@@ -422,12 +430,12 @@ impl TreeRecursion {
             None => (&model.xi, model.gravity),
         };
         let bias = inverse_dynamics(&mut graph, tree, proper, &rates, gravity);
-        let mass = composite::by_second_moments(&mut graph, tree, n);
+        let mass = composite::mass_matrix_by_second_moments(&mut graph, tree, n);
         let equivalent = tree.equivalent_motions(&mut graph);
-        let branches = BranchFactors::of(&mut graph, &mass, &equivalent)?;
+        let branches = BranchFactors::factorize(&mut graph, &mass, &equivalent)?;
         let right: Vec<Edge> = (0..n).map(|i| graph.sub(load[i], bias[i])).collect();
         let mut xi_dot = branches.solve(&mut graph, &right);
-        let found = slopes(&mut graph, tree, proper, &xi_dot, gravity)?;
+        let found = inverse_dynamics_derivatives(&mut graph, tree, proper, &xi_dot, gravity)?;
         let mut changes = self.changes(&load, &mut graph, &found);
         if let Some(uniform) = &free {
             // The velocities left out of the recursion affect the derivatives only through their contribution to ξ̇

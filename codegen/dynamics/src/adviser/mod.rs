@@ -22,7 +22,7 @@ use std::fmt;
 /// Largest number of combinations that are tried.
 const MAX_COMBINATIONS: usize = 24;
 
-/// One choice of velocity coordinates.
+/// One choice of velocity coordinates for a model, with its cost.
 #[derive(Clone, Debug)]
 pub struct VelocityChoice {
     /// Description of the choice in words.
@@ -79,7 +79,7 @@ impl fmt::Display for AdviseError {
 
 impl std::error::Error for AdviseError {}
 
-/// Returns the possible choices, cheapest first.
+/// Returns the choices of velocity coordinates that a model allows, the cheapest first.
 ///
 /// # Errors
 ///

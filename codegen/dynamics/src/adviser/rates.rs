@@ -8,7 +8,7 @@ use hamel_language::model::rotations::{hat, quaternion_matrix};
 use hamel_language::model::{Coordinate, Model};
 use hamel_language::syntax::ast::CoordKind;
 
-/// ẋ = A' ξ' under construction.
+/// Kinematic equations ẋ = A' ξ' in other velocities, under construction.
 pub struct RateDraft<'a> {
     model: &'a Model,
     graph: &'a mut Graph,

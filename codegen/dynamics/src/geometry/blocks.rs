@@ -4,7 +4,7 @@ use hamel_algebra::graph::{Edge, Graph};
 
 /// Dependence of an entry of M on x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Entry {
+pub enum EntryDependence {
     /// 0 everywhere.
     Zero,
     /// The same at every x.
@@ -13,8 +13,11 @@ pub enum Entry {
     Varying,
 }
 
-/// Returns the connected components of 0..n under some links, in the order of their first members.
-pub fn components(n: usize, links: impl IntoIterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
+/// Returns the connected components of the graph with nodes 0..n and some links, in the order of their first members.
+pub fn connected_components(
+    n: usize,
+    links: impl IntoIterator<Item = (usize, usize)>,
+) -> Vec<Vec<usize>> {
     let mut label: Vec<usize> = (0..n).collect();
     for (a, b) in links {
         let (from, to) = (label[a].max(label[b]), label[a].min(label[b]));
@@ -44,12 +47,15 @@ pub fn commuting_blocks(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<usiz
             }
         }
     }
-    components(n, links)
+    connected_components(n, links)
 }
 
 /// Returns the blocks of M: i, j belong together if M_ij ≠ 0.
-pub fn inertia_blocks(pattern: &[Vec<Entry>]) -> Vec<Vec<usize>> {
+pub fn inertia_blocks(pattern: &[Vec<EntryDependence>]) -> Vec<Vec<usize>> {
     let n = pattern.len();
     let all = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-    components(n, all.filter(|&(i, j)| pattern[i][j] != Entry::Zero))
+    connected_components(
+        n,
+        all.filter(|&(i, j)| pattern[i][j] != EntryDependence::Zero),
+    )
 }

@@ -6,17 +6,17 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 /// Vector of coordinates with respect to the basis.
-pub type Vector = Vec<BigRational>;
+pub type RationalVector = Vec<BigRational>;
 
 /// Lie algebra given by structure constants `c[i][j][k]` = cᵢⱼᵏ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LieAlgebra {
-    constants: Vec<Vec<Vector>>,
+    constants: Vec<Vec<RationalVector>>,
 }
 
 impl LieAlgebra {
     /// Creates the algebra with antisymmetric constants that satisfy Jacobi's identity; `None` for other constants.
-    pub fn new(constants: Vec<Vec<Vector>>) -> Option<Self> {
+    pub fn new(constants: Vec<Vec<RationalVector>>) -> Option<Self> {
         let algebra = LieAlgebra { constants };
         let n = algebra.dimension();
         let unit = |i: usize| algebra.unit(i);
@@ -40,19 +40,19 @@ impl LieAlgebra {
         Some(algebra)
     }
 
-    /// Returns the dimension.
+    /// Returns the dimension of the algebra.
     pub fn dimension(&self) -> usize {
         self.constants.len()
     }
 
-    fn unit(&self, i: usize) -> Vector {
+    fn unit(&self, i: usize) -> RationalVector {
         let mut unit = vec![BigRational::zero(); self.dimension()];
         unit[i] = BigRational::one();
         unit
     }
 
     /// Returns the bracket `[a, b]`.
-    pub fn bracket(&self, a: &[BigRational], b: &[BigRational]) -> Vector {
+    pub fn bracket(&self, a: &[BigRational], b: &[BigRational]) -> RationalVector {
         let n = self.dimension();
         let mut result = vec![BigRational::zero(); n];
         for (i, x) in a.iter().enumerate().filter(|(_, x)| !x.is_zero()) {
@@ -67,31 +67,35 @@ impl LieAlgebra {
     }
 
     /// Returns a basis of the span of `[a, b]` over a ∈ `left`, b ∈ `right`.
-    pub fn brackets(&self, left: &[Vector], right: &[Vector]) -> Vec<Vector> {
+    pub fn bracket_span(
+        &self,
+        left: &[RationalVector],
+        right: &[RationalVector],
+    ) -> Vec<RationalVector> {
         let all = left
             .iter()
             .flat_map(|a| right.iter().map(|b| self.bracket(a, b)));
         Echelon::new(all.collect()).rows
     }
 
-    /// Returns the basis vectors.
-    pub fn basis(&self) -> Vec<Vector> {
+    /// Returns the basis vectors e₁ … eₙ, by their coordinates.
+    pub fn basis(&self) -> Vec<RationalVector> {
         (0..self.dimension()).map(|i| self.unit(i)).collect()
     }
 
     /// Returns a basis of the derived algebra `[L, L]`.
-    pub fn derived(&self) -> Vec<Vector> {
+    pub fn derived_algebra(&self) -> Vec<RationalVector> {
         let basis = self.basis();
-        self.brackets(&basis, &basis)
+        self.bracket_span(&basis, &basis)
     }
 
     /// Returns whether `[a, b]` = 0 for all a, b of a subspace.
-    pub fn is_abelian_on(&self, subspace: &[Vector]) -> bool {
-        self.brackets(subspace, subspace).is_empty()
+    pub fn is_abelian_on(&self, subspace: &[RationalVector]) -> bool {
+        self.bracket_span(subspace, subspace).is_empty()
     }
 
     /// Returns a basis of the centre {z : `[z, eⱼ]` = 0 for all j}.
-    pub fn centre(&self) -> Vec<Vector> {
+    pub fn centre(&self) -> Vec<RationalVector> {
         let n = self.dimension();
         let mut rows = Vec::new();
         for j in 0..n {
@@ -103,15 +107,16 @@ impl LieAlgebra {
     }
 
     /// Returns the matrix of ad z = `[z, ·]`, `m[k][j]`.
-    pub fn adjoint(&self, z: &[BigRational]) -> Vec<Vector> {
-        let columns: Vec<Vector> = self.basis().iter().map(|e| self.bracket(z, e)).collect();
+    pub fn adjoint(&self, z: &[BigRational]) -> Vec<RationalVector> {
+        let columns: Vec<RationalVector> =
+            self.basis().iter().map(|e| self.bracket(z, e)).collect();
         (0..self.dimension())
             .map(|k| columns.iter().map(|column| column[k].clone()).collect())
             .collect()
     }
 
     /// Returns Killing's form K(eᵢ, eⱼ) = tr(ad eᵢ ad eⱼ) = cᵢₛᵗ cⱼₜˢ.
-    pub fn killing(&self) -> Vec<Vector> {
+    pub fn killing_form(&self) -> Vec<RationalVector> {
         let n = self.dimension();
         let c = &self.constants;
         (0..n)
@@ -133,7 +138,7 @@ impl LieAlgebra {
 
     /// Returns the numbers of positive and negative squares of Killing's form.
     pub fn killing_signature(&self) -> (usize, usize) {
-        signature(&self.killing())
+        signature(&self.killing_form())
     }
 
     /// Returns the dimensions of L, `[L, L]`, `[[L, L], [L, L]]` … until they repeat.
@@ -141,7 +146,7 @@ impl LieAlgebra {
         let mut space = self.basis();
         let mut dimensions = vec![space.len()];
         loop {
-            let next = self.brackets(&space, &space);
+            let next = self.bracket_span(&space, &space);
             if next.len() == space.len() {
                 return dimensions;
             }
@@ -155,8 +160,8 @@ impl LieAlgebra {
     /// The summand is spanned by vectors of the centre that are independent modulo `[L, L]`. Any subspace that
     /// contains `[L, L]` is an ideal.
     pub fn without_abelian_summand(&self) -> Option<(LieAlgebra, usize)> {
-        let derived = self.derived();
-        let independent = |known: &[Vector], vector: &Vector| {
+        let derived = self.derived_algebra();
+        let independent = |known: &[RationalVector], vector: &RationalVector| {
             let mut rows = known.to_vec();
             rows.push(vector.clone());
             Echelon::new(rows).rank() > known.len()
@@ -177,20 +182,20 @@ impl LieAlgebra {
                 ideal.push(vector);
             }
         }
-        Some((self.restricted(&ideal)?, summand))
+        Some((self.subalgebra(&ideal)?, summand))
     }
 
     /// Returns the subalgebra with a given basis; `None` if brackets leave its span.
-    pub fn restricted(&self, basis: &[Vector]) -> Option<LieAlgebra> {
-        let coordinates = |vector: &Vector| {
+    pub fn subalgebra(&self, basis: &[RationalVector]) -> Option<LieAlgebra> {
+        let coordinates = |vector: &RationalVector| {
             let rows = (0..self.dimension()).map(|k| {
-                let mut row: Vector = basis.iter().map(|b| b[k].clone()).collect();
+                let mut row: RationalVector = basis.iter().map(|b| b[k].clone()).collect();
                 row.push(vector[k].clone());
                 row
             });
             hamel_algebra::echelon::solution(rows.collect())
         };
-        let constants: Option<Vec<Vec<Vector>>> = basis
+        let constants: Option<Vec<Vec<RationalVector>>> = basis
             .iter()
             .map(|a| {
                 basis
@@ -205,6 +210,6 @@ impl LieAlgebra {
     }
 }
 
-fn add(a: &[BigRational], b: &[BigRational]) -> Vector {
+fn add(a: &[BigRational], b: &[BigRational]) -> RationalVector {
     a.iter().zip(b).map(|(x, y)| x + y).collect()
 }

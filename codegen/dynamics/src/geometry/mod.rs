@@ -19,22 +19,22 @@ pub mod symmetry;
 
 use super::calculus::Calculus;
 use super::loads::applied_force;
-use super::normal::without_coordinates;
-use super::tables::Geometry;
-use blocks::Entry;
+use super::normal::eliminate_coordinates;
+use super::tables::EquationTables;
+use blocks::EntryDependence;
 use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::matrix;
 use hamel_language::model::{Model, class};
 use lie_algebra::LieAlgebra;
 use num_rational::BigRational;
 use num_traits::Zero;
-use recognise::{Name, abelian, recognise};
+use recognise::{AlgebraName, abelian_name, identify_algebra};
 use side::{Side, is_constant};
 use symmetry::Symmetry;
 
 /// A velocity coordinate and its properties.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Velocity {
+pub struct VelocityProperties {
     /// Name of the velocity.
     pub name: String,
     /// Whether γᵢⱼᵏ = 0 for all i, j, so that the velocity is the rate of a function, at least locally.
@@ -47,26 +47,27 @@ pub struct Velocity {
 
 /// Block of velocity coordinates that do not commute with one another.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Block {
+pub struct VelocityBlock {
     /// Indices of its velocities.
     pub members: Vec<usize>,
     /// Whether its γ are the same at every x.
     pub constant: bool,
     /// Name of its Lie algebra; `None` if γ depends on x, or is not a rational function of parameters.
-    pub algebra: Option<Name>,
+    pub algebra: Option<AlgebraName>,
     /// Whether γ depends on parameters, so that their default values were used.
     pub at_defaults: bool,
     /// Left-invariant (body axes) or right-invariant (world axes), if that is known.
     pub side: Option<Side>,
 }
 
-/// Results of inspecting a model.
+/// Geometry of a model's velocity coordinates: their Lie algebra, symmetries, integrability, and which entries of M
+/// depend on x.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Inspection {
     /// The velocity coordinates, in order.
-    pub velocities: Vec<Velocity>,
+    pub velocities: Vec<VelocityProperties>,
     /// Blocks of γ that are not zero.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<VelocityBlock>,
     /// Velocities that commute with all others.
     pub commuting: Vec<usize>,
     /// Whether x = q and ξ = q̇, that is, A = I, so that Γ are the Christoffel symbols of M.
@@ -74,20 +75,20 @@ pub struct Inspection {
     /// Whether the model has inertia; otherwise nothing is reported on M, and only symmetries of V are.
     pub has_inertia: bool,
     /// Dependence of every entry of M on x.
-    pub pattern: Vec<Vec<Entry>>,
+    pub pattern: Vec<Vec<EntryDependence>>,
     /// Blocks of M.
     pub inertia_blocks: Vec<Vec<usize>>,
 }
 
 impl Inspection {
-    /// Inspects a model; `None` if AᵀA is singular, which the model's checks exclude.
+    /// Derives these properties of a model; `None` if AᵀA is singular, which the model's checks exclude.
     pub fn new(model: &Model) -> Option<Self> {
-        let mut geometry = Geometry::new(model)?;
+        let mut geometry = EquationTables::new(model)?;
         let n = geometry.model.n();
         let integrable: Vec<usize> = (0..n)
             .filter(|&k| potential::is_integrable(&geometry, k))
             .collect();
-        let found = potential::potentials(&mut geometry, &integrable);
+        let found = potential::find_potentials(&mut geometry, &integrable);
         let applied = applied_force(&mut geometry.model, &mut geometry.calculus);
         let symmetries = symmetry::symmetries(&mut geometry, &applied);
         let velocities = names(&geometry.model)
@@ -97,7 +98,7 @@ impl Inspection {
             .map(|(k, (name, symmetry))| {
                 let place = integrable.iter().position(|&i| i == k);
                 let potential = place.and_then(|place| found.get(place).cloned().flatten());
-                Velocity {
+                VelocityProperties {
                     name,
                     integrable: place.is_some(),
                     potential,
@@ -125,23 +126,23 @@ impl Inspection {
     }
 
     /// Returns whether no entry of M depends on x.
-    pub fn constant_mass(&self) -> bool {
+    pub fn has_constant_mass_matrix(&self) -> bool {
         let mut entries = self.pattern.iter().flatten();
-        entries.all(|&entry| entry != Entry::Varying)
+        entries.all(|&entry| entry != EntryDependence::Varying)
     }
 
     /// Returns the name of the Lie algebra of the whole frame, such as `se(3) ⊕ R`; `None` if some γ depends on x,
     /// or if a block has no name.
-    pub fn algebra(&self) -> Option<String> {
+    pub fn algebra_name(&self) -> Option<String> {
         let mut parts = Vec::new();
         for block in &self.blocks {
             match &block.algebra {
-                Some(Name::Sum(names)) => parts.extend(names.iter().cloned()),
+                Some(AlgebraName::Sum(names)) => parts.extend(names.iter().cloned()),
                 _ => return None,
             }
         }
         if !self.commuting.is_empty() {
-            parts.push(abelian(self.commuting.len()));
+            parts.push(abelian_name(self.commuting.len()));
         }
         Some(parts.join(" ⊕ "))
     }
@@ -156,7 +157,7 @@ impl Inspection {
     }
 
     /// Returns the names of some velocities, separated by commas.
-    pub fn list(&self, members: &[usize]) -> String {
+    pub fn join_names(&self, members: &[usize]) -> String {
         let names = members.iter().filter_map(|&i| self.velocities.get(i));
         let names: Vec<&str> = names.map(|velocity| velocity.name.as_str()).collect();
         names.join(", ")
@@ -173,7 +174,7 @@ fn names(model: &Model) -> Vec<String> {
 }
 
 /// Inspects a block of γ: its Lie algebra and its side.
-fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
+fn block(geometry: &mut EquationTables, members: Vec<usize>) -> VelocityBlock {
     let mut entries: Vec<Edge> = members
         .iter()
         .flat_map(|&i| members.iter().map(move |&j| (i, j)))
@@ -184,7 +185,7 @@ fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
     let mut forms = None;
     for entry in &mut entries {
         let points = &geometry.model.points;
-        *entry = without_coordinates(graph, calculus, points, &mut forms, *entry);
+        *entry = eliminate_coordinates(graph, calculus, points, &mut forms, *entry);
     }
     let constant = entries
         .iter()
@@ -202,9 +203,9 @@ fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
         let constants = planes.map(|plane| matrix(plane, m));
         LieAlgebra::new(constants.collect())
     });
-    Block {
+    VelocityBlock {
         constant,
-        algebra: algebra.as_ref().map(recognise),
+        algebra: algebra.as_ref().map(identify_algebra),
         at_defaults,
         side: side::side(geometry, &members),
         members,
@@ -259,7 +260,7 @@ fn rates_of_coordinates(model: &Model) -> bool {
         })
 }
 
-fn pattern(geometry: &mut Geometry) -> Vec<Vec<Entry>> {
+fn pattern(geometry: &mut EquationTables) -> Vec<Vec<EntryDependence>> {
     let zero = geometry.model.graph.zero().node();
     let (graph, calculus): (&mut Graph, &mut Calculus) =
         (&mut geometry.model.graph, &mut geometry.calculus);
@@ -269,9 +270,9 @@ fn pattern(geometry: &mut Geometry) -> Vec<Vec<Entry>> {
         .map(|row| {
             row.iter()
                 .map(|&entry| match entry.node() == zero {
-                    true => Entry::Zero,
-                    false if is_constant(graph, calculus, entry) => Entry::Constant,
-                    false => Entry::Varying,
+                    true => EntryDependence::Zero,
+                    false if is_constant(graph, calculus, entry) => EntryDependence::Constant,
+                    false => EntryDependence::Varying,
                 })
                 .collect()
         })

@@ -6,7 +6,7 @@
 //! scalar parameter. The c_a are determined at random points of X modulo p; the result is confirmed symbolically in
 //! the graph, where expressions that are equal on X are one node.
 
-use crate::tables::Geometry;
+use crate::tables::EquationTables;
 use hamel_algebra::echelon::solution;
 use hamel_algebra::graph::{Edge, Function, Graph, Node};
 use hamel_algebra::linear::matrix;
@@ -32,7 +32,7 @@ struct Candidate {
 }
 
 /// Returns, for every ξᵏ of `wanted`, a function whose rate it is, as text, or `None` if none was found.
-pub fn potentials(geometry: &mut Geometry, wanted: &[usize]) -> Vec<Option<String>> {
+pub fn find_potentials(geometry: &mut EquationTables, wanted: &[usize]) -> Vec<Option<String>> {
     if wanted.is_empty() {
         return Vec::new();
     }
@@ -280,7 +280,7 @@ fn functions(graph: &mut Graph, plain: &[Candidate]) -> Vec<Candidate> {
 }
 
 /// Returns whether ξᵏ is integrable: γᵢⱼᵏ = 0 for all i, j (KR18 section 2.5).
-pub fn is_integrable(geometry: &Geometry, k: usize) -> bool {
+pub fn is_integrable(geometry: &EquationTables, k: usize) -> bool {
     // Compare nodes, because a zero of either sign is zero.
     let zero = geometry.model.graph.zero().node();
     let mut rows = geometry.gamma.iter().flatten();

@@ -23,7 +23,7 @@ use num_traits::{Signed, Zero};
 
 /// Name of a Lie algebra, or its invariants if it is none of the known ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Name {
+pub enum AlgebraName {
     /// Direct sum of these, in reading order; Rᵏ last.
     Sum(Vec<String>),
     /// None of the known ones.
@@ -39,12 +39,12 @@ pub enum Name {
     },
 }
 
-impl Name {
+impl AlgebraName {
     /// Returns the name as text, such as `so(3) ⊕ R^3`.
     pub fn text(&self) -> String {
         match self {
-            Name::Sum(parts) => parts.join(" ⊕ "),
-            Name::Unnamed {
+            AlgebraName::Sum(parts) => parts.join(" ⊕ "),
+            AlgebraName::Unnamed {
                 dimension,
                 derived,
                 centre,
@@ -61,16 +61,16 @@ impl Name {
 }
 
 /// Returns the name of an abelian algebra: `R`, or `R^3` in dimension 3.
-pub fn abelian(dimension: usize) -> String {
+pub fn abelian_name(dimension: usize) -> String {
     match dimension {
         1 => "R".into(),
         _ => format!("R^{dimension}"),
     }
 }
 
-/// Names an algebra.
-pub fn recognise(algebra: &LieAlgebra) -> Name {
-    let unnamed = || Name::Unnamed {
+/// Identifies a Lie algebra by its invariants, and returns its name.
+pub fn identify_algebra(algebra: &LieAlgebra) -> AlgebraName {
+    let unnamed = || AlgebraName::Unnamed {
         dimension: algebra.dimension(),
         derived: algebra.derived_series(),
         centre: algebra.centre().len(),
@@ -87,15 +87,15 @@ pub fn recognise(algebra: &LieAlgebra) -> Name {
         },
     };
     if summand > 0 {
-        parts.push(abelian(summand));
+        parts.push(abelian_name(summand));
     }
-    Name::Sum(parts)
+    AlgebraName::Sum(parts)
 }
 
 /// Returns the names of the summands of an algebra without abelian summand; `None` if it is not a known one.
 fn indecomposable(algebra: &LieAlgebra) -> Option<Vec<String>> {
     let n = algebra.dimension();
-    let (derived, centre) = (algebra.derived(), algebra.centre());
+    let (derived, centre) = (algebra.derived_algebra(), algebra.centre());
     let (plus, minus) = algebra.killing_signature();
     let one = |name: &str| Some(vec![name.to_string()]);
     if minus == n && n.is_multiple_of(3) && n <= 9 {
@@ -116,7 +116,7 @@ fn indecomposable(algebra: &LieAlgebra) -> Option<Vec<String>> {
             _ => None,
         },
         (6, 6) if (plus, minus) == (0, 3) => {
-            let radical = Echelon::new(algebra.killing()).null_space(n);
+            let radical = Echelon::new(algebra.killing_form()).null_space(n);
             algebra
                 .is_abelian_on(&radical)
                 .then(|| vec!["se(3)".into()])
@@ -129,7 +129,7 @@ fn indecomposable(algebra: &LieAlgebra) -> Option<Vec<String>> {
 ///
 /// As ad z maps into \[L, L\], they are the trace of ad z and the sum of its principal 2×2 minors.
 fn turning(algebra: &LieAlgebra) -> Option<(BigRational, BigRational)> {
-    let derived = algebra.derived();
+    let derived = algebra.derived_algebra();
     let outside = algebra.basis().into_iter().find(|vector| {
         let mut rows = derived.clone();
         rows.push(vector.clone());

@@ -2,7 +2,7 @@
 //! world axes.
 
 use super::super::calculus::Calculus;
-use crate::tables::Geometry;
+use crate::tables::EquationTables;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, zero3};
 use hamel_language::model::Model;
@@ -32,7 +32,7 @@ impl Side {
 ///
 /// If no velocity of the block moves the frame's origin (a product of rotations and translations), the rotation
 /// alone decides.
-pub fn side(geometry: &mut Geometry, block: &[usize]) -> Option<Side> {
+pub fn side(geometry: &mut EquationTables, block: &[usize]) -> Option<Side> {
     let zero = geometry.model.graph.zero().node();
     let vanishes = |edges: &[Edge]| edges.iter().all(|edge| edge.node() == zero);
     for (rotation, position) in poses(&geometry.model) {

@@ -3,10 +3,10 @@
 //! Along ∂ᵢ the metric changes by (L_{∂ᵢ} M)_jk = ∂ᵢM_jk − γᵢⱼˢ M_sk − γᵢₖˢ M_sj. If that is 0, the flow of ∂ᵢ
 //! preserves T, and by Noether's theorem dpᵢ/dt = fᵢ − ∂ᵢV with p = M ξ.
 
-use crate::tables::Geometry;
+use crate::tables::EquationTables;
 use hamel_algebra::graph::Edge;
 
-/// Symmetries along a direction ∂ᵢ.
+/// Whether M, V and loads are invariant along a direction ∂ᵢ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symmetry {
     /// Whether ∂ᵢM_jk = 0 for all j, k: the entries of M do not change along ∂ᵢ.
@@ -27,7 +27,7 @@ impl Symmetry {
 }
 
 /// Returns the symmetries of all directions; `applied` are the generalised forces of the loads.
-pub fn symmetries(geometry: &mut Geometry, applied: &[Edge]) -> Vec<Symmetry> {
+pub fn symmetries(geometry: &mut EquationTables, applied: &[Edge]) -> Vec<Symmetry> {
     let n = geometry.model.n();
     let zero = geometry.model.graph.zero().node();
     let (mass, gamma) = (&geometry.mass, &geometry.gamma);

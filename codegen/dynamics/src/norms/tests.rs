@@ -1,6 +1,6 @@
 //! Norms and inverses of matrices of numbers.
 
-use super::{inverse, max_or_infinite, row_sum_norm};
+use super::{inverse_positive_definite, max_or_infinite, row_sum_norm};
 
 #[test]
 fn inverses_and_norms() {
@@ -9,7 +9,7 @@ fn inverses_and_norms() {
         vec![1.0, 3.0, -1.0],
         vec![0.0, -1.0, 2.0],
     ];
-    let inverted = inverse(rows.clone());
+    let inverted = inverse_positive_definite(rows.clone());
     for i in 0..3 {
         for j in 0..3 {
             let entry: f64 = (0..3).map(|k| rows[i][k] * inverted[k][j]).sum();

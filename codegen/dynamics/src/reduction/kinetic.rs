@@ -17,7 +17,7 @@ pub struct VelocityParametrization {
     pub shift: Vec<Edge>,
 }
 
-/// Returns ξ = C ξₐ + c.
+/// Returns all velocities ξ = C ξₐ + c of the full frame for active ones, as expressions.
 pub fn all_velocities(
     graph: &mut Graph,
     xi_active: &[Edge],
@@ -34,8 +34,8 @@ pub fn all_velocities(
     .collect()
 }
 
-/// Returns Ċ ξₐ + ċ along ẋ = A (C ξₐ + c).
-pub fn drift(
+/// Returns Ċ ξₐ + ċ, the part of ξ̇ that does not come from ξ̇ₐ, along ẋ = A (C ξₐ + c).
+pub fn velocity_drift(
     full: &mut Model,
     xi_active: &[Edge],
     parametrization: &VelocityParametrization,
@@ -60,12 +60,12 @@ pub fn kinetic_terms(
         return None;
     }
     let mut calculus = Calculus::new(full);
-    let mass = inertia::kinetic_mass(full);
+    let mass = inertia::written_mass_matrix(full);
     let rows = kinematics::left_inverse(full)?;
-    full.gyroscopic = energy::gyroscopic(full, &rows);
+    full.gyroscopic = energy::gyroscopic_energy(full, &rows);
     let gamma = commutation::gamma(full, &mut calculus, &rows);
-    let h = connection::quadratic(full, &mut calculus, &mass, &gamma);
-    let drift = drift(full, xi_active, parametrization);
+    let h = connection::bias_forces(full, &mut calculus, &mass, &gamma);
+    let drift = velocity_drift(full, xi_active, parametrization);
     let graph = &mut full.graph;
     let columns = transpose(&parametrization.complement);
     let sum: Vec<Edge> = mass

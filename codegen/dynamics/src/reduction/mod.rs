@@ -14,7 +14,7 @@ mod projection;
 mod redundant;
 mod rows;
 
-pub use kinetic::{VelocityParametrization, drift};
+pub use kinetic::{VelocityParametrization, velocity_drift};
 
 use crate::inertia;
 use hamel_algebra::graph::{Edge, Graph};
@@ -24,10 +24,10 @@ use hamel_language::model::pfaffian::{Kind, Pfaffian};
 use hamel_language::model::{FullFrame, Model};
 use hamel_language::syntax::ast::Span;
 use projection::ModelProjection;
-pub use redundant::warnings;
+pub use redundant::dropped_row_warnings;
 use redundant::{contradicting_row_error, redundant_row_error};
-pub use rows::{independent_rows, normalize};
-use rows::{select_rows, start_numbers};
+pub use rows::{independent_rows, normalize_row};
+use rows::{select_rows, start_values};
 use std::sync::Arc;
 
 /// Largest ratio at the start of another coefficient of the same row, or of the same velocity in other rows, to a
@@ -37,7 +37,7 @@ use std::sync::Arc;
 /// multiplier.
 const MAX_COEFFICIENT_RATIO: f64 = 30.0;
 
-/// Active velocities, and the model in them.
+/// Result of solving constraints: the active velocities, and the model in them.
 #[derive(Clone, Debug)]
 pub struct Reduction {
     /// Model in ξₐ; its constraints are the rows that are kept.
@@ -141,7 +141,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     let images = projection.images.clone();
     let mut model = projection.model(&rows, &kept, &pivots);
     model.overconstrained = kept.len() > rank;
-    model.augmented = !kept.is_empty() && inertia::is_singular(&model);
+    model.augmented = !kept.is_empty() && inertia::is_mass_matrix_singular(&model);
     model.full_frame = given.then(|| FullFrame {
         full: Arc::new(before),
         images: images.clone(),
@@ -169,7 +169,7 @@ struct Echelon {
 }
 
 fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
-    let numbers = start_numbers(model);
+    let numbers = start_values(model);
     let constraints = model.constraints.clone();
     let graph = &mut model.graph;
     let zero = graph.zero();
@@ -335,8 +335,11 @@ fn check_given_rates(
     let edges: Vec<Edge> = (kept.iter())
         .flat_map(|&row| active.iter().map(move |&i| rows[row][i]))
         .collect();
-    let values = evaluate(&full.graph, &edges, &start_numbers(full));
-    let mut given: Vec<Vec<f64>> = values.chunks(active.len().max(1)).map(normalize).collect();
+    let values = evaluate(&full.graph, &edges, &start_values(full));
+    let mut given: Vec<Vec<f64>> = values
+        .chunks(active.len().max(1))
+        .map(normalize_row)
+        .collect();
     let mut rank = independent_rows(given.clone()).len();
     for &(velocity, _) in &full.accelerated {
         let place = active.iter().position(|&i| i == velocity);

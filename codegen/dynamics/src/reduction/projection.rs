@@ -1,6 +1,6 @@
 //! Transfer of a model to a graph without the velocities that were solved for.
 
-use super::kinetic::{VelocityParametrization, all_velocities, drift, kinetic_terms};
+use super::kinetic::{VelocityParametrization, all_velocities, kinetic_terms, velocity_drift};
 use hamel_algebra::derivation::Derivation;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::transplant::map_symbols;
@@ -33,7 +33,7 @@ impl ModelProjection {
         let kinetic = kinetic_terms(&mut full, &xi_active, parametrization);
         // ξ = C ξₐ + c and ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ, in the full graph.
         let accelerations: Vec<Edge> = active.iter().map(|&i| full.xi_dot[i]).collect();
-        let drift = drift(&mut full, &xi_active, parametrization);
+        let drift = velocity_drift(&mut full, &xi_active, parametrization);
         let graph = &mut full.graph;
         let xi = all_velocities(graph, &xi_active, parametrization);
         let xi_dot: Vec<Edge> = parametrization

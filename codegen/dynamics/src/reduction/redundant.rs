@@ -16,7 +16,8 @@ pub fn redundant_row_error(constraints: &[Pfaffian], row: usize, when: &str) -> 
     }
 }
 
-/// Returns the error for a row that demands a different velocity from the one that the others leave.
+/// Returns the error for a constraint row that demands a different velocity from the one that the other constraints
+/// leave.
 pub fn contradicting_row_error(constraints: &[Pfaffian], row: usize) -> Diagnostic {
     let message = "this row contradicts the others: it requires a velocity that they do not allow";
     let error = Diagnostic::new(constraints[row].span, message).help("remove one of them");
@@ -27,7 +28,7 @@ pub fn contradicting_row_error(constraints: &[Pfaffian], row: usize) -> Diagnost
 }
 
 /// Returns a warning for every equation of which rows were dropped, in the order of `dropped`.
-pub fn warnings(constraints: &[Pfaffian], dropped: &[usize]) -> Vec<Diagnostic> {
+pub fn dropped_row_warnings(constraints: &[Pfaffian], dropped: &[usize]) -> Vec<Diagnostic> {
     let mut equations: Vec<Vec<&Pfaffian>> = Vec::new();
     for row in dropped.iter().filter_map(|&place| constraints.get(place)) {
         let same = |other: &&mut Vec<&Pfaffian>| {

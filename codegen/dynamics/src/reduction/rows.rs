@@ -18,8 +18,8 @@ const COMPARISON_DISTANCE: f64 = 1.0 / 1024.0;
 /// Largest ratio of the largest remaining row to the first one that may come next.
 const MAX_ROW_RATIO: f64 = 8.0;
 
-/// Returns the rows to keep and the number of them that are independent at the start; adds redundant rows to
-/// `dropped`.
+/// Returns the indices of the constraint rows that multipliers have to enforce, and the number of them that are
+/// independent at the start; adds redundant rows to `dropped`.
 ///
 /// A loop may have rows that depend on others where it is closed (an overconstrained mechanism); a nonholonomic
 /// constraint may not. Rows that depend on others at every configuration of the tree add no information and are
@@ -83,7 +83,7 @@ pub fn select_rows(
     dropped.sort_unstable();
     open.sort_unstable();
     let edges: Vec<Edge> = open.iter().flat_map(|&i| moving(&rows[i])).collect();
-    let values = evaluate(&model.graph, &edges, &start_numbers(model));
+    let values = evaluate(&model.graph, &edges, &start_values(model));
     let columns = moving(&model.xi).len().max(1);
     let left: Vec<Vec<f64>> = values.chunks(columns).map(<[f64]>::to_vec).collect();
     let independent: Vec<usize> = (independent_rows(left).into_iter())
@@ -111,7 +111,7 @@ fn order_by_size(model: &Model, rows: &[Vec<Edge>], given: usize) -> Vec<usize> 
     let mut random = Random::new(1);
     let mut coordinate = || (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
     let step: Vec<f64> = model.xi.iter().map(|_| coordinate()).collect();
-    let start = start_numbers(model);
+    let start = start_values(model);
     let a = evaluate(&model.graph, &model.a.concat(), &start);
     let places: Vec<usize> = model.x.iter().map(|x| x.node() as usize).collect();
     let symbols = model.graph.symbols();
@@ -172,7 +172,8 @@ fn norm(row: &[f64]) -> f64 {
     row.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// Returns the rows that are numerically independent, as many as there are; the largest come first.
+/// Returns the indices of rows of numbers that are numerically independent, as many as there are; the largest come
+/// first.
 pub fn independent_rows(mut left: Vec<Vec<f64>>) -> Vec<usize> {
     let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
     let mut independent = Vec::new();
@@ -192,7 +193,7 @@ pub fn independent_rows(mut left: Vec<Vec<f64>>) -> Vec<usize> {
 }
 
 /// Returns a row divided by its length; a row of zeros is returned unchanged.
-pub fn normalize(row: &[f64]) -> Vec<f64> {
+pub fn normalize_row(row: &[f64]) -> Vec<f64> {
     let length = norm(row);
     let divided = row.iter().map(|v| v / length);
     if length > 0.0 {
@@ -202,8 +203,8 @@ pub fn normalize(row: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Returns the values of all symbols at the start.
-pub fn start_numbers(model: &Model) -> Vec<f64> {
+/// Returns the values of all symbols of a model at the start, in `f64`.
+pub fn start_values(model: &Model) -> Vec<f64> {
     let (m, n) = (model.u.len(), model.n());
     let zeros = vec![0.0; n];
     model.numbers(

@@ -5,7 +5,7 @@
 //! If the joint and neighbouring joints turn about a common point c, this is S_ω·(t − c × f).
 
 use super::parameters::Link;
-use super::wrenches::{ALL_AXES, Axes, Motions};
+use super::wrenches::{ALL_AXES, LinkMotions, WrenchAxes};
 use crate::tree::inverse::to_parent;
 use crate::tree::wrench::Wrench;
 use crate::tree::{Link as TreeLink, Tree};
@@ -64,7 +64,7 @@ const MAX_ROUTE_CHANGES: usize = 60;
 
 /// Returns the columns of all links, ten for each, with second moments in place of the diagonal of Θ.
 pub fn inertial_columns(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
-    let motions = Motions::new(model, tree, Axes::Own);
+    let motions = LinkMotions::new(model, tree, WrenchAxes::Own);
     let all: Vec<usize> = (0..10).collect();
     let links = links.iter().enumerate();
     links
@@ -97,7 +97,7 @@ pub fn cheapest_columns(
     };
     // Compute the kept columns first: expressions that they have in common with others are then computed in the way
     // they need.
-    let motions = Motions::new(model, tree, way.axes);
+    let motions = LinkMotions::new(model, tree, way.axes);
     let mut columns: Vec<Option<Vec<Edge>>> = vec![None; 10 * links.len()];
     for first in [true, false] {
         for (index, link) in links.iter().enumerate() {
@@ -125,7 +125,7 @@ struct Search<'a> {
 /// Axes of all links and the route of each, with their cost.
 struct AxesAndRoutes {
     cost: usize,
-    axes: Axes,
+    axes: WrenchAxes,
     routes: Vec<Route>,
 }
 
@@ -135,7 +135,7 @@ impl Search<'_> {
     fn best(&self) -> Option<AxesAndRoutes> {
         let ways = ALL_AXES.iter().flat_map(|&axes| {
             let mut tried = self.model.clone();
-            let motions = Motions::new(&mut tried, self.tree, axes);
+            let motions = LinkMotions::new(&mut tried, self.tree, axes);
             let graph = tried.graph;
             ROUTE_SETS.map(|allowed| {
                 let (cost, routes) = self.one_by_one(&graph, &motions, allowed);
@@ -144,7 +144,7 @@ impl Search<'_> {
         });
         let mut best = ways.min_by_key(|way| way.cost)?;
         let mut tried = self.model.clone();
-        let motions = Motions::new(&mut tried, self.tree, best.axes);
+        let motions = LinkMotions::new(&mut tried, self.tree, best.axes);
         let mut left = MAX_ROUTE_CHANGES;
         loop {
             let before = best.cost;
@@ -185,7 +185,7 @@ impl Search<'_> {
     fn kept_columns(
         &self,
         graph: &mut Graph,
-        motions: &Motions,
+        motions: &LinkMotions,
         index: usize,
         route: Route,
     ) -> Vec<Edge> {
@@ -197,7 +197,7 @@ impl Search<'_> {
     fn one_by_one(
         &self,
         graph: &Graph,
-        motions: &Motions,
+        motions: &LinkMotions,
         allowed: &[Route],
     ) -> (usize, Vec<Route>) {
         let mut taken = vec![Route::Wrenches; self.links.len()];
@@ -220,7 +220,7 @@ impl Search<'_> {
 /// Returns the columns of some parameters of a link.
 fn link_columns(
     graph: &mut Graph,
-    motions: &Motions,
+    motions: &LinkMotions,
     (index, link): (usize, &Link),
     own: &[usize],
     route: Route,

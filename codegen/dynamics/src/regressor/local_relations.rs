@@ -6,8 +6,8 @@
 //! the description has them. On a hinge, such δ are masses on its axis; those of other joints, and of links that
 //! move together, are found at random states.
 
-use super::parameters::{Link, inertia_of_standard, standard_of};
-use super::samples::Samples;
+use super::parameters::{Link, inertia_of_standard, standard_parameters_of};
+use super::samples::RegressorSamples;
 use crate::tree::mass::LinkInertia;
 use crate::tree::turn::RotationFactor;
 use crate::tree::{Link as TreeLink, Tree};
@@ -36,7 +36,7 @@ pub struct ExactConstants {
 
 impl ExactConstants {
     /// Collects the entries of poses with all coordinates zero or the identity, their products and their quotients.
-    pub fn new(model: &mut Model, samples: &Samples) -> Self {
+    pub fn new(model: &mut Model, samples: &RegressorSamples) -> Self {
         let poses: Vec<(Mat3, Vec3)> = model.frames.iter().map(|frame| frame.relative).collect();
         let entries: Vec<Edge> = poses
             .iter()
@@ -65,7 +65,7 @@ impl ExactConstants {
         }
         let mut by_value = FxHashMap::default();
         for edge in all {
-            if let Some(&[value]) = samples.constants(graph, &[edge]).as_deref() {
+            if let Some(&[value]) = samples.constant_values(graph, &[edge]).as_deref() {
                 by_value.entry(value).or_insert(edge);
                 by_value.entry(-value).or_insert(-edge);
             }
@@ -73,20 +73,21 @@ impl ExactConstants {
         ExactConstants { by_value }
     }
 
-    /// Returns the exact constant with a given value: a small fraction or a known constant; `None` if it is
-    /// neither.
-    pub fn exact(&self, graph: &mut Graph, value: ResiduePair) -> Option<Edge> {
+    /// Returns the expression of the exact constant with a given value modulo p: a small fraction or a known constant;
+    /// `None` if it is neither.
+    pub fn exact_constant(&self, graph: &mut Graph, value: ResiduePair) -> Option<Edge> {
         match value.to_small_rational(MAX_COEFFICIENT_BITS) {
             Some((n, d)) => Some(graph.ratio(n, d)),
             None => self.by_value.get(&value).copied(),
         }
     }
 
-    /// Returns the exact constants of all entries of a vector; `None` if one of them has none.
-    pub fn all(&self, graph: &mut Graph, values: &[ResiduePair]) -> Option<Vec<Edge>> {
+    /// Returns the expressions of the exact constants of all entries of a vector modulo p; `None` if one of them has
+    /// none.
+    pub fn exact_constants(&self, graph: &mut Graph, values: &[ResiduePair]) -> Option<Vec<Edge>> {
         values
             .iter()
-            .map(|&value| self.exact(graph, value))
+            .map(|&value| self.exact_constant(graph, value))
             .collect()
     }
 }
@@ -95,7 +96,7 @@ impl ExactConstants {
 /// and its parent, and within groups of links that move together. There may be more.
 pub fn local_relations(
     model: &mut Model,
-    samples: &Samples,
+    samples: &RegressorSamples,
     known: &ExactConstants,
     tree: &Tree,
     links: &[Link],
@@ -117,12 +118,12 @@ pub fn local_relations(
             &tree.links[index],
             &links[index],
         ) {
-            let exact = standard_of(&mut model.graph, &masses);
+            let exact = standard_parameters_of(&mut model.graph, &masses);
             let group = (&[index][..], links[index].parent);
             relations.push(rest_relation(model, links, group, &exact));
         }
         if let Some(masses) = along_earlier_axis(model, &numbers, tree, links, index) {
-            let exact = standard_of(&mut model.graph, &masses);
+            let exact = standard_parameters_of(&mut model.graph, &masses);
             for parent in [None, links[index].parent] {
                 relations.push(rest_relation(model, links, (&[index], parent), &exact));
             }
@@ -137,7 +138,7 @@ pub fn local_relations(
             (&group, anchor),
         ));
     }
-    relations.retain(|relation| holds(&model.graph, samples, relation));
+    relations.retain(|relation| is_satisfied(&model.graph, samples, relation));
     relations
 }
 
@@ -247,7 +248,7 @@ fn coupled_links(tree: &Tree) -> Vec<(Vec<usize>, Option<usize>)> {
 /// Returns the relations among the parameters of a group of links and, if given, of a link before them.
 fn relations_among(
     model: &mut Model,
-    samples: &Samples,
+    samples: &RegressorSamples,
     known: &ExactConstants,
     links: &[Link],
     (group, anchor): (&[usize], Option<usize>),
@@ -259,7 +260,7 @@ fn relations_among(
     let halves = found.iter().map(|values| values[..own.len()].to_vec());
     let mut relations = Vec::new();
     for values in Echelon::new(halves.collect()).rows {
-        let Some(exact) = known.all(&mut model.graph, &values) else {
+        let Some(exact) = known.exact_constants(&mut model.graph, &values) else {
             continue;
         };
         relations.push(rest_relation(model, links, (group, anchor), &exact));
@@ -284,9 +285,9 @@ fn rest_relation(
             let pose = pose_at_zero(model, links[index].frame, links[anchor].frame);
             let graph = &mut model.graph;
             let moved = inertia_of_standard(graph, exact)
-                .turned(graph, &RotationFactor::By(pose.0))
-                .shifted(graph, pose.1);
-            for (sum, entry) in all.iter_mut().zip(standard_of(graph, &moved)) {
+                .rotate_axes(graph, &RotationFactor::By(pose.0))
+                .shift_origin(graph, pose.1);
+            for (sum, entry) in all.iter_mut().zip(standard_parameters_of(graph, &moved)) {
                 *sum = graph.sub(*sum, entry);
             }
         }
@@ -304,14 +305,14 @@ pub fn relation_of(graph: &Graph, parameters: &[usize], factors: &[Edge]) -> Rel
         .collect()
 }
 
-/// Returns whether a relation holds at the samples.
-pub fn holds(graph: &Graph, samples: &Samples, relation: &Relation) -> bool {
+/// Returns whether a relation Σ v_k Y_k = 0 holds at the samples, modulo p.
+pub fn is_satisfied(graph: &Graph, samples: &RegressorSamples, relation: &Relation) -> bool {
     let factors: Vec<Edge> = relation.iter().map(|&(_, factor)| factor).collect();
-    let Some(values) = samples.constants(graph, &factors) else {
+    let Some(values) = samples.constant_values(graph, &factors) else {
         return false;
     };
     let parameters = relation.iter().map(|&(k, _)| k);
-    samples.vanishes(&parameters.zip(values).collect::<Vec<_>>())
+    samples.is_zero_sum(&parameters.zip(values).collect::<Vec<_>>())
 }
 
 /// Returns the pose of a frame in another one, with all coordinates zero or the identity.

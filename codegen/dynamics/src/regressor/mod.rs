@@ -35,7 +35,7 @@ mod wrenches;
 
 pub use error::RegressorError;
 pub use parameters::{
-    DIAGONAL_PARAMETERS, INERTIA_ENTRIES, Kind, SECOND_MOMENT_NAMES, StandardParameter,
+    DIAGONAL_PARAMETERS, INERTIA_ENTRIES, ParameterKind, SECOND_MOMENT_NAMES, StandardParameter,
 };
 
 use super::calculus::Calculus;
@@ -44,7 +44,7 @@ use hamel_algebra::graph::Edge;
 use hamel_algebra::transplant::rebuild;
 use hamel_language::model::Model;
 use hamel_program::count::count;
-use samples::Samples;
+use samples::RegressorSamples;
 
 /// Base parameter β = Σ k π, a combination of standard parameters.
 #[derive(Clone, Debug)]
@@ -53,14 +53,14 @@ pub struct BaseParameter {
     /// or that of a second moment Σ_xx = (Θ_yy + Θ_zz − Θ_xx) / 2.
     pub name: String,
     /// Kind of parameter.
-    pub kind: Kind,
+    pub kind: ParameterKind,
     /// Terms: places of standard parameters with their coefficients, those of its own link or joint first.
     pub terms: Vec<(usize, Edge)>,
     /// Column of Y.
     pub column: Vec<Edge>,
 }
 
-/// Regressor F = Y π with its base parameters.
+/// Regressor Y of F = Y π, as expressions, with the base parameters to which it is reduced.
 #[derive(Clone, Debug)]
 pub struct Regressor {
     /// Model, with a graph that holds all expressions below.
@@ -121,7 +121,7 @@ fn regressor_about(model: &Model, moved: bool) -> Result<Regressor, RegressorErr
         standard.push(parameter.clone());
         columns.push(column.clone());
     }
-    let samples = Samples::new(&model, &columns).ok_or(RegressorError::NoValues)?;
+    let samples = RegressorSamples::new(&model, &columns).ok_or(RegressorError::NoValues)?;
     let found = relations::solve_relations(&mut model, &samples, &tree, &links, standard.len())?;
     let kept: Vec<usize> = found.iter().map(|(kept, _)| *kept).collect();
     let mut moments = columns::cheapest_columns(&mut derived, &tree, &links, &kept);
@@ -143,7 +143,7 @@ fn regressor_about(model: &Model, moved: bool) -> Result<Regressor, RegressorErr
         let factors: Vec<Edge> = terms.iter().map(|&(_, factor)| factor).collect();
         let factors = rebuild(&model.graph, &mut derived.graph, &factors);
         let terms = terms.iter().map(|&(k, _)| k).zip(factors);
-        let terms = parameters::standard_terms(&mut derived.graph, &links, kept, terms);
+        let terms = parameters::to_standard_terms(&mut derived.graph, &links, kept, terms);
         base.push(BaseParameter {
             name: parameters::name(&derived.graph, &standard, kept, &terms),
             kind: standard[kept].kind,

@@ -22,9 +22,9 @@ pub const PARAMETER_NAMES: [&str; 10] = [
 /// Rows and columns of the entries of Θ in this order.
 pub const INERTIA_ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-/// Kind of a parameter.
+/// Kind of a standard parameter: an entry of a link's inertia, or armature, damping or stiffness of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ParameterKind {
     /// Parameter of a link, by its place in the order Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h = m s, m.
     Inertia(usize),
     /// Armature inertia J of a joint.
@@ -35,11 +35,11 @@ pub enum Kind {
     Stiffness,
 }
 
-/// A standard parameter.
+/// A standard parameter: an entry of (Θ, m s, m) of a link, about its frame's origin, or a parameter of a joint.
 #[derive(Clone, Debug)]
 pub struct StandardParameter {
     /// Kind of parameter.
-    pub kind: Kind,
+    pub kind: ParameterKind,
     /// Name of the frame of the link, or of the velocity or coordinate, that the parameter belongs to.
     pub of: String,
     /// Value in the description.
@@ -53,10 +53,10 @@ impl StandardParameter {
     /// Returns the name of the parameter in text.
     pub fn name(&self) -> String {
         let own = match self.kind {
-            Kind::Inertia(place) => PARAMETER_NAMES[place],
-            Kind::Armature => "armature",
-            Kind::Damping => "damping",
-            Kind::Stiffness => "stiffness",
+            ParameterKind::Inertia(place) => PARAMETER_NAMES[place],
+            ParameterKind::Armature => "armature",
+            ParameterKind::Damping => "damping",
+            ParameterKind::Stiffness => "stiffness",
         };
         format!("{}.{own}", self.of)
     }
@@ -88,9 +88,9 @@ pub fn links(model: &mut Model, tree: &Tree, joint_frames: &[JointFrame]) -> Vec
         .map(|(link, joint_frame)| {
             let graph = &mut model.graph;
             let back = RotationFactor::By(transpose3(&joint_frame.axes));
-            let mass = joint_frame.mass.turned(graph, &back);
+            let mass = joint_frame.mass.rotate_axes(graph, &back);
             let name = model.frames[joint_frame.frame].name.clone();
-            let values = standard_of(graph, &mass);
+            let values = standard_parameters_of(graph, &mass);
             let present = values.iter().any(|&value| value != graph.zero());
             let standard = values.into_iter().enumerate();
             let (zero, one) = (graph.zero(), graph.one());
@@ -98,14 +98,14 @@ pub fn links(model: &mut Model, tree: &Tree, joint_frames: &[JointFrame]) -> Vec
             let unit = |place: usize| {
                 let mut ten = [zero; 10];
                 ten[place] = one;
-                let mass = inertia_of_standard(graph, &ten).shifted(graph, back);
+                let mass = inertia_of_standard(graph, &ten).shift_origin(graph, back);
                 moments_of(&mass)
             };
             Link {
                 moments: (0..10).map(unit).collect(),
                 standard: standard
                     .map(|(place, value)| StandardParameter {
-                        kind: Kind::Inertia(place),
+                        kind: ParameterKind::Inertia(place),
                         of: name.clone(),
                         value,
                         present,
@@ -143,8 +143,8 @@ pub fn inertia_of_standard(graph: &mut Graph, ten: &[Edge]) -> LinkInertia {
 }
 
 /// Returns the ten standard parameters of an inertia.
-pub fn standard_of(graph: &mut Graph, mass: &LinkInertia) -> Vec<Edge> {
-    let theta = mass.inertia(graph);
+pub fn standard_parameters_of(graph: &mut Graph, mass: &LinkInertia) -> Vec<Edge> {
+    let theta = mass.inertia_matrix(graph);
     let mut ten = INERTIA_ENTRIES.map(|(i, j)| theta[i][j]).to_vec();
     ten.extend(mass.first);
     ten.push(mass.mass);
@@ -191,8 +191,9 @@ pub fn standard_columns(
         .collect()
 }
 
-/// Rewrites a relation between columns of standard parameters as one between columns of moments.
-pub fn between_moments(graph: &mut Graph, links: &[Link], relation: &Relation) -> Relation {
+/// Rewrites a linear relation between regressor columns of (Θ, m s, m) of the links as one between columns of (Σ, m s,
+/// m), Σ = tr(Θ)/2 I − Θ.
+pub fn to_second_moments(graph: &mut Graph, links: &[Link], relation: &Relation) -> Relation {
     let zero = graph.zero();
     let mut factors = vec![zero; 10 * links.len()];
     let mut all = Relation::new();
@@ -212,9 +213,9 @@ pub fn between_moments(graph: &mut Graph, links: &[Link], relation: &Relation) -
     all
 }
 
-/// Rewrites a sum over moments as one over standard parameters; those of the kept parameter's own link or joint
-/// come first.
-pub fn standard_terms(
+/// Rewrites a linear combination of (Σ, m s, m) of the links, Σ = tr(Θ)/2 I − Θ, as one of the standard parameters (Θ,
+/// m s, m); those of the kept parameter's own link or joint come first.
+pub fn to_standard_terms(
     graph: &mut Graph,
     links: &[Link],
     kept: usize,
@@ -256,14 +257,14 @@ pub fn name(
     kept: usize,
     terms: &[(usize, Edge)],
 ) -> String {
-    let Kind::Inertia(place) = standard[kept].kind else {
+    let ParameterKind::Inertia(place) = standard[kept].kind else {
         return standard[kept].name();
     };
     let Some(axis) = DIAGONAL_PARAMETERS.iter().position(|&k| k == place) else {
         return standard[kept].name();
     };
     let of_link = |&&(k, _): &&(usize, Edge)| {
-        matches!(standard[k].kind, Kind::Inertia(_)) && k / 10 == kept / 10
+        matches!(standard[k].kind, ParameterKind::Inertia(_)) && k / 10 == kept / 10
     };
     match terms.iter().filter(of_link).collect::<Vec<_>>()[..] {
         [&(k, factor)] if factor == graph.one() => standard[k].name(),
@@ -297,7 +298,10 @@ pub fn joint_parameters(model: &mut Model, calculus: &mut Calculus) -> JointPara
             let mut column = vec![zero; n];
             column[i] = model.xi_dot[i];
             let name = symbol_name(model, model.xi[i]).unwrap_or_default();
-            parameters.push((standard(Kind::Armature, name, model.armature[i]), column));
+            parameters.push((
+                standard(ParameterKind::Armature, name, model.armature[i]),
+                column,
+            ));
         }
     }
     let mut lines = false;
@@ -314,7 +318,10 @@ pub fn joint_parameters(model: &mut Model, calculus: &mut Calculus) -> JointPara
         });
         let column = column.collect();
         let name = symbol_name(model, rate).unwrap_or_else(|| format!("damper_{}", place + 1));
-        parameters.push((standard(Kind::Damping, name, damper.coefficient), column));
+        parameters.push((
+            standard(ParameterKind::Damping, name, damper.coefficient),
+            column,
+        ));
     }
     let mut potential = model.potential;
     for (place, spring) in model.elements.springs.clone().into_iter().enumerate() {
@@ -335,7 +342,10 @@ pub fn joint_parameters(model: &mut Model, calculus: &mut Calculus) -> JointPara
         });
         let column = column.collect();
         let name = symbol_name(model, length).unwrap_or_else(|| format!("spring_{}", place + 1));
-        parameters.push((standard(Kind::Stiffness, name, spring.stiffness), column));
+        parameters.push((
+            standard(ParameterKind::Stiffness, name, spring.stiffness),
+            column,
+        ));
     }
     let slopes = (0..n).map(|i| calculus.along(&mut model.graph, i, potential));
     let other_potentials = slopes.collect();

@@ -1,9 +1,11 @@
 //! Elimination with exact coefficients, and the resulting base parameters.
 
 use super::error::RegressorError;
-use super::local_relations::{ExactConstants, Relation, holds, local_relations, relation_of};
-use super::parameters::{Link, between_moments};
-use super::samples::Samples;
+use super::local_relations::{
+    ExactConstants, Relation, is_satisfied, local_relations, relation_of,
+};
+use super::parameters::{Link, to_second_moments};
+use super::samples::RegressorSamples;
 use crate::tree::Tree;
 use hamel_algebra::echelon::Echelon;
 use hamel_algebra::graph::{Edge, Graph};
@@ -27,14 +29,14 @@ pub type BaseParameterTerms = (usize, Vec<(usize, Edge)>);
 /// kept.
 pub fn solve_relations(
     model: &mut Model,
-    samples: &Samples,
+    samples: &RegressorSamples,
     tree: &Tree,
     links: &[Link],
     total: usize,
 ) -> Result<Vec<BaseParameterTerms>, RegressorError> {
     let massless = |k: usize| links.get(k / 10).is_some_and(|link| !link.present);
     let present: Vec<usize> = (0..total).filter(|&k| !massless(k)).collect();
-    let rank = Echelon::new(samples.of(&present)).rank();
+    let rank = Echelon::new(samples.columns_of(&present)).rank();
     // Eliminate the parameters of links without mass first, since nothing is lost with them; then the others, the
     // last one first.
     let mut order: Vec<usize> = (0..total).filter(|&k| massless(k)).collect();
@@ -54,7 +56,7 @@ pub fn solve_relations(
             .collect();
         for values in samples.relations(&left) {
             let exact = known
-                .all(&mut model.graph, &values)
+                .exact_constants(&mut model.graph, &values)
                 .ok_or(RegressorError::InexactRelations)?;
             relations.push(relation_of(&model.graph, &left, &exact));
         }
@@ -64,14 +66,14 @@ pub fn solve_relations(
     if solved.len() + rank != present.len()
         || !solved
             .iter()
-            .all(|(_, relation)| holds(graph, samples, relation))
+            .all(|(_, relation)| is_satisfied(graph, samples, relation))
     {
         return Err(RegressorError::WrongRank);
     }
     let graph = &mut model.graph;
     let relations: Vec<Relation> = relations
         .iter()
-        .map(|relation| between_moments(graph, links, relation))
+        .map(|relation| to_second_moments(graph, links, relation))
         .collect();
     let solved = solve(graph, &numbers, &relations, ordered, links.len());
     if solved.len() + rank != present.len() {

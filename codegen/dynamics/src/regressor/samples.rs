@@ -18,19 +18,20 @@ const SPARE_STATES: usize = 10;
 /// Smallest number of states; a single joint must be able to distinguish the parameters of two links.
 const MIN_STATES: usize = 40;
 
-/// Values of Y at random states, with the rows of all states.
-pub struct Samples {
+/// Values of the regressor Y at random states, modulo p, with the rows of all states.
+pub struct RegressorSamples {
     /// Rows, with an entry for every column of Y.
     pub rows: Vec<Vec<ResiduePair>>,
     /// A sampled state, with the same values of everything that is constant at run time.
     lane: FieldPoint,
 }
 
-impl Samples {
-    /// Evaluates columns; `None` if too few states have values.
+impl RegressorSamples {
+    /// Evaluates columns of expressions at random states; `None` if too few states have values.
     pub fn new(model: &Model, columns: &[Vec<Edge>]) -> Option<Self> {
         let tape = Tape::new(&model.graph, &columns.concat())?;
-        (1..=MAX_CONSTANT_CHOICES).find_map(|seed| Samples::at(model, &tape, columns.len(), seed))
+        (1..=MAX_CONSTANT_CHOICES)
+            .find_map(|seed| RegressorSamples::at(model, &tape, columns.len(), seed))
     }
 
     fn at(model: &Model, tape: &Tape, columns: usize, seed: u64) -> Option<Self> {
@@ -55,16 +56,16 @@ impl Samples {
             rows.extend((0..n).map(|i| (0..columns).map(|k| values[k * n + i]).collect()));
             last = Some(lane);
         }
-        Some(Samples { rows, lane: last? })
+        Some(RegressorSamples { rows, lane: last? })
     }
 
     /// Returns the values of expressions that are constant at run time; `None` if one has no value.
-    pub fn constants(&self, graph: &Graph, edges: &[Edge]) -> Option<Vec<ResiduePair>> {
+    pub fn constant_values(&self, graph: &Graph, edges: &[Edge]) -> Option<Vec<ResiduePair>> {
         evaluate_at(graph, edges, &mut self.lane.clone())
     }
 
     /// Returns the columns of these parameters alone, without rows of zeros.
-    pub fn of(&self, columns: &[usize]) -> Vec<Vec<ResiduePair>> {
+    pub fn columns_of(&self, columns: &[usize]) -> Vec<Vec<ResiduePair>> {
         let rows = self.rows.iter();
         let rows = rows.map(|row| {
             columns
@@ -78,11 +79,11 @@ impl Samples {
 
     /// Returns a basis of the relations Σ v_k Y_k = 0 between these columns, in which the last columns lead.
     pub fn relations(&self, columns: &[usize]) -> Vec<Vec<ResiduePair>> {
-        Echelon::new(self.of(columns)).null_space(columns.len())
+        Echelon::new(self.columns_of(columns)).null_space(columns.len())
     }
 
     /// Returns whether Σ v_k Y_k = 0 at all states.
-    pub fn vanishes(&self, terms: &[(usize, ResiduePair)]) -> bool {
+    pub fn is_zero_sum(&self, terms: &[(usize, ResiduePair)]) -> bool {
         self.rows.iter().all(|row| {
             let sum = terms
                 .iter()

@@ -21,7 +21,7 @@ use hamel_language::model::Model;
 
 /// Axes in which wrenches are computed, and the way to compute U.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axes {
+pub enum WrenchAxes {
     /// Axes of each link; columns of U are carried from link to link.
     Own,
     /// Axes shared by parallel hinges, and by the last link of a chain with the previous one; columns of U are
@@ -32,10 +32,10 @@ pub enum Axes {
 }
 
 /// All choices of axes.
-pub const ALL_AXES: [Axes; 3] = [Axes::Own, Axes::Shared, Axes::Stepwise];
+pub const ALL_AXES: [WrenchAxes; 3] = [WrenchAxes::Own, WrenchAxes::Shared, WrenchAxes::Stepwise];
 
-/// Motion of all links in some axes.
-pub struct Motions {
+/// Velocities and accelerations of all links in some axes, from which the wrenches of unit parameters follow.
+pub struct LinkMotions {
     /// Links in these axes.
     pub tree: Tree,
     /// Rotation of a link's own axes relative to these, if they differ.
@@ -43,21 +43,21 @@ pub struct Motions {
     motions: Vec<LinkMotion>,
 }
 
-impl Motions {
+impl LinkMotions {
     /// Computes the motion of the model's links.
-    pub(super) fn new(model: &mut Model, tree: &Tree, axes: Axes) -> Self {
+    pub(super) fn new(model: &mut Model, tree: &Tree, axes: WrenchAxes) -> Self {
         let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
         let graph = &mut model.graph;
         let (mut tree, lags) = match axes {
-            Axes::Own => (tree.clone(), vec![None; tree.links.len()]),
-            Axes::Shared | Axes::Stepwise => tree.sharing_axes(graph),
+            WrenchAxes::Own => (tree.clone(), vec![None; tree.links.len()]),
+            WrenchAxes::Shared | WrenchAxes::Stepwise => tree.with_shared_axes(graph),
         };
         tree.tensors = match axes {
-            Axes::Own | Axes::Shared => TensorRoute::Carried,
-            Axes::Stepwise => TensorRoute::Chained,
+            WrenchAxes::Own | WrenchAxes::Shared => TensorRoute::Carried,
+            WrenchAxes::Stepwise => TensorRoute::Chained,
         };
         let motions = motions(graph, &tree, &xi, &xi_dot, gravity);
-        Motions {
+        LinkMotions {
             tree,
             lags,
             motions,

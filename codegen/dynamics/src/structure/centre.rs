@@ -11,7 +11,7 @@
 
 use super::constant::rest_configuration;
 use super::rates::CoordinateBlock;
-use super::tetrahedron::{matrix, tetrahedron};
+use super::tetrahedron::{rotation_matrix, tetrahedron};
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, dot_mat3};
 use hamel_algebra::transplant::substitute;
@@ -19,7 +19,7 @@ use hamel_language::model::Model;
 use hamel_language::model::layout::Block;
 use hamel_language::model::rotations::quaternion_matrix;
 
-/// Shift of the coordinates and its rate.
+/// Shift of plain coordinates to centred ones, for which the inertia splits, and its rate.
 #[derive(Clone, Debug)]
 pub struct CentreShift {
     /// Offset y − x, ν entries.
@@ -29,11 +29,11 @@ pub struct CentreShift {
     pub rate: Vec<Vec<Edge>>,
 }
 
-/// Computes the shift for K, where `coupling[f][c]` is the entry for plain rate f and turning rate
-/// c.
+/// Computes the shift to centred coordinates for K, where `coupling[f][c]` is the entry for plain rate f and turning
+/// rate c.
 ///
 /// There is no offset where a row of K is zero.
-pub fn shift(
+pub fn centre_shift(
     model: &Model,
     graph: &mut Graph,
     parts: &[CoordinateBlock],
@@ -116,7 +116,7 @@ fn offset(
         Block::Quaternion | Block::Rotation => {
             let mut sums = [[graph.zero(); 3]; 3];
             for quaternion in tetrahedron() {
-                let turned = matrix(quaternion);
+                let turned = rotation_matrix(quaternion);
                 let numbers: Vec<(i64, i64)> = match part.block {
                     Block::Quaternion => quaternion.iter().map(|&q| (q, 2)).collect(),
                     _ => turned.iter().flatten().map(|&r| (r, 1)).collect(),
@@ -134,7 +134,7 @@ fn offset(
             }
             let quarter = graph.ratio(1, 4);
             let g: Mat3 = sums.map(|row| row.map(|sum| graph.mul(quarter, sum)));
-            let rotation = matrix_of(graph, part, &x)?;
+            let rotation = rotation_matrix_of(graph, part, &x)?;
             let offset = dot_mat3(graph, &g, &rotation);
             let rate = (0..3)
                 .map(|i| {
@@ -151,7 +151,7 @@ fn offset(
 }
 
 /// Returns the rotation matrix R of a rotor's coordinates.
-pub fn matrix_of(graph: &mut Graph, part: &CoordinateBlock, x: &[Edge]) -> Option<Mat3> {
+pub fn rotation_matrix_of(graph: &mut Graph, part: &CoordinateBlock, x: &[Edge]) -> Option<Mat3> {
     match part.block {
         Block::Quaternion => Some(quaternion_matrix(graph, x.try_into().ok()?)),
         Block::Rotation => {

@@ -7,7 +7,7 @@ use std::fmt;
 /// cost of a step.
 pub const LONG_RUN_STEPS: u64 = 100_000;
 
-/// Chosen method with its reason.
+/// Numerical method that is proposed for a system, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MethodChoice {
     /// Name of the method on the command line.
@@ -22,12 +22,13 @@ impl fmt::Display for MethodChoice {
     }
 }
 
-/// Chooses the method for a run of `steps` steps, if their number is known.
+/// Chooses the numerical method that fits the structure of a system, for a run of `steps` steps, if their number is
+/// known.
 ///
 /// The criterion is the measured cost at an error of 1e-9: eleven kicks of order 6 beat six of
 /// order 4, and elliptic functions in every drift cost more than the twelve stages of order 8 where
 /// torques have to be followed.
-pub fn choose(structure: &Structure, steps: Option<u64>) -> MethodChoice {
+pub fn choose_method(structure: &Structure, steps: Option<u64>) -> MethodChoice {
     let long = steps.is_some_and(|steps| steps > LONG_RUN_STEPS);
     let (method, reason) = match &structure.split {
         Ok(splitting) if splitting.free => {

@@ -20,7 +20,7 @@ pub fn rest_configuration(
 ) -> Substitution {
     let mut set = Substitution::new();
     for part in parts {
-        let flat = !part.turns() && part.block.len() == part.block.dimension();
+        let flat = !part.is_rotor() && part.block.len() == part.block.dimension();
         for (&entry, value) in part.entries(&model.x).iter().zip(identity(part.block)) {
             let value = if flat { plain } else { value as i64 };
             let number = graph.ratio(value, 1);

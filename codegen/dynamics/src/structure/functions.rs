@@ -5,7 +5,7 @@
 //! about its centre of mass or fixed point, and for everything else a force that D⁻¹ turns into an
 //! acceleration.
 
-use super::centre::matrix_of;
+use super::centre::rotation_matrix_of;
 use super::constant::eliminate_symbols;
 use super::context::StructureContext;
 use super::inertia::SplitInertia;
@@ -68,7 +68,11 @@ impl SplitFunctions {
                 .collect()
         };
         let mut pivots = Vec::new();
-        let turning: Vec<_> = context.parts.iter().filter(|part| part.turns()).collect();
+        let turning: Vec<_> = context
+            .parts
+            .iter()
+            .filter(|part| part.is_rotor())
+            .collect();
 
         // η = w + K w, computed by vectors and by one matrix; the cheaper of the two is used.
         let matrix = |graph: &mut Graph, sign: bool| -> Vec<Vec<Edge>> {
@@ -170,8 +174,8 @@ impl SplitFunctions {
         })
     }
 
-    /// Returns whether no force acts.
-    pub fn is_free(&self) -> bool {
+    /// Returns whether no force acts, so that kicks change nothing.
+    pub fn is_force_free(&self) -> bool {
         self.kick.iter().all(|&edge| edge == self.graph.zero())
     }
 
@@ -192,7 +196,11 @@ impl SplitFunctions {
     ///
     /// Each function is the cheapest of the variants here and in `others`, which were found from
     /// other computations of M and the forces.
-    pub fn add(&self, others: &[SplitFunctions], builder: &mut ProgramBuilder) -> Vec<Edge> {
+    pub fn add_to_program(
+        &self,
+        others: &[SplitFunctions],
+        builder: &mut ProgramBuilder,
+    ) -> Vec<Edge> {
         for &id in FunctionId::ALL {
             let Some(outputs) = self.value(id) else {
                 continue;
@@ -230,7 +238,7 @@ fn in_body_axes(
     let (model, parts) = (context.model, context.parts);
     let points = parts.iter().filter(|part| part.block == Block::Flat(3));
     let points: Vec<&CoordinateBlock> = points.collect();
-    let turning: Vec<&CoordinateBlock> = parts.iter().filter(|part| part.turns()).collect();
+    let turning: Vec<&CoordinateBlock> = parts.iter().filter(|part| part.is_rotor()).collect();
     let mut candidates = Vec::new();
     for rotor in turning.iter().filter(|_| !points.is_empty()) {
         let mut graph = before.clone();
@@ -238,7 +246,7 @@ fn in_body_axes(
             .iter()
             .map(|row| rebuild(from, &mut graph, row))
             .collect();
-        let Some(axes) = matrix_of(&mut graph, rotor, rotor.entries(&model.x)) else {
+        let Some(axes) = rotation_matrix_of(&mut graph, rotor, rotor.entries(&model.x)) else {
             continue;
         };
         let mut momenta: Vec<Option<Edge>> = vec![None; rows.len()];

@@ -1,10 +1,10 @@
 //! Inertia that remains when plain coordinates are shifted to centres of mass: one constant matrix
 //! for each rotor, and one for plain and circular coordinates together.
 
-use super::centre::{CentreShift, shift};
+use super::centre::{CentreShift, centre_shift};
 use super::constant::eliminate_symbols;
 use super::context::StructureContext;
-use super::rates::{CoordinateBlock, RateMaps, dependence, preserves_volume, rate_maps};
+use super::rates::{CoordinateBlock, RateMaps, changing_parts, is_volume_preserving, rate_maps};
 use crate::accel::parts::EquationTerms;
 use hamel_algebra::graph::{Edge, Graph};
 use hamel_algebra::linear::{Mat3, matrix, multiply, solve_symmetric, transpose};
@@ -25,11 +25,11 @@ pub struct SplitInertia {
     pub block: Vec<Vec<Edge>>,
 }
 
-/// Splits the inertia.
+/// Splits the inertia of a model into constant blocks; the error lists the reasons why it does not split.
 ///
 /// # Errors
 /// Returns the reasons why it does not split.
-pub fn separate(
+pub fn split_inertia(
     context: &StructureContext,
     graph: &mut Graph,
     traced: &EquationTerms,
@@ -45,7 +45,7 @@ pub fn separate(
         return Err(vec![Reason::Rates]);
     };
     let depends = |graph: &Graph, edges: &[Edge]| {
-        let on = dependence(variation, graph, parts, &model.x, edges);
+        let on = changing_parts(variation, graph, parts, &model.x, edges);
         vec![Reason::Mass { on }]
     };
     let mn = multiply(graph, &traced.mass, &rates.to_velocities);
@@ -75,7 +75,7 @@ pub fn separate(
     let Some(coupling) = solve_symmetric(graph, &of_plain, &right) else {
         return Err(depends(graph, &inertia.concat()));
     };
-    let shift = shift(model, graph, parts, &plain, &coupling);
+    let shift = centre_shift(model, graph, parts, &plain, &coupling);
     // T⁻¹ = I − K, since K maps turning rates to plain ones.
     let mut back: Vec<Vec<Edge>> = shift
         .rate
@@ -94,7 +94,7 @@ pub fn separate(
         let on = depends(graph, &inertia.concat());
         return Err(on);
     }
-    if !preserves_volume(model, graph, &rates) {
+    if !is_volume_preserving(model, graph, &rates) {
         return Err(vec![Reason::Rates]);
     }
     let left = eliminate_symbols(model, graph, parts, variation, &left.concat());
@@ -107,7 +107,7 @@ pub fn separate(
     }
     let uniform: Vec<usize> = parts
         .iter()
-        .filter(|part| !part.turns())
+        .filter(|part| !part.is_rotor())
         .flat_map(CoordinateBlock::rates)
         .collect();
     let block = uniform
@@ -116,7 +116,7 @@ pub fn separate(
         .collect();
     let rotors = parts
         .iter()
-        .filter(|part| part.turns())
+        .filter(|part| part.is_rotor())
         .map(|part| {
             std::array::from_fn(|i| {
                 std::array::from_fn(|j| left[(part.rate + i) * n + part.rate + j])
@@ -135,9 +135,9 @@ pub fn separate(
 /// Returns each rotor that the remaining inertia couples to other coordinates, together with these.
 fn coupled(parts: &[CoordinateBlock], linked: impl Fn(usize, usize) -> bool) -> Vec<Reason> {
     let mut found = Vec::new();
-    for (place, rotor) in parts.iter().enumerate().filter(|(_, part)| part.turns()) {
+    for (place, rotor) in parts.iter().enumerate().filter(|(_, part)| part.is_rotor()) {
         for (index, other) in parts.iter().enumerate() {
-            if index == place || (other.turns() && index < place) {
+            if index == place || (other.is_rotor() && index < place) {
                 continue;
             }
             if rotor.rates().any(|i| other.rates().any(|j| linked(i, j))) {

@@ -49,11 +49,12 @@ pub struct StructureAnalysis {
     pub(super) functions: Option<SplitFunctions>,
 }
 
-/// Analyses the structure of a model.
+/// Analyses whether a system splits into free motion and kicks, and derives the functions of splitting methods if it
+/// does.
 ///
 /// `model` is `full` in the velocities that its constraints leave free; `traced` are its M and
 /// forces, in `graph`.
-pub fn analyse(
+pub fn analyse_structure(
     full: &Model,
     model: &Model,
     graph: &Graph,
@@ -98,7 +99,7 @@ pub fn analyse(
             parts: &blocks,
             variation,
         };
-        inertia::separate(&context, &mut graph, traced)
+        inertia::split_inertia(&context, &mut graph, traced)
     } else {
         Err(vec![Reason::Rates])
     };
@@ -120,7 +121,7 @@ pub fn analyse(
     structure.split = match &functions {
         Some(functions) => Ok(Splitting {
             rotors: functions.rotors.clone(),
-            free: functions.is_free(),
+            free: functions.is_force_free(),
         }),
         None => Err(vec![Reason::Rates]),
     };
@@ -143,7 +144,7 @@ fn dependence(
 ) -> Vec<String> {
     match variation {
         Some(variation) if model.points.constraints.is_empty() => {
-            rates::dependence(variation, graph, parts, &model.x, mass)
+            rates::changing_parts(variation, graph, parts, &model.x, mass)
         }
         _ => {
             let reached = graph.reachable(mass);

@@ -37,8 +37,8 @@ impl CoordinateBlock {
             .unwrap_or_default()
     }
 
-    /// Returns whether it is the attitude of a rotor.
-    pub fn turns(&self) -> bool {
+    /// Returns whether the block is the attitude of a rotor: a quaternion or a rotation matrix.
+    pub fn is_rotor(&self) -> bool {
         matches!(self.block, Block::Quaternion | Block::Rotation)
     }
 }
@@ -103,7 +103,7 @@ pub fn rate_maps(model: &Model, graph: &mut Graph) -> Option<RateMaps> {
 
 /// Returns whether det B is constant, that is, whether d ln det B = tr (N dB) vanishes along all
 /// rates.
-pub fn preserves_volume(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool {
+pub fn is_volume_preserving(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool {
     let zero = graph.zero();
     let tangents = all_tangents(graph, &model.blocks, &model.x, |_| true);
     // Entries that depend on coordinates; in large matrices they are few.
@@ -129,15 +129,15 @@ pub fn preserves_volume(model: &Model, graph: &mut Graph, rates: &RateMaps) -> b
     })
 }
 
-/// Returns the names of the parts with which at least one of the expressions changes.
-pub fn dependence(
+/// Returns the names of those blocks of x with which at least one of the expressions changes.
+pub fn changing_parts(
     variation: &Variation,
     graph: &Graph,
     parts: &[CoordinateBlock],
     x: &[Edge],
     edges: &[Edge],
 ) -> Vec<String> {
-    let dependence = variation.of(graph, edges);
+    let dependence = variation.dependence_of(graph, edges);
     let changing = parts.iter().filter(|part| match &dependence {
         Some(dependence) => dependence.changes(part.entries(x)).contains(&true),
         None => true,

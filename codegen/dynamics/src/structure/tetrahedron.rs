@@ -17,7 +17,7 @@ pub fn tetrahedron() -> Vec<[i64; 4]> {
 
 /// Returns the rotation matrix of a quaternion divided by two; for those above, its entries are 0,
 /// 1 and −1.
-pub fn matrix([w, x, y, z]: [i64; 4]) -> [[i64; 3]; 3] {
+pub fn rotation_matrix([w, x, y, z]: [i64; 4]) -> [[i64; 3]; 3] {
     let rows = [
         [
             w * w + x * x - y * y - z * z,

@@ -33,8 +33,8 @@ impl<'a> Variation<'a> {
         })
     }
 
-    /// Prepares dependence tests for expressions; `None` if they have no value at the point.
-    pub fn of(&'a self, graph: &'a Graph, edges: &[Edge]) -> Option<Dependence<'a>> {
+    /// Prepares tests on which symbols expressions depend; `None` if they have no value at the point.
+    pub fn dependence_of(&'a self, graph: &'a Graph, edges: &[Edge]) -> Option<Dependence<'a>> {
         let tape = Tape::new(graph, edges)?;
         Some(Dependence {
             variation: self,
@@ -47,7 +47,7 @@ impl<'a> Variation<'a> {
     /// Returns for each expression whether it changes with the symbols `moved`; true if no second
     /// point was found.
     pub fn changes(&self, graph: &Graph, edges: &[Edge], moved: &[Edge]) -> Vec<bool> {
-        match self.of(graph, edges) {
+        match self.dependence_of(graph, edges) {
             Some(dependence) => dependence.changes(moved),
             None => vec![true; edges.len()],
         }

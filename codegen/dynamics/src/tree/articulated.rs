@@ -33,14 +33,15 @@ struct Pivot {
     residual: Edge,
 }
 
-/// Computes ξ̇ by the articulated-body algorithm.
+/// Derives ξ̇ of a tree of links by the articulated-body algorithm, for wrenches on links and generalised forces; rates
+/// of the velocities in `given` are prescribed.
 ///
 /// `wrenches` are the wrenches that the links require at ξ̇ = 0 (apart from prescribed
 /// accelerations); `load` are all other generalised forces. Returns `None` if a pivot vanishes
 /// identically. Every velocity has to be the rate of exactly one freedom, except for the prescribed
 /// velocities `given`: their accelerations are contained in `wrenches`, and they do not yield to
 /// forces (Featherstone 2008, 9.2).
-pub fn forward(
+pub fn articulated_body_dynamics(
     graph: &mut Graph,
     tree: &Tree,
     given: &[usize],
@@ -68,11 +69,11 @@ pub fn forward(
             guards[i] = pivot;
             let bias_force = freedom.force_of(graph, &bias[index]);
             let residual = graph.sub(load[i], bias_force);
-            let share = response.scaled(graph, inverse);
+            let share = response.scale(graph, inverse);
             graph.label(&[residual], Quantity::JointResidual.of(link.frame));
             share.label(graph, Quantity::JointShare.of(link.frame));
             inertia[index].reduce(graph, &response, &share);
-            let yielded = share.scaled(graph, residual);
+            let yielded = share.scale(graph, residual);
             bias[index] = bias[index].plus(graph, &yielded);
             bias[index].label(graph, Quantity::ArticulatedWrench.of(link.frame));
             pivots[index].push(Pivot {
@@ -130,7 +131,7 @@ pub fn forward(
 
 impl Inertia {
     fn rigid(graph: &mut Graph, mass: &LinkInertia) -> Self {
-        let j = mass.inertia(graph);
+        let j = mass.inertia_matrix(graph);
         let identity = identity3(graph);
         Inertia {
             j,
@@ -183,9 +184,9 @@ impl Inertia {
         let mut turned = self;
         for turn in link.turns.iter().rev() {
             turned = Inertia {
-                j: turn.symmetric(graph, &turned.j),
-                h: turn.general(graph, &turned.h),
-                m: turn.symmetric(graph, &turned.m),
+                j: turn.rotate_symmetric(graph, &turned.j),
+                h: turn.rotate_matrix(graph, &turned.h),
+                m: turn.rotate_symmetric(graph, &turned.m),
             };
         }
         let p = link.position;

@@ -26,15 +26,16 @@ enum PolarMoments {
 /// A matrix together with the graph that it was built in.
 type MatrixInGraph = (Graph, Vec<Vec<Edge>>);
 
-/// Returns M, n × n, by the variant with the fewest operations before resubstitution.
+/// Returns the mass matrix M of a tree, n × n, by the composite-body algorithm, in the variant with the fewest
+/// operations before resubstitution.
 ///
 /// This is the starting point for computing M⁻¹.
 pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     cheapest_matrix(graph, mass_matrices(graph, tree, n))
 }
 
-/// Returns M by the variant with the fewest operations, resubstituted ones included, for use as M
-/// itself.
+/// Returns the mass matrix M of a tree by the variant with the fewest operations, resubstituted ones included, for use
+/// as M itself.
 pub fn mass_matrix_alone(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     let mut ways = mass_matrices(graph, tree, n);
     let polished = |(way, matrix): &MatrixInGraph| {
@@ -59,7 +60,7 @@ fn cheapest_matrix(graph: &mut Graph, mut ways: Vec<MatrixInGraph>) -> Vec<Vec<E
 
 /// Returns M from second moments alone, the inertias from which the slopes of forces are computed,
 /// too.
-pub fn by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
+pub fn mass_matrix_by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     by_composites(graph, tree, n, PolarMoments::OfS)
 }
 
@@ -97,17 +98,17 @@ fn composite_inertias(graph: &mut Graph, tree: &Tree, way: PolarMoments) -> Vec<
                 if way == PolarMoments::Apart {
                     // Enter the polar moment, which a rotation about the third axis does not
                     // change, before it.
-                    turned.polar(graph);
+                    turned.polar_moment(graph);
                 }
-                turned = turned.turned(graph, turn);
+                turned = turned.rotate_axes(graph, turn);
             }
-            let moved = turned.shifted(graph, link.position);
+            let moved = turned.shift_origin(graph, link.position);
             if way == PolarMoments::Apart {
-                let polar = turned.polar(graph);
+                let polar = turned.polar_moment(graph);
                 let moments = [turned.first, moved.first];
                 let arms = moments.map(|h| graph.dot(&link.position[..2], &h[..2]));
                 let polar = arms.iter().fold(polar, |sum, &arm| graph.add(sum, arm));
-                let own = composite[parent].polar(graph);
+                let own = composite[parent].polar_moment(graph);
                 graph.add(own, polar);
             }
             composite[parent] = composite[parent].plus(graph, &moved);

@@ -3,7 +3,7 @@
 
 use super::link::{Freedom, Link};
 use super::mass::LinkInertia;
-use super::revolute::{Hinge, hinge};
+use super::revolute::{Hinge, find_hinge};
 use super::turn::RotationFactor;
 use crate::calculus::Calculus;
 use hamel_algebra::graph::{Edge, Graph};
@@ -199,13 +199,13 @@ pub fn draft_links_with_frames(
         });
     }
     for body in model.bodies.clone() {
-        let mass = LinkInertia::of(&mut model.graph, &body);
+        let mass = LinkInertia::of_body(&mut model.graph, &body);
         add_inertia(&mut model.graph, &mut links, places.get(body.frame)?, &mass);
     }
     for particle in model.particles.clone() {
         let (frame, position) = frame_of_point(model, particle.position)?;
-        let mass =
-            LinkInertia::point(&model.graph, particle.mass).shifted(&mut model.graph, position);
+        let mass = LinkInertia::of_particle(&model.graph, particle.mass)
+            .shift_origin(&mut model.graph, position);
         add_inertia(&mut model.graph, &mut links, places.get(frame)?, &mass);
     }
     for (joint_frame, link) in joint_frames.iter_mut().zip(&links) {
@@ -247,8 +247,8 @@ fn add_inertia(graph: &mut Graph, links: &mut [LinkDraft], place: &FixedPose, ma
         return;
     };
     let mass = mass
-        .turned(graph, &RotationFactor::By(place.rotation))
-        .shifted(graph, place.position);
+        .rotate_axes(graph, &RotationFactor::By(place.rotation))
+        .shift_origin(graph, place.position);
     link.mass = link.mass.plus(graph, &mass);
 }
 
@@ -273,7 +273,7 @@ fn joint(
     if constant(graph, |c| c.1)
         && moving.iter().all(|c| c.2 == zero)
         && free3(graph, &shift)
-        && let Some(found) = hinge(model, turn, &moving)
+        && let Some(found) = find_hinge(model, turn, &moving)
     {
         let Hinge {
             base,

@@ -19,8 +19,8 @@ pub struct EquivalentMotion {
 }
 
 impl Tree {
-    /// Returns the twins of all joints on first links, for which the first link has the freedoms
-    /// needed.
+    /// Returns, for all joints on first links, the velocities of the first link that move the subtree alike, if the
+    /// first link has the freedoms needed.
     pub fn equivalent_motions(&self, graph: &mut Graph) -> Vec<EquivalentMotion> {
         let links = self.links.iter();
         links

@@ -48,11 +48,12 @@ impl LinkMotion {
     }
 }
 
-/// Returns the wrench that the motion of each link requires.
+/// Returns for each link the wrench that its motion and gravity require, about its origin and in its axes, without that
+/// of its children.
 ///
 /// `xi` are the velocities ξ (those of the model, or zero), `xi_dot` their derivatives, and
 /// `gravity` is given in world axes.
-pub fn wrenches(
+pub fn required_wrenches(
     graph: &mut Graph,
     tree: &Tree,
     xi: &[Edge],
@@ -455,8 +456,7 @@ pub(super) fn wrench(graph: &mut Graph, mass: &LinkInertia, motion: &LinkMotion)
     }
 }
 
-/// Returns the generalised force of wrenches on links: at each joint, that of the sum over its
-/// subtree.
+/// Returns the n generalised forces of wrenches on links: at each joint, that of the sum over its subtree.
 pub fn generalized_forces(
     graph: &mut Graph,
     tree: &Tree,
@@ -508,7 +508,7 @@ pub fn inverse_dynamics(
     xi_dot: &[Edge],
     gravity: Vec3,
 ) -> Vec<Edge> {
-    let wrenches = wrenches(graph, tree, xi, xi_dot, gravity);
+    let wrenches = required_wrenches(graph, tree, xi, xi_dot, gravity);
     let forces = match LinkQuantities::of(graph, xi, xi_dot) {
         None => generalized_forces(graph, tree, &wrenches, xi.len()),
         Some(_) => {

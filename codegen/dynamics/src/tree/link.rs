@@ -25,7 +25,7 @@ impl Freedom {
         self.rate.iter().all(|(i, _)| given.contains(i))
     }
 
-    /// Returns the rate Σ k vⁱ for the velocities v.
+    /// Returns the rate Σ k vⁱ of the freedom for velocities v in place of ξ.
     pub fn rate_of(&self, graph: &mut Graph, v: &[Edge]) -> Edge {
         let terms: Vec<Edge> = self.rate.iter().map(|&(i, k)| graph.mul(k, v[i])).collect();
         graph.sum(&terms)
@@ -129,7 +129,7 @@ impl Tree {
     /// compute them again from rotated entries.
     pub fn register_polar_moments(&self, graph: &mut Graph) {
         for link in &self.links {
-            link.unshared.polar(graph);
+            link.unshared.polar_moment(graph);
         }
     }
 

@@ -8,7 +8,7 @@ use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Mat3, Vec3, add3, cross, scale3, zero3};
 use hamel_language::model::Body;
 
-/// Inertia of a link as mass m, first moment h and second moment S.
+/// Inertia of a link as mass m, first moment h = m s and second moment S = ∫ r rᵀ dm, about its origin and in its axes.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkInertia {
     /// Mass (kg).
@@ -29,7 +29,7 @@ impl LinkInertia {
         }
     }
 
-    /// Labels mass and moments.
+    /// Records in the graph which quantity mass and moments are entries of.
     pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
         graph.label(&[self.mass], label);
         graph.label(&self.first, label);
@@ -37,7 +37,7 @@ impl LinkInertia {
     }
 
     /// Returns the inertia of a particle at the origin.
-    pub fn point(graph: &Graph, mass: Edge) -> Self {
+    pub fn of_particle(graph: &Graph, mass: Edge) -> Self {
         LinkInertia {
             mass,
             ..LinkInertia::zero(graph)
@@ -46,7 +46,7 @@ impl LinkInertia {
 
     /// Returns the inertia of a body in its frame: S = ½ tr(Θ) I − Θ about the centre of mass,
     /// shifted to the origin.
-    pub fn of(graph: &mut Graph, body: &Body) -> Self {
+    pub fn of_body(graph: &mut Graph, body: &Body) -> Self {
         let theta = &body.inertia_com;
         let trace = graph.sum(&[theta[0][0], theta[1][1], theta[2][2]]);
         let half = graph.ratio(1, 2);
@@ -65,13 +65,13 @@ impl LinkInertia {
             first: zero3(graph),
             second,
         };
-        central.shifted(graph, body.com)
+        central.shift_origin(graph, body.com)
     }
 
     /// Returns the inertia about another origin, where a point at r has the position r + `by`.
     ///
     /// h' = h + m by, S' = S + by hᵀ + h' byᵀ.
-    pub fn shifted(&self, graph: &mut Graph, by: Vec3) -> Self {
+    pub fn shift_origin(&self, graph: &mut Graph, by: Vec3) -> Self {
         let far = scale3(graph, self.mass, by);
         let first = add3(graph, self.first, far);
         let mut second = self.second;
@@ -90,19 +90,19 @@ impl LinkInertia {
     }
 
     /// Returns the inertia in rotated axes, where a point at r has the position R r.
-    pub fn turned(&self, graph: &mut Graph, turn: &RotationFactor) -> Self {
+    pub fn rotate_axes(&self, graph: &mut Graph, turn: &RotationFactor) -> Self {
         LinkInertia {
             mass: self.mass,
             first: turn.rotate(graph, self.first),
-            second: turn.symmetric(graph, &self.second),
+            second: turn.rotate_symmetric(graph, &self.second),
         }
     }
 
     /// Returns the inertia of a link about the origin and in the axes of its parent.
     pub fn to_parent(&self, graph: &mut Graph, link: &Link) -> Self {
         let turns = link.turns.iter().rev();
-        let turned = turns.fold(*self, |mass, turn| mass.turned(graph, turn));
-        turned.shifted(graph, link.position)
+        let turned = turns.fold(*self, |mass, turn| mass.rotate_axes(graph, turn));
+        turned.shift_origin(graph, link.position)
     }
 
     /// Returns the inertia of two bodies that are fixed to each other.
@@ -123,17 +123,17 @@ impl LinkInertia {
         let push = scale3(graph, self.mass, a);
         let tangential = cross(graph, alpha, self.first);
         let lever = cross(graph, self.first, a);
-        let spin = self.times(graph, alpha);
+        let spin = self.times_vector(graph, alpha);
         (add3(graph, push, tangential), add3(graph, spin, lever))
     }
 
-    /// Returns the polar moment Θ_zz = S_xx + S_yy.
-    pub fn polar(&self, graph: &mut Graph) -> Edge {
+    /// Returns the moment of inertia about the third axis, Θ_zz = S_xx + S_yy.
+    pub fn polar_moment(&self, graph: &mut Graph) -> Edge {
         graph.add(self.second[0][0], self.second[1][1])
     }
 
     /// Returns the inertia matrix Θ = tr(S) I − S.
-    pub fn inertia(&self, graph: &mut Graph) -> Mat3 {
+    pub fn inertia_matrix(&self, graph: &mut Graph) -> Mat3 {
         let s = &self.second;
         std::array::from_fn(|i| {
             std::array::from_fn(|k| {
@@ -147,7 +147,7 @@ impl LinkInertia {
     }
 
     /// Returns the product Θ α = tr(S) α − S α of the inertia matrix and a vector.
-    pub fn times(&self, graph: &mut Graph, alpha: Vec3) -> Vec3 {
+    pub fn times_vector(&self, graph: &mut Graph, alpha: Vec3) -> Vec3 {
         let s = &self.second;
         std::array::from_fn(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);

@@ -64,7 +64,7 @@ impl Tree {
             tensors: TensorRoute::Each,
         };
         Some(match placement {
-            Placement::Parallel => tree.sharing_axes(&mut model.graph).0,
+            Placement::Parallel => tree.with_shared_axes(&mut model.graph).0,
             Placement::Chosen | Placement::Described => tree,
         })
     }

@@ -23,9 +23,9 @@ fn momenta(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec<Wrench>, Vec<Lin
     (momenta.collect(), twists)
 }
 
-/// Returns the total linear momentum, and the angular momentum about the origin of the world, in
-/// world axes.
-pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
+/// Returns the total linear momentum of a tree, and the angular momentum about the origin of the world, in world axes,
+/// as expressions.
+pub fn total_momentum(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
     let (mut momenta, _) = momenta(graph, tree, xi);
     let none = zero3(graph);
     let mut total = Wrench {
@@ -48,7 +48,7 @@ pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
 ///
 /// Each column is (linear, angular about the origin of the world) in world axes, and is the
 /// momentum of the subtree of the joint, moving as one body.
-pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
+pub fn momentum_columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
     let mut composite: Vec<LinkInertia> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
@@ -66,7 +66,7 @@ pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
                 to_parent(graph, &tree.links[at], &momentum)
             });
             for &(i, k) in &freedom.rate {
-                let part = momentum.scaled(graph, k);
+                let part = momentum.scale(graph, k);
                 columns[i].0 = add3(graph, columns[i].0, part.force);
                 columns[i].1 = add3(graph, columns[i].1, part.torque);
             }
@@ -77,7 +77,7 @@ pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
 
 /// Returns the part of ṗ that is quadratic in ξ; `None` if a freedom's twist varies in the axes of
 /// its link.
-pub fn quadratic_rate(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
+pub fn quadratic_momentum_rate(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
     // The velocity product may vanish although the twists vary: angular velocities in world axes
     // are an example.
     let mut freedoms = tree.links.iter().flat_map(|link| &link.freedoms);

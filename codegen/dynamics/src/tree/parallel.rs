@@ -11,9 +11,9 @@ use super::turn::RotationFactor;
 use hamel_algebra::graph::{Edge, Graph};
 
 impl Tree {
-    /// Returns the same links in shared axes, and for each link that has given up its own axes
-    /// their rotation relative to the shared ones.
-    pub fn sharing_axes(&self, graph: &mut Graph) -> (Tree, Vec<Option<RotationFactor>>) {
+    /// Returns the tree with the same axes for links on parallel hinges, and for each link that has given up its own
+    /// axes their rotation relative to the shared ones.
+    pub fn with_shared_axes(&self, graph: &mut Graph) -> (Tree, Vec<Option<RotationFactor>>) {
         let shares = self.shares(graph);
         let mut lags: Vec<Option<Plane>> = Vec::with_capacity(self.links.len());
         let mut links = Vec::with_capacity(self.links.len());
@@ -42,7 +42,7 @@ impl Tree {
                 )
             });
             if let Some(lag) = lag {
-                moved.mass = link.mass.turned(graph, &lag.turn());
+                moved.mass = link.mass.rotate_axes(graph, &lag.turn());
             }
             lags.push(lag);
             links.push(moved);

@@ -187,7 +187,7 @@ fn slide(graph: &mut Graph, links: &mut [LinkDraft], j: usize, distance: Edge) {
     links[j].position = add3(graph, links[j].position, step);
     let zero = graph.zero();
     let back = [zero, zero, -distance];
-    links[j].mass = links[j].mass.shifted(graph, back);
+    links[j].mass = links[j].mass.shift_origin(graph, back);
     for link in links.iter_mut().filter(|link| link.parent == Some(j)) {
         link.position = add3(graph, link.position, back);
     }
@@ -200,7 +200,7 @@ fn spin(graph: &mut Graph, links: &mut [LinkDraft], i: usize, (c, s): (Edge, Edg
         cos: c,
         sin: -s,
     };
-    links[i].mass = links[i].mass.turned(graph, &back);
+    links[i].mass = links[i].mass.rotate_axes(graph, &back);
     advance(graph, &mut links[i], (c, s));
     for link in links.iter_mut().filter(|link| link.parent == Some(i)) {
         link.position = back.rotate(graph, link.position);

@@ -50,12 +50,12 @@ pub fn regroup(graph: &mut Graph, links: &mut [LinkDraft]) {
         links[j].mass = left;
         if let Some(parent) = links[j].parent {
             for turn in turns.iter().rev() {
-                moved = moved.turned(graph, turn);
+                moved = moved.rotate_axes(graph, turn);
             }
             // A position varies only for prismatic joints; these pass on S alone, which needs no
             // shift.
             if !varies {
-                moved = moved.shifted(graph, links[j].position);
+                moved = moved.shift_origin(graph, links[j].position);
             }
             links[parent].mass = links[parent].mass.plus(graph, &moved);
         }

@@ -17,15 +17,19 @@ pub struct Hinge {
     pub rate: Vec<(usize, Edge)>,
 }
 
-/// Returns a rotation as a hinge, if it is one.
+/// Returns the axis and angle of a rotation E as a hinge; `None` if its axis is not constant.
 ///
 /// `columns` are (i, angular velocity, velocity) per unit of each ξⁱ; the angular velocities have
 /// to be constant.
-pub fn hinge(model: &mut Model, turn: &Mat3, columns: &[(usize, Vec3, Vec3)]) -> Option<Hinge> {
+pub fn find_hinge(
+    model: &mut Model,
+    turn: &Mat3,
+    columns: &[(usize, Vec3, Vec3)],
+) -> Option<Hinge> {
     let pairs = angles(model, turn);
     let graph = &mut model.graph;
     let (_, first, _) = columns.first()?;
-    let axes = axes(graph, *first)?;
+    let axes = axes_along(graph, *first)?;
     let axis: Vec3 = std::array::from_fn(|row| axes[row][2]);
     let zero = graph.zero();
     let mut rate = Vec::new();
@@ -63,7 +67,7 @@ pub fn hinge(model: &mut Model, turn: &Mat3, columns: &[(usize, Vec3, Vec3)]) ->
 
 /// Returns an orthonormal frame, by columns, whose third axis has the direction of a constant
 /// vector.
-pub fn axes(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
+pub fn axes_along(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
     let zero = graph.zero();
     let [third, first] = match std::array::from_fn::<bool, 3, _>(|i| v[i] != zero) {
         [false, false, false] => return None,
@@ -80,7 +84,7 @@ pub fn axes(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
             ]
         }
         place => {
-            let third = normalized(graph, v)?;
+            let third = normalize(graph, v)?;
             // The first axis is perpendicular to the third, in the plane of two of its non-zero
             // entries.
             let (i, j) = if place[0] && place[1] {
@@ -93,7 +97,7 @@ pub fn axes(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
             let mut across = [zero; 3];
             across[i] = -third[j];
             across[j] = third[i];
-            [third, normalized(graph, across)?]
+            [third, normalize(graph, across)?]
         }
     };
     let second = cross(graph, third, first);
@@ -110,7 +114,7 @@ fn sign(graph: &Graph, edge: Edge) -> bool {
 }
 
 /// Returns v / |v|.
-pub fn normalized(graph: &mut Graph, v: Vec3) -> Option<Vec3> {
+pub fn normalize(graph: &mut Graph, v: Vec3) -> Option<Vec3> {
     let square = graph.dot(&v, &v);
     let length = graph.apply(Function::Sqrt, square);
     let scale = graph.div(graph.one(), length)?;

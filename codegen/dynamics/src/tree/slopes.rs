@@ -45,7 +45,7 @@ struct Variation {
 
 /// Computes ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ requires, at constant ξ̇; `None` if a joint's freedoms vary with x
 /// or their rates are not plain velocities.
-pub fn slopes(
+pub fn inverse_dynamics_derivatives(
     graph: &mut Graph,
     tree: &Tree,
     xi: &[Edge],
@@ -405,7 +405,7 @@ impl RelativeMomentum {
         });
         for turn in link.turns.iter().rev() {
             first = turn.rotate(graph, first);
-            second = turn.general(graph, &second);
+            second = turn.rotate_matrix(graph, &second);
         }
         for (row, &p) in second.iter_mut().zip(&link.position) {
             let far = scale3(graph, p, first);

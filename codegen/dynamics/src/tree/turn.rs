@@ -20,7 +20,7 @@ pub enum RotationFactor {
 }
 
 impl RotationFactor {
-    /// Labels the entries of the rotation.
+    /// Records in the graph which quantity the entries of the rotation belong to.
     pub fn label(&self, graph: &mut Graph, label: Option<Label>) {
         match self {
             RotationFactor::By(matrix) => graph.label(&matrix.concat(), label),
@@ -28,7 +28,7 @@ impl RotationFactor {
         }
     }
 
-    /// Returns R v.
+    /// Returns R v for a vector v.
     pub fn rotate(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
             RotationFactor::By(ref matrix) => apply3(graph, matrix, v),
@@ -36,7 +36,7 @@ impl RotationFactor {
         }
     }
 
-    /// Returns Rᵀ v.
+    /// Returns Rᵀ v for a vector v.
     pub fn rotate_back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
             RotationFactor::By(ref matrix) => apply_transposed(graph, matrix, v),
@@ -48,7 +48,7 @@ impl RotationFactor {
     ///
     /// With t = (a − d) sin + 2 b cos, the block `[[a, b], [b, d]]` of S in the plane of rotation
     /// becomes a − sin t, d + sin t and cos t − b.
-    pub fn symmetric(&self, graph: &mut Graph, s: &Mat3) -> Mat3 {
+    pub fn rotate_symmetric(&self, graph: &mut Graph, s: &Mat3) -> Mat3 {
         match *self {
             RotationFactor::By(ref matrix) => {
                 let left = multiply3(graph, matrix, s);
@@ -83,7 +83,7 @@ impl RotationFactor {
     }
 
     /// Returns R H Rᵀ for any matrix H.
-    pub fn general(&self, graph: &mut Graph, h: &Mat3) -> Mat3 {
+    pub fn rotate_matrix(&self, graph: &mut Graph, h: &Mat3) -> Mat3 {
         match *self {
             RotationFactor::By(ref matrix) => {
                 let left = multiply3(graph, matrix, h);

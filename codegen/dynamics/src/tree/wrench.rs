@@ -3,7 +3,7 @@
 use hamel_algebra::graph::{Edge, Graph, Label};
 use hamel_algebra::linear::{Vec3, add3, scale3};
 
-/// Wrench: force and torque about the origin of a link, in its axes.
+/// Force and torque about the origin of a link, in its axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Wrench {
     /// Force (N).
@@ -28,7 +28,7 @@ impl Wrench {
     }
 
     /// Returns k times the wrench.
-    pub fn scaled(&self, graph: &mut Graph, k: Edge) -> Self {
+    pub fn scale(&self, graph: &mut Graph, k: Edge) -> Self {
         Wrench {
             torque: scale3(graph, k, self.torque),
             force: scale3(graph, k, self.force),

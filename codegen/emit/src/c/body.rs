@@ -1,13 +1,13 @@
 //! Function bodies in C: a plain sequence of statements, or calls of parts that are functions of their own.
 
-use super::language::{CLanguage, Origins};
-use super::nearest::nearest;
+use super::language::{ArrayOrigins, CLanguage};
+use super::nearest::best_origin;
 use super::{Texts, comment, helpers, returns_number};
 use crate::chunk::Part;
-use crate::function::{Drawing, Spec, statements};
-use crate::language::{Array, Language};
-use crate::names::argument;
-use crate::print::{Access, Printer, Used};
+use crate::function::{FunctionSpec, PreparedFunction, print_statements};
+use crate::language::{Language, SharedArray};
+use crate::names::argument_name;
+use crate::print::{ArrayAccess, Printer, UsedNames};
 use hamel_algebra::graph::NodeId;
 use hamel_program::statements::Body;
 use rustc_hash::FxHashMap;
@@ -16,14 +16,14 @@ use std::collections::BTreeSet;
 /// Distance from a pointer in bytes, before and behind it, within which accesses have short instructions.
 const NEAR: usize = 128;
 
-/// Indents all lines of a text.
-pub fn indented(text: &str) -> String {
+/// Indents all lines of a text by one step.
+pub fn indent_lines(text: &str) -> String {
     let lines = text.lines();
     lines.map(|line| format!("    {line}\n")).collect()
 }
 
-/// Prints the body of a function that is not split into parts.
-pub fn whole(texts: &Texts, drawing: &Drawing) -> String {
+/// Prints the body of a C function that is not split into parts.
+pub fn print_whole_body(texts: &Texts, drawing: &PreparedFunction) -> String {
     let mut printer = drawing.printer();
     let mut text = String::new();
     // Pivots are checked last: gcc keeps fewer values in memory if a function has no return in its middle.
@@ -35,7 +35,9 @@ pub fn whole(texts: &Texts, drawing: &Drawing) -> String {
         partial: drawing.body.partial.clone(),
     };
     for part in &drawing.plan.parts {
-        text.push_str(&statements(&mut printer, &body, part, |_, _| String::new()));
+        text.push_str(&print_statements(&mut printer, &body, part, |_, _| {
+            String::new()
+        }));
     }
     let all = results(texts, &mut printer, drawing, |_| true);
     around(
@@ -51,7 +53,7 @@ pub fn whole(texts: &Texts, drawing: &Drawing) -> String {
 fn results(
     texts: &Texts,
     printer: &mut Printer,
-    drawing: &Drawing,
+    drawing: &PreparedFunction,
     of: impl Fn(usize) -> bool,
 ) -> String {
     let mut results = String::new();
@@ -61,23 +63,20 @@ fn results(
     let zero = texts.program().graph.zero();
     let mut index = 0;
     while index < outputs.len() {
-        let following = outputs[index..]
-            .iter()
-            .enumerate()
-            .take(helpers::MOST_ZEROS);
+        let following = outputs[index..].iter().enumerate().take(helpers::MAX_ZEROS);
         let zeros = following.take_while(|&(more, &edge)| edge == zero && of(index + more));
         let zeros = zeros.count();
         if !number && zeros > 1 {
-            let array = Array::Out.name();
+            let array = SharedArray::Out.name();
             results.push_str(&format!(
                 "memcpy({array} + {index}, {}, {zeros} * sizeof *{array});\n",
-                texts.names.own(helpers::ZEROS)
+                texts.names.identifier(helpers::ZEROS_NAME)
             ));
             index += zeros;
             continue;
         }
         if of(index) {
-            let value = printer.signed(outputs[index]);
+            let value = printer.signed_value(outputs[index]);
             results.push_str(&match number {
                 true => format!("return {value};\n"),
                 false => format!("out[{index}] = {value};\n"),
@@ -86,14 +85,14 @@ fn results(
         index += 1;
     }
     if spec.fallible {
-        results.push_str(&format!("return {};\n", texts.names.done()));
+        results.push_str(&format!("return {};\n", texts.names.success_code()));
     }
     results
 }
 
 /// Prepends to a body the declarations that it needs, and marks unused arguments. `passes` tells whether the body
 /// passes the system on to parts.
-fn around(texts: &Texts, used: &Used, spec: &Spec, passes: bool, all: &str) -> String {
+fn around(texts: &Texts, used: &UsedNames, spec: &FunctionSpec, passes: bool, all: &str) -> String {
     let number = returns_number(spec.shape, spec.fallible);
     let mut unused = Vec::new();
     if !used.kept && !passes && !all.contains("system->") {
@@ -101,7 +100,7 @@ fn around(texts: &Texts, used: &Used, spec: &Spec, passes: bool, all: &str) -> S
     }
     let arguments = spec.arguments.iter();
     let missing = arguments.filter(|given| !used.arguments.contains(given));
-    unused.extend(missing.map(|&given| argument(given)));
+    unused.extend(missing.map(|&given| argument_name(given)));
     if !number && spec.outputs.is_empty() {
         unused.push("out");
     }
@@ -113,26 +112,26 @@ fn around(texts: &Texts, used: &Used, spec: &Spec, passes: bool, all: &str) -> S
 }
 
 /// Binds the array of kept constants to `k`, if it is used.
-fn bind_kept(texts: &Texts, used: &Used) -> String {
+fn bind_kept(texts: &Texts, used: &UsedNames) -> String {
     match used.kept {
         true => format!("const {} *const k = system->k;\n", texts.names.real()),
         false => String::new(),
     }
 }
 
-/// Prints the parts of a function, each a function of its own, and the body of the function that calls them.
-pub fn split(texts: &Texts, drawing: &Drawing) -> (String, String) {
+/// Prints the parts of a long C function, each a function of its own, and the body of the function that calls them.
+pub fn print_parts_and_body(texts: &Texts, drawing: &PreparedFunction) -> (String, String) {
     let names = &texts.names;
-    let (status, done) = (names.own("status"), names.done());
+    let (status, done) = (names.identifier("status"), names.success_code());
     let results_in_parts = InParts::new(drawing);
     let mut main = drawing.printer();
     let (mut parts, mut calls) = (String::new(), String::new());
     let (mut crossing, mut checks, mut passes) = (false, false, false);
     for (index, part) in drawing.plan.parts.iter().enumerate() {
-        let name = names.own(&texts.emitter.names.part(&drawing.spec.name, index + 1));
+        let name = names.identifier(&texts.emitter.names.part_name(&drawing.spec.name, index + 1));
         let printed = Printed::new(texts, drawing, part, &results_in_parts);
         main.used.arguments.extend(&printed.used.arguments);
-        crossing |= printed.used.access(Array::Slots) > Access::None;
+        crossing |= printed.used.access(SharedArray::Slots) > ArrayAccess::None;
         let Passed { given, taken } = printed.passed(texts, drawing);
         passes |= printed.reads_system();
         let call = format!("{name}({})", given.join(", "));
@@ -150,11 +149,11 @@ pub fn split(texts: &Texts, drawing: &Drawing) -> (String, String) {
             }
         };
         let number = format!("Part {} of {}", index + 1, drawing.plan.parts.len());
-        let what = comment::line(&format!("{number} of `{}`.", drawing.spec.name), 0);
+        let what = comment::doc_comment_line(&format!("{number} of `{}`.", drawing.spec.name), 0);
         let taken = taken.join(",\n    ");
         parts.push_str(&format!(
             "\n{what}PART {returned} {name}(\n    {taken})\n{{\n{}}}\n",
-            indented(&format!("{}{end}", printed.text))
+            indent_lines(&format!("{}{end}", printed.text))
         ));
     }
     let mut text = String::new();
@@ -181,7 +180,7 @@ struct InParts {
 }
 
 impl InParts {
-    fn new(drawing: &Drawing) -> Self {
+    fn new(drawing: &PreparedFunction) -> Self {
         let mut places: FxHashMap<NodeId, Vec<usize>> = FxHashMap::default();
         let mut written = BTreeSet::new();
         for (index, edge) in drawing.body.outputs.iter().enumerate() {
@@ -197,8 +196,8 @@ impl InParts {
 /// A part as printed.
 struct Printed {
     text: String,
-    used: Used,
-    origins: Origins,
+    used: UsedNames,
+    origins: ArrayOrigins,
 }
 
 /// Arguments of a part's call, and its parameters.
@@ -209,31 +208,31 @@ struct Passed {
 
 impl Printed {
     /// Prints a part. Its arrays are passed as pointers to the places near which it reads and writes most.
-    fn new(texts: &Texts, drawing: &Drawing, part: &Part, results: &InParts) -> Self {
-        let first = Printed::from(texts, drawing, part, results, Origins::default());
+    fn new(texts: &Texts, drawing: &PreparedFunction, part: &Part, results: &InParts) -> Self {
+        let first = Printed::from(texts, drawing, part, results, ArrayOrigins::default());
         let near = NEAR / texts.precision.bytes();
-        let origin = |array: Array| {
+        let origin = |array: SharedArray| {
             let length = match array {
-                Array::Slots => drawing.plan.size,
-                Array::Out | Array::Slopes => drawing.body.outputs.len(),
+                SharedArray::Slots => drawing.plan.size,
+                SharedArray::Out | SharedArray::Slopes => drawing.body.outputs.len(),
             };
             let places = first.used.entries.iter();
             let places = places.filter(|(of, _)| *of == array);
-            nearest(places.map(|&(_, place)| place), near, length)
+            best_origin(places.map(|&(_, place)| place), near, length)
         };
-        let origins = Origins {
-            slots: origin(Array::Slots),
-            out: origin(Array::Out),
+        let origins = ArrayOrigins {
+            slots: origin(SharedArray::Slots),
+            out: origin(SharedArray::Out),
         };
         Printed::from(texts, drawing, part, results, origins)
     }
 
     fn from(
         texts: &Texts,
-        drawing: &Drawing,
+        drawing: &PreparedFunction,
         part: &Part,
         results: &InParts,
-        origins: Origins,
+        origins: ArrayOrigins,
     ) -> Self {
         let language = CLanguage {
             names: &texts.names,
@@ -253,9 +252,11 @@ impl Printed {
             }
             for node in statement.defined() {
                 for &place in results.places.get(&node).into_iter().flatten() {
-                    printer.used.touch(Array::Out, place, Access::Written);
-                    let value = printer.signed(drawing.body.outputs[place]);
-                    let entry = language.entry(Array::Out, drawing.spec.shape, place);
+                    printer
+                        .used
+                        .record_access(SharedArray::Out, place, ArrayAccess::Written);
+                    let value = printer.signed_value(drawing.body.outputs[place]);
+                    let entry = language.entry(SharedArray::Out, drawing.spec.shape, place);
                     writes.push_str(&format!("{entry} = {value};\n"));
                 }
             }
@@ -273,27 +274,30 @@ impl Printed {
         self.text.contains("system->")
     }
 
-    fn passed(&self, texts: &Texts, drawing: &Drawing) -> Passed {
+    fn passed(&self, texts: &Texts, drawing: &PreparedFunction) -> Passed {
         let (names, used) = (&texts.names, &self.used);
         let (real, restrict) = (names.real(), format!("{}_RESTRICT", names.capitals));
         let (mut given, mut taken) = (Vec::new(), Vec::new());
         if self.reads_system() {
             given.push("system".into());
-            taken.push(format!("const {} *{restrict} system", names.own("system")));
+            taken.push(format!(
+                "const {} *{restrict} system",
+                names.identifier("system")
+            ));
         }
         let arguments = drawing.spec.arguments.iter();
         for &read in arguments.filter(|read| used.arguments.contains(read)) {
-            given.push(argument(read).into());
-            taken.push(format!("const {real} *{restrict} {}", argument(read)));
+            given.push(argument_name(read).into());
+            taken.push(format!("const {real} *{restrict} {}", argument_name(read)));
         }
-        for array in [Array::Slots, Array::Out] {
+        for array in [SharedArray::Slots, SharedArray::Out] {
             let constant = match used.access(array) {
-                Access::None => continue,
-                Access::Read => "const ",
-                Access::Written => "",
+                ArrayAccess::None => continue,
+                ArrayAccess::Read => "const ",
+                ArrayAccess::Written => "",
             };
             let name = array.name();
-            given.push(match self.origins.of(array) {
+            given.push(match self.origins.offset_of(array) {
                 0 => name.into(),
                 origin => format!("{name} + {origin}"),
             });

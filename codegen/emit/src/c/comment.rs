@@ -1,26 +1,26 @@
 //! Comments in C, safe for any text.
 
-use crate::docs::spelled;
+use crate::docs::escape_bidi_controls;
 
-/// Prints lines as a documentation comment, indented.
-pub fn documentation(lines: &[String], indent: usize) -> String {
+/// Prints lines as a documentation comment of C, `/** … */`, indented.
+pub fn doc_comment(lines: &[String], indent: usize) -> String {
     let lines = lines.iter().flat_map(|line| line.split(['\n', '\r']));
     let lines = lines.map(|line| line.trim_start_matches(' ').to_owned());
     block("/**", &lines.collect::<Vec<_>>(), indent)
 }
 
-/// Prints lines as a plain comment.
-pub fn plain(lines: &[String]) -> String {
+/// Prints lines as a plain comment of C, `/* … */`.
+pub fn plain_comment(lines: &[String]) -> String {
     block("/*", lines, 0)
 }
 
-/// Prints one line as a documentation comment, indented.
-pub fn line(text: &str, indent: usize) -> String {
+/// Prints one line as a documentation comment of C, `/** … */`, indented.
+pub fn doc_comment_line(text: &str, indent: usize) -> String {
     format!("{:indent$}/** {} */\n", "", tame(text))
 }
 
-/// Prints one line as a plain comment.
-pub fn print_comment_line(text: &str) -> String {
+/// Prints one line as a plain C comment, `/* … */`.
+pub fn plain_comment_line(text: &str) -> String {
     format!("/* {} */\n", tame(text))
 }
 
@@ -45,7 +45,7 @@ fn tame(line: &str) -> String {
     let line: String = line.chars().filter(|c| !c.is_control()).collect();
     let mut text = String::new();
     let mut last = ' ';
-    for letter in spelled(&line).chars() {
+    for letter in escape_bidi_controls(&line).chars() {
         if matches!((last, letter), ('*', '/') | ('/', '*') | ('?', '?')) {
             text.push(' ');
         }

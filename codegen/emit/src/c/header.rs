@@ -1,22 +1,25 @@
 //! The header `name.h`: sizes, indices of entries by name, types, and documented prototypes.
 
 use super::{Texts, comment, returns_number};
-use crate::function::Spec;
-use crate::names::{Unique, argument};
-use crate::views::{Field, input_fields, state_fields};
+use crate::function::FunctionSpec;
+use crate::names::{UniqueNames, argument_name};
+use crate::views::{NamedRange, input_fields, state_fields};
 use crate::{docs, limits};
 use hamel_language::syntax::ast::ShapeKind;
 use hamel_program::{Cause, Program};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Returns the header, without the comment that says how it was generated.
+/// Returns the text of the C header of a program, without the comment that says how it was generated.
 pub fn print_header(texts: &Texts) -> String {
     let capitals = &texts.names.capitals;
     let mut declared = String::new();
     for (spec, name) in texts.functions() {
-        let docs = comment::documentation(&spec.docs, 0);
-        declared.push_str(&format!("\n{docs}{};\n", prototype(texts, &spec, name)));
+        let docs = comment::doc_comment(&spec.docs, 0);
+        declared.push_str(&format!(
+            "\n{docs}{};\n",
+            function_prototype(texts, &spec, name)
+        ));
     }
     let limits = limit_macros(texts);
     let infinite = ["HUGE_VAL", "NAN"].iter().any(|word| limits.contains(word));
@@ -44,8 +47,8 @@ fn about(texts: &Texts) -> String {
     }
     let fill = format!(
         "Fill a `{}` by `{}` and pass it to the other functions,",
-        names.own("system"),
-        names.own("set_parameters")
+        names.identifier("system"),
+        names.identifier("set_parameters")
     );
     lines.extend([String::new(), fill]);
     lines.extend(
@@ -56,7 +59,7 @@ fn about(texts: &Texts) -> String {
         ]
         .map(String::from),
     );
-    comment::documentation(&lines, 0)
+    comment::doc_comment(&lines, 0)
 }
 
 fn opening(capitals: &str) -> String {
@@ -73,12 +76,12 @@ fn sizes(texts: &Texts) -> String {
     let entry = |text: &mut String, docs: String, name: String, value: usize| {
         text.push_str(&format!("{docs}    {capitals}_{name} = {value},\n"));
     };
-    for (name, what, first, size) in docs::sizes(program) {
-        let docs = comment::documentation(&docs::entries(program, what, first, size), 4);
+    for (name, what, first, size) in docs::size_constants(program) {
+        let docs = comment::doc_comment(&docs::entry_lines(program, what, first, size), 4);
         entry(&mut text, docs, name.into(), size);
     }
-    let mut taken = Unique::default();
-    for Field {
+    let mut taken = UniqueNames::default();
+    for NamedRange {
         name,
         docs,
         shape,
@@ -91,7 +94,7 @@ fn sizes(texts: &Texts) -> String {
         let wanted = format!("{array}_{name}").to_ascii_uppercase();
         let name = taken.claim(wanted.trim_end_matches('_'));
         let what = format!("{} In `{array}`, {}.", docs, entries(shape));
-        entry(&mut text, comment::line(&what, 4), name, offset);
+        entry(&mut text, comment::doc_comment_line(&what, 4), name, offset);
     }
     // C99 allows a trailing comma here, but C++ before 2011 does not.
     if let Some(end) = text.rfind(",\n") {
@@ -113,8 +116,8 @@ fn entries(shape: ShapeKind) -> String {
 fn limit_macros(texts: &Texts) -> String {
     let capitals = &texts.names.capitals;
     let mut text = String::new();
-    for limit in limits::limits(texts.program()) {
-        text.push_str(&comment::line(&limit.title, 0));
+    for limit in limits::joint_limits(texts.program()) {
+        text.push_str(&comment::doc_comment_line(&limit.title, 0));
         let endings: &[&str] = match limit.values.len() {
             2 => &["_LOWER", "_UPPER"],
             _ => &[""],
@@ -139,32 +142,37 @@ fn types(texts: &Texts) -> String {
         texts.precision,
         status(texts)
     );
-    let parameters = names.own("parameters");
+    let parameters = names.identifier("parameters");
     let mut lines = vec!["The parameters, by name.".to_string()];
     let symmetric = |shape| matches!(shape, ShapeKind::Symmetric(_));
     if program.params.iter().any(|group| symmetric(group.shape)) {
         lines.push("Of symmetric matrices only the upper triangle is read.".into());
     }
-    text.push_str(&comment::documentation(&lines, 0));
+    text.push_str(&comment::doc_comment(&lines, 0));
     text.push_str(&format!("typedef struct {parameters} {{\n"));
     for (group, field) in program.params.iter().zip(&names.fields) {
-        let what = format!("Parameter `{}`, {}.", group.name, docs::shape(group.shape));
+        let what = format!(
+            "Parameter `{}`, {}.",
+            group.name,
+            docs::shape_in_words(group.shape)
+        );
         let size = match group.shape {
             ShapeKind::Scalar => String::new(),
             ShapeKind::Vector(n) => format!("[{n}]"),
             ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => format!("[{n}][{n}]"),
         };
-        let what = comment::line(&what, 4);
+        let what = comment::doc_comment_line(&what, 4);
         text.push_str(&format!("{what}    {real} {field}{size};\n"));
     }
     if program.params.is_empty() {
-        let what = comment::line("There are no parameters, and C has no empty structures.", 4);
+        let what =
+            comment::doc_comment_line("There are no parameters, and C has no empty structures.", 4);
         text.push_str(&format!("{what}    {real} none;\n"));
     }
-    let system = names.own("system");
+    let system = names.identifier("system");
     text.push_str(&format!(
         "}} {parameters};\n\n/** What the functions read: parameters, and constants that were computed from them. */\ntypedef struct {system} {{\n    /** The parameters; to change them, call `{}` anew. */\n    {parameters} parameters;\n",
-        names.own("set_parameters")
+        names.identifier("set_parameters")
     ));
     if !texts.emitter.kept.is_empty() {
         text.push_str(&format!(
@@ -181,8 +189,8 @@ fn status(texts: &Texts) -> String {
     let program = texts.program();
     let mut text = format!(
         "/** Whether there is a value, and else why there is none. Velocities, rows and pivots are counted from 0. */\ntypedef enum {} {{\n    /** There is one. */\n    {} = 0",
-        names.own("status"),
-        names.done()
+        names.identifier("status"),
+        names.success_code()
     );
     for (number, cause) in causes(program).into_iter().enumerate() {
         let meaning = match cause {
@@ -201,11 +209,11 @@ fn status(texts: &Texts) -> String {
         let _ = write!(
             text,
             ",\n    /** {meaning} */\n    {} = {}",
-            names.status(cause),
+            names.status_code(cause),
             number + 1
         );
     }
-    text + &format!("\n}} {};\n\n", names.own("status"))
+    text + &format!("\n}} {};\n\n", names.identifier("status"))
 }
 
 /// Returns the causes of failure of all functions, including `set_parameters`.
@@ -219,48 +227,51 @@ fn causes(program: &Program) -> BTreeSet<Cause> {
 /// Prints the prototypes that every header has, in addition to the functions of the description.
 fn setting(texts: &Texts) -> String {
     let names = &texts.names;
-    let [default, set, start] = prototypes(texts);
+    let [default, set, start] = setup_prototypes(texts);
     format!(
         "/** The parameters of the description. */\n{default};\n\n/**\n * Computes what depends on parameters alone.\n *\n * Returns a status other than `{}`, and leaves `system` alone, where a constant pivot is not positive and finite.\n */\n{set};\n\n/** The start of the description: x, and ξ with the states behind it. */\n{start};\n",
-        names.done()
+        names.success_code()
     )
 }
 
 /// Returns the prototypes of `default_parameters`, `set_parameters` and `start`.
-pub fn prototypes(texts: &Texts) -> [String; 3] {
+pub fn setup_prototypes(texts: &Texts) -> [String; 3] {
     let names = &texts.names;
     let restrict = format!("{}_RESTRICT", names.capitals);
     let [real, status, system, parameters] =
-        ["real", "status", "system", "parameters"].map(|name| names.own(name));
+        ["real", "status", "system", "parameters"].map(|name| names.identifier(name));
     [
         format!(
             "void {}({parameters} *parameters)",
-            names.own("default_parameters")
+            names.identifier("default_parameters")
         ),
         format!(
             "{status} {}({system} *{restrict} system, const {parameters} *{restrict} parameters)",
-            names.own("set_parameters")
+            names.identifier("set_parameters")
         ),
         format!(
             "void {}({real} *{restrict} x, {real} *{restrict} xi)",
-            names.own("start")
+            names.identifier("start")
         ),
     ]
 }
 
-/// Returns the prototype of a function.
-pub fn prototype(texts: &Texts, spec: &Spec, name: &str) -> String {
+/// Returns the C prototype of a function under this name.
+pub fn function_prototype(texts: &Texts, spec: &FunctionSpec, name: &str) -> String {
     let names = &texts.names;
     let real = names.real();
     let restrict = format!("{}_RESTRICT", names.capitals);
     let number = returns_number(spec.shape, spec.fallible);
     let returned = match (spec.fallible, number) {
-        (true, _) => names.own("status"),
+        (true, _) => names.identifier("status"),
         (false, true) => real.clone(),
         (false, false) => "void".into(),
     };
-    let mut arguments = vec![format!("const {} *{restrict} system", names.own("system"))];
-    let given = spec.arguments.iter().map(|&given| argument(given));
+    let mut arguments = vec![format!(
+        "const {} *{restrict} system",
+        names.identifier("system")
+    )];
+    let given = spec.arguments.iter().map(|&given| argument_name(given));
     arguments.extend(given.map(|given| format!("const {real} *{restrict} {given}")));
     if !number {
         arguments.push(format!("{real} *{restrict} out"));

@@ -15,10 +15,10 @@ const FUSED: &str = "\
 ";
 
 /// Name of an array of zeros, from which several results are copied at once: gcc assigns them one by one otherwise.
-pub const ZEROS: &str = "zeros";
+pub const ZEROS_NAME: &str = "zeros";
 /// Length of the array of zeros, and largest number of zeros that one `memcpy` copies: for more, compilers emit a loop or
 /// a call. Longer runs take several.
-pub const MOST_ZEROS: usize = 4;
+pub const MAX_ZEROS: usize = 4;
 
 /// Macro with compiler attributes of the parts of long functions; undefined again by [`END`].
 const PART: &str = "\
@@ -240,9 +240,9 @@ static inline @REAL @_cos(@REAL angle)
     ),
 ];
 
-/// Returns the text before and the text after these functions.
-pub fn around(functions: &str, names: &CIdentifiers, precision: Precision) -> [String; 2] {
-    let called = |text: &str, name: &str| text.contains(&format!("{}(", names.own(name)));
+/// Returns the C text that goes before and after these functions: the helpers that they call.
+pub fn helpers_around(functions: &str, names: &CIdentifiers, precision: Precision) -> [String; 2] {
+    let called = |text: &str, name: &str| text.contains(&format!("{}(", names.identifier(name)));
     let spelled = |text: &str| {
         let words = match precision {
             Precision::Double => DOUBLE,
@@ -281,12 +281,12 @@ pub fn around(functions: &str, names: &CIdentifiers, precision: Precision) -> [S
         push(&mut before, text);
     }
     let mut after = String::new();
-    let zeros = names.own(ZEROS);
+    let zeros = names.identifier(ZEROS_NAME);
     if functions.contains(&format!("{zeros},")) {
         let (real, zero) = (names.real(), precision.literal(0.0));
-        let list = [zero.as_str(); MOST_ZEROS].join(", ");
+        let list = [zero.as_str(); MAX_ZEROS].join(", ");
         before.push_str(&format!(
-            "static const {real} {zeros}[{MOST_ZEROS}] = {{{list}}};\n\n"
+            "static const {real} {zeros}[{MAX_ZEROS}] = {{{list}}};\n\n"
         ));
     }
     let uses = |before: &str, word: &str| functions.contains(word) || before.contains(word);

@@ -2,8 +2,8 @@
 
 use super::names::CIdentifiers;
 use super::{comment, returns_number};
-use crate::chunk::When;
-use crate::language::{Array, Language, Operand};
+use crate::chunk::ResultWriting;
+use crate::language::{Language, Operand, SharedArray};
 use hamel_algebra::graph::{Function, Graph, Node, NodeId};
 use hamel_program::{Cause, Program, Shape};
 use num_traits::ToPrimitive;
@@ -21,8 +21,8 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Name of the type.
-    pub fn name(self) -> &'static str {
+    /// Returns the C name of the type, `double` or `float`.
+    pub fn type_name(self) -> &'static str {
         match self {
             Precision::Double => "double",
             Precision::Float => "float",
@@ -67,7 +67,7 @@ impl Precision {
 
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.name())
+        write!(f, "{}", self.type_name())
     }
 }
 
@@ -105,38 +105,39 @@ pub struct CLanguage<'a> {
     /// Floating-point type.
     pub precision: Precision,
     /// Origins from which array indices are counted.
-    pub origins: Origins,
+    pub origins: ArrayOrigins,
 }
 
-/// Origins of the arrays that are passed to a part: the index of the entry to which the pointer points.
+/// Offsets of the pointers that are passed to a part of a C function: for each array, the index of the entry to which
+/// the pointer points.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Origins {
+pub struct ArrayOrigins {
     /// Origin of the slots.
     pub slots: usize,
     /// Origin of the results.
     pub out: usize,
 }
 
-impl Origins {
-    /// Returns the origin of an array.
-    pub fn of(self, array: Array) -> usize {
+impl ArrayOrigins {
+    /// Returns the offset of the pointer into an array.
+    pub fn offset_of(self, array: SharedArray) -> usize {
         match array {
-            Array::Slots => self.slots,
-            Array::Out | Array::Slopes => self.out,
+            SharedArray::Slots => self.slots,
+            SharedArray::Out | SharedArray::Slopes => self.out,
         }
     }
 }
 
 impl Language for CLanguage<'_> {
-    fn when(&self, shape: Shape, fallible: bool) -> When {
+    fn when(&self, shape: Shape, fallible: bool) -> ResultWriting {
         match returns_number(shape, fallible) {
-            true => When::AtTheEnd,
-            false => When::BehindPivots,
+            true => ResultWriting::AtTheEnd,
+            false => ResultWriting::BehindPivots,
         }
     }
 
-    fn entry(&self, array: Array, _: Shape, place: usize) -> String {
-        let (origin, array) = (self.origins.of(array), array.name());
+    fn entry(&self, array: SharedArray, _: Shape, place: usize) -> String {
+        let (origin, array) = (self.origins.offset_of(array), array.name());
         match place.checked_sub(origin) {
             Some(behind) => format!("{array}[{behind}]"),
             None => format!("{array}[-{}]", origin - place),
@@ -160,7 +161,7 @@ impl Language for CLanguage<'_> {
     }
 
     fn heading(&self, text: &str) -> String {
-        comment::print_comment_line(text)
+        comment::plain_comment_line(text)
     }
 
     fn zero(&self) -> String {
@@ -172,48 +173,59 @@ impl Language for CLanguage<'_> {
     }
 
     fn pair(&self, names: [Option<&str>; 2], angle: &Operand) -> String {
-        let (real, angle) = (self.names.real(), angle.signed());
+        let (real, angle) = (self.names.real(), angle.with_sign());
         match names {
             [Some(sine), Some(cosine)] => format!(
                 "{real} {sine}, {cosine};\n{}({angle}, &{sine}, &{cosine});\n",
-                self.names.own("sin_cos")
+                self.names.identifier("sin_cos")
             ),
             [Some(sine), None] => {
-                self.binding(sine, &format!("{}({angle})", self.names.own("sin")))
+                self.binding(sine, &format!("{}({angle})", self.names.identifier("sin")))
             }
-            [None, Some(cosine)] => {
-                self.binding(cosine, &format!("{}({angle})", self.names.own("cos")))
-            }
+            [None, Some(cosine)] => self.binding(
+                cosine,
+                &format!("{}({angle})", self.names.identifier("cos")),
+            ),
             [None, None] => String::new(),
         }
     }
 
     fn fused(&self, [a, b, c]: &[Operand; 3]) -> String {
-        format!("FUSED({}, {}, {})", a.signed(), b.signed(), c.signed())
+        format!(
+            "FUSED({}, {}, {})",
+            a.with_sign(),
+            b.with_sign(),
+            c.with_sign()
+        )
     }
 
     fn atan2(&self, [y, x]: &[Operand; 2]) -> String {
         let suffix = self.precision.suffix();
-        format!("atan2{suffix}({}, {})", y.signed(), x.signed())
+        format!("atan2{suffix}({}, {})", y.with_sign(), x.with_sign())
     }
 
     fn select(&self, [c, a, b]: &[Operand; 3]) -> String {
-        let select = self.names.own("select");
-        format!("{select}({}, {}, {})", c.signed(), a.signed(), b.signed())
+        let select = self.names.identifier("select");
+        format!(
+            "{select}({}, {}, {})",
+            c.with_sign(),
+            a.with_sign(),
+            b.with_sign()
+        )
     }
 
     fn function(&self, function: Function, operand: &Operand) -> String {
         let suffix = self.precision.suffix();
         let name = match function.row().c.strip_prefix("@_") {
-            Some(helper) => self.names.own(helper),
+            Some(helper) => self.names.identifier(helper),
             None => format!("{}{suffix}", function.row().c),
         };
-        format!("{name}({})", operand.signed())
+        format!("{name}({})", operand.with_sign())
     }
 
     fn check(&self, pivot: &Operand, cause: Cause, _: &Program) -> String {
-        let positive = self.names.own("is_positive");
-        let (pivot, status) = (pivot.signed(), self.names.status(cause));
+        let positive = self.names.identifier("is_positive");
+        let (pivot, status) = (pivot.with_sign(), self.names.status_code(cause));
         format!("if (!{positive}({pivot})) {{\n    return {status};\n}}\n")
     }
 }

@@ -26,7 +26,7 @@ mod nearest;
 mod source;
 mod words;
 
-use super::function::{Spec, draw};
+use super::function::{FunctionSpec, with_prepared};
 use super::{Emitter, docs};
 use hamel_algebra::graph::NodeId;
 use hamel_program::{Function, Program};
@@ -49,9 +49,9 @@ pub struct Options {
     pub precision: Precision,
 }
 
-/// A header and its source.
+/// Texts of a C header and its source.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Files {
+pub struct CFiles {
     /// `name.h`
     pub header: String,
     /// `name.c`
@@ -70,7 +70,7 @@ struct Texts<'a> {
 impl<'a> Texts<'a> {
     fn new(program: &'a Program, precision: Precision) -> Self {
         let (identifiers, names) = CIdentifiers::of(program);
-        let words = identifiers.words();
+        let words = identifiers.reserved_words();
         // C compilers take functions of any length, so that only functions that run faster that way are split.
         let emitter = Emitter {
             headings: true,
@@ -88,23 +88,23 @@ impl<'a> Texts<'a> {
     }
 
     /// Returns the functions that are called while the system moves, with their names.
-    fn functions(&self) -> impl Iterator<Item = (Spec<'a>, &str)> {
+    fn functions(&self) -> impl Iterator<Item = (FunctionSpec<'a>, &str)> {
         let functions = self.program().functions.iter().enumerate();
         let specs = functions.map(|(index, function)| self.emitter.function(index, function));
         specs.zip(self.names.functions.iter().map(String::as_str))
     }
 }
 
-/// Returns the header and the source of a program.
-pub fn files(program: &Program, options: &Options) -> Files {
+/// Generates C: returns the header and the source of a program.
+pub fn files(program: &Program, options: &Options) -> CFiles {
     let texts = Texts::new(program, options.precision);
-    let origin = docs::origin(options.source_hash, &options.command);
-    let description = docs::description(&options.description);
-    let described = comment::plain(&[origin.clone(), description].concat());
-    let origin = comment::plain(&origin);
+    let origin = docs::generation_notice(options.source_hash, &options.command);
+    let description = docs::description_lines(&options.description);
+    let described = comment::plain_comment(&[origin.clone(), description].concat());
+    let origin = comment::plain_comment(&origin);
     let rest = source::print_source(&texts);
     let include = format!("#include \"{}\"\n\n", options.header);
-    Files {
+    CFiles {
         header: format!("{described}\n{}", header::print_header(&texts)),
         source: format!("{origin}\n{include}{rest}"),
         rest,
@@ -147,7 +147,7 @@ const HEADERS: &[&str] = &[
 ];
 
 /// Whether `stem` with `.h` is a usable header name: it can be included, and does not hide a standard header.
-pub fn includable(stem: &str) -> bool {
+pub fn is_includable(stem: &str) -> bool {
     let strange = |letter: char| letter.is_control() || matches!(letter, '"' | '\\' | '?');
     // Some file systems do not distinguish `Math.h` from `math.h`.
     let known = HEADERS
@@ -158,16 +158,16 @@ pub fn includable(stem: &str) -> bool {
 
 /// Returns the linker symbols of a program's functions.
 #[cfg(feature = "files")]
-pub fn functions(program: &Program) -> Vec<String> {
+pub fn linker_symbols(program: &Program) -> Vec<String> {
     let (names, _) = CIdentifiers::of(program);
-    let own = ["default_parameters", "set_parameters", "start"].map(|name| names.own(name));
+    let own = ["default_parameters", "set_parameters", "start"].map(|name| names.identifier(name));
     own.into_iter().chain(names.functions).collect()
 }
 
 /// Returns the C documentation of a function: what it evaluates, its cost, arguments and result.
 fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = docs::summary_and_arguments(program, function, nodes);
-    let result = docs::result(function.shape);
+    let result = docs::result_in_words(function.shape);
     if returns_number(function.shape, function.fallible) {
         lines.extend([String::new(), format!("Returns {result}.")]);
         return lines;
@@ -181,7 +181,7 @@ fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Ve
     };
     lines.push(format!("- `out`: {result}{rows}"));
     if function.fallible {
-        let why = match docs::singular(program, &function.guards) {
+        let why = match docs::singular_conditions(program, &function.guards) {
             Some(why) => {
                 format!("Returns a status other than 0, and leaves `out` alone, where {why}.")
             }

@@ -10,8 +10,8 @@
 //! The prefix is the name of the system in snake case. A word that is reserved by C, C++, their headers or Rust always
 //! gets `_`, even where it would be legal: so a name depends on nothing but itself.
 
-use super::words::legal;
-use crate::names::{Names, Unique, Words, snake};
+use super::words::legal_identifier;
+use crate::names::{ProgramNames, ReservedWords, UniqueNames, to_snake_case};
 use hamel_program::{Cause, Program};
 
 /// Local names that a function may use in addition to the names of its values.
@@ -50,7 +50,7 @@ const OWN: &[&str] = &[
     "zeros",
 ];
 
-/// The identifiers of a program.
+/// The C identifiers of a program.
 pub struct CIdentifiers {
     /// Prefix of all other identifiers.
     pub prefix: String,
@@ -64,48 +64,50 @@ pub struct CIdentifiers {
 
 impl CIdentifiers {
     /// Returns the identifiers of a program in C, and its names in Rust, from which they are made.
-    pub fn of(program: &Program) -> (Self, Names) {
-        let names = Names::beside(program, OWN);
-        let prefix = snake(&program.name).trim_end_matches('_').to_string();
+    pub fn of(program: &Program) -> (Self, ProgramNames) {
+        let names = ProgramNames::with_reserved_names(program, OWN);
+        let prefix = to_snake_case(&program.name)
+            .trim_end_matches('_')
+            .to_string();
         // In C++ a member cannot have the name of a type that its struct mentions.
         let own: Vec<String> = OWN.iter().map(|name| format!("{prefix}_{name}")).collect();
-        let mut members = Unique::new(&own.iter().map(String::as_str).collect::<Vec<_>>());
+        let mut members = UniqueNames::new(&own.iter().map(String::as_str).collect::<Vec<_>>());
         let identifiers = CIdentifiers {
             capitals: prefix.to_ascii_uppercase(),
             functions: (names.functions.iter())
-                .map(|name| legal(format!("{prefix}_{name}")))
+                .map(|name| legal_identifier(format!("{prefix}_{name}")))
                 .collect(),
             fields: (names.fields.iter())
-                .map(|name| members.claim(&legal(name.clone())))
+                .map(|name| members.claim(&legal_identifier(name.clone())))
                 .collect(),
             prefix,
         };
         (identifiers, names)
     }
 
-    /// Returns the identifier of a generated type or helper function.
-    pub fn own(&self, name: &str) -> String {
+    /// Returns the C identifier of a generated type or helper function, prefixed by the name of the program.
+    pub fn identifier(&self, name: &str) -> String {
         format!("{}_{name}", self.prefix)
     }
 
     /// Returns the name of the type of numbers.
     pub fn real(&self) -> String {
-        self.own("real")
+        self.identifier("real")
     }
 
     /// Returns the words that cannot be names of values in a function.
-    pub fn words(&self) -> Words {
-        let own: Vec<String> = OWN.iter().map(|name| self.own(name)).collect();
+    pub fn reserved_words(&self) -> ReservedWords {
+        let own: Vec<String> = OWN.iter().map(|name| self.identifier(name)).collect();
         let own = own.iter().map(String::as_str);
         let taken: Vec<&str> = LOCALS.iter().copied().chain(own).collect();
-        Words {
-            locals: Unique::new(&taken),
-            legal,
+        ReservedWords {
+            locals: UniqueNames::new(&taken),
+            legal: legal_identifier,
         }
     }
 
     /// Returns the status code for a cause of failure.
-    pub fn status(&self, cause: Cause) -> String {
+    pub fn status_code(&self, cause: Cause) -> String {
         let capitals = &self.capitals;
         match cause {
             Cause::Velocity(place) => format!("{capitals}_STATUS_INERTIA_{place}"),
@@ -116,7 +118,7 @@ impl CIdentifiers {
     }
 
     /// Returns the status code for success.
-    pub fn done(&self) -> String {
+    pub fn success_code(&self) -> String {
         format!("{}_STATUS_OK", self.capitals)
     }
 }

@@ -5,9 +5,9 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-/// Returns the origin in an array from which most of `places` are within `near` entries before or behind. Returns 0
-/// if no other origin is better.
-pub fn nearest(places: impl Iterator<Item = usize>, near: usize, length: usize) -> usize {
+/// Returns the index in an array from which most of `places` are within `near` entries before or behind, to be the
+/// offset of a pointer. Returns 0 if no other origin is better.
+pub fn best_origin(places: impl Iterator<Item = usize>, near: usize, length: usize) -> usize {
     let mut count: BTreeMap<usize, usize> = BTreeMap::new();
     for place in places {
         *count.entry(place).or_default() += 1;

@@ -1,43 +1,43 @@
 //! The source file `name.c`: definitions of the functions that the header declares.
 
-use super::body::{self, indented};
-use super::header::{prototype, prototypes};
-use super::language::Origins;
-use super::{CLanguage, Texts, draw, helpers};
-use crate::function::statements;
+use super::body::{self, indent_lines};
+use super::header::{function_prototype, setup_prototypes};
+use super::language::ArrayOrigins;
+use super::{CLanguage, Texts, helpers, with_prepared};
+use crate::function::print_statements;
 use crate::parameters;
 use hamel_language::syntax::ast::ShapeKind;
 
-/// Returns the source file without the comment and the `#include` at its top.
+/// Returns the text of the C source without the comment and the `#include` at its top.
 pub fn print_source(texts: &Texts) -> String {
     let names = &texts.names;
-    let [default, set, start] = prototypes(texts);
+    let [default, set, start] = setup_prototypes(texts);
     let mut functions = format!(
         "{default}\n{{\n{}}}\n\n{}{set}\n{{\n{}}}\n\n{start}\n{{\n{}}}\n",
-        indented(&defaults(texts)),
+        indent_lines(&defaults(texts)),
         constants(texts),
-        indented(&setting(texts)),
-        indented(&beginning(texts)),
+        indent_lines(&setting(texts)),
+        indent_lines(&beginning(texts)),
     );
     let language = language(texts);
     let read = expressions(texts, "system->parameters.");
     for (spec, name) in texts.functions() {
-        let prototype = prototype(texts, &spec, name);
+        let prototype = function_prototype(texts, &spec, name);
         let mut parts = String::new();
-        let body = draw(&texts.emitter, &spec, &language, &read, |drawing| {
+        let body = with_prepared(&texts.emitter, &spec, &language, &read, |drawing| {
             if drawing.plan.parts.len() <= 1 {
-                return body::whole(texts, drawing);
+                return body::print_whole_body(texts, drawing);
             }
             let body;
-            (parts, body) = body::split(texts, drawing);
+            (parts, body) = body::print_parts_and_body(texts, drawing);
             body
         });
         functions.push_str(&format!(
             "{parts}\n{prototype}\n{{\n{}}}\n",
-            indented(&body)
+            indent_lines(&body)
         ));
     }
-    let [before, after] = helpers::around(&functions, names, texts.precision);
+    let [before, after] = helpers::helpers_around(&functions, names, texts.precision);
     let everything = format!("{before}{functions}");
     let headers: String = [
         ("float.h", ["FLT_RADIX", "FLT_EVAL"].as_slice()),
@@ -56,13 +56,13 @@ fn language<'a>(texts: &'a Texts) -> CLanguage<'a> {
     CLanguage {
         names: &texts.names,
         precision: texts.precision,
-        origins: Origins::default(),
+        origins: ArrayOrigins::default(),
     }
 }
 
 /// Returns all parameters as expressions; `owner` is the prefix of the field names.
 fn expressions(texts: &Texts, owner: &str) -> Vec<String> {
-    parameters::expressions(texts.program(), &texts.names.fields, owner)
+    parameters::parameter_expressions(texts.program(), &texts.names.fields, owner)
 }
 
 /// Prints the body of `default_parameters`: `parameters->m = 1.3;` and so on.
@@ -88,7 +88,7 @@ fn defaults(texts: &Texts) -> String {
                 }
             }
             shape => {
-                for (place, index) in parameters::indices(shape).into_iter().enumerate() {
+                for (place, index) in parameters::index_expressions(shape).into_iter().enumerate() {
                     set(index, place);
                 }
             }
@@ -111,16 +111,19 @@ fn constants(texts: &Texts) -> String {
     let spec = texts.emitter.constants();
     let read = expressions(texts, "parameters->");
     let language = language(texts);
-    let body = draw(&texts.emitter, &spec, &language, &read, |drawing| {
+    let body = with_prepared(&texts.emitter, &spec, &language, &read, |drawing| {
         let mut printer = drawing.printer();
         let mut text = String::new();
         for part in &drawing.plan.parts {
-            text.push_str(&statements(&mut printer, drawing.body, part, |_, _| {
-                String::new()
-            }));
+            text.push_str(&print_statements(
+                &mut printer,
+                drawing.body,
+                part,
+                |_, _| String::new(),
+            ));
         }
         for (index, &edge) in drawing.body.outputs.iter().enumerate() {
-            let value = printer.signed(edge);
+            let value = printer.signed_value(edge);
             text.push_str(&format!("k[{index}] = {value};\n"));
         }
         match text.contains("parameters->") {
@@ -130,10 +133,10 @@ fn constants(texts: &Texts) -> String {
     });
     format!(
         "/* What depends on parameters alone. */\nstatic void {}(const {} *parameters, {} *k)\n{{\n{}}}\n\n",
-        texts.names.own(&texts.emitter.names.constants),
-        texts.names.own("parameters"),
+        texts.names.identifier(&texts.emitter.names.constants),
+        texts.names.identifier("parameters"),
         texts.names.real(),
-        indented(&body)
+        indent_lines(&body)
     )
 }
 
@@ -143,20 +146,20 @@ fn setting(texts: &Texts) -> String {
     let names = &texts.names;
     let mut text = format!(
         "{} next;\nnext.parameters = *parameters;\n",
-        names.own("system")
+        names.identifier("system")
     );
     if !emitter.kept.is_empty() {
-        let constants = names.own(&emitter.names.constants);
+        let constants = names.identifier(&emitter.names.constants);
         text.push_str(&format!("{constants}(parameters, next.k);\n"));
     }
     let read = expressions(texts, "next.parameters.");
-    text.push_str(&parameters::checks(
+    text.push_str(&parameters::print_pivot_checks(
         emitter,
         &language(texts),
         "next.k",
         &read,
     ));
-    text + &format!("*system = next;\nreturn {};\n", names.done())
+    text + &format!("*system = next;\nreturn {};\n", names.success_code())
 }
 
 /// Prints the body of `start`: the initial x and ξ.

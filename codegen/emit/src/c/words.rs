@@ -35,8 +35,8 @@ const RESERVED: &[&str] = &[
 static WORDS: LazyLock<HashSet<&str>> =
     LazyLock::new(|| RESERVED.iter().flat_map(|line| line.split(' ')).collect());
 
-/// Appends `_` to a reserved name.
-pub fn legal(name: String) -> String {
+/// Returns a name as a legal C identifier: `_` is appended to a reserved word.
+pub fn legal_identifier(name: String) -> String {
     // The `float` variants are reserved as well: `sinf` along with `sin`.
     let of_float = |name: &str| name.strip_suffix('f').is_some_and(|f| WORDS.contains(f));
     match WORDS.contains(name.as_str()) || of_float(&name) {

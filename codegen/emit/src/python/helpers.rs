@@ -71,8 +71,8 @@ def _raised(xp, a):
     ),
 ];
 
-/// Returns the source of the helpers that a text calls.
-pub fn used(text: &str) -> String {
+/// Returns the Python source of the helper functions that a text calls.
+pub fn helpers_used_by(text: &str) -> String {
     let called = HELPERS
         .iter()
         .filter(|(name, _)| text.contains(&format!("{name}(")));

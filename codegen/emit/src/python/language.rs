@@ -1,8 +1,8 @@
 //! The Python syntax of statements, numbers and comments.
 
-use crate::chunk::When;
-use crate::docs::spelled;
-use crate::language::{Array, Language, Operand};
+use crate::chunk::ResultWriting;
+use crate::docs::escape_bidi_controls;
+use crate::language::{Language, Operand, SharedArray};
 use hamel_algebra::graph::{Function, Graph, Node, NodeId};
 use hamel_program::{Cause, Program, Shape};
 use num_traits::ToPrimitive;
@@ -11,11 +11,11 @@ use num_traits::ToPrimitive;
 pub struct Python;
 
 impl Language for Python {
-    fn when(&self, _: Shape, _: bool) -> When {
-        When::Whole
+    fn when(&self, _: Shape, _: bool) -> ResultWriting {
+        ResultWriting::Whole
     }
 
-    fn entry(&self, array: Array, _: Shape, place: usize) -> String {
+    fn entry(&self, array: SharedArray, _: Shape, place: usize) -> String {
         format!("{}[{place}]", array.name())
     }
 
@@ -50,31 +50,31 @@ impl Language for Python {
         let both = names.into_iter().zip(["sin", "cos"]);
         let one = |(name, function)| {
             let name: &str = name?;
-            Some(self.binding(name, &format!("xp.{function}({})", angle.signed())))
+            Some(self.binding(name, &format!("xp.{function}({})", angle.with_sign())))
         };
         both.filter_map(one).collect()
     }
 
     fn fused(&self, [a, b, c]: &[Operand; 3]) -> String {
         let sign = if c.negative { "-" } else { "+" };
-        format!("{} * {} {sign} {}", a.signed(), b.signed(), c.value)
+        format!("{} * {} {sign} {}", a.with_sign(), b.with_sign(), c.value)
     }
 
     fn atan2(&self, [y, x]: &[Operand; 2]) -> String {
-        format!("xp.arctan2({}, {})", y.signed(), x.signed())
+        format!("xp.arctan2({}, {})", y.with_sign(), x.with_sign())
     }
 
     fn select(&self, [c, a, b]: &[Operand; 3]) -> String {
         format!(
             "_select(xp, {}, {}, {})",
-            c.signed(),
-            a.signed(),
-            b.signed()
+            c.with_sign(),
+            a.with_sign(),
+            b.with_sign()
         )
     }
 
     fn function(&self, function: Function, operand: &Operand) -> String {
-        let operand = operand.signed();
+        let operand = operand.with_sign();
         // Modules of arrays have the names of `<math.h>`.
         match function.row().c.strip_prefix('@') {
             Some(helper) => format!("{helper}(xp, {operand})"),
@@ -83,11 +83,11 @@ impl Language for Python {
     }
 
     fn check(&self, pivot: &Operand, _: Cause, _: &Program) -> String {
-        format!("valid = valid & _is_positive({})\n", pivot.signed())
+        format!("valid = valid & _is_positive({})\n", pivot.with_sign())
     }
 }
 
-/// Returns the shortest literal that parses to this number.
+/// Returns the shortest Python literal that parses to this number.
 pub fn literal(value: f64) -> String {
     let text = match value {
         value if value.is_nan() => "math.nan".into(),
@@ -100,15 +100,15 @@ pub fn literal(value: f64) -> String {
     }
 }
 
-/// Prints a line as a comment.
+/// Prints a line as a Python comment, `# …`.
 pub fn comment(line: &str) -> String {
-    let line = plain(line);
+    let line = single_line(line);
     let space = if line.is_empty() { "" } else { " " };
     format!("#{space}{line}\n")
 }
 
-/// Removes what would end a line, and characters that change the direction of writing.
-pub fn plain(line: &str) -> String {
+/// Returns a text without what would end a line, and without characters that change the direction of writing.
+pub fn single_line(line: &str) -> String {
     let line: String = line.chars().filter(|letter| !letter.is_control()).collect();
-    spelled(line.trim_end())
+    escape_bidi_controls(line.trim_end())
 }

@@ -16,11 +16,11 @@ mod names;
 
 use super::chunk::BodyPartition;
 use super::docs;
-use super::function::{Drawing, Spec, draw, statements};
-use super::parameters::{expressions, shaped};
-use super::views::{Field, input_fields, state_fields};
+use super::function::{FunctionSpec, PreparedFunction, print_statements, with_prepared};
+use super::parameters::{parameter_expressions, shaped_expression};
+use super::views::{NamedRange, input_fields, state_fields};
 use super::{Emitter, limits, names as common};
-use common::{Unique, argument};
+use common::{UniqueNames, argument_name};
 use hamel_algebra::graph::NodeId;
 use hamel_language::syntax::ast::ShapeKind;
 use hamel_program::{Function, Program, Shape};
@@ -38,21 +38,30 @@ pub struct Options {
 }
 
 /// Returns the Python module of a program without external functions.
-pub fn file(program: &Program, options: &Options) -> String {
-    let names = names::of(common::Names::beside(program, names::RESERVED));
+pub fn python_module(program: &Program, options: &Options) -> String {
+    let names = names::legal_names(common::ProgramNames::with_reserved_names(
+        program,
+        names::RESERVED,
+    ));
     let emitter = Emitter {
         headings: true,
-        ..Emitter::with(program, usize::MAX, names, names::words(), documentation)
+        ..Emitter::with(
+            program,
+            usize::MAX,
+            names,
+            names::reserved_words(),
+            documentation,
+        )
     };
     let class = Class {
-        fields: names::attributes(&emitter.names),
+        fields: names::parameter_attributes(&emitter.names),
         emitter: &emitter,
     };
-    let mut header = docs::origin(options.source_hash, &options.command);
-    header.extend(docs::description(&options.description));
+    let mut header = docs::generation_notice(options.source_hash, &options.command);
+    header.extend(docs::description_lines(&options.description));
     let header: String = header.iter().map(|line| language::comment(line)).collect();
     let body = class.text();
-    let helpers = helpers::used(&body);
+    let helpers = helpers::helpers_used_by(&body);
     format!("{header}\n{}{helpers}\n\n{body}", class.about())
 }
 
@@ -102,9 +111,9 @@ impl Class<'_> {
             let docs: String = docs.iter().map(|line| language::comment(line)).collect();
             text.push_str(&indented(&format!("\n{docs}{name} = {value}\n"), 4));
         };
-        for (name, what, first, size) in docs::sizes(program) {
+        for (name, what, first, size) in docs::size_constants(program) {
             constant(
-                &docs::entries(program, what, first, size),
+                &docs::entry_lines(program, what, first, size),
                 name,
                 &size.to_string(),
             );
@@ -127,12 +136,12 @@ impl Class<'_> {
                 &tuple(values.iter().map(|&value| literal(value))),
             );
         }
-        let mut taken = Unique::default();
+        let mut taken = UniqueNames::default();
         let fields = state_fields(program)
             .into_iter()
             .chain(input_fields(program));
         for field in fields {
-            let Field {
+            let NamedRange {
                 name,
                 docs,
                 array,
@@ -147,7 +156,7 @@ impl Class<'_> {
             };
             constant(&[format!("{docs} In `{array}`.")], &name, &place);
         }
-        for limit in limits::limits(program) {
+        for limit in limits::joint_limits(program) {
             let values = limit.values.iter().map(|&value| literal(value));
             let value = match limit.values.as_slice() {
                 [one] => literal(*one),
@@ -176,7 +185,7 @@ impl Class<'_> {
                 ShapeKind::Matrix(n) => i * n + j,
                 ShapeKind::Scalar | ShapeKind::Vector(_) => j,
             };
-            let value = shaped(group.shape, |i, j| {
+            let value = shaped_expression(group.shape, |i, j| {
                 let value = program.defaults.get(group.offset + place(i, j)).copied();
                 literal(value.unwrap_or_default())
             });
@@ -184,7 +193,7 @@ impl Class<'_> {
             lines.push(format!(
                 "- `{field}`: `{}`, {}",
                 group.name,
-                docs::shape(group.shape)
+                docs::shape_in_words(group.shape)
             ));
             body.push_str(&format!("self.{field} = {field}\n"));
         }
@@ -198,9 +207,14 @@ impl Class<'_> {
         }
         let guards = &program.constant_guards;
         if !guards.is_empty() {
-            let why = docs::singular(program, guards).unwrap_or_default();
-            let parameters = expressions(program, &self.fields, "self.");
-            let checks = super::parameters::checks(self.emitter, &Python, "self._k", &parameters);
+            let why = docs::singular_conditions(program, guards).unwrap_or_default();
+            let parameters = parameter_expressions(program, &self.fields, "self.");
+            let checks = super::parameters::print_pivot_checks(
+                self.emitter,
+                &Python,
+                "self._k",
+                &parameters,
+            );
             body.push_str(&format!("valid = True\n{checks}"));
             body.push_str(&format!(
                 "if xp is numpy and not numpy.all(valid):\n    raise ValueError({})\n",
@@ -216,16 +230,16 @@ impl Class<'_> {
         indented(&text, 4)
     }
 
-    fn method(&self, spec: &Spec) -> String {
-        let parameters = expressions(self.program(), &self.fields, "self.");
-        let body = draw(self.emitter, spec, &Python, &parameters, |drawing| {
+    fn method(&self, spec: &FunctionSpec) -> String {
+        let parameters = parameter_expressions(self.program(), &self.fields, "self.");
+        let body = with_prepared(self.emitter, spec, &Python, &parameters, |drawing| {
             self.body(drawing)
         });
         let mut arguments = vec!["self".to_string()];
         arguments.extend(
             spec.arguments
                 .iter()
-                .map(|&given| argument(given).to_string()),
+                .map(|&given| argument_name(given).to_string()),
         );
         let name = match spec.functions.is_empty() {
             true => CONSTANTS,
@@ -240,24 +254,27 @@ impl Class<'_> {
         indented(&text, 4)
     }
 
-    fn body(&self, drawing: &Drawing) -> String {
+    fn body(&self, drawing: &PreparedFunction) -> String {
         let (spec, BodyPartition { parts, .. }) = (drawing.spec, drawing.plan);
         let mut printer = drawing.printer();
         let mut text = String::new();
         for part in parts {
-            text.push_str(&statements(&mut printer, drawing.body, part, |_, _| {
-                String::new()
-            }));
+            text.push_str(&print_statements(
+                &mut printer,
+                drawing.body,
+                part,
+                |_, _| String::new(),
+            ));
         }
         let results = drawing
             .body
             .outputs
             .iter()
-            .map(|&edge| printer.signed(edge));
+            .map(|&edge| printer.signed_value(edge));
         let results: Vec<String> = results.collect();
         let mut before = "xp = self._xp\n".to_string();
         for &given in spec.arguments {
-            let (name, length) = (argument(given), self.program().length(given));
+            let (name, length) = (argument_name(given), self.program().length(given));
             before.push_str(&format!(
                 "{name} = _entries(xp, {name}, {length}, \"{name}\")\n"
             ));
@@ -274,7 +291,7 @@ impl Class<'_> {
         let arguments = spec
             .arguments
             .iter()
-            .map(|&given| argument(given).to_string());
+            .map(|&given| argument_name(given).to_string());
         let valid = if spec.fallible { "valid" } else { "True" };
         format!(
             "{before}{text}return _shaped(xp, {}, {}, {}, {valid})\n",
@@ -308,7 +325,7 @@ fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Ve
         format!("Returns an array of shape `(...{})`.", axes.concat()),
     ]);
     if function.fallible
-        && let Some(why) = docs::singular(program, &function.guards)
+        && let Some(why) = docs::singular_conditions(program, &function.guards)
     {
         lines.extend([String::new(), format!("NaN where {why}.")]);
     }
@@ -353,7 +370,9 @@ fn escaped(text: &str) -> String {
 /// Prints lines as a docstring, indented.
 fn docstring(lines: &[String], indent: usize) -> String {
     let lines = lines.iter().flat_map(|line| line.split(['\n', '\r']));
-    let lines: Vec<String> = lines.map(|line| escaped(&language::plain(line))).collect();
+    let lines: Vec<String> = lines
+        .map(|line| escaped(&language::single_line(line)))
+        .collect();
     let end = if lines.len() > 1 { "\n" } else { "" };
     indented(&format!("\"\"\"{}{end}\"\"\"\n", lines.join("\n")), indent)
 }

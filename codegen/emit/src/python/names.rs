@@ -1,6 +1,6 @@
 //! Identifiers of generated Python: those of Rust, with `_` behind words that Python reserves.
 
-use crate::names::{Names, Unique, Words};
+use crate::names::{ProgramNames, ReservedWords, UniqueNames};
 
 /// Keywords of Python that are not keywords of Rust, in the case of generated names, which have no capitals but in
 /// the name of the class.
@@ -25,23 +25,23 @@ fn legal(name: String) -> String {
     }
 }
 
-/// Returns the words that cannot be names of values in a function.
-pub fn words() -> Words {
-    Words {
-        locals: Unique::new(LOCALS),
+/// Returns the words of Python that cannot be names of values in a function.
+pub fn reserved_words() -> ReservedWords {
+    ReservedWords {
+        locals: UniqueNames::new(LOCALS),
         legal,
     }
 }
 
-/// Returns the names of a program with those of its class and functions legal in Python.
-pub fn of(mut names: Names) -> Names {
+/// Returns the names of a program with those of its class and functions made legal in Python.
+pub fn legal_names(mut names: ProgramNames) -> ProgramNames {
     names.type_name = legal(names.type_name);
     names.functions = names.functions.into_iter().map(legal).collect();
     names
 }
 
-/// Returns the attributes of the parameter groups. Parameters and functions share the names of one class, as the
-/// accessors of Rust do.
-pub fn attributes(names: &Names) -> Vec<String> {
+/// Returns the Python attributes that hold the parameter groups. Parameters and functions share the names of one class,
+/// as the accessors of Rust do.
+pub fn parameter_attributes(names: &ProgramNames) -> Vec<String> {
     names.accessors.iter().cloned().map(legal).collect()
 }

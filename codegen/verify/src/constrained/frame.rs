@@ -6,8 +6,8 @@
 
 use crate::kernel::places;
 use crate::numbers::FormEvaluator;
-use crate::points::{Disagreement, at_fresh_points};
-use crate::reference::Reference;
+use crate::points::{Disagreement, compare_at_fresh_points};
+use crate::reference::ReferenceQuantities;
 use crate::states;
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::{Edge, Function, Graph};
@@ -16,7 +16,7 @@ use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::transplant::{substitute, substitute_under_roots};
 use hamel_dynamics::accel::kkt;
 use hamel_dynamics::calculus::Calculus;
-use hamel_dynamics::reduction::{Reduction, drift};
+use hamel_dynamics::reduction::{Reduction, velocity_drift};
 use hamel_dynamics::{kinematics, quantity};
 use hamel_language::model::{Model, class};
 use hamel_program::{FunctionId, Program};
@@ -24,7 +24,7 @@ use num_rational::BigRational;
 
 /// Quantities of the full frame, with which reduced systems are compared.
 pub(super) struct FullFrameQuantities {
-    pub(super) reference: Reference,
+    pub(super) reference: ReferenceQuantities,
     /// Whether the full frame agrees with the three forms in numbers; `None` if no point was found to compare at.
     pub(super) frame: Option<bool>,
     /// Ċ ξₐ + ċ.
@@ -55,11 +55,11 @@ impl FullFrameQuantities {
             graph: reduction.graph.clone(),
             ..model.clone()
         };
-        let mut reference = Reference::new(&full)?;
-        let frame = agrees(model, &reference);
+        let mut reference = ReferenceQuantities::new(&full)?;
+        let frame = reference_agrees(model, &reference);
         let full = &mut reference.model;
         let xi: Vec<Edge> = reduction.active.iter().map(|&i| full.xi[i]).collect();
-        let drift = drift(full, &xi, &reduction.parametrization);
+        let drift = velocity_drift(full, &xi, &reduction.parametrization);
         let parametrization = &reduction.parametrization;
         let lifted = [
             parametrization.complement.concat(),
@@ -73,7 +73,7 @@ impl FullFrameQuantities {
         let energies = (in_energy, reference.potential);
         let claims = model.invariants.iter();
         let claims = claims.map(|claim| {
-            let value = quantity::value(full, &mut calculus, energies, &claim.quantity);
+            let value = quantity::quantity_value(full, &mut calculus, energies, &claim.quantity);
             (claim.name.clone(), value.entries())
         });
         let claims = claims.collect();
@@ -220,11 +220,11 @@ pub(super) fn prescribed_values(model: &Model) -> Vec<(usize, Edge)> {
     given.chain(time).collect()
 }
 
-/// Returns whether the expressions of a reference (M, h, ∂V, f, T, V, D) have the values that the model has modulo p, and
-/// whether its three forms agree there; `None` if there are no points to compare at.
+/// Returns whether the reference (M, h, ∂V, f, T, V, D) has the values that the three forms give modulo p, and whether
+/// these forms agree; `None` if there are no points to compare at.
 ///
 /// The points are fresh points of X, or points of a prescribed motion if roots have values only there.
-pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
+pub fn reference_agrees(model: &Model, reference: &ReferenceQuantities) -> Option<bool> {
     let numbers = FormEvaluator::new(model)?;
     let mut roots = reference.mass.concat();
     for list in [&reference.bias, &reference.slope, &reference.force] {
@@ -256,8 +256,8 @@ pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         let unmoved = |_| Some(Vec::new());
         (model.points).lane_moved(0xf4a_3e0 + number, &model.graph, &given, &unmoved)
     };
-    let compared = match at_fresh_points(anywhere, |point, _| at(point)) {
-        Err(Disagreement::Nowhere) => at_fresh_points(prescribed, |point, _| at(point)),
+    let compared = match compare_at_fresh_points(anywhere, |point, _| at(point)) {
+        Err(Disagreement::Nowhere) => compare_at_fresh_points(prescribed, |point, _| at(point)),
         compared => compared,
     };
     match compared {

@@ -10,7 +10,7 @@ mod point;
 use super::charts::ChartComparison;
 use super::confidence::Confidence;
 use super::kernel::satisfying_rows;
-use super::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
+use super::points::{COMPARED_POINTS, Disagreement, compare_at_fresh_points};
 use super::verdict::{Identity, Verdict, failure, nowhere};
 use comparison::PointComparison;
 use frame::{FullFrameQuantities, prescribed_values};
@@ -182,7 +182,8 @@ impl Claim {
     }
 }
 
-/// Validates the functions of a program with constraints.
+/// Compares the emitted functions of a system with constraints with the equations of its full frame, at random points
+/// modulo p.
 ///
 /// # Errors
 /// A fault of the generator, with the first claim that fails.
@@ -223,7 +224,7 @@ fn compare_at(
     let charts = ChartComparison::new(program)?;
     // Prescribed coordinates take their prescribed values, so that roots of them have values.
     let given = prescribed_values(&full.reference.model);
-    let compared = at_fresh_points(
+    let compared = compare_at_fresh_points(
         |number| {
             // Roots of velocities that constraints determine need values, too.
             let graph = &full.reference.model.graph;
@@ -248,7 +249,7 @@ fn compare_at(
     let rows: Vec<Edge> = rows
         .flat_map(|row| full.rows[row * n..][..n].to_vec())
         .collect();
-    let still = at_fresh_points(
+    let still = compare_at_fresh_points(
         |number| {
             let model = &full.reference.model;
             let moved = |point| satisfying_rows(model, &rows, point);
@@ -294,8 +295,9 @@ fn confidence(full: &FullFrameQuantities, model: &Model, program: &Program) -> C
     Confidence::new(model, &expressions, terms, COMPARED_POINTS, terms * terms)
 }
 
-/// Returns the identities with their verdicts.
-pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
+/// Compares the emitted functions of a system with constraints with the equations of its full frame, M ξ̇ + Γ ξ ξ + ∂V
+/// = f + Bᵀ λ and others, at random points modulo p, and returns one verdict for each claim.
+pub fn check_constrained(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
     let full = FullFrameQuantities::new(model, reduction, program);
     let failed = full
         .as_ref()

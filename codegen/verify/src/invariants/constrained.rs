@@ -3,7 +3,7 @@
 
 use crate::confidence::Confidence;
 use crate::kernel::satisfying_constraints;
-use crate::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
+use crate::points::{COMPARED_POINTS, Disagreement, compare_at_fresh_points};
 use crate::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::Edge;
@@ -17,8 +17,12 @@ use hamel_language::model::Model;
 use hamel_language::model::invariants::Invariant;
 use hamel_program::Program;
 
-/// Reports false claims as errors; `model` is that of the active velocities.
-pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
+/// Returns an error for every quantity that an `invariant` statement claims to be constant and that is not, where the
+/// constraints hold, at points modulo p.
+pub fn reject_false_constrained_invariants(
+    model: &Model,
+    program: &Program,
+) -> Result<(), Vec<Diagnostic>> {
     let loops = model
         .constraints
         .iter()
@@ -52,8 +56,9 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
     }
 }
 
-/// Returns the claims with their verdicts.
-pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
+/// Checks at points modulo p that every quantity that an `invariant` statement claims to be constant is so where the
+/// constraints hold, and returns one verdict for each.
+pub fn check_constrained_invariants(model: &Model, program: &Program) -> Vec<Identity> {
     let verdict = |claim: &Invariant| match find_refutation(model, program, claim) {
         None => Verdict::Checked(confidence(model, program)),
         Some(_) => Verdict::Failed("d/dt is not zero where the constraints hold".into()),
@@ -104,9 +109,9 @@ fn find_refutation(
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
     let energies = energies(&mut own, &mut calculus);
-    let value = quantity::value(&mut own, &mut calculus, energies, &claim.quantity);
+    let value = quantity::quantity_value(&mut own, &mut calculus, energies, &claim.quantity);
     let entries = value.entries();
-    let compared = at_fresh_points(
+    let compared = compare_at_fresh_points(
         |number| {
             let moved = |point| satisfying_constraints(&own, point);
             own.points

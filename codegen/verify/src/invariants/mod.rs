@@ -16,8 +16,8 @@ mod proof;
 mod remainder;
 
 use super::confidence::Confidence;
-use super::points::{COMPARED_POINTS, Disagreement, at_fresh_points};
-use super::reference::Reference;
+use super::points::{COMPARED_POINTS, Disagreement, compare_at_fresh_points};
+use super::reference::ReferenceQuantities;
 use super::verdict::{Identity, Verdict};
 use hamel_algebra::field_point::FieldPoint;
 use hamel_algebra::graph::{Edge, Graph, Node};
@@ -30,10 +30,11 @@ use hamel_dynamics::quantity;
 use hamel_language::diagnostics::{Diagnostic, rough};
 use hamel_language::model::Model;
 use hamel_language::model::invariants::Invariant;
-use proof::{Proof, Prover};
+use proof::{InvariantProver, ProofOutcome};
 
-/// Reports false claims as errors, each with the remainder of its derivative.
-pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
+/// Returns an error for every quantity that an `invariant` statement claims to be constant and that is not, with the
+/// remainder of d/dt I; for systems without constraints.
+pub fn reject_false_invariants(model: &Model) -> Result<(), Vec<Diagnostic>> {
     if model.invariants.is_empty() {
         return Ok(());
     }
@@ -44,7 +45,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
         ]);
     };
     let mut errors = Vec::new();
-    let mut prover: Option<Option<Prover>> = None;
+    let mut prover: Option<Option<InvariantProver>> = None;
     for claim in &model.invariants {
         let entries = motion.entries(claim);
         match motion.find_refutation(claim, &entries) {
@@ -58,12 +59,12 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
                 errors.push(Diagnostic::new(claim.span, message).help(help));
             }
             Some(Disagreement::Differs(entry)) => {
-                let prover = prover.get_or_insert_with(|| Prover::new(model));
+                let prover = prover.get_or_insert_with(|| InvariantProver::new(model));
                 let leaves = prover
                     .as_mut()
                     .and_then(
                         |prover| match prover.prove(&mut motion, claim, entries[entry]) {
-                            Proof::Leaves(text) => Some(format!("d/dt leaves {text}")),
+                            ProofOutcome::Leaves(text) => Some(format!("d/dt leaves {text}")),
                             _ => None,
                         },
                     )
@@ -93,15 +94,16 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
     }
 }
 
-/// Returns the claims with their verdicts, for `hamel check`.
-pub fn identities(model: &Model) -> Vec<Identity> {
+/// Checks that every quantity that an `invariant` statement claims to be constant is so, d/dt I = 0, and returns one
+/// verdict for each, for `hamel check`.
+pub fn check_invariants(model: &Model) -> Vec<Identity> {
     if model.invariants.is_empty() {
         return Vec::new();
     }
     let Some(mut motion) = MotionEquations::new(model) else {
         return Vec::new();
     };
-    let mut prover = Prover::new(model);
+    let mut prover = InvariantProver::new(model);
     let mut all = Vec::new();
     for claim in &model.invariants {
         let entries = motion.entries(claim);
@@ -115,9 +117,12 @@ pub fn identities(model: &Model) -> Vec<Identity> {
                 entries.len()
             )),
             None => {
-                let mut proved = |prover: &mut Prover| {
+                let mut proved = |prover: &mut InvariantProver| {
                     entries.iter().all(|&entry| {
-                        matches!(prover.prove(&mut motion, claim, entry), Proof::Proved)
+                        matches!(
+                            prover.prove(&mut motion, claim, entry),
+                            ProofOutcome::Proved
+                        )
                     })
                 };
                 if prover.as_mut().is_some_and(&mut proved) {
@@ -142,13 +147,13 @@ pub fn identities(model: &Model) -> Vec<Identity> {
 
 /// Equations of motion with which claims are compared.
 struct MotionEquations {
-    reference: Reference,
+    reference: ReferenceQuantities,
     calculus: Calculus,
 }
 
 impl MotionEquations {
     fn new(model: &Model) -> Option<Self> {
-        let reference = Reference::new(model)?;
+        let reference = ReferenceQuantities::new(model)?;
         let calculus = Calculus::new(&reference.model);
         Some(MotionEquations {
             reference,
@@ -164,7 +169,7 @@ impl MotionEquations {
     fn entries(&mut self, claim: &Invariant) -> Vec<Edge> {
         let energies = (self.reference.kinetic, self.reference.potential);
         let model = &mut self.reference.model;
-        quantity::value(model, &mut self.calculus, energies, &claim.quantity).entries()
+        quantity::quantity_value(model, &mut self.calculus, energies, &claim.quantity).entries()
     }
 
     /// Returns f − Γ ξ ξ − ∂V.
@@ -204,7 +209,7 @@ impl MotionEquations {
     ) -> Option<Disagreement<usize>> {
         let force = self.force();
         let model = &self.reference.model;
-        let compared = at_fresh_points(
+        let compared = compare_at_fresh_points(
             |number| {
                 let points = &model.points;
                 points.lane_where(0x1a7e + number, &model.graph, &claim.set)

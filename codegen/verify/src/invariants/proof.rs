@@ -12,10 +12,10 @@ use hamel_algebra::graph::{Edge, Graph, Node};
 use hamel_algebra::linear::{cross, identity3, matrix, solve_symmetric};
 use hamel_algebra::transplant::{rebuild, substitute};
 use hamel_dynamics::calculus::{Calculus, into_frame};
-use hamel_dynamics::connection::quadratic;
+use hamel_dynamics::connection::bias_forces;
 use hamel_dynamics::loads::applied_force;
-use hamel_dynamics::normal::{NormalForms, build};
-use hamel_dynamics::tables::Geometry;
+use hamel_dynamics::normal::{NormalForms, build_expression};
+use hamel_dynamics::tables::EquationTables;
 use hamel_language::model::Model;
 use hamel_language::model::invariants::Invariant;
 
@@ -27,8 +27,8 @@ const MAX_EXPANDED_NODES: usize = 20_000;
 /// Budget of products and sums of terms for all expansions together; beyond it, the claim is only checked modulo p.
 const EXPANSION_WORK: usize = 300_000;
 
-/// Outcome of a proof.
-pub enum Proof {
+/// Outcome of the attempt to prove d/dt I = 0 by normal forms.
+pub enum ProofOutcome {
     /// d/dt I lies in the ideal of φ.
     Proved,
     /// d/dt I is not zero; its normal form, which is short.
@@ -37,8 +37,8 @@ pub enum Proof {
     Open,
 }
 
-/// Equations of motion in free coordinates, where nothing is merged modulo φ.
-pub struct Prover {
+/// Prover of invariants: equations of motion in free coordinates, where nothing is merged modulo φ.
+pub struct InvariantProver {
     model: Model,
     calculus: Calculus,
     mass: Vec<Vec<Edge>>,
@@ -47,20 +47,21 @@ pub struct Prover {
     forms: NormalForms,
 }
 
-impl Prover {
-    /// Derives the equations; `None` if the model is too large, or its kinematics have no left inverse.
+impl InvariantProver {
+    /// Derives the equations of motion of a model; `None` if the model is too large, or its kinematics have no left
+    /// inverse.
     pub fn new(model: &Model) -> Option<Self> {
         if model.n() > MAX_PROVED_VELOCITIES {
             return None;
         }
-        let Geometry {
+        let EquationTables {
             model: mut free,
             mut calculus,
             mut gamma,
             mut mass,
             mut potential,
             ..
-        } = Geometry::unreduced(model)?;
+        } = EquationTables::unreduced(model)?;
         // Normal forms at every stage keep the polynomials small. They may be differentiated, since the columns of A
         // are tangent to X.
         let mut forms = NormalForms::with_budget(&model.points, EXPANSION_WORK);
@@ -69,7 +70,7 @@ impl Prover {
             *entry = normal(&mut forms, &mut free.graph, *entry);
         }
         potential = normal(&mut forms, &mut free.graph, potential);
-        let bias = quadratic(&mut free, &mut calculus, &mass, &gamma);
+        let bias = bias_forces(&mut free, &mut calculus, &mass, &gamma);
         let applied = applied_force(&mut free, &mut calculus);
         let graph = &mut free.graph;
         let force = (0..mass.len())
@@ -80,7 +81,7 @@ impl Prover {
                 normal(&mut forms, graph, sum)
             })
             .collect();
-        Some(Prover {
+        Some(InvariantProver {
             forms,
             model: free,
             calculus,
@@ -90,7 +91,12 @@ impl Prover {
     }
 
     /// Tries to prove that an expression of the motion's graph is constant.
-    pub fn prove(&mut self, motion: &mut MotionEquations, claim: &Invariant, entry: Edge) -> Proof {
+    pub fn prove(
+        &mut self,
+        motion: &mut MotionEquations,
+        claim: &Invariant,
+        entry: Edge,
+    ) -> ProofOutcome {
         let covector = self.covector(motion, claim, entry);
         let graph = &motion.reference.model.graph;
         let entry = rebuild(graph, &mut self.model.graph, &[entry])[0];
@@ -98,12 +104,12 @@ impl Prover {
         let slopes = self.slopes(entry);
         if let Some(w) = covector {
             let proof = self.with(claim, entry, &slopes, &w, None);
-            if !matches!(proof, Proof::Open) {
+            if !matches!(proof, ProofOutcome::Open) {
                 return proof;
             }
         }
         if self.mass.len() > 3 {
-            return Proof::Open;
+            return ProofOutcome::Open;
         }
         let (adjugate, determinant) = adjugate(&mut self.model.graph, &self.mass);
         let w: Vec<Edge> = adjugate
@@ -112,7 +118,7 @@ impl Prover {
             .collect();
         match self.with(claim, entry, &slopes, &w, Some(determinant)) {
             // The remainder is a multiple of d/dt I, which is not worth showing.
-            Proof::Leaves(_) => Proof::Open,
+            ProofOutcome::Leaves(_) => ProofOutcome::Open,
             proof => proof,
         }
     }
@@ -165,7 +171,7 @@ impl Prover {
         slopes: &[Edge],
         w: &[Edge],
         scale: Option<Edge>,
-    ) -> Proof {
+    ) -> ProofOutcome {
         let graph = &mut self.model.graph;
         let drift = self.calculus.rate(graph, entry);
         let drift = scale.map_or(drift, |scale| graph.mul(scale, drift));
@@ -180,24 +186,24 @@ impl Prover {
         }
         let claims = substitute(graph, &claims, &claim.set);
         if graph.reachable(&claims).len() > MAX_EXPANDED_NODES {
-            return Proof::Open;
+            return ProofOutcome::Open;
         }
         let mut forms = Vec::new();
         for &edge in &claims {
             let Some(expanded) = self.forms.expand(&self.model.graph, edge) else {
-                return Proof::Open;
+                return ProofOutcome::Open;
             };
             forms.push(self.forms.reduce(&self.model.graph, &expanded));
         }
         if forms[1..].iter().any(|form| !form.is_zero()) {
-            return Proof::Open;
+            return ProofOutcome::Open;
         }
         if forms[0].is_zero() {
-            return Proof::Proved;
+            return ProofOutcome::Proved;
         }
         match polynomial_text(&self.model.graph, &forms[0]) {
-            Some(text) => Proof::Leaves(text),
-            None => Proof::Open,
+            Some(text) => ProofOutcome::Leaves(text),
+            None => ProofOutcome::Open,
         }
     }
 }
@@ -224,7 +230,7 @@ fn normal(forms: &mut NormalForms, graph: &mut Graph, edge: Edge) -> Edge {
         return edge;
     };
     let reduced = forms.reduce(graph, &polynomial);
-    build(graph, &reduced)
+    build_expression(graph, &reduced)
 }
 
 /// Returns adj M and det M of a symmetric matrix with at most three rows.

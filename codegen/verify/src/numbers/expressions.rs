@@ -1,6 +1,6 @@
 //! The expressions of a model that are evaluated, as tapes, and how their values are read.
 
-use super::motion::entries;
+use super::motion::pose_entries;
 use super::space::{Mat3, Vec3};
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_algebra::tape::Tape;
@@ -8,7 +8,8 @@ use hamel_dynamics::{energy, kinematics};
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
 
-/// A model with tapes of the expressions that are evaluated.
+/// A model with tapes of the expressions from which [`FormEvaluator`](super::FormEvaluator) computes the forms modulo
+/// p.
 pub struct FormTapes {
     /// The model; its graph contains Y and V.
     pub model: Model,
@@ -44,7 +45,7 @@ impl FormTapes {
         let mut poses = vec![potential, model.potential, model.kinetic];
         for &index in &frames {
             let frame = model.frames.get(index)?;
-            poses.extend(entries(&frame.rotation, &frame.position));
+            poses.extend(pose_entries(&frame.rotation, &frame.position));
         }
         poses.extend(
             model
@@ -98,8 +99,9 @@ impl FormTapes {
         })
     }
 
-    /// Returns whether the user wrote a kinetic energy in addition to that of bodies and particles.
-    pub fn writes_kinetic(&self) -> bool {
+    /// Returns whether the description has a `kinetic` statement, whose energy is added to that of bodies and
+    /// particles.
+    pub fn has_written_kinetic_energy(&self) -> bool {
         self.model.kinetic != self.model.graph.zero()
     }
 
@@ -115,58 +117,62 @@ impl FormTapes {
         seed
     }
 
-    /// Returns a direction in x as a direction in all symbols.
-    pub fn of_x(&self, x: &[ResiduePair]) -> Vec<ResiduePair> {
+    /// Extends a direction in x by zeros to a direction in all symbols of the graph.
+    pub fn direction_of_x(&self, x: &[ResiduePair]) -> Vec<ResiduePair> {
         self.seed([(&self.x, x), (&[], &[])])
     }
 
-    /// Returns a direction in ξ as a direction in all symbols.
-    pub fn of_xi(&self, xi: &[ResiduePair]) -> Vec<ResiduePair> {
+    /// Extends a direction in ξ by zeros to a direction in all symbols of the graph.
+    pub fn direction_of_xi(&self, xi: &[ResiduePair]) -> Vec<ResiduePair> {
         self.seed([(&self.xi, xi), (&[], &[])])
     }
 
     /// Returns the entries of ξ in a list with one entry for each symbol.
-    pub fn xi_of(&self, symbols: &[ResiduePair]) -> Vec<ResiduePair> {
+    pub fn xi_entries(&self, symbols: &[ResiduePair]) -> Vec<ResiduePair> {
         let entry = |&place: &usize| symbols.get(place).copied().unwrap_or(ResiduePair::ZERO);
         self.xi.iter().map(entry).collect()
     }
 
-    /// Returns a direction in x and ξ as a direction in all symbols.
-    pub fn of_x_and_xi(&self, x: &[ResiduePair], xi: &[ResiduePair]) -> Vec<ResiduePair> {
+    /// Extends a direction in x and ξ by zeros to a direction in all symbols of the graph.
+    pub fn direction_of_x_and_xi(&self, x: &[ResiduePair], xi: &[ResiduePair]) -> Vec<ResiduePair> {
         self.seed([(&self.x, x), (&self.xi, xi)])
     }
 }
 
-/// Reads values in the order in which their expressions were listed.
+/// Reader of the values of a tape, in the order in which their expressions were listed.
 pub struct TapeValueReader<'a> {
     rest: std::slice::Iter<'a, ResiduePair>,
 }
 
 impl<'a> TapeValueReader<'a> {
-    /// Starts at the first value.
+    /// Creates a reader at the first of these values.
     pub fn new(values: &'a [ResiduePair]) -> Self {
         TapeValueReader {
             rest: values.iter(),
         }
     }
 
-    /// Reads a number.
-    pub fn one(&mut self) -> Option<ResiduePair> {
+    /// Reads one number modulo p; `None` at the end.
+    pub fn read_number(&mut self) -> Option<ResiduePair> {
         self.rest.next().copied()
     }
 
-    /// Reads a vector.
-    pub fn three(&mut self) -> Option<Vec3> {
-        Some([self.one()?, self.one()?, self.one()?])
+    /// Reads a vector of three numbers; `None` at the end.
+    pub fn read_vec3(&mut self) -> Option<Vec3> {
+        Some([
+            self.read_number()?,
+            self.read_number()?,
+            self.read_number()?,
+        ])
     }
 
-    /// Reads a matrix, by rows.
-    pub fn nine(&mut self) -> Option<Mat3> {
-        Some([self.three()?, self.three()?, self.three()?])
+    /// Reads a 3×3 matrix by rows; `None` at the end.
+    pub fn read_mat3(&mut self) -> Option<Mat3> {
+        Some([self.read_vec3()?, self.read_vec3()?, self.read_vec3()?])
     }
 
-    /// Reads a list of `count` numbers.
-    pub fn list(&mut self, count: usize) -> Option<Vec<ResiduePair>> {
-        (0..count).map(|_| self.one()).collect()
+    /// Reads `count` numbers; `None` if there are fewer.
+    pub fn read_list(&mut self, count: usize) -> Option<Vec<ResiduePair>> {
+        (0..count).map(|_| self.read_number()).collect()
     }
 }

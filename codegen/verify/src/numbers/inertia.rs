@@ -1,12 +1,12 @@
 //! Contributions of bodies and particles to the three forms (30) at one point, modulo p.
 
-use super::motion::{Moving, MovingFrame};
+use super::motion::{MotionJet, MovingFrame};
 use super::space::{Mat3, Vec3, add, apply, apply_transposed, cross, scale};
 use crate::kernel::dot;
 use hamel_algebra::residue_pair::ResiduePair;
 
-/// Mass properties of a body in numbers.
-pub struct BodyNumbers {
+/// Mass, centre of mass and inertia of a body as numbers modulo p.
+pub struct BodyInertia {
     /// Mass.
     pub mass: ResiduePair,
     /// Centre of mass, in frame axes.
@@ -17,7 +17,8 @@ pub struct BodyNumbers {
     pub inertia_origin: Mat3,
 }
 
-/// Sums over bodies and particles, and over a kinetic energy that the user wrote.
+/// Sums over bodies and particles, and over a kinetic energy that the user wrote, from which the forms are composed;
+/// numbers modulo p.
 pub struct FormSums {
     /// ∂S/∂ξ̇ⁱ by accelerations, (30b).
     pub gibbs: Vec<ResiduePair>,
@@ -48,7 +49,7 @@ fn increase(sum: &mut ResiduePair, by: ResiduePair) {
 }
 
 impl FormSums {
-    /// Creates sums without any terms.
+    /// Creates sums without any terms, for n velocities.
     pub fn new(n: usize) -> Self {
         let zero = || vec![ResiduePair::ZERO; n];
         FormSums {
@@ -65,7 +66,7 @@ impl FormSums {
     }
 
     /// Adds a point mass to the terms of (30a) and (30b), and its weight.
-    fn point(&mut self, mass: ResiduePair, gravity: Vec3, point: &Moving<Vec3>) {
+    fn point(&mut self, mass: ResiduePair, gravity: Vec3, point: &MotionJet<Vec3>) {
         let (velocity, acceleration) = (scale(mass, point.rate), scale(mass, point.second));
         let weight = scale(mass, gravity);
         for i in 0..self.gibbs.len() {
@@ -120,12 +121,12 @@ impl FormSums {
         }
     }
 
-    /// Adds a particle.
-    pub fn particle(
+    /// Adds the terms of a particle to all sums.
+    pub fn add_particle(
         &mut self,
         mass: ResiduePair,
         gravity: Vec3,
-        point: &Moving<Vec3>,
+        point: &MotionJet<Vec3>,
         xi: &[ResiduePair],
     ) {
         self.point(mass, gravity, point);
@@ -141,17 +142,17 @@ impl FormSums {
         });
     }
 
-    /// Adds a body: (30a) and (30b) from its centre of mass, M from the twist of its frame's origin.
-    pub fn body(
+    /// Adds the terms of a body: (30a) and (30b) from its centre of mass, M from the twist of its frame's origin.
+    pub fn add_body(
         &mut self,
-        body: &BodyNumbers,
+        body: &BodyInertia,
         gravity: Vec3,
         frame: &MovingFrame,
         xi: &[ResiduePair],
     ) {
         let n = xi.len();
-        self.point(body.mass, gravity, &frame.point(body.com));
-        let spin = frame.spin();
+        self.point(body.mass, gravity, &frame.fixed_point(body.com));
+        let spin = frame.angular_motion();
         let spun = apply(&body.inertia_com, spin.omega);
         let turned = apply(&body.inertia_com, spin.alpha);
         let torque = add(turned, cross(spin.omega, spun));

@@ -1,19 +1,19 @@
 //! Generalised forces by virtual work, fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩, KR18 (28), at one point modulo p: every load is a sum of
 //! forces on points, as in `virtual_power`, which does the same with expressions.
 
-use super::motion::{Moving, MovingFrame};
+use super::motion::{MotionJet, MovingFrame};
 use super::space::{Vec3, add, apply, column, cross, scale, sub};
 use crate::kernel::dot;
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::syntax::ast::Axes;
 
-/// Sum of forces on points, as generalised forces.
-pub struct Forces {
+/// Generalised forces as a sum over forces on points, by virtual work; numbers modulo p.
+pub struct GeneralizedForces {
     /// Generalised forces fᵢ.
     pub sum: Vec<ResiduePair>,
 }
 
-impl Forces {
+impl GeneralizedForces {
     /// Adds generalised forces as they are given.
     pub fn add(&mut self, forces: impl IntoIterator<Item = ResiduePair>) {
         for (sum, force) in self.sum.iter_mut().zip(forces) {
@@ -26,8 +26,8 @@ impl Forces {
         self.add(by.map(|column| dot(&force, &column)).collect::<Vec<_>>());
     }
 
-    /// Adds a force along a line, positive if it drives the points apart.
-    pub fn along(&mut self, force: Vec3, from: &Moving<Vec3>, to: &Moving<Vec3>) {
+    /// Adds a force between two points along their line, positive if it drives the points apart.
+    pub fn add_along_line(&mut self, force: Vec3, from: &MotionJet<Vec3>, to: &MotionJet<Vec3>) {
         self.at(
             force,
             to.by.iter().zip(&from.by).map(|(&to, &from)| sub(to, from)),
@@ -36,7 +36,7 @@ impl Forces {
 
     /// Adds a wrench at a point of a frame: the force there, and the torque as three couples, ½ τ × eₖ at the tips of
     /// the frame's axes and −½ τ × eₖ at its origin.
-    pub fn wrench(&mut self, axes: Axes, [at, force, torque]: [Vec3; 3], frame: &MovingFrame) {
+    pub fn add_wrench(&mut self, axes: Axes, [at, force, torque]: [Vec3; 3], frame: &MovingFrame) {
         let world = |a: Vec3| match axes {
             Axes::World => a,
             Axes::Body => apply(&frame.rotation.value, a),
@@ -52,15 +52,15 @@ impl Forces {
     }
 
     /// Adds a damper along a line, as a force −c (d·ḋ)/(d·d) d on its second point and the opposite one on its first.
-    pub fn damper(
+    pub fn add_damper(
         &mut self,
         coefficient: ResiduePair,
-        from: &Moving<Vec3>,
-        to: &Moving<Vec3>,
+        from: &MotionJet<Vec3>,
+        to: &MotionJet<Vec3>,
     ) -> Option<()> {
         let (d, rate) = (sub(to.value, from.value), sub(to.rate, from.rate));
         let speed = dot(&d, &rate) * dot(&d, &d).inv()?;
-        self.along(scale(-(coefficient * speed), d), from, to);
+        self.add_along_line(scale(-(coefficient * speed), d), from, to);
         Some(())
     }
 }

@@ -32,14 +32,14 @@ use hamel_algebra::jets::{Jet, Seeds};
 use hamel_algebra::residue_pair::ResiduePair;
 use hamel_language::model::Model;
 use hamel_language::model::elements::Along;
-use inertia::{BodyNumbers, FormSums};
-use loads::Forces;
-use motion::{Moving, MovingFrame, point};
+use inertia::{BodyInertia, FormSums};
+use loads::GeneralizedForces;
+use motion::{MotionJet, MovingFrame, point};
 use rustc_hash::FxHashMap;
 use space::{Vec3, scale, sub};
 
-/// Evaluates the left sides of (30a), (30b) and (30c) for a model at points of X, modulo p, without the rules of the
-/// generator.
+/// Evaluator of the left sides of (30a), (30b) and (30c) of a model at points of X, in numbers modulo p, without the
+/// rules of the generator.
 pub struct FormEvaluator {
     expressions: FormTapes,
 }
@@ -171,14 +171,15 @@ impl Kinematics {
 }
 
 impl FormEvaluator {
-    /// Prepares the evaluation; `None` if AᵀA is singular, or a number has no image modulo p.
+    /// Prepares the evaluation for a model; `None` if AᵀA is singular, or a number has no image modulo p.
     pub fn new(model: &Model) -> Option<Self> {
         Some(FormEvaluator {
             expressions: FormTapes::new(model)?,
         })
     }
 
-    /// Evaluates at a point; `None` if something has no value there.
+    /// Evaluates the three forms and the quantities in them at a point (x, ξ, ξ̇, u); `None` if something has no value
+    /// there.
     ///
     /// # Errors
     /// If Y A is not I.
@@ -187,14 +188,14 @@ impl FormEvaluator {
         let model = &all.model;
         let (n, nu) = (model.n(), model.nu());
         let constants = all.constants.values(field_point)?;
-        let mut read = TapeValueReader::new(&constants);
-        let (xi, xi_dot) = (read.list(n)?, read.list(n)?);
+        let mut reader = TapeValueReader::new(&constants);
+        let (xi, xi_dot) = (reader.read_list(n)?, reader.read_list(n)?);
         let start = all.kinematics.values(field_point)?;
         let (a, rest) = start.split_at_checked(n * nu)?;
         let rate = rest.get(..nu)?;
         let columns: Vec<Vec<ResiduePair>> = (0..n)
             .map(|i| {
-                all.of_x(
+                all.direction_of_x(
                     &a.iter()
                         .skip(i)
                         .step_by(n.max(1))
@@ -203,7 +204,7 @@ impl FormEvaluator {
                 )
             })
             .collect();
-        let moving = all.of_x_and_xi(rate, &xi_dot);
+        let moving = all.direction_of_x_and_xi(rate, &xi_dot);
         let seeds = Seeds {
             along: moving.clone(),
             across: columns.clone(),
@@ -224,8 +225,8 @@ impl FormEvaluator {
         }
         // Columns (x₂ with x₁₂): Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
         let second: Vec<ResiduePair> = kinematics.rate.iter().map(|jet| jet.along).collect();
-        let following = (0..n).map(|i| all.of_x(&kinematics.column(i, |jet| jet.along)));
-        let drifting = (0..n).map(|i| all.of_x(&kinematics.drift(i)));
+        let following = (0..n).map(|i| all.direction_of_x(&kinematics.column(i, |jet| jet.along)));
+        let drifting = (0..n).map(|i| all.direction_of_x(&kinematics.drift(i)));
         let seeds = Seeds {
             along: moving.clone(),
             across: columns
@@ -236,7 +237,7 @@ impl FormEvaluator {
                 .collect(),
             mixed: following
                 .chain(drifting)
-                .chain([all.of_x(&second)])
+                .chain([all.direction_of_x(&second)])
                 .collect(),
         };
         let poses = all.poses.jets(field_point, &seeds)?;
@@ -252,18 +253,18 @@ impl FormEvaluator {
             .chunks_exact(3)
             .map(|jets| point(n, &std::array::from_fn(|i| jets[i].clone())));
         let mut sums = FormSums::new(n);
-        let gravity = read.three()?;
+        let gravity = reader.read_vec3()?;
         for body in &model.bodies {
-            let inertia = BodyNumbers {
-                mass: read.one()?,
-                com: read.three()?,
-                inertia_com: read.nine()?,
-                inertia_origin: read.nine()?,
+            let inertia = BodyInertia {
+                mass: reader.read_number()?,
+                com: reader.read_vec3()?,
+                inertia_com: reader.read_mat3()?,
+                inertia_origin: reader.read_mat3()?,
             };
-            sums.body(&inertia, gravity, frames.get(&body.frame)?, &xi);
+            sums.add_body(&inertia, gravity, frames.get(&body.frame)?, &xi);
         }
         for _ in &model.particles {
-            sums.particle(read.one()?, gravity, &points.next()?, &xi);
+            sums.add_particle(reader.read_number()?, gravity, &points.next()?, &xi);
         }
         let along = |jet: &Jet| (0..n).map(|i| jet.across(i)).collect::<Vec<ResiduePair>>();
         let [potential, beside, written] = potentials else {
@@ -271,7 +272,7 @@ impl FormEvaluator {
         };
         let slope = along(potential);
         let mut left_of_written = vec![ResiduePair::ZERO; n];
-        if all.writes_kinetic() {
+        if all.has_written_kinetic_energy() {
             left_of_written = self.add_written_kinetic(
                 field_point,
                 &kinematics,
@@ -292,7 +293,7 @@ impl FormEvaluator {
         let levi_civita = (0..n).map(|i| dot(&sums.mass[i], &xi_dot) + bias[i] + slope[i]);
         let left = [hamel.collect(), gibbs.collect(), levi_civita.collect()];
         let (force, dissipation) =
-            self.forces(field_point, &mut read, &frames, &mut points, &xi)?;
+            self.forces(field_point, &mut reader, &frames, &mut points, &xi)?;
         Some(Ok(PointValues {
             left,
             bias,
@@ -319,7 +320,8 @@ impl FormEvaluator {
     ) -> Option<Vec<ResiduePair>> {
         let all = &self.expressions;
         let n = xi.len();
-        let by_velocity: Vec<Vec<ResiduePair>> = (0..n).map(|i| all.of_xi(&unit(n, i))).collect();
+        let by_velocity: Vec<Vec<ResiduePair>> =
+            (0..n).map(|i| all.direction_of_xi(&unit(n, i))).collect();
         let by = |along: Vec<ResiduePair>| -> Option<Jet> {
             let seeds = Seeds {
                 along,
@@ -328,8 +330,8 @@ impl FormEvaluator {
             };
             all.velocity.jets(field_point, &seeds)?.into_iter().next()
         };
-        let driven = by(all.of_x_and_xi(rate, xi_dot))?;
-        let coasting = by(all.of_x(rate))?;
+        let driven = by(all.direction_of_x_and_xi(rate, xi_dot))?;
+        let coasting = by(all.direction_of_x(rate))?;
         let momentum: Vec<ResiduePair> = (0..n).map(|i| driven.across(i)).collect();
         let turn = kinematics.turn_of_rows(&momentum);
         let mut left = Vec::with_capacity(n);
@@ -337,8 +339,8 @@ impl FormEvaluator {
         for i in 0..n {
             let hessian_row = all
                 .velocity
-                .second_derivative(field_point, &all.of_xi(&unit(n, i)))?;
-            let row = all.xi_of(&hessian_row);
+                .second_derivative(field_point, &all.direction_of_xi(&unit(n, i)))?;
+            let row = all.xi_entries(&hessian_row);
             let slope = written.across(i);
             left.push(dot(&row, xi_dot) + coasting.mixed(i) - slope + turn[i]);
             for (sum, entry) in [
@@ -361,22 +363,26 @@ impl FormEvaluator {
     fn forces(
         &self,
         field_point: &FieldPoint,
-        read: &mut TapeValueReader,
+        reader: &mut TapeValueReader,
         frames: &FxHashMap<usize, MovingFrame>,
-        points: &mut dyn Iterator<Item = Moving<Vec3>>,
+        points: &mut dyn Iterator<Item = MotionJet<Vec3>>,
         xi: &[ResiduePair],
     ) -> Option<(Vec<ResiduePair>, ResiduePair)> {
         let all = &self.expressions;
         let elements = &all.model.elements;
         let n = xi.len();
-        let none = || Forces {
+        let none = || GeneralizedForces {
             sum: vec![ResiduePair::ZERO; n],
         };
         let mut applied = none();
-        applied.add(read.list(n)?);
+        applied.add(reader.read_list(n)?);
         for wrench in &elements.wrenches {
-            let entries = [read.three()?, read.three()?, read.three()?];
-            applied.wrench(wrench.axes, entries, frames.get(&wrench.frame)?);
+            let entries = [
+                reader.read_vec3()?,
+                reader.read_vec3()?,
+                reader.read_vec3()?,
+            ];
+            applied.add_wrench(wrench.axes, entries, frames.get(&wrench.frame)?);
         }
         for push in &elements.pushes {
             if let Along::Line {
@@ -384,14 +390,14 @@ impl FormEvaluator {
             } = push.along
             {
                 let (from, to) = (points.next()?, points.next()?);
-                let tension = read.one()? * read.one()?.inv()?;
-                applied.along(scale(tension, sub(to.value, from.value)), &from, &to);
+                let tension = reader.read_number()? * reader.read_number()?.inv()?;
+                applied.add_along_line(scale(tension, sub(to.value, from.value)), &from, &to);
             }
         }
         let mut resisting = none();
-        let across = (0..n).map(|i| all.of_xi(&unit(n, i))).collect();
+        let across = (0..n).map(|i| all.direction_of_xi(&unit(n, i))).collect();
         let seeds = Seeds {
-            along: all.of_xi(xi),
+            along: all.direction_of_xi(xi),
             across,
             mixed: Vec::new(),
         };
@@ -401,11 +407,11 @@ impl FormEvaluator {
             _ => return None,
         };
         for damper in &elements.dampers {
-            let coefficient = read.one()?;
+            let coefficient = reader.read_number()?;
             match damper.along {
                 Along::Line { .. } => {
                     let (from, to) = (points.next()?, points.next()?);
-                    resisting.damper(coefficient, &from, &to)?;
+                    resisting.add_damper(coefficient, &from, &to)?;
                 }
                 Along::Scalar(_) => {
                     let rate = rates.next()?;

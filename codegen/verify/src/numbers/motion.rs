@@ -3,14 +3,14 @@
 //! The poses are differentiated by hyper-dual numbers along ẋ = A ξ and along the columns of A. In d/dt ∂ᵢr the column
 //! Aᵢ changes with x, in ∂ᵢṙ it is ẋ that changes; the difference of the two is what the coefficients γ express.
 
-use super::space::{Mat3, Vec3, add, apply, spin};
+use super::space::{Mat3, Vec3, add, angular_velocity, apply};
 use hamel_algebra::graph::Edge;
 use hamel_algebra::jets::Jet;
 use hamel_algebra::residue_pair::ResiduePair;
 
-/// A quantity q and its derivatives.
+/// A quantity q at a point modulo p with its derivatives in time and along the columns of A.
 #[derive(Clone, Debug)]
-pub struct Moving<T> {
+pub struct MotionJet<T> {
     /// Value q.
     pub value: T,
     /// Rate q̇.
@@ -25,13 +25,13 @@ pub struct Moving<T> {
     pub by_rate: Vec<T>,
 }
 
-impl<T: Copy> Moving<T> {
+impl<T: Copy> MotionJet<T> {
     /// Collects derivatives from jets with the columns Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
     fn assemble(n: usize, entry: impl Fn(&dyn Fn(&Jet) -> ResiduePair) -> T) -> Self {
         let across =
             |i: usize| entry(&|jet| jet.across.get(i).copied().unwrap_or(ResiduePair::ZERO));
         let mixed = |i: usize| entry(&|jet| jet.mixed.get(i).copied().unwrap_or(ResiduePair::ZERO));
-        Moving {
+        MotionJet {
             value: entry(&|jet| jet.value),
             rate: entry(&|jet| jet.along),
             second: mixed(2 * n),
@@ -42,9 +42,9 @@ impl<T: Copy> Moving<T> {
     }
 
     /// Applies a linear function to the quantity and its derivatives.
-    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Moving<U> {
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> MotionJet<U> {
         let all = |list: &[T]| list.iter().map(|&entry| f(entry)).collect();
-        Moving {
+        MotionJet {
             value: f(self.value),
             rate: f(self.rate),
             second: f(self.second),
@@ -55,11 +55,11 @@ impl<T: Copy> Moving<T> {
     }
 }
 
-impl Moving<Vec3> {
-    /// Adds two points.
+impl MotionJet<Vec3> {
+    /// Returns the sum of two vectors, with the sums of their derivatives.
     pub fn plus(&self, other: &Self) -> Self {
         let all = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(&a, &b)| add(a, b)).collect();
-        Moving {
+        MotionJet {
             value: add(self.value, other.value),
             rate: add(self.rate, other.rate),
             second: add(self.second, other.second),
@@ -70,18 +70,18 @@ impl Moving<Vec3> {
     }
 }
 
-/// A frame and its derivatives.
+/// Axes and origin of a frame in the world, with their derivatives.
 #[derive(Clone, Debug)]
 pub struct MovingFrame {
     /// Axes of the frame.
-    pub rotation: Moving<Mat3>,
+    pub rotation: MotionJet<Mat3>,
     /// Origin of the frame.
-    pub position: Moving<Vec3>,
+    pub position: MotionJet<Vec3>,
 }
 
 /// Angular velocity of a frame in its own axes, and its derivatives.
 #[derive(Clone, Debug)]
-pub struct Spin {
+pub struct AngularMotion {
     /// Angular velocity ω.
     pub omega: Vec3,
     /// Angular acceleration dω/dt.
@@ -95,46 +95,60 @@ pub struct Spin {
 }
 
 impl MovingFrame {
-    /// Creates a frame from the jets of the nine entries of its axes and the three of its origin.
+    /// Creates a frame from the jets of the nine entries of its axes and the three of its origin; `None` if their
+    /// number is another.
     pub fn new(n: usize, jets: &[Jet]) -> Option<Self> {
         let (axes, origin) = jets.split_at_checked(9)?;
         let origin: &[Jet; 3] = origin.try_into().ok()?;
         let axes: &[Jet; 9] = axes.try_into().ok()?;
         Some(MovingFrame {
-            rotation: Moving::assemble(n, |of| {
+            rotation: MotionJet::assemble(n, |of| {
                 std::array::from_fn(|i| std::array::from_fn(|j| of(&axes[3 * i + j])))
             }),
             position: point(n, origin),
         })
     }
 
-    /// Returns the point of the frame with constant components `at`.
-    pub fn point(&self, at: Vec3) -> Moving<Vec3> {
+    /// Returns the point with constant components `at` in the frame's axes, in world coordinates, with its derivatives.
+    pub fn fixed_point(&self, at: Vec3) -> MotionJet<Vec3> {
         self.position
             .plus(&self.rotation.map(|axes| apply(&axes, at)))
     }
 
-    /// Returns ω and its derivatives, by the product rule on Rᵀ Ṙ.
-    pub fn spin(&self) -> Spin {
+    /// Returns the angular velocity ω in the frame's axes and its derivatives, by the product rule on Rᵀ Ṙ.
+    pub fn angular_motion(&self) -> AngularMotion {
         let r = &self.rotation;
         let n = r.by.len();
         let each = |f: &dyn Fn(usize) -> Vec3| (0..n).map(f).collect::<Vec<_>>();
-        Spin {
-            omega: spin(&r.value, &r.rate),
-            alpha: add(spin(&r.rate, &r.rate), spin(&r.value, &r.second)),
-            by: each(&|i| spin(&r.value, &r.by[i])),
-            rate_by: each(&|i| add(spin(&r.rate, &r.by[i]), spin(&r.value, &r.rate_by[i]))),
-            by_omega: each(&|i| add(spin(&r.by[i], &r.rate), spin(&r.value, &r.by_rate[i]))),
+        AngularMotion {
+            omega: angular_velocity(&r.value, &r.rate),
+            alpha: add(
+                angular_velocity(&r.rate, &r.rate),
+                angular_velocity(&r.value, &r.second),
+            ),
+            by: each(&|i| angular_velocity(&r.value, &r.by[i])),
+            rate_by: each(&|i| {
+                add(
+                    angular_velocity(&r.rate, &r.by[i]),
+                    angular_velocity(&r.value, &r.rate_by[i]),
+                )
+            }),
+            by_omega: each(&|i| {
+                add(
+                    angular_velocity(&r.by[i], &r.rate),
+                    angular_velocity(&r.value, &r.by_rate[i]),
+                )
+            }),
         }
     }
 }
 
-/// Creates a point from the jets of its entries.
-pub fn point(n: usize, jets: &[Jet; 3]) -> Moving<Vec3> {
-    Moving::assemble(n, |of| std::array::from_fn(|i| of(&jets[i])))
+/// Creates a point of the world from the jets of its three entries.
+pub fn point(n: usize, jets: &[Jet; 3]) -> MotionJet<Vec3> {
+    MotionJet::assemble(n, |of| std::array::from_fn(|i| of(&jets[i])))
 }
 
 /// Lists the entries of a pose in the order in which [`MovingFrame::new`] reads them.
-pub fn entries(rotation: &[[Edge; 3]; 3], position: &[Edge; 3]) -> Vec<Edge> {
+pub fn pose_entries(rotation: &[[Edge; 3]; 3], position: &[Edge; 3]) -> Vec<Edge> {
     rotation.iter().flatten().chain(position).copied().collect()
 }

@@ -3,9 +3,9 @@
 use crate::kernel::dot;
 use hamel_algebra::residue_pair::ResiduePair;
 
-/// Vector of three numbers.
+/// Vector of three numbers modulo p.
 pub type Vec3 = [ResiduePair; 3];
-/// Matrix of three rows.
+/// 3×3 matrix of numbers modulo p, by rows.
 pub type Mat3 = [Vec3; 3];
 
 /// Returns a + b.
@@ -36,7 +36,7 @@ pub fn apply(m: &Mat3, a: Vec3) -> Vec3 {
     m.map(|row| dot(&row, &a))
 }
 
-/// Returns the j-th column.
+/// Returns the j-th column of a matrix, counted from 0.
 pub fn column(m: &Mat3, j: usize) -> Vec3 {
     m.map(|row| row[j])
 }
@@ -47,7 +47,7 @@ pub fn apply_transposed(m: &Mat3, a: Vec3) -> Vec3 {
 }
 
 /// Returns vee(Rᵀ Ṙ) for a change Ṙ of R: the angular velocity in the axes of R.
-pub fn spin(rotation: &Mat3, change: &Mat3) -> Vec3 {
+pub fn angular_velocity(rotation: &Mat3, change: &Mat3) -> Vec3 {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         dot(&column(rotation, k), &column(change, j))

@@ -1,6 +1,6 @@
 //! Tests of fresh points: agreement requires all of them.
 
-use super::{COMPARED_POINTS, Disagreement, MAX_FAILED_SEARCHES, at_fresh_points};
+use super::{COMPARED_POINTS, Disagreement, MAX_FAILED_SEARCHES, compare_at_fresh_points};
 use hamel_algebra::field_point::FieldPoint;
 
 #[test]
@@ -8,9 +8,12 @@ fn too_few_points_are_no_agreement() {
     let point = |_| Some(FieldPoint::new());
     let some =
         |most: u64| move |_: &FieldPoint, number| (number <= most).then_some(Ok::<(), ()>(()));
-    assert_eq!(at_fresh_points(point, some(COMPARED_POINTS)), Ok(()));
     assert_eq!(
-        at_fresh_points(point, some(COMPARED_POINTS - 1)),
+        compare_at_fresh_points(point, some(COMPARED_POINTS)),
+        Ok(())
+    );
+    assert_eq!(
+        compare_at_fresh_points(point, some(COMPARED_POINTS - 1)),
         Err(Disagreement::Nowhere)
     );
     let looked = std::cell::Cell::new(0);
@@ -19,7 +22,7 @@ fn too_few_points_are_no_agreement() {
         None
     };
     assert_eq!(
-        at_fresh_points(nowhere, some(COMPARED_POINTS)),
+        compare_at_fresh_points(nowhere, some(COMPARED_POINTS)),
         Err(Disagreement::Nowhere)
     );
     assert_eq!(looked.get(), MAX_FAILED_SEARCHES);
@@ -31,7 +34,7 @@ fn too_few_points_are_no_agreement() {
         })
     };
     assert_eq!(
-        at_fresh_points(point, last),
+        compare_at_fresh_points(point, last),
         Err(Disagreement::Differs(COMPARED_POINTS))
     );
 }

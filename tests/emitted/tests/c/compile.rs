@@ -67,7 +67,7 @@ pub fn faults(name: &str, cases: &[Case]) -> Vec<String> {
 
 /// Returns the faults in one precision.
 fn faults_in(folder: &Path, precision: Precision, cases: &[Case]) -> Vec<String> {
-    let file = precision.name();
+    let file = precision.type_name();
     std::fs::write(folder.join(format!("{file}.c")), source(cases, precision)).expect("written");
     let optimised = if *EVERYTHING { "-O1" } else { "-O0" };
     let mut lines = vec![format!(
@@ -101,7 +101,7 @@ fn faults_in(folder: &Path, precision: Precision, cases: &[Case]) -> Vec<String>
 /// Combines all cases with their calls in one source, in which macros left behind by a case would cause errors.
 fn source(cases: &[Case], precision: Precision) -> String {
     let mut text = "#include <stddef.h>\n#include <stdio.h>\n\n".to_string();
-    let real = precision.name();
+    let real = precision.type_name();
     text.push_str(&format!(
         "static void show(int status, const {real} *values, size_t count)\n{{\n    size_t i;\n    printf(\"%d\", status);\n    for (i = 0; i < count && status == 0; i++) {{\n        printf(\" %.17g\", (double)values[i]);\n    }}\n    printf(\"\\n\");\n}}\n\n"
     ));

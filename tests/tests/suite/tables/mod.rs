@@ -6,7 +6,7 @@ mod values;
 use crate::derived::{model, models};
 use hamel_codegen::algebra::derivation::Derivation;
 use hamel_codegen::algebra::graph::Edge;
-use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::derive::tables::EquationTables;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::tables::expression::Term;
@@ -51,7 +51,7 @@ fn entries_contain_only_coordinates_that_they_depend_on() {
     ];
     for name in fixtures {
         let generated = model(name).generated();
-        let mut geometry = Geometry::new(&generated.model).expect(name);
+        let mut geometry = EquationTables::new(&generated.model).expect(name);
         let shown = generated
             .tables(&[Table::Gamma, Table::Mass, Table::Connection])
             .expect(name);
@@ -88,7 +88,7 @@ fn coordinates(tables: &Tables, listing: &Listing, value: &Term) -> Vec<usize> {
 }
 
 /// Every block with a printed coordinate changes the value when it moves alone along X.
-fn check_blocks(geometry: &mut Geometry, edge: Edge, printed: &[usize], what: &str) {
+fn check_blocks(geometry: &mut EquationTables, edge: Edge, printed: &[usize], what: &str) {
     let model = &mut geometry.model;
     let mut first = 0;
     for block in model.blocks.clone() {

@@ -3,7 +3,7 @@
 use crate::derived::models;
 use hamel_codegen::algebra::graph::{Edge, Function, Graph};
 use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::derive::tables::EquationTables;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::tables::expression::{Atom, Term};
@@ -107,7 +107,7 @@ fn printed_values_are_those_of_the_graph() {
             .map(|s| s.name.clone())
             .zip(numbers.iter().copied())
             .collect();
-        let geometry = Geometry::new(model).expect("regular");
+        let geometry = EquationTables::new(model).expect("regular");
         let accel = generated.program.function("accel").expect("generated");
         // ξ̇ is a function of the independent velocities.
         let active = &generated.active;

@@ -1,10 +1,10 @@
 //! Tests that arrays are passed from the place near which most of their uses lie.
 
-use super::nearest;
+use super::best_origin;
 
 #[test]
 fn arrays_are_given_from_where_most_is_near() {
-    let from = |places: &[usize]| nearest(places.iter().copied(), 16, 100);
+    let from = |places: &[usize]| best_origin(places.iter().copied(), 16, 100);
     assert_eq!(from(&[]), 0);
     assert_eq!(from(&[0, 5, 15, 40]), 0);
     // 0 to 31 are near 16.
