@@ -178,8 +178,7 @@ pub struct UnsuitableMethod {
     pub obstacles: Vec<String>,
 }
 
-/// Selects the methods with these names, or all, that fit a system. Named methods that do not fit are returned with the
-/// reasons.
+/// Sorts the methods with these names, or all, into those that fit a system and those that do not, with the reasons.
 pub fn suitable(
     names: &[String],
     system: &Instance,
@@ -219,7 +218,8 @@ pub fn check_names(names: &[String]) -> Result<(), Error> {
     }
 }
 
-/// Returns the methods whose steps have slopes: those for any system that stay in a chart.
+/// Returns the methods whose steps can be differentiated by state and inputs: those for any system that stay in a
+/// chart.
 pub fn with_step_slopes() -> impl Iterator<Item = General> {
     let all = General::ALL.iter().copied();
     all.filter(|method| !matches!(method, General::Rk4 { .. }))

@@ -49,7 +49,7 @@ pub fn velocities_and_states(model: &Model) -> Vec<String> {
     groups.flat_map(group).collect()
 }
 
-/// Column of the time among the recorded values of a run.
+/// Name of the time among the recorded values of a run, and the shift to the time of the description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Time {
     /// Name, which is unique.
@@ -83,7 +83,7 @@ impl Time {
     }
 }
 
-/// Returns the names of the entries of a group of symbols.
+/// Returns the names of the entries of a parameter, a velocity or an input.
 pub fn group(group: &Group) -> Vec<String> {
     let name = &group.name;
     match group.shape {
@@ -96,7 +96,7 @@ pub fn group(group: &Group) -> Vec<String> {
     }
 }
 
-/// Returns the names of the entries of a value, matrices by rows.
+/// Returns the names of the entries of an output, matrices by rows.
 pub fn entries(name: &str, shape: Shape) -> Vec<String> {
     match shape {
         Shape::Scalar => vec![name.to_string()],

@@ -5,7 +5,7 @@ use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::ast::Span;
 use std::ops::Range;
 
-/// Part of an option's text, without surrounding spaces.
+/// Part of the text of a command-line option, without surrounding spaces, which knows its place for errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece<'a> {
     /// Text of the part.

@@ -248,7 +248,7 @@ impl Double {
         (power + Double::ONE / power).scaled(0.5)
     }
 
-    /// tanh a.
+    /// tanh a = sinh a / cosh a; beyond |a| = 300 in `f64`.
     pub fn tanh(self) -> Self {
         if self.high.abs() > MAX_HYPERBOLIC_ARGUMENT {
             return Double::new(self.high.tanh());

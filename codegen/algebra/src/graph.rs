@@ -185,7 +185,7 @@ impl Graph {
         self.classes[id as usize]
     }
 
-    /// Whether a node is constant at run time: a number, or written in free symbols only.
+    /// Whether a node depends on numbers and parameters only, so that it is constant at run time.
     pub fn is_free(&self, id: NodeId) -> bool {
         self.classes[id as usize] & !self.free_class == 0
     }

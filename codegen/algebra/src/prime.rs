@@ -45,7 +45,7 @@ impl<const K: usize> Residue<K> {
     pub const ZERO: Self = Residue(0, 0);
     /// 1.
     pub const ONE: Self = Residue(Self::R, 0);
-    /// i.
+    /// The imaginary unit i of F_p(i), i² = −1; not an element of F_p, since p ≡ 3 mod 4.
     pub const I: Self = Residue(0, Self::R);
 
     /// Returns the residue class of a non-negative integer.

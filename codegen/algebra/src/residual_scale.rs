@@ -77,7 +77,8 @@ pub fn residual_scales(
     (0..equations.len()).map(size).collect()
 }
 
-/// Returns the residuals of equations relative to their [scales](residual_scales), by [`relative_residual`].
+/// Returns each equation's residual divided by its [scale](residual_scales): the size of its terms plus the effect of a
+/// change of 1 along the symbols at `places`.
 pub fn relative_residuals(
     graph: &Graph,
     equations: &[Edge],

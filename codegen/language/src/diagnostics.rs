@@ -49,7 +49,7 @@ impl Diagnostic {
         self
     }
 
-    /// Records that only functions that need this much inertia are at fault.
+    /// Records that only functions that need this much inertia are at fault, so that the others can still be generated.
     pub fn lacking(mut self, needs: Needs) -> Self {
         self.lacking = Some(needs);
         self

@@ -46,7 +46,7 @@ pub enum Returns {
     Linear,
 }
 
-/// Inertia that a function needs, ordered from least to most.
+/// How much of M a function needs: nothing, M, or an inverse of M; ordered from least to most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Needs {
     /// No inertia: kinematics, loads, potentials.
@@ -78,7 +78,7 @@ pub struct Row {
 
 macro_rules! table {
     ($($id:ident $name:literal ($($argument:ident),*) $returns:ident $serves:ident $needs:ident $named:literal [$($line:literal),* $(,)?])*) => {
-        /// A function that the generator knows.
+        /// A function that the generator can derive, such as `mass_matrix`, with the same name in all systems.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum FunctionId {
             $(#[doc = concat!("`", $name, "`.")] $id,)*
@@ -246,7 +246,7 @@ impl FunctionId {
         self.row().name
     }
 
-    /// Returns the function with a given name.
+    /// Returns the generated function of this name, such as `mass_matrix`; `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|id| id.name() == name)
     }
@@ -303,7 +303,7 @@ impl Jacobian {
         format!("{}_{body}{what}", self.frame)
     }
 
-    /// Returns the names of all functions of the frame.
+    /// Returns the names of all functions of the frame in these axes.
     pub fn names(&self) -> impl Iterator<Item = String> + '_ {
         FrameFunction::ALL.iter().map(|&of| self.name_of(of))
     }
@@ -368,7 +368,7 @@ const BROUGHT: [(FunctionId, &[FunctionId]); 3] = [
 ];
 
 impl Asked {
-    /// Requests everything that does not have to be requested by name, as a description without `generate` does.
+    /// Creates the request of a description without `generate`: everything that does not have to be requested by name.
     pub fn everything() -> Self {
         Asked {
             everything: true,
@@ -380,7 +380,7 @@ impl Asked {
         }
     }
 
-    /// Requests the given functions and those that they bring along.
+    /// Creates a request of these functions and those that they bring along.
     pub fn only(functions: &[FunctionId]) -> Self {
         Asked {
             everything: false,
@@ -389,7 +389,7 @@ impl Asked {
         }
     }
 
-    /// Returns whether a function is requested by name.
+    /// Returns whether a function is named in `generate`, rather than included in everything or brought along.
     pub fn names(&self, id: FunctionId) -> bool {
         self.functions.contains(&id)
     }

@@ -11,7 +11,7 @@ use hamel_codegen::algebra::linear::{Vec3, apply_transposed, sub3, zero3};
 use hamel_codegen::model::elements::Along;
 use hamel_codegen::model::{Model, class};
 
-/// Expressions of the drawn parts, and their properties.
+/// Expressions of the places and properties of the drawn parts, in a graph.
 pub(super) struct Points {
     /// Mass, centre of mass and inertia about it of each body, 13 expressions; masses of particles.
     pub masses: Vec<Edge>,

@@ -47,7 +47,7 @@ impl Scene {
     }
 }
 
-/// A frame.
+/// A frame of the description, with its axes and origin in the world.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Frame {
     /// Name.
@@ -90,7 +90,7 @@ pub struct Particle {
     pub frame: Option<usize>,
 }
 
-/// A joint.
+/// A joint, with its place and axes in the world.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Joint {
     /// Name.

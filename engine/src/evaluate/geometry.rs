@@ -13,10 +13,10 @@ use hamel_codegen::model::Model;
 /// Bound on the rounding error of a sum, relative to its terms.
 const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Entries of a table, `table[i][j][k]`.
+/// Numbers of a table with three indices, `table[i][j][k]`.
 pub type Cube = Vec<Vec<Vec<f64>>>;
 
-/// A, γ, M, Γ of the full frame at one state.
+/// Numbers of A, γ, M, Γ of the full frame at one state.
 pub struct Geometry {
     pub a: Vec<Vec<f64>>,
     /// `None` if the system has no inertia.
@@ -26,7 +26,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Evaluates the tables; γ and Γ, with n³ entries each, only with `tables`.
+    /// Evaluates A and M at a state, and, only with `tables`, γ and Γ, which have n³ entries each.
     pub fn new(generated: &Generated, state: &State, tables: bool) -> Result<Self, Error> {
         let model = &generated.model;
         let n = model.n();

@@ -3,7 +3,7 @@
 use hamel_codegen::program::Shape;
 use serde::{Serialize, Serializer};
 
-/// Value of a function.
+/// Numbers of a function's value in its shape.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -16,7 +16,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Shapes entries to a value, matrices by rows; a number without an entry is NaN.
+    /// Creates a value of a shape from its entries, matrices by rows; a number without an entry is NaN.
     pub fn new(shape: Shape, entries: &[f64]) -> Self {
         match shape {
             Shape::Scalar => Value::Number(entries.first().copied().unwrap_or(f64::NAN)),

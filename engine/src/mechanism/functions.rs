@@ -5,7 +5,7 @@ use crate::error::Error;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_native::{Compiled, Constants};
 
-/// Functions that were compiled together, with their parameters.
+/// Compiled functions of a program together with values of its parameters.
 #[derive(Clone, Debug)]
 pub struct Functions {
     compiled: Compiled,
@@ -53,7 +53,7 @@ impl FunctionIndex {
 }
 
 impl Functions {
-    /// Sets the parameters of compiled functions.
+    /// Takes compiled functions, and computes their values that depend on these parameters alone.
     pub fn new(compiled: &Compiled, params: &[f64]) -> Self {
         Functions {
             constants: compiled.constants(params),

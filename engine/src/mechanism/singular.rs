@@ -20,7 +20,7 @@ const MAX_LISTED: usize = 6;
 const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
 const DEPENDENT_CONSTRAINTS: &str = "the constraints on the velocities depend on one another";
 
-/// Function that had no value, with x.
+/// Function of a system that had no value, with the x at which it had none.
 #[derive(Clone, Debug)]
 pub enum FailedFunction {
     /// ξ̇, or the velocities from momenta.
@@ -126,8 +126,8 @@ fn state_message(mass: &DMatrix<f64>, names: &[String]) -> SingularState {
     explain_mass_matrix(mass, names).unwrap_or(SingularState::Configuration)
 }
 
-/// Explains why ξ̇ of a description has no value with these parameters and this mass matrix; a division by 0 comes
-/// first.
+/// Explains why ξ̇ has no value with these parameters and this mass matrix: a division by 0, a singular M, or else a
+/// singular configuration.
 pub fn explain_singular_state(
     generated: &Generated,
     params: &[f64],

@@ -18,7 +18,7 @@ pub struct Divisors {
 }
 
 impl Divisors {
-    /// Collects the divisors of a description, whose text is for messages.
+    /// Collects the divisors of a description, whose text is for messages; `None` if there are none.
     pub fn of(generated: &Generated, text: &str) -> Option<Self> {
         let model = &generated.model;
         let names = names::velocities(model);

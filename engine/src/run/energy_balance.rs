@@ -16,7 +16,7 @@ const ROUNDING_ERROR: f64 = 1e-13;
 /// Safety factor for the work of loads, which is estimated from the ends of steps.
 const WORK_SAFETY_FACTOR: f64 = 10.0;
 
-/// Energy balance of a run so far.
+/// Energy of a run so far, with the work of its loads, to notice energy that no load accounts for.
 #[derive(Clone, Copy, Debug)]
 pub struct EnergyBalance {
     start: f64,
@@ -65,7 +65,8 @@ impl EnergyBalance {
         self
     }
 
-    /// Returns the change of energy at this state if no load accounts for it; `tolerance` is `None` for equal steps.
+    /// Returns the change of energy at this state if no load accounts for it, `None` otherwise; `tolerance` is `None`
+    /// for equal steps.
     pub fn lost(&self, tolerance: Option<f64>) -> Option<f64> {
         if self.driven {
             return None;

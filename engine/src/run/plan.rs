@@ -12,7 +12,7 @@ const DEFAULT_SAMPLES: u64 = 1000;
 /// Number of points of a plot.
 pub const PLOT_POINTS: u64 = 4000;
 
-/// Interval of samples.
+/// Interval of samples as requested: a time or a number of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Every {
     /// Number of steps between samples.
@@ -21,7 +21,7 @@ pub enum Every {
     Time(f64),
 }
 
-/// Plan of a run: everything that is decided before it begins.
+/// Method, steps, tolerance and sample times of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The method.

@@ -23,7 +23,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Evaluates the sample of a state.
+    /// Evaluates all recorded quantities at a state.
     pub fn of(system: &Instance, state: &State<Instance>) -> Self {
         let (x, xi) = (&state.x, &state.xi);
         let values = |list: &[Output]| -> Vec<f64> {

@@ -11,7 +11,7 @@ use std::sync::{Arc, OnceLock};
 /// Number of states whose evaluation takes about as long as compiling code for two states at once.
 const MIN_STATES_TO_PAIR: u64 = 1 << 15;
 
-/// Function of the description, compiled to machine code.
+/// Function of a description that is compiled to machine code, such as `mass_matrix`.
 #[derive(Clone, Debug)]
 pub struct Function {
     /// Name.
@@ -34,7 +34,7 @@ struct PairedCode {
 }
 
 impl Function {
-    /// Returns the number of entries of an argument.
+    /// Returns the number of entries that an argument of this kind has for this system.
     pub fn length(&self, argument: Argument) -> usize {
         let all = hamel_native::ARGUMENTS.iter();
         let lengths = all.zip(self.compiled.tapes().lengths);
@@ -44,7 +44,7 @@ impl Function {
             .sum()
     }
 
-    /// Computes all values that depend on parameters alone.
+    /// Computes all values of the function that depend on parameters alone, for its calls.
     ///
     /// # Errors
     /// M is constant, and not positive definite with these parameters.

@@ -51,7 +51,8 @@ pub struct Session {
     drawing: OnceLock<Drawing>,
 }
 
-/// Names of entries, and their groups: name, index of the first entry, number of entries.
+/// Names of the entries of x, ξ, u or the parameters, and their groups: name, index of the first entry, number of
+/// entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Names {
     /// Names of all entries, such as `w[2]`.
@@ -60,7 +61,7 @@ pub struct Names {
     pub groups: Vec<(String, usize, usize)>,
 }
 
-/// Method with a system, for single steps.
+/// Steps of a method from any state of a system, one at a time.
 pub struct SingleStepper {
     instance: Instance,
     stepper: Stepper,
@@ -353,7 +354,8 @@ impl Session {
         self.source.derive_asked(&wanted)
     }
 
-    /// Explains a pivot that is not positive, in the names of the description.
+    /// Explains why a function of the description has no value: which pivot of the mass matrix, of constraints or of
+    /// the kinematics is not positive.
     pub fn explain_pivot(&self, cause: Cause) -> String {
         let shown = self.source.shown();
         mechanism::cause_message(cause, self.active(), shown)
@@ -469,7 +471,7 @@ impl Session {
         base_parameters(&self.source)
     }
 
-    /// Derives tables by their names; without names, those that matter.
+    /// Derives tables of equations, such as γ or M, by their names; without names, those that matter.
     ///
     /// # Errors
     /// A table is unknown, or does not exist for the system.

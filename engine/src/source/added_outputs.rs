@@ -13,7 +13,8 @@ use std::ops::Range;
 /// Prefix of the names of added outputs.
 const PREFIX: &str = "hamel_keep_";
 
-/// Output that is added to a description.
+/// Output that is added to a description, such as an option's expression, under a generated name; its value may be the
+/// difference of two expressions.
 pub struct AddedOutput<'a> {
     /// Name.
     pub name: String,

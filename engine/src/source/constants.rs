@@ -38,8 +38,8 @@ impl fmt::Display for ConstantProblem {
 
 impl std::error::Error for ConstantProblem {}
 
-/// Returns the description with another value of a constant. A description that cannot be
-/// parsed is left unchanged: its errors are reported later.
+/// Returns the text of a description with another value of a constant. A description that cannot be parsed is left
+/// unchanged: its errors are reported later.
 pub fn given(text: &str, name: &str, value: &str) -> Result<String, ConstantProblem> {
     let Ok(system) = parse_text(text) else {
         return Ok(text.to_string());

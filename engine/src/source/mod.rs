@@ -504,7 +504,7 @@ impl Source {
     }
 }
 
-/// Decodes the bytes of a file, in any encoding that robots may have.
+/// Decodes the bytes of a file to text, in any encoding that robots may have.
 pub fn decoded(name: &str, bytes: Vec<u8>) -> Result<String, Error> {
     urdf::decode(bytes).map_err(|source| Error::Decode {
         path: name.into(),

@@ -4,11 +4,11 @@
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
 use std::collections::BTreeSet;
 
-/// Coupling of unknowns by equations: the indices of the unknowns in each equation.
+/// Which unknowns occur in which equations, to find those that must change together with a violated equation.
 pub struct Coupling(Vec<BTreeSet<usize>>);
 
 impl Coupling {
-    /// Collects equations, each given by the indices of its unknowns.
+    /// Takes for each equation the indices of its unknowns.
     pub fn new(equations: impl IntoIterator<Item = BTreeSet<usize>>) -> Self {
         Coupling(equations.into_iter().collect())
     }
@@ -31,7 +31,8 @@ impl Coupling {
     }
 }
 
-/// Returns the indices of the symbols in an expression, relative to `first` and below `count`, except `but`.
+/// Returns the indices of those symbols in an expression that are in a range, relative to `first` and below `count`,
+/// except `but`.
 pub fn symbols(
     graph: &Graph,
     edge: Edge,

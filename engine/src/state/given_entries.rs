@@ -4,7 +4,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::model::{Group, Model};
 use hamel_codegen::syntax::ast::JointKind;
 
-/// Given entries of x and z, and given values of ξ.
+/// Which entries of x and z a state gives, and the given values of ξ.
 #[derive(Clone, Debug)]
 pub struct GivenEntries {
     /// Given entries of x.
@@ -16,7 +16,7 @@ pub struct GivenEntries {
 }
 
 impl GivenEntries {
-    /// Returns that no entries are given.
+    /// Creates the record of a state that gives nothing.
     pub fn none(generated: &Generated) -> Self {
         let model = &generated.model;
         GivenEntries {
@@ -27,7 +27,7 @@ impl GivenEntries {
     }
 }
 
-/// Returns the indices of the velocities of states in ξ of the full frame.
+/// Returns for each velocity of a state its index in ξ of the full frame.
 pub fn places(generated: &Generated) -> Vec<usize> {
     let full = &generated.model;
     let solved = |place: &usize| generated.solved.iter().any(|(solved, _)| solved == place);

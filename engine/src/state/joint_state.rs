@@ -22,7 +22,7 @@ const RESULTS: [&str; 6] = [
 /// Member with the order of a list of forces, by joint.
 pub const VELOCITY_ORDER: &str = "velocity_order";
 
-/// State by joints, with the generalised force that acts on it.
+/// State that was given by joints, with the generalised force that acts on it.
 #[derive(Clone, Debug)]
 pub struct JointState {
     /// The state; its inputs are zero.
@@ -33,7 +33,7 @@ pub struct JointState {
     pub force: Option<Vec<f64>>,
 }
 
-/// Returns whether a file is given by joints.
+/// Returns whether a JSON text gives a state by joints, rather than by coordinates.
 pub fn is_sample(json: &Value) -> bool {
     let Value::Object(parts) = json else {
         return false;

@@ -82,7 +82,8 @@ pub fn joints(model: &Model, names: &[(String, String)]) -> Vec<Joint> {
     joints
 }
 
-/// Returns the name of the joint for each row of M; rows without a joint have the names of their velocities.
+/// Returns the name of the joint that each row of M belongs to; rows without a joint have the names of their
+/// velocities.
 pub fn rows(model: &Model, joints: &[Joint]) -> Vec<String> {
     let mut rows = names::velocities(model);
     for joint in joints {

@@ -75,7 +75,8 @@ impl State {
         }
     }
 
-    /// Changes the start by a JSON value with coordinates; `text` is that of the description.
+    /// Reads a state: the start of a description, changed by a JSON value with coordinates; `text` is that of the
+    /// description.
     pub fn of(generated: &Generated, text: &str, json: &Value) -> Result<Self, Vec<StateProblem>> {
         State::start(&generated.active).changed((generated, text), &[], json)
     }

@@ -14,7 +14,7 @@ use serde_json::{Map, Value};
 /// Largest relative difference of the entries (i, j) and (j, i) of a symmetric matrix.
 const SYMMETRY_TOLERANCE: f64 = 1e-12;
 
-/// Reader of a state: the entries given so far, and the errors found so far.
+/// Reader of a state in JSON: the entries given so far, and the errors found so far.
 #[derive(Debug)]
 pub struct Reader {
     /// Each with its path.

@@ -26,7 +26,7 @@ use crate::{s1, s3, so3};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gauss4;
 
-/// Gauss collocation of order 6, three stages; otherwise as [`Gauss4`].
+/// Gauss collocation of order 6, three stages; symplectic, on (x, p), with a fixed-point iteration as in [`Gauss4`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gauss6;
 

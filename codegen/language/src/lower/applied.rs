@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 const MOST_CALLS: usize = 100_000;
 
 impl Evaluator<'_> {
-    /// Returns the value of a call of a function of the description.
+    /// Returns the value of a call of a function that the description defines.
     pub fn applied(
         &mut self,
         function: &Function,

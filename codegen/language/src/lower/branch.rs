@@ -13,8 +13,8 @@ const ZERO: f64 = 1e-7;
 /// Value at the start above which a factor does not vanish.
 const APART: f64 = 1e-3;
 
-/// Returns the only factor with coordinates that vanishes at the start; returns the edge itself if it is not a
-/// product, or if not exactly one factor vanishes.
+/// Returns the only factor of a product that depends on coordinates and vanishes at the start; returns the edge itself
+/// if it is not a product, or if not exactly one factor vanishes.
 pub fn at_start(graph: &Graph, edge: Edge, start: &[f64]) -> Edge {
     let factors = factors(graph, edge);
     let values = evaluate(graph, &factors, start);

@@ -38,7 +38,7 @@ struct Equation<'a> {
     velocity: Option<usize>,
 }
 
-/// Computes the missing rows of A.
+/// Completes A with the rows that follow from Y and φ; `None` after an error has been reported.
 pub fn complete(
     system: &System,
     graph: &mut Graph,

@@ -11,7 +11,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use std::cmp::Ordering;
 
-/// A table of numbers.
+/// A table of points of a function of one variable, with its interpolation and extrapolation.
 #[derive(Clone, Debug)]
 pub struct Curve {
     /// Arguments, increasing.

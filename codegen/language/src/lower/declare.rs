@@ -16,7 +16,7 @@ use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, Span, Syst
 /// on X.
 pub type NextValue<'a> = dyn FnMut(&mut Graph) -> ResiduePair + 'a;
 
-/// All declared symbols.
+/// The symbols of everything that a description declares: parameters, x, ξ, u, z, ξ̇, p.
 #[derive(Clone, Debug, Default)]
 pub struct Declared {
     pub params: Vec<Group>,
@@ -320,7 +320,7 @@ fn symbols_of(
     (value, symbols)
 }
 
-/// Returns the value of a coordinate in expressions.
+/// Returns the value that a coordinate's name has in expressions: a scalar, vector, matrix or pose of its entries.
 pub fn coordinate_value(kind: CoordKind, entries: &[Edge]) -> Value {
     let matrix = |e: &[Edge]| Value::Matrix(e.chunks(3).map(<[Edge]>::to_vec).collect());
     match kind {
@@ -334,7 +334,7 @@ pub fn coordinate_value(kind: CoordKind, entries: &[Edge]) -> Value {
     }
 }
 
-/// Returns the number of entries in x.
+/// Returns the number of entries in x of a coordinate of this kind.
 pub fn size(kind: CoordKind) -> usize {
     blocks(kind).iter().map(|block| block.len()).sum()
 }

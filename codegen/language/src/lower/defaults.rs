@@ -9,7 +9,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
 use crate::syntax::ast::{Declaration, ItemKind, ShapeKind, System};
 
-/// Returns the values of all parameters' symbols; NaN where there is an error.
+/// Evaluates the default values of all parameters, one for each symbol; NaN where there is an error.
 pub fn read(
     system: &System,
     graph: &mut Graph,

@@ -59,8 +59,7 @@ impl<'a> Evaluator<'a> {
         value.or_else(|| self.miss())
     }
 
-    /// Returns `None` where a value is required. The description is then refused even if no error explains why, so
-    /// that nothing is left out silently.
+    /// Returns `None` in place of a required value, and makes the description be refused even if no error explains why.
     pub fn miss<T>(&self) -> Option<T> {
         self.scope.missed.set(true);
         None

@@ -25,7 +25,7 @@ pub fn define_let(
     value.filter(|_| free)
 }
 
-/// Returns the world pose of f from that of g: f = g P.
+/// Returns the world pose f = g P of a frame with the pose P in g, from the world pose g.
 pub fn ahead(graph: &mut Graph, parent: &Value, pose: &Value) -> Value {
     match (parent, pose) {
         (Value::Pose(r, p), Value::Pose(rotation, position)) => {
@@ -37,7 +37,7 @@ pub fn ahead(graph: &mut Graph, parent: &Value, pose: &Value) -> Value {
     }
 }
 
-/// Returns P⁻¹, the pose of g in f.
+/// Returns the inverse P⁻¹ of a pose, the pose of g in f.
 pub fn inverse(graph: &mut Graph, pose: &Value) -> Value {
     match pose {
         Value::Pose(rotation, position) => {

@@ -8,7 +8,7 @@ use crate::algebra::residue_pair::ResiduePair;
 /// Relative size of the new part of a row below which the row counts as dependent at the start.
 const SMALL: f64 = 1e-7;
 
-/// A choice of rows.
+/// Rows of a Jacobian that are independent, and the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Independent {
     /// Indices of the chosen rows of φ.
@@ -17,7 +17,7 @@ pub struct Independent {
     pub singular: Option<usize>,
 }
 
-/// Chooses rows in their order; `numbers` are the values of the entries at the start.
+/// Chooses independent rows of a Jacobian in their order; `numbers` are the values of the entries at the start.
 pub fn choose(graph: &Graph, jacobian: &[Vec<Edge>], numbers: Option<&[Vec<f64>]>) -> Independent {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let new_at_start = |basis: &mut Vec<Vec<f64>>, row: usize| {

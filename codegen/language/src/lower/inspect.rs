@@ -17,7 +17,7 @@ use num_rational::BigRational;
 
 pub use super::axes::CALLS;
 
-/// Result of inspecting one expression.
+/// What can be said of one expression: its value, and on what it depends.
 #[derive(Debug)]
 pub struct Found {
     /// Inferred shape in words, with the values of the entries if they are known; `None` if something is wrong.

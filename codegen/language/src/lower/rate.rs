@@ -10,7 +10,7 @@ use crate::shapes::{rate_help, velocity_for};
 use crate::syntax::ast::{CoordKind, Expr, Target};
 use std::ops::Range;
 
-/// ẋ and A.
+/// Kinematics of a description: expressions of ẋ and of A in ẋ = A ξ.
 pub struct Kinematics {
     pub rate: Vec<Edge>,
     pub a: Vec<Vec<Edge>>,

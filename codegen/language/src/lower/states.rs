@@ -13,7 +13,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::Group;
 use crate::syntax::ast::{Expr, ItemKind, Span, System, Target};
 
-/// Rates ż, and values of z at the start.
+/// Expressions of the rates ż of first-order states, and values of z at the start.
 #[derive(Clone, Debug, Default)]
 pub struct States {
     pub rates: Vec<Edge>,

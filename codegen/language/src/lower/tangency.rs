@@ -101,7 +101,7 @@ impl Checker<'_> {
         rows.map(|row| row.iter().map(value).collect()).collect()
     }
 
-    /// Checks that no constraint of the user is singular on all of X.
+    /// Returns whether no constraint of the user is singular on all of X; reports an error otherwise.
     pub fn regular(&mut self) -> bool {
         let zero = self.graph.zero();
         let mut regular = true;
@@ -126,7 +126,7 @@ impl Checker<'_> {
         regular
     }
 
-    /// Checks (∂φ/∂x) A = 0 on X.
+    /// Returns whether (∂φ/∂x) A = 0 on X; reports an error otherwise.
     pub fn tangent(&mut self, rates: &[Option<Rate>], a: &[Vec<Edge>]) -> bool {
         let mut tangent = true;
         let mut reported: Vec<usize> = Vec::new();
@@ -232,7 +232,7 @@ impl Checker<'_> {
         self.report.push(error);
     }
 
-    /// Checks n = dim X = ν − rank ∂φ/∂x.
+    /// Returns whether n = dim X = ν − rank ∂φ/∂x; reports an error otherwise.
     pub fn count(&mut self) -> bool {
         let n = self.declared.xi.len();
         let nu = self.declared.x.len();
@@ -261,7 +261,7 @@ impl Checker<'_> {
         false
     }
 
-    /// Checks that A has rank n.
+    /// Returns whether A has rank n; reports an error otherwise.
     pub fn independent(&mut self, a: &[Vec<Edge>]) -> bool {
         let n = self.declared.xi.len();
         let value = |edge: &Edge| self.graph.value(*edge);

@@ -2,7 +2,7 @@
 
 use super::layout::Block;
 
-/// Returns the chart rate: ẋ of plain coordinates, the rate of an angle, or the angular velocity in body axes.
+/// Computes the chart rate of a block in numbers from x and ẋ: ẋ, θ̇, or the angular velocity in body axes.
 pub fn chart_rate(block: Block, x: &[f64], rate: &[f64]) -> Vec<f64> {
     match block {
         Block::Flat(_) => rate.to_vec(),
@@ -28,8 +28,8 @@ pub fn chart_rate(block: Block, x: &[f64], rate: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Returns the difference between two points of a block in its chart, and the matrix that maps the chart rate to the
-/// rate of the difference.
+/// Computes in numbers the difference between two points of a block in its chart, and the matrix that maps the chart
+/// rate to the rate of the difference.
 pub fn chart_difference(block: Block, from: &[f64], to: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
     match block {
         Block::Flat(n) => {
@@ -85,7 +85,7 @@ fn quaternion(r: &[f64]) -> [f64; 4] {
     row.map(|e| e / length)
 }
 
-/// Returns the rotation vector δ of a unit quaternion, and the matrix 1 + δ̂/2 + κ δ̂² that maps ω to δ̇.
+/// Computes the rotation vector δ of a unit quaternion, and the matrix 1 + δ̂/2 + κ δ̂² that maps ω to δ̇, in numbers.
 pub fn turned(q: [f64; 4]) -> (Vec<f64>, Vec<Vec<f64>>) {
     let q = if q[0] < 0.0 { q.map(|e| -e) } else { q };
     let v = [q[1], q[2], q[3]];

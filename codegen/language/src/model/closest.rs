@@ -19,7 +19,7 @@ use crate::algebra::slopes::slopes;
 /// diagonal entry.
 const LEAST: f64 = 1e-9;
 
-/// The equations of loops that are to be closed near a guess.
+/// The equations of loops that are to be closed near a guess, in numbers, for Newton's method.
 pub struct Loops<'c, 'a> {
     closure: &'c LoopClosure<'a>,
     guess: &'c [f64],

@@ -2,7 +2,8 @@
 
 use crate::algebra::graph::Edge;
 
-/// Y as it was given, the rows of Φ, and the divisors of `[Y; Φ]⁻¹`.
+/// How A follows from Y and φ: the rows of Y that were given, the indices of the independent rows of φ, and the pivots
+/// of `[Y; Φ]⁻¹`.
 #[derive(Clone, Debug, Default)]
 pub struct Completion {
     /// Row of Y for each ξⁱ that the description defines.

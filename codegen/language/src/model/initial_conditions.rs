@@ -40,7 +40,7 @@ pub struct Formulas {
 }
 
 impl InitialConditions {
-    /// Returns the start for given values of the parameters.
+    /// Returns the initial conditions for these values of the parameters.
     pub fn at(&self, params: &[f64]) -> InitialConditions {
         let mut initial = self.clone();
         let Some(formulas) = &self.formulas else {
@@ -63,7 +63,7 @@ impl InitialConditions {
         initial
     }
 
-    /// Returns whether coordinates are guessed, so that loops are closed as near to the guesses as possible.
+    /// Returns whether some coordinate is a guess, so that loops are closed as near to the guesses as possible.
     pub fn guesses_coordinates(&self) -> bool {
         self.guessed_x.contains(&true)
     }

@@ -110,7 +110,8 @@ pub fn entry_names(name: &str, kind: CoordKind) -> Vec<String> {
     }
 }
 
-/// Returns a random point of a block over F_p, from rational parametrisations of the circle, the sphere S³ and SO(3).
+/// Returns a random point of a block, in numbers modulo p, from rational parametrisations of the circle, the sphere S³
+/// and SO(3).
 pub fn sample(block: Block, random: &mut Random) -> Vec<ResiduePair> {
     match block {
         Block::Flat(n) => (0..n).map(|_| random.element()).collect(),
@@ -159,7 +160,8 @@ where
     ]
 }
 
-/// Returns φ of a block with the text of each row. Only to be called in a graph with unconstrained points.
+/// Returns φ of a block as expressions, each with the text of the row. Only to be called in a graph with unconstrained
+/// points.
 pub fn constraint(graph: &mut Graph, block: Block, x: &[Edge], name: &str) -> Vec<(Edge, String)> {
     let minus_one = -graph.one();
     let sphere = |graph: &mut Graph, text: String| {
@@ -189,8 +191,8 @@ pub fn constraint(graph: &mut Graph, block: Block, x: &[Edge], name: &str) -> Ve
     }
 }
 
-/// Returns the canonical quasi-velocity of a block as a linear function of its ẋ: ẋ itself, c ṡ − s ċ, the vector
-/// part of 2 q̄ q̇, or ½ (R₃·Ṙ₂ − R₂·Ṙ₃) and cyclic, KR18 (36).
+/// Returns the chart rate of a block as an expression linear in its ẋ: ẋ itself, c ṡ − s ċ, the vector part of 2 q̄ q̇,
+/// or ½ (R₃·Ṙ₂ − R₂·Ṙ₃) and cyclic, KR18 (36).
 pub fn chart_rate(graph: &mut Graph, block: Block, x: &[Edge], rate: &[Edge]) -> Vec<Edge> {
     match block {
         Block::Flat(_) => rate.to_vec(),
@@ -227,7 +229,7 @@ pub fn chart_rate(graph: &mut Graph, block: Block, x: &[Edge], rate: &[Edge]) ->
     }
 }
 
-/// Returns the identity of a block: zeros, angle 0, or no rotation.
+/// Returns the identity of a block in numbers: zeros, angle 0, or no rotation.
 pub fn identity(block: Block) -> Vec<f64> {
     match block {
         Block::Flat(n) => vec![0.0; n],

@@ -326,7 +326,7 @@ impl<'a> LoopClosure<'a> {
         x.copy_from_slice(&outcome.before);
     }
 
-    /// Returns whether any velocity is given, apart from that of time.
+    /// Returns whether at least one velocity is given, apart from that of time.
     pub fn any_speed(&self, given: &[bool]) -> bool {
         let mut given = given.iter().enumerate();
         given.any(|(i, &given)| given && self.time != Some(i))

@@ -327,7 +327,8 @@ impl Model {
         &self.u[self.m()..]
     }
 
-    /// Returns the values of all symbols for given parameters, x, ξ, u and ξ̇; z follows ξ in `xi`, or u in `u`.
+    /// Returns the values of all symbols, in the order of the graph, for given parameters, x, ξ, u and ξ̇; z follows ξ
+    /// in `xi`, or u in `u`.
     pub fn numbers(
         &self,
         params: &[f64],

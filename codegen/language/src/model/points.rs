@@ -24,12 +24,12 @@ const STRICT_TRIES: usize = 300;
 const MOST_STRICT: usize = 6;
 /// Number of constraint systems without a solution after which the search gives up.
 const FAILURES: usize = 3;
-/// Largest degree of a constraint in the coordinates.
+/// Largest degree in the coordinates of a constraint that can be sampled.
 pub const HIGHEST_DEGREE: u32 = 32;
 /// Largest number of terms of a constraint.
 const MOST_TERMS: usize = 2000;
 
-/// The manifold X as the generator samples it.
+/// Sampler of the manifold X of configurations: draws random points of X, with values of all symbols, modulo p.
 #[derive(Clone, Debug)]
 pub struct Points {
     /// Graph with unconstrained points, in which `constraints` live.
@@ -49,7 +49,8 @@ pub struct Points {
 }
 
 impl Points {
-    /// Creates the manifold of constraints that live in a graph with unconstrained points.
+    /// Creates the sampler of X from constraints that live in a graph with unconstrained points, and blocks of x, whose
+    /// symbols begin at `first`.
     pub fn new(free: Graph, constraints: Vec<Edge>, blocks: Vec<Block>, first: usize) -> Self {
         let symbols = free.symbols().len();
         Points {
@@ -69,7 +70,7 @@ impl Points {
         Newton::new(&self.free, &rows, self.first, self.dimension())
     }
 
-    /// Returns the range of the symbols of x.
+    /// Returns the range of indices of the symbols of x.
     pub fn places(&self) -> Range<usize> {
         self.first..self.first + self.dimension()
     }
@@ -336,8 +337,8 @@ impl Points {
         })
     }
 
-    /// Returns a lane at a fresh point where some symbols have the values of expressions of `graph`; `None` if no
-    /// point was found.
+    /// Returns a random point of X where some symbols have the values of expressions of `graph`; `None` if no point was
+    /// found.
     pub fn lane_where(
         &self,
         seed: u64,
@@ -347,8 +348,8 @@ impl Points {
         self.lane_moved(seed, graph, set, &|_| Some(Vec::new()))
     }
 
-    /// Does the same; once the coordinates are those of a point of X, `moved` gives further symbols values that
-    /// depend on them.
+    /// Returns a random point of X as [`lane_where`](Self::lane_where) does; once the coordinates are chosen, `moved`
+    /// gives further symbols values that depend on them.
     pub fn lane_moved(
         &self,
         seed: u64,
@@ -375,7 +376,7 @@ impl Points {
         Some(self.lane_of(&values))
     }
 
-    /// Returns a lane at a fresh point.
+    /// Returns a random point of X with values of all symbols, chosen by a seed; `None` if no point was found.
     pub fn lane(&self, seed: u64) -> Option<FieldPoint> {
         let values = self.choose(&mut Random::new(seed ^ 0x0b5e))?;
         Some(self.lane_of(&values))

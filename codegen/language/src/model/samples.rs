@@ -15,12 +15,12 @@ const NEAR: f64 = 0.05;
 /// Error of all other values.
 const ROUNDED: f64 = 1e-14;
 
-/// Returns the values of π alone, which is all that numbers need.
+/// Returns samples with the value of π alone, which is all that numbers need.
 pub fn pi() -> Vec<Reals> {
     vec![[Real::new(std::f64::consts::PI, ROUNDED); SAMPLES]]
 }
 
-/// Returns the values of all symbols at random real points with φ = 0.
+/// Returns the values of all symbols, in real enclosures, at random real points with φ = 0.
 ///
 /// At every other point all symbols but coordinates are positive; at the rest they have either sign. At the first
 /// half of the points their sizes are about 1, at the second half from 1/100 to 1000. Coordinates are unknown where
@@ -67,7 +67,7 @@ pub fn sample(
     all
 }
 
-/// Returns random values of symbols that are under no constraint.
+/// Returns random real values of symbols that are under no constraint.
 pub fn anywhere(count: usize, seed: u64) -> Vec<Reals> {
     let mut random = Random::new(seed ^ 0x7ea1);
     let mut all = vec![[Real::UNKNOWN; SAMPLES]; count];

@@ -10,7 +10,8 @@ const RANDOM: usize = 2;
 /// branch.
 const NEAR: f64 = 0.3;
 
-/// Returns the values of all symbols at the start and at a few other states, with parameters at their defaults.
+/// Returns the values of all symbols, in `f64`, at the start and at a few other states, with parameters at their
+/// defaults.
 pub fn states(model: &Model) -> Vec<Vec<f64>> {
     let mut random = Random::new(0x57a7e);
     let mut all = vec![numbers(model, model.start_x.clone(), &mut random)];

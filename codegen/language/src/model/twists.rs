@@ -7,7 +7,7 @@ use crate::algebra::linear::{Mat3, Vec3};
 use crate::algebra::numeric::evaluate;
 use crate::algebra::slopes::{ValueWithSlopes, slopes};
 
-/// Twist of a frame for a velocity of 1, world axes.
+/// Angular velocity and velocity of a frame's origin for one unit velocity, in world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Twist {
     /// Angular velocity ω (rad/s).
@@ -16,7 +16,7 @@ pub struct Twist {
     pub speed: [f64; 3],
 }
 
-/// A frame at a given state.
+/// Axes of a frame at a given state, with its twist for each velocity, in numbers.
 #[derive(Clone, Debug)]
 pub struct Placed {
     /// Axes of the frame in the world, by columns.
@@ -25,7 +25,7 @@ pub struct Placed {
     pub twists: Vec<Twist>,
 }
 
-/// The parts of a system that determine its motion numerically.
+/// Graph, A and places of x and ξ, from which twists of frames are evaluated in numbers.
 #[derive(Clone, Copy)]
 pub struct Moving<'a> {
     /// Graph of all expressions.
@@ -41,7 +41,7 @@ pub struct Moving<'a> {
 }
 
 impl Moving<'_> {
-    /// Returns the columns of A as directions in the space of all symbols.
+    /// Evaluates the columns of A as directions in the space of all symbols.
     pub fn directions(&self, numbers: &[f64]) -> Vec<Vec<f64>> {
         let a = evaluate(self.graph, &self.a.concat(), numbers);
         let column = |i: usize| {
@@ -52,7 +52,7 @@ impl Moving<'_> {
         (0..self.n).map(column).collect()
     }
 
-    /// Returns the frames at a state.
+    /// Evaluates axes and twists of frames at a state.
     pub fn frames(&self, frames: &[Frame], numbers: &[f64]) -> Vec<Placed> {
         let directions = self.directions(numbers);
         let entries = frames.iter().flat_map(|f| pose(&f.rotation, f.position));
@@ -62,7 +62,7 @@ impl Moving<'_> {
         frames.map(|entries| placed(entries, self.n)).collect()
     }
 
-    /// Returns M of bodies, particles and a kinetic energy.
+    /// Evaluates M, by rows, of bodies, particles and a kinetic energy that the user wrote.
     pub fn mass(
         &self,
         frames: &[Frame],
@@ -158,12 +158,12 @@ fn placed(entries: &[ValueWithSlopes], n: usize) -> Placed {
     Placed { rotation, twists }
 }
 
-/// Returns R a.
+/// Returns R a in numbers.
 pub fn apply(rotation: &[[f64; 3]; 3], a: [f64; 3]) -> [f64; 3] {
     rotation.map(|row| dot(&row, &a))
 }
 
-/// Returns Rᵀ a.
+/// Returns Rᵀ a in numbers.
 pub fn back(rotation: &[[f64; 3]; 3], a: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| (0..3).map(|l| rotation[l][k] * a[l]).sum())
 }

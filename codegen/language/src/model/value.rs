@@ -3,7 +3,7 @@
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 
-/// A value of the language.
+/// A value of an expression of the language, whose entries are edges of a graph: scalar, vector, matrix or pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// One number.

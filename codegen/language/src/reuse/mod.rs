@@ -21,7 +21,7 @@ use crate::syntax::ast::{Item, ItemKind, Remarks, System};
 use names::{Context, World};
 use std::collections::BTreeSet;
 
-/// A description after expansion, without components, parts and repetition.
+/// A description in which components, parts and repetition have been written out.
 pub struct Written {
     /// The description. It records where its statements come from.
     pub system: System,

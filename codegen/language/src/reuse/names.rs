@@ -27,7 +27,7 @@ impl Context {
     }
 }
 
-/// A declared item.
+/// An item that a statement declares, with its final name.
 #[derive(Clone, Debug)]
 pub struct Thing {
     /// Kind of the item.
@@ -104,7 +104,7 @@ pub struct World<'a> {
     ends: BTreeMap<String, (String, Span)>,
 }
 
-/// Result of resolving a name.
+/// What a name stands for during the expansion of components.
 pub enum Found<'w, 'a> {
     /// No declared item.
     Unknown,

@@ -6,7 +6,7 @@ use num_rational::BigRational;
 /// Largest number of rows and of columns that arrays and functions can produce.
 pub const MOST_ENTRIES: usize = 64;
 
-/// The shape of a value.
+/// The shape of a value of the language, as the shape inference knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Shape {
     /// One number.

@@ -147,7 +147,7 @@ impl<'a> Planner<'a> {
         self.rates = true;
     }
 
-    /// Processes all steps that can be processed now. The remaining ones need the rates of the coordinates.
+    /// Appends to the order all steps whose names are known now. The remaining ones need the rates of the coordinates.
     pub fn go_on(&mut self, checker: &mut Checker<'a>) {
         loop {
             let (mut waiting, mut progress) = (Vec::new(), false);

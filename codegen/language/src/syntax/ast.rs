@@ -150,7 +150,7 @@ pub struct External {
 }
 
 impl System {
-    /// Switches functions in Rust to numerical evaluation by their substitutes.
+    /// Marks all `extern fn`s to be evaluated by their substitutes.
     pub fn evaluate(&mut self) {
         evaluate(&mut self.items);
     }

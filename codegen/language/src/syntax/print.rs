@@ -13,7 +13,7 @@ use super::{joint_field, joint_kind};
 /// Largest width of a line, without its indentation, where a list or the fields of a body can be broken.
 const MAX_WIDTH: usize = 110;
 
-/// Returns the text of a description.
+/// Prints a description as text that parses to an equal system; comments of the original text are lost.
 pub fn print_description(system: &System) -> String {
     let mut text = String::new();
     for line in &system.docs {
@@ -93,7 +93,7 @@ fn equations_of_loop(equations: &[Item]) -> String {
     format!("loop{};", equations.join(","))
 }
 
-/// Returns a statement with its final `;` or `}`.
+/// Prints one statement with its final `;` or `}`.
 pub fn statement(item: &Item) -> String {
     let line = match &item.kind {
         ItemKind::Param(list) => return declarations("param", list),
@@ -316,7 +316,7 @@ fn table(table: &Table) -> String {
     format!("table {name} {points} {between} extrapolate {beyond}")
 }
 
-/// Returns a coordinate's kind as it follows the name, such as `: S1`; empty for a real number.
+/// Prints a coordinate's kind as it follows the name, such as `: S1`; empty for a real number.
 pub fn kind(kind: CoordKind) -> String {
     match kind {
         CoordKind::Real => String::new(),

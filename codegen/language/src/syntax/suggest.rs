@@ -1,6 +1,6 @@
 //! Suggestions for misspelt words.
 
-/// Returns the candidate closest to a misspelt word, if any is close enough to be worth a suggestion.
+/// Returns the candidate closest to a misspelt word; `None` if none is close enough to be worth a suggestion.
 ///
 /// The distance counts insertions, deletions, substitutions and swaps of neighbours. At most a third of the word,
 /// rounded up, may differ.

@@ -50,7 +50,7 @@ pub fn written(expr: &Expr) -> String {
     }
 }
 
-/// Prints the target of a statement: `X.p`, `w[3]`.
+/// Prints the left side of a statement such as `rate` or `start`: `X.p`, `w[3]`.
 pub fn target(target: &Target) -> String {
     let mut text = target.name.name.clone();
     if let Some(field) = &target.field {

@@ -76,7 +76,7 @@ impl error::Error for ExpressionProblem {}
 /// The name by which the expression of an input is compiled.
 const COMPILED: &str = "hamel_input";
 
-/// Input expressions.
+/// Inputs that are given by expressions of t, x and ξ.
 #[derive(Clone, Debug)]
 pub struct Expressions {
     /// Each expression with the entries of u that it sets.
@@ -159,14 +159,14 @@ impl Expressions {
         }))
     }
 
-    /// Returns the entries of u that expressions set.
+    /// Returns the indices of the entries of u that expressions set.
     pub fn places(&self) -> impl Iterator<Item = usize> {
         self.all
             .iter()
             .flat_map(|(places, _)| places.iter().copied())
     }
 
-    /// Returns the first input that depends on velocities or on states of first order.
+    /// Names the input whose expression depends on velocities or on states of first order; `None` if there is none.
     pub fn moving(&self) -> Option<&str> {
         self.moving.as_deref()
     }
@@ -191,7 +191,7 @@ impl Expressions {
     }
 }
 
-/// Evaluates an expression that depends on parameters alone.
+/// Evaluates an expression of parameters and constants, entry by entry.
 pub fn constant(
     expression: &str,
     model: &Model,

@@ -183,13 +183,13 @@ impl Inputs {
         self.columns.as_ref().map_or(&[], InputColumns::jumps)
     }
 
-    /// Returns the known reason why forces depend on velocities: an expression that mentions one.
+    /// Names the input whose expression depends on velocities; `None` if there is none.
     pub fn moving(&self) -> Option<String> {
         let name = self.expressions.as_ref()?.moving()?;
         Some(format!("the input `{name}`"))
     }
 
-    /// Returns whether an external controller sets the inputs, so that it is not known what they depend on.
+    /// Returns whether an external controller sets inputs, so that it is not known what they depend on.
     pub fn is_law(&self) -> bool {
         self.law.is_some()
     }
@@ -231,7 +231,7 @@ impl Inputs {
     }
 }
 
-/// Evaluates an expression that depends on parameters alone.
+/// Evaluates an expression of parameters and constants, entry by entry.
 pub fn constant(
     expression: &str,
     generated: &Generated,
@@ -240,7 +240,8 @@ pub fn constant(
     expressions::constant(expression, &generated.active, params)
 }
 
-/// Returns the times of a time series relative to the start of a run of length `until` from `state`, for samples.
+/// Returns the times of the rows of a time series, relative to the start of a run of length `until` from `state`, to
+/// take samples at them.
 pub fn times(
     series: &TimeSeries,
     until: f64,

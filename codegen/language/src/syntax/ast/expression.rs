@@ -105,7 +105,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// Returns the operator's spelling.
+    /// Returns the operator as it is written, such as `<=`.
     pub fn sign(self) -> &'static str {
         match self {
             Comparison::Less => "<",

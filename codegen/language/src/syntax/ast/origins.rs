@@ -165,12 +165,12 @@ impl Origins {
         }
     }
 
-    /// Sets the map from internal names to the names as written.
+    /// Sets the map from internal names to names as the user wrote them.
     pub fn name(&mut self, written: BTreeMap<String, String>) {
         self.written = Arc::new(written);
     }
 
-    /// Returns the name as written, if it differs from the internal name.
+    /// Returns a name as the user wrote it, if it differs from the internal name.
     pub fn written(&self, name: &str) -> Option<&str> {
         self.written.get(name).map(String::as_str)
     }
