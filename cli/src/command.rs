@@ -7,7 +7,7 @@ use crate::failure::{self, Failure};
 use crate::sweep;
 use crate::{
     bode, check, compare, draw, emit, eval, import, linearize, lqr, ops, regressor, simulate, step,
-    tables,
+    tables, trim,
 };
 use clap::{Parser, Subcommand};
 use hamel_engine::CancellationToken;
@@ -20,6 +20,7 @@ Examples:
   hamel regressor arm.urdf                      the inertial parameters that matter
   hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
   hamel lqr furuta.eom --at upright.json        a regulator; `hamel step`, `hamel bode`: responses
+  hamel trim heavy_top.eom                      an equilibrium, or a steady motion
   hamel simulate heavy_top.eom --until 10       a first run
   hamel draw heavy_top.eom --out top.svg        a picture of the mechanism
   hamel sweep heavy_top.eom --vary … --out runs  many runs with varied parameters and starts
@@ -50,6 +51,7 @@ enum Command {
     Lqr(lqr::Arguments),
     Step(step::Arguments),
     Bode(bode::Arguments),
+    Trim(trim::Arguments),
     Simulate(simulate::Arguments),
     Draw(draw::Arguments),
     Sweep(sweep::Arguments),
@@ -101,6 +103,7 @@ impl Command {
             Command::Lqr(arguments) => lqr::run(arguments),
             Command::Step(arguments) => step::run(arguments),
             Command::Bode(arguments) => bode::run(arguments),
+            Command::Trim(arguments) => trim::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Draw(arguments) => draw::run(arguments),
             Command::Sweep(arguments) => sweep::run(arguments, None),

@@ -124,6 +124,21 @@ impl Json {
     }
 }
 
+impl From<&serde_json::Value> for Json {
+    fn from(value: &serde_json::Value) -> Self {
+        match value {
+            serde_json::Value::Array(items) => Json::List(items.iter().map(Json::from).collect()),
+            serde_json::Value::Object(members) => Json::object(
+                members
+                    .iter()
+                    .map(|(name, value)| (name.as_str(), value.into())),
+            ),
+            serde_json::Value::String(text) => Json::Text(text.clone()),
+            other => other.as_f64().map_or(Json::Null, Json::Number),
+        }
+    }
+}
+
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

@@ -6,7 +6,7 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `lqr`, `step`, `bode`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
+//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `lqr`, `step`, `bode`, `trim`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
 //! | `linear` | linear systems as `lqr`, `step` and `bode` open them |
 //! | `command` | the command line, with the feature of that name |
 //! | `source`, `robot` | descriptions as the command line opens them, and the options for that |
@@ -75,6 +75,8 @@ mod step;
 #[cfg(feature = "sweep")]
 mod sweep;
 mod tables;
+#[cfg(feature = "command")]
+mod trim;
 
 pub use check::CheckedIdentity;
 #[cfg(feature = "command")]

@@ -28,6 +28,8 @@ pub enum Expected {
     Joint,
     /// A constant with its value.
     Constant,
+    /// A name with a number.
+    Assignment,
     /// A number.
     Number,
     /// A tolerance of angles.
@@ -55,6 +57,7 @@ impl fmt::Display for Expected {
             }
             Expected::Joint => f.write_str("write JOINT=VALUE, as in `--lock finger_joint=0.04`"),
             Expected::Constant => f.write_str("write NAME=VALUE, as in `--const n=100`"),
+            Expected::Assignment => f.write_str("write NAME = VALUE, as in `--rate \"v = 0.5\"`"),
             Expected::Number => f.write_str("not a number"),
             Expected::Tolerance => f.write_str("not between 0 and 0.1"),
         }
@@ -75,4 +78,15 @@ pub fn rate(text: &str) -> Result<f64, Expected> {
     let number = text.parse::<f64>().ok();
     let number = number.filter(|number| number.is_finite() && *number >= 0.0);
     number.ok_or(Expected::NotNegative)
+}
+
+/// Parses a name and a finite number, as in `v = 0.5`.
+pub fn assignment(text: &str) -> Result<(String, f64), Expected> {
+    let (name, value) = text.split_once('=').ok_or(Expected::Assignment)?;
+    let value = value
+        .trim()
+        .parse()
+        .ok()
+        .filter(|value: &f64| value.is_finite());
+    Ok((name.trim().into(), value.ok_or(Expected::Assignment)?))
 }

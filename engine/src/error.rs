@@ -5,6 +5,7 @@ use crate::mechanism::SingularState;
 use crate::run::{InputProblem, SamplingProblem, SteppingProblem};
 use crate::source::{ConstantProblem, UnknownLink};
 use crate::state::StateProblem;
+use crate::trim::TrimProblem;
 use hamel::StepError;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::render::render;
@@ -201,6 +202,8 @@ pub enum Error {
     },
     /// A table is unknown or does not exist for the system.
     Table(TableError),
+    /// There is no trim.
+    Trim(TrimProblem),
 }
 
 impl Error {
@@ -231,6 +234,7 @@ impl Error {
                 | LinearError::NegativeCost,
             )
             | Error::Table(_) => true,
+            Error::Trim(problem) => problem.is_misuse(),
             Error::Description { .. }
             | Error::Robot { .. }
             | Error::Import { .. }
@@ -407,6 +411,7 @@ impl fmt::Display for Error {
                 write!(f, "{path}: `{system}` has no regressor: {why}")
             }
             Error::Table(why) => why.fmt(f),
+            Error::Trim(problem) => problem.fmt(f),
         }
     }
 }
@@ -420,6 +425,7 @@ impl std::error::Error for Error {
             Error::Input(problem) => problem.source(),
             Error::Step(error) => Some(error),
             Error::Linear(error) => Some(error),
+            Error::Trim(problem) => Some(problem),
             Error::SingularStep { state, .. }
             | Error::SingularParameters(state)
             | Error::NoLinearization(state) => Some(state),
@@ -449,6 +455,12 @@ impl From<SteppingProblem> for Error {
 impl From<SamplingProblem> for Error {
     fn from(problem: SamplingProblem) -> Self {
         Error::Sampling(problem)
+    }
+}
+
+impl From<TrimProblem> for Error {
+    fn from(problem: TrimProblem) -> Self {
+        Error::Trim(problem)
     }
 }
 

@@ -14,6 +14,7 @@
 //! | [`run`] | runs in time: plans, steps, inputs, events, samples |
 //! | [`evaluate`], [`linearize`] | numbers at a state |
 //! | [`linear`] | linear systems: steps, modes, zeros, regulators, responses |
+//! | [`trim`] | equilibria and steady motions |
 //! | [`drawing`] | the drawable parts of a mechanism at a state, as numbers |
 //! | [`session`] | a description with everything that can be asked of it |
 //! | [`reporter`] | warnings and progress, for a front end |
@@ -46,6 +47,7 @@ pub mod run;
 pub mod session;
 pub mod source;
 pub mod state;
+pub mod trim;
 
 pub use drawing::{Drawing, ParametrizedDrawing, Scene};
 pub use error::Error;
@@ -60,3 +62,4 @@ pub use run::{
 pub use session::{Function, Grip, Names, Session};
 pub use source::{OpenOptions, Source};
 pub use state::State;
+pub use trim::{Trim, TrimOptions, TrimProblem};

@@ -95,6 +95,21 @@ impl<'a> Piece<'a> {
         parts
     }
 
+    /// Returns the sides of an equation: the parts between `=` outside brackets that belong to no `==`, `<=` or `>=`.
+    pub fn sides(&self) -> Vec<Self> {
+        let bytes = self.text.as_bytes();
+        let is_sign = |place: usize| bytes.get(place).is_some_and(|sign| b"<>=!".contains(sign));
+        let (mut from, mut parts) = (0, Vec::new());
+        for place in self.outside() {
+            if bytes[place] == b'=' && !is_sign(place + 1) && (place == 0 || !is_sign(place - 1)) {
+                parts.push(self.part(from..place));
+                from = place + 1;
+            }
+        }
+        parts.push(self.part(from..self.text.len()));
+        parts
+    }
+
     /// Returns the byte offsets of characters outside brackets.
     pub fn outside(&self) -> Vec<usize> {
         let mut depth = 0_usize;

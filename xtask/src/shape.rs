@@ -137,7 +137,7 @@ fn measures() -> io::Result<Vec<Measure>> {
             "lines of published sources",
             sizes.iter().sum(),
             104_000,
-            129_600,
+            131_200,
         ),
         measure(
             "lines of the largest crate",

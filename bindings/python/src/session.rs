@@ -8,14 +8,14 @@ use crate::run;
 use crate::warnings::Warnings;
 use hamel_cli::{Failure, Format, reports};
 use hamel_codegen::urdf::Mimic;
-use hamel_engine::{Names, OpenOptions, State};
+use hamel_engine::{Names, OpenOptions, State, TrimOptions};
 use numpy::ndarray::{ArrayViewD, IxDyn};
 use numpy::{
     Complex64, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -438,6 +438,53 @@ impl Session {
         all.set_item("outputs", linear.outputs)?;
         all.set_item("eigenvalues", PyArray1::from_iter(py, eigenvalues))?;
         all.set_item("xi_dot", PyArray1::from_vec(py, linear.xi_dot))?;
+        Ok(all)
+    }
+
+    /// Finds an equilibrium or a steady motion; `rates` are entries of ξ and z with their rates.
+    fn trim<'py>(
+        &self,
+        py: Python<'py>,
+        state: Numbers<'py>,
+        steady: bool,
+        free: Vec<String>,
+        fix: Vec<String>,
+        rates: Vec<(String, f64)>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let state = self.of(py, state)?;
+        let options = TrimOptions {
+            steady,
+            free,
+            fix,
+            rates,
+        };
+        let trim = py
+            .detach(|| self.0.trim(&state, &options))
+            .map_err(raised)?;
+        let stability = trim
+            .spectrum
+            .as_ref()
+            .map(|found| found.stability.to_string());
+        let values = trim.spectrum.iter().flat_map(|found| &found.values);
+        let values = values.map(|&(re, im)| Complex64::new(re, im));
+        let eigenvalues = PyArray1::from_iter(py, values);
+        let undetermined = trim.undetermined.into_iter().map(|direction| direction.0);
+        let undetermined: Vec<Bound<'py, PyDict>> = undetermined
+            .map(|entries| entries.into_py_dict(py))
+            .collect::<PyResult<_>>()?;
+        let all = PyDict::new(py);
+        let State { x, xi, u, params } = trim.state;
+        let state = [x, xi, u, params].map(|part| PyArray1::from_vec(py, part));
+        all.set_item("state", PyTuple::new(py, state)?)?;
+        all.set_item("xi_dot", PyArray1::from_vec(py, trim.xi_dot))?;
+        all.set_item("residual", trim.residual)?;
+        all.set_item("steps", trim.steps)?;
+        all.set_item("unknowns", trim.unknowns)?;
+        all.set_item("conditions", trim.conditions)?;
+        all.set_item("rank", trim.rank)?;
+        all.set_item("undetermined", undetermined)?;
+        all.set_item("stability", stability)?;
+        all.set_item("eigenvalues", eigenvalues)?;
         Ok(all)
     }
 

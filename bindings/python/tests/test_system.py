@@ -313,6 +313,29 @@ def test_linearization(pendulum):
     assert np.allclose(linear.C, [[0, 0]])
 
 
+def test_trim(pendulum, models):
+    found = pendulum.trim({"coord": {"q": 3.0}}, free=["tau"], fix={"q": 0.5})
+    # A rod of 2 kg with its centre 0.5 m from the joint.
+    assert np.isclose(found.state.u[0], 2 * 9.81 * 0.5 * np.sin(0.5), rtol=0, atol=1e-11)
+    assert found.stability == "neutral" and found.rank == found.unknowns and not found.undetermined
+    assert np.abs(pendulum.accel(found.state.x, found.state.xi, found.state.u)).max() < 1e-12
+    upright = pendulum.trim({"coord": {"q": 3.0}})
+    assert upright.stability == "unstable" and np.isclose(upright.state.x[0], np.pi, rtol=0, atol=1e-12)
+    assert np.isclose(upright.eigenvalues[0], np.sqrt(9.81 / 0.5))
+    aircraft = hamel.System.from_file(models / "navion.eom")
+    level = ["speed = 176", "phi = 0", "velocity(hull)[3] = 0", "v[2] = 0"]
+    flight = aircraft.trim(steady=True, free=["elevator", "throttle", "aileron", "rudder"], fix=level)
+    assert sorted(name for way in flight.undetermined for name in way) == ["psi", "r[1]", "r[2]", "r[3]"]
+    run = aircraft.simulate(2.0, at=flight.state, step=0.01)
+    assert np.abs(run.xi - run.xi[0]).max() < 1e-9 and flight.residual < 1e-10
+    with pytest.raises(hamel.HamelError, match="no solution near this start"):
+        aircraft.trim(steady=True, fix={"speed": 176.0, "phi": 0.5, "theta": 1.0})
+    with pytest.raises(hamel.HamelError, match="`lift` is unknown"):
+        aircraft.trim(free=["lift"])
+    with pytest.raises(hamel.HamelError, match="a string was given"):
+        aircraft.trim(free="throttle")
+
+
 def test_regressor(robots, reference):
     """F = Y(x, xi, xi_dot) beta."""
     system = hamel.System.from_urdf(robots / "ur_description/urdf/ur5_robot.urdf")

@@ -290,11 +290,17 @@ fn prepare(
     };
     let (kept, wrong) = keep::read(&arguments.keep, stepping.until);
     let option = (keep::OPTION, arguments.keep.as_str());
-    let generated = added_outputs::derive(source, option, &keep::outputs_to_add(&kept), wrong)
-        .map_err(|error| match source.try_derive_all() {
-            Ok(generated) => both(error, &generated),
-            Err(_) => error.into(),
-        })?;
+    let generated = added_outputs::derive(
+        source,
+        option,
+        &keep::outputs_to_add(&kept),
+        wrong,
+        Source::try_derive_all,
+    )
+    .map_err(|error| match source.try_derive_all() {
+        Ok(generated) => both(error, &generated),
+        Err(_) => error.into(),
+    })?;
     let keeping = KeptColumns::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
         both(

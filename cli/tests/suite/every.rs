@@ -80,7 +80,7 @@ const FOR_ROBOTS: [&str; 2] = [
 ];
 
 /// Required arguments of commands in addition to a file.
-const NEEDED: [(&str, &str); 7] = [
+const NEEDED: [(&str, &str); 8] = [
     ("simulate", "--until 0.01"),
     ("compare", "--until 0.01 --steps 4 --methods rkmk4"),
     (
@@ -89,12 +89,13 @@ const NEEDED: [(&str, &str); 7] = [
     ),
     ("draw", "--out OUT/robot.svg"),
     ("emit", "--out OUT/robot.rs"),
+    ("trim", "--free FREE"),
     ("step", "CHANNEL"),
     ("bode", "CHANNEL"),
 ];
 
 /// Uses of all other options, as words separated by spaces; `~` is a space within a word.
-const USES: [&str; 41] = [
+const USES: [&str; 43] = [
     "tables TOY --of A,M --format text --all",
     "tables TOY --format markdown",
     "tables TOY --format latex",
@@ -112,6 +113,8 @@ const USES: [&str; 41] = [
     "linearize TOY --at OUT/state.json --full --format text",
     "linearize TOY --format json --modes",
     "linearize TOY --format csv --step 0.01",
+    "trim TOY --at OUT/state.json --steady --free F --fix s~=~0.1 --out OUT/trim.json --format text",
+    "trim TOY --free F --rate q_dot~=~0.1 --format json",
     "lqr TOY --at OUT/state.json --step 0.01 --q h=1 --r F=2 --out OUT/gain.rs --format text",
     "lqr TOY --out OUT/gain.json --format json",
     "step TOY --at OUT/state.json --from F --to height --step 0.01 --until 2 --out OUT/step.csv --plot OUT/step.svg",
@@ -318,20 +321,27 @@ fn uses() -> Vec<String> {
         let needed = NEEDED.iter().find(|(of, _)| *of == command);
         let needed = needed.map_or("", |(_, needed)| *needed);
         for robots in FOR_ROBOTS {
-            let (varied, channel) = match robots.contains("--params") {
-                true => ("one_mass~=~uniform(1,~2)", "--from a_tau --to h(a_dot)"),
+            let (varied, channel, free) = match robots.contains("--params") {
+                true => (
+                    "one_mass~=~uniform(1,~2)",
+                    "--from a_tau --to h(a_dot)",
+                    "a_tau",
+                ),
                 false => (
                     "start~root_joint_w~=~uniform([0,0,0],~[1,1,1])",
                     "--from root_joint_force[1] --to h(root_joint_v[1])",
+                    "root_joint_force",
                 ),
             };
             let needed = needed.replace("VARIED", varied).replace("CHANNEL", channel);
+            let needed = needed.replace("FREE", free);
             all.push(format!("{command} ROBOT {needed} {robots}"));
         }
         if command != "import" {
             let needed = needed
                 .replace("VARIED", "m~=~uniform(1,~2)")
-                .replace("CHANNEL", "");
+                .replace("CHANNEL", "")
+                .replace("FREE", "F");
             all.push(format!("{command} TOY {needed} --const n=3"));
         }
     }

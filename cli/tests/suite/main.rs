@@ -51,6 +51,7 @@ mod sweep_submit;
 mod swept;
 #[path = "common/table.rs"]
 mod table;
+mod trim;
 #[path = "../../../lab/common/src/undamped.rs"]
 mod undamped;
 mod urdf;

@@ -1,7 +1,7 @@
 //! Linearises the motion at a state, and computes eigenvalues.
 
 pub(crate) mod eigenvalues;
-mod minimal;
+pub(crate) mod minimal;
 
 use crate::error::Error;
 use crate::mechanism::{Instance, function};

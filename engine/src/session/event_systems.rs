@@ -72,7 +72,13 @@ impl EventSystem {
                 }),
             }
         }
-        let generated = added_outputs::derive(source, (EVENTS, said), &outputs, errors)?;
+        let generated = added_outputs::derive(
+            source,
+            (EVENTS, said),
+            &outputs,
+            errors,
+            Source::try_derive_all,
+        )?;
         let mut errors = Vec::new();
         for AddedOutput { name, whole, .. } in &outputs {
             let function = generated.program.function(name);

@@ -18,6 +18,7 @@ use crate::reporter::Reporter;
 use crate::run::{Run, Simulation};
 use crate::source::{OpenOptions, Source};
 use crate::state::{State, StateFile, joints};
+use crate::trim::{self, Trim, TrimOptions};
 use event_systems::EventSystemCache;
 use function::compile;
 use hamel::methods::General;
@@ -68,6 +69,14 @@ pub struct SingleStepper {
 }
 
 impl SingleStepper {
+    /// Prepares steps of `rkmk4` from a state; the text of the description is for messages.
+    pub(crate) fn of(generated: &Generated, state: &State, text: &str) -> Result<Self, Error> {
+        let instance = Instance::new(generated, state, text)?;
+        let structure = instance.structure(&generated.program);
+        let ChosenMethod { stepper, .. } = ChosenMethod::new("rkmk4", &instance, &structure, 1)?;
+        Ok(SingleStepper { instance, stepper })
+    }
+
     /// Replaces x and ξ by their values after a step of length h.
     ///
     /// # Errors
@@ -420,6 +429,22 @@ impl Session {
     /// The motion has no value there.
     pub fn linearize(&self, state: &State, full: bool) -> Result<Linearization, Error> {
         linearize(self.linearized()?, state, self.source.shown(), full)
+    }
+
+    /// Finds the equilibrium or steady motion to which a search from a state leads.
+    ///
+    /// # Errors
+    /// An equation or a name is wrong, or there is no solution near the state.
+    pub fn trim(&self, state: &State, options: &TrimOptions) -> Result<Trim, Error> {
+        let derived;
+        let generated = match options.fix.is_empty() {
+            true => self.linearized()?,
+            false => {
+                derived = trim::derive(&self.source, options)?;
+                &derived
+            }
+        };
+        trim::trim(generated, state, options, self.source.shown())
     }
 
     fn linearized(&self) -> Result<&Generated, Error> {

@@ -44,18 +44,19 @@ pub fn is_added(name: &str) -> bool {
 }
 
 /// Derives a description with more outputs. Errors in an expression are shown in the text of the option, together with
-/// `wrong`, the errors already found there.
+/// `wrong`, the errors already found there. `try_derive` derives a text without showing its errors.
 pub fn derive(
     source: &Source,
     (option, said): (&str, &str),
     added: &[AddedOutput],
     mut wrong: Vec<Diagnostic>,
+    try_derive: impl Fn(&Source) -> Result<Generated, Vec<Diagnostic>>,
 ) -> Result<Generated, Error> {
     // Report errors and warnings of the description itself first.
     source.model()?;
     let of = |added: &[&AddedOutput]| {
         let extended = Extended::of(source, added);
-        let errors = match source.with_text(extended.text.clone()).try_derive_all() {
+        let errors = match try_derive(&source.with_text(extended.text.clone())) {
             Ok(generated) => return Ok(generated),
             Err(errors) => errors,
         };

@@ -406,20 +406,18 @@ impl Source {
     /// Like [`derive_all`](Self::derive_all), but returns the errors without showing them.
     pub fn try_derive_all(&self) -> Result<Generated, Vec<Diagnostic>> {
         let (system, _) = self.parsed()?;
-        self.during(|| {
-            at_some_point(&system, |mut model| {
-                model.asked = Asked::everything();
-                Generated::of(model, 0)
-            })
-        })
+        self.during(|| at_some_point(&system, with_all_functions))
+    }
+
+    /// Like [`derive_linearized`](Self::derive_linearized), but returns the errors without showing them.
+    pub fn try_derive_linearized(&self) -> Result<Generated, Vec<Diagnostic>> {
+        let (system, _) = self.parsed()?;
+        self.during(|| at_some_point(&system, linearized))
     }
 
     /// Derives all functions, regardless of the description's `generate`.
     pub fn derive_all(&self) -> Result<Generated, Error> {
-        self.derived(|mut model| {
-            model.asked = Asked::everything();
-            Generated::of(model, 0)
-        })
+        self.derived(with_all_functions)
     }
 
     /// Derives all functions that exist, and the kinematics of frames: those that contain M⁻¹ are left out, with a
@@ -454,18 +452,7 @@ impl Source {
     /// Derives all functions, the linearisation and the derivatives of outputs, regardless of the description's
     /// `generate`.
     pub fn derive_linearized(&self) -> Result<Generated, Error> {
-        let generated = self.derived(|mut model| {
-            model.asked = Asked::everything();
-            model.asked.functions.push(FunctionId::Linearize);
-            // Rates of functions in Rust have no derivatives.
-            let outputs = model.outputs.iter();
-            let smooth = outputs.filter(|(_, value)| {
-                let rate = model.graph.find_external(&value.entries(), 1);
-                rate.is_none()
-            });
-            model.asked.slopes = smooth.map(|(name, _)| name.clone()).collect();
-            Generated::of(model, 0)
-        })?;
+        let generated = self.derived(linearized)?;
         self.warn(&generated.model);
         Ok(generated)
     }
@@ -510,6 +497,25 @@ pub fn decoded(name: &str, bytes: Vec<u8>) -> Result<String, Error> {
         path: name.into(),
         source,
     })
+}
+
+fn with_all_functions(mut model: Model) -> Result<Generated, Vec<Diagnostic>> {
+    model.asked = Asked::everything();
+    Generated::of(model, 0)
+}
+
+/// Derives all functions, the linearisation and the derivatives of outputs.
+fn linearized(mut model: Model) -> Result<Generated, Vec<Diagnostic>> {
+    model.asked = Asked::everything();
+    model.asked.functions.push(FunctionId::Linearize);
+    // Rates of functions in Rust have no derivatives.
+    let outputs = model.outputs.iter();
+    let smooth = outputs.filter(|(_, value)| {
+        let rate = model.graph.find_external(&value.entries(), 1);
+        rate.is_none()
+    });
+    model.asked.slopes = smooth.map(|(name, _)| name.clone()).collect();
+    Generated::of(model, 0)
 }
 
 /// Returns an error for each unknown frame.

@@ -10,7 +10,7 @@ mod complete;
 mod coupling;
 pub(crate) mod dependent_velocities;
 mod file;
-mod given_entries;
+pub(crate) mod given_entries;
 mod joint_state;
 mod joints;
 mod json;
@@ -20,6 +20,7 @@ mod problem;
 mod read;
 #[cfg(test)]
 mod tests;
+mod write;
 
 pub use dependent_velocities::constraint_lines;
 pub use file::StateFile;

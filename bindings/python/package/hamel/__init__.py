@@ -26,6 +26,7 @@ from ._system import (
     StepSlopes,
     System,
     Tables,
+    Trim,
 )
 from ._sweep import sweep
 
@@ -45,6 +46,7 @@ __all__ = [
     "StepSlopes",
     "System",
     "Tables",
+    "Trim",
     "__version__",
     "sweep",
 ]

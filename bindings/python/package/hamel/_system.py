@@ -226,6 +226,28 @@ class Linearization:
 
 
 @dataclass(frozen=True)
+class Trim:
+    """Equilibrium or steady motion, with n velocities and first-order states."""
+
+    state: State
+    #: Accelerations and rates of first-order states at the state, (n,): zero, or the given ones.
+    xi_dot: Array
+    #: Largest absolute residual of all conditions.
+    residual: float
+    steps: int
+    unknowns: int
+    conditions: int
+    #: Rank of the conditions at the state.
+    rank: int
+    #: Directions along which solutions form a family: names of entries with their changes.
+    undetermined: list[dict[str, float]]
+    #: "asymptotic" if all deviations decay, "unstable" if some grow, "neutral" otherwise; None without eigenvalues.
+    stability: str | None
+    #: Eigenvalues (1/s), the fastest growing first, apart from displacements along which the motion does not change.
+    eigenvalues: NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
 class StepSlopes:
     """State after a step, with the derivatives of the step: (η, δξ) after it is A (η, δξ) + B δu.
 
@@ -787,6 +809,45 @@ class System:
         With constraints, the states of the result are independent displacements and velocities; `full` keeps all.
         """
         return Linearization(**self._session.linearize(self._at(at), full))
+
+    def trim(
+        self,
+        at: State | Mapping[str, Any] | None = None,
+        *,
+        steady: bool = False,
+        free: Sequence[str] = (),
+        fix: Sequence[str] | Mapping[str, float] = (),
+        rates: Mapping[str, float] | None = None,
+    ) -> Trim:
+        """Find an equilibrium near a state, or, if `steady`, a motion with constant velocities.
+
+        Parameters
+        ----------
+        at : State or dict
+            State at which the search starts; by default the start of the description.
+        steady : bool
+            Whether velocities are unknown and remain constant; otherwise they are zero.
+        free : sequence of str
+            Inputs, and velocities if not `steady`, that are unknown: names such as ``"f"`` or entries such as ``"f[2]"``.
+        fix : sequence of str, or dict
+            Equations that have to hold: ``["speed = 30"]`` or ``{"speed": 30.0}``, with expressions in coordinates,
+            velocities, inputs, parameters and outputs.
+        rates : dict
+            Entries of the velocities and first-order states, with rates that they have instead of zero.
+
+        Raises
+        ------
+        HamelError
+            If there is no solution near the start, with the reason, or if a name or an equation is wrong.
+        """
+        if isinstance(free, str) or isinstance(fix, str):
+            raise HamelError("`free` and `fix` are lists: a string was given")
+        if isinstance(fix, Mapping):
+            fix = [f"{name} = {_number(name, value)!r}" for name, value in fix.items()]
+        given = [(name, _number(name, value)) for name, value in (rates or {}).items()]
+        found = self._session.trim(self._at(at), bool(steady), list(free), list(fix), given)
+        found["state"] = State(*found["state"])
+        return Trim(**found)
 
     def base_parameters(self) -> BaseParameters:
         """Return the base parameters beta (p,), which belong to the p columns of `regressor`."""

@@ -284,7 +284,7 @@ impl<'a> LoopClosure<'a> {
 
     /// Projects x back to φ = 0 of the coordinates, which a step along A violates to second order; fixed entries
     /// stay.
-    pub(super) fn lead_back(&self, x: &mut [f64], fixed: &[bool]) {
+    pub fn lead_back(&self, x: &mut [f64], fixed: &[bool]) {
         normalise(&self.blocks, x);
         let Some((free, phi)) = &self.phi else {
             return;
