@@ -5,7 +5,9 @@ use super::watch::{KeptColumns, MemberObserver};
 use hamel::{State, StepError};
 use hamel_codegen::generate::Generated;
 use hamel_engine::mechanism::{Instance, Mechanism};
-use hamel_engine::run::{EarlyEnd, EnergyBalance, Events, FixedStepRun, Inputs, Plan, advance};
+use hamel_engine::run::{
+    EarlyEnd, EnergyBalance, Events, FixedStepRun, Inputs, SteppingPlan, advance,
+};
 use hamel_engine::state::StateProblem;
 use hamel_engine::{Error, state};
 use serde_json::{Map, Value};
@@ -34,7 +36,7 @@ pub struct Sweep {
     /// The kept items.
     pub keeping: KeptColumns,
     /// The plan of runs, with the method of the first member.
-    pub plan: Plan,
+    pub plan: SteppingPlan,
     /// The state that members modify, in JSON.
     pub base: Map<String, Value>,
 }
@@ -66,7 +68,7 @@ struct Member {
     index: u64,
     varied: Vec<f64>,
     system: Instance,
-    plan: Plan,
+    plan: SteppingPlan,
 }
 
 /// A running member.
@@ -103,7 +105,7 @@ impl Sweep {
         let varied = self.vary.values(index);
         match self.family.member(&self.vary.state(&varied, &self.base)) {
             Ok(system) => Ok(Member {
-                plan: Plan {
+                plan: SteppingPlan {
                     method: self.plan.method.adapt(&system),
                     ..self.plan.clone()
                 },

@@ -9,7 +9,7 @@ use hamel_algebra::numeric::{evaluate, rank};
 use hamel_language::diagnostics::Diagnostic;
 use hamel_language::functions::Needs;
 use hamel_language::model::loop_closure::normalise;
-use hamel_language::model::twists::Moving;
+use hamel_language::model::twists::KinematicExpressions;
 use hamel_language::model::{Body, Model, Particle};
 
 /// Relative size, with respect to the diagonal, up to which a pivot is a rounded zero.
@@ -133,7 +133,7 @@ pub fn is_mass_matrix_singular(model: &Model) -> bool {
     }
     let numbers = start_values(model, &model.start_x);
     let first = 1 + model.defaults.len();
-    let moving = Moving {
+    let moving = KinematicExpressions {
         graph: &model.graph,
         a: &model.a,
         first,

@@ -247,7 +247,7 @@ impl FunctionId {
     }
 
     /// Returns the generated function of this name, such as `mass_matrix`; `None` if there is none.
-    pub fn named(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|id| id.name() == name)
     }
 }

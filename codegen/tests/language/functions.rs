@@ -5,7 +5,7 @@ use hamel_language::functions::{Asked, FunctionId, Needs, Serves};
 #[test]
 fn names_are_told_apart() {
     for &id in FunctionId::ALL {
-        assert_eq!(FunctionId::named(id.name()), Some(id));
+        assert_eq!(FunctionId::from_name(id.name()), Some(id));
     }
 }
 

@@ -173,7 +173,7 @@ impl Instance {
     pub fn of(mechanism: &Arc<Mechanism>, state: &State) -> Result<Self, Error> {
         let functions = Functions::new(&mechanism.compiled, &state.params);
         let divisors = mechanism.divisors.as_ref();
-        let divided = divisors.and_then(|all| all.zero(&state.params));
+        let divided = divisors.and_then(|all| all.message_if_zero(&state.params));
         Ok(Instance {
             divided: divided.map(str::to_owned),
             rotors: mechanism.momenta.rotors(&functions)?,

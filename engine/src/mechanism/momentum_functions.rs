@@ -125,7 +125,7 @@ impl Instance {
     }
 
     /// Returns the structure for choosing a method: an external controller is assumed to depend on velocities.
-    pub fn cautious(&self, program: &Program) -> Structure {
+    pub fn structure_for_choice(&self, program: &Program) -> Structure {
         let mut structure = self.structure(program);
         if structure.split.is_ok() && self.varying_inputs().is_some_and(Inputs::is_law) {
             moved(&mut structure, "a controller".into());

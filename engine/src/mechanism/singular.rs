@@ -135,7 +135,9 @@ pub fn explain_singular_state(
     text: &str,
 ) -> SingularState {
     let divisors = Divisors::of(generated, text);
-    let divided = divisors.as_ref().and_then(|all| all.zero(params));
+    let divided = divisors
+        .as_ref()
+        .and_then(|all| all.message_if_zero(params));
     match divided {
         Some(divided) => SingularState::ZeroDivisor(divided.to_owned()),
         None => state_message(mass, &velocity_labels(&generated.active, text)),

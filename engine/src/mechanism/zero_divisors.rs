@@ -43,7 +43,7 @@ impl Divisors {
     }
 
     /// Returns the message of the first divisor that is 0 with these parameters, if any.
-    pub fn zero(&self, params: &[f64]) -> Option<&str> {
+    pub fn message_if_zero(&self, params: &[f64]) -> Option<&str> {
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend_from_slice(params);
         numbers.resize(self.graph.symbols().len(), f64::NAN);

@@ -3,7 +3,7 @@
 use super::energy_balance::EnergyBalance;
 use super::events::Events;
 use super::fixed_step_run::FixedStepRun;
-use super::plan::{Plan, Spacing};
+use super::plan::{Spacing, SteppingPlan};
 use super::sample::Sample;
 use crate::mechanism::{Instance, Numbers, StepEnergies};
 use crate::method::{InputFunction, Stepper};
@@ -69,7 +69,7 @@ fn show<const D: usize>(
 /// samples and the ends of segments of equal steps are shown.
 pub fn advance(
     system: &Instance,
-    plan: &Plan,
+    plan: &SteppingPlan,
     state: &mut State<Instance>,
     (balance, watched): (&Cell<EnergyBalance>, &mut Events),
     observer: &mut dyn Observer,

@@ -1,7 +1,7 @@
 //! Reasons for which runs end early.
 
 use super::energy_balance::EnergyBalance;
-use super::plan::Plan;
+use super::plan::SteppingPlan;
 use crate::error::Error;
 use crate::mechanism::{Instance, SingularState};
 use hamel::{State, StepError};
@@ -77,7 +77,7 @@ impl EarlyEnd {
     /// The plan is invalid.
     pub fn explain(
         system: &Instance,
-        plan: &Plan,
+        plan: &SteppingPlan,
         outcome: Result<(), StepError>,
         state: &State<Instance>,
         balance: EnergyBalance,

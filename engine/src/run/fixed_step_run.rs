@@ -2,7 +2,7 @@
 
 use super::advance::{ObservationPoint, Observer};
 use super::events::Events;
-use super::plan::{Plan, Spacing};
+use super::plan::{Spacing, SteppingPlan};
 use super::segment::{Segment, segments};
 use crate::mechanism::{CompiledStepper, Instance, Numbers};
 use hamel::methods::Method;
@@ -14,7 +14,7 @@ pub struct FixedStepRun<'a> {
     /// System.
     pub system: &'a Instance,
     /// Plan.
-    pub plan: &'a Plan,
+    pub plan: &'a SteppingPlan,
     /// Current state.
     pub state: &'a mut State<Instance>,
     /// Events that may end the run early.
@@ -73,7 +73,7 @@ impl<'a> FixedStepRun<'a> {
 
     /// Times at which steps end: those of samples, those at which inputs jump, and the last one.
     fn ends(&self) -> Vec<f64> {
-        let Plan { until, .. } = *self.plan;
+        let SteppingPlan { until, .. } = *self.plan;
         let mut ends = [self.samples(), self.system.jumps(), &[until]].concat();
         ends.retain(|end| *end <= until);
         ends.sort_by(f64::total_cmp);
@@ -89,7 +89,7 @@ impl<'a> FixedStepRun<'a> {
     }
 
     fn compiled_stepper(&self, end: f64) -> CompiledStepper<'a> {
-        let Plan { method, step, .. } = self.plan;
+        let SteppingPlan { method, step, .. } = self.plan;
         CompiledStepper::new(self.system, &method.stepper, *step, end - self.state.t)
     }
 

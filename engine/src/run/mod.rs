@@ -25,7 +25,7 @@ pub use inputs::{
     ControlFunction, ControlLaw, ExpressionProblem, InputOptions, InputProblem, Inputs,
     SeriesProblem, TimeSeries, UnknownInput, constant,
 };
-pub use plan::{Every, Plan, SamplingProblem, Spacing};
+pub use plan::{Every, SamplingProblem, Spacing, SteppingPlan};
 pub use record::Run;
 pub use run_arrays::{EventOccurrences, RunArrays};
 pub use sample::Sample;

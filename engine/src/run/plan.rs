@@ -23,7 +23,7 @@ pub enum Every {
 
 /// Method, steps, tolerance and sample times of a run.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct SteppingPlan {
     /// The method.
     pub method: ChosenMethod,
     /// Length of the run.
@@ -148,7 +148,7 @@ impl Spacing {
     }
 }
 
-impl Plan {
+impl SteppingPlan {
     /// Returns whether the energy of a run is monitored. Without observed steps the work of loads is unknown, and an
     /// external controller is called only by the method.
     pub fn monitors_energy(&self, system: &Instance) -> bool {
@@ -196,7 +196,7 @@ impl Plan {
             Some(_) => 1,
             None => (steps / DEFAULT_SAMPLES).max(1),
         };
-        Plan {
+        SteppingPlan {
             method,
             until,
             step,

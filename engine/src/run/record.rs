@@ -4,7 +4,7 @@ use super::advance::advance;
 use super::early_end::EarlyEnd;
 use super::energy_balance::EnergyBalance;
 use super::events::Events;
-use super::plan::{Plan, Spacing};
+use super::plan::{Spacing, SteppingPlan};
 use super::recorder::{Recorded, Recorder};
 use super::sample::Sample;
 use crate::error::Error;
@@ -23,7 +23,7 @@ pub struct Run {
     /// The system that was run.
     pub system: Instance,
     /// The plan by which it was run.
-    pub plan: Plan,
+    pub plan: SteppingPlan,
     /// The column of the time.
     pub time: Time,
     /// Names of the entries of x.
@@ -58,7 +58,7 @@ impl Run {
     pub fn new(
         generated: &Arc<Generated>,
         system: Instance,
-        plan: Plan,
+        plan: SteppingPlan,
         mut events: Events,
         reporter: &dyn Reporter,
     ) -> Result<Self, Error> {

@@ -2,7 +2,7 @@
 
 use super::advance::{ObservationPoint, Observer};
 use super::energy_balance::EnergyBalance;
-use super::plan::{PLOT_POINTS, Plan, Spacing};
+use super::plan::{PLOT_POINTS, Spacing, SteppingPlan};
 use super::sample::Sample;
 use crate::mechanism::{Instance, StepEnergies};
 use crate::reporter::Reporter;
@@ -19,7 +19,7 @@ const STEPS_PER_REPORT: u64 = 500;
 /// Observer that records the samples of a run and monitors its energy.
 pub struct Recorder<'a> {
     system: &'a Instance,
-    plan: &'a Plan,
+    plan: &'a SteppingPlan,
     balance: &'a Cell<EnergyBalance>,
     recorded: Recorded,
     /// Numbers of steps between samples, and between points of the finer list.
@@ -45,7 +45,7 @@ impl<'a> Recorder<'a> {
     /// Prepares to record a run.
     pub fn new(
         system: &'a Instance,
-        plan: &'a Plan,
+        plan: &'a SteppingPlan,
         balance: &'a Cell<EnergyBalance>,
         reporter: &'a dyn Reporter,
     ) -> Self {

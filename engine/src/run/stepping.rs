@@ -1,6 +1,6 @@
 //! Options for stepping a run: its length, the method, the step or the tolerance.
 
-use super::plan::{Every, Plan, SamplingProblem};
+use super::plan::{Every, SamplingProblem, SteppingPlan};
 use crate::error::Error;
 use crate::mechanism::Instance;
 use crate::method::{AUTO, ChosenMethod, Stepper};
@@ -133,7 +133,7 @@ impl Stepping {
         generated: &Generated,
         system: &Instance,
         every: Option<Every>,
-    ) -> Result<Plan, Error> {
+    ) -> Result<SteppingPlan, Error> {
         let step = self.step.unwrap_or_else(|| {
             DEFAULT_STEP.clamp(
                 self.until / MAX_DEFAULT_STEPS,
@@ -152,7 +152,9 @@ impl Stepping {
         let steps = (self.until / step).ceil() as u64;
         let method = self.chosen(generated, system, steps)?;
         let tolerance = self.tolerance(&method)?;
-        Ok(Plan::new(method, self.until, step, every, tolerance))
+        Ok(SteppingPlan::new(
+            method, self.until, step, every, tolerance,
+        ))
     }
 
     /// Returns the requested or the best method, checked against the structure of the system.
@@ -163,7 +165,7 @@ impl Stepping {
         steps: u64,
     ) -> Result<ChosenMethod, Error> {
         let structure = match self.method == AUTO {
-            true => system.cautious(&generated.program),
+            true => system.structure_for_choice(&generated.program),
             false => system.structure(&generated.program),
         };
         let mut chosen = ChosenMethod::new(&self.method, system, &structure, steps)?;

@@ -337,7 +337,7 @@ impl Session {
                 own,
             })
         });
-        let id = FunctionId::named(name).filter(|id| id.row().named);
+        let id = FunctionId::from_name(name).filter(|id| id.row().named);
         let of_frame = frames
             .into_iter()
             .find(|one| one.names().any(|of| of == name));
@@ -365,7 +365,7 @@ impl Session {
 
     /// Explains why a function of the description has no value: which pivot of the mass matrix, of constraints or of
     /// the kinematics is not positive.
-    pub fn explain_pivot(&self, cause: Cause) -> String {
+    pub fn explain_cause(&self, cause: Cause) -> String {
         let shown = self.source.shown();
         mechanism::cause_message(cause, self.active(), shown)
     }

@@ -5,7 +5,7 @@
 
 use super::State;
 use super::coupling::{Coupling, symbols};
-use super::given_entries::{GivenEntries, places};
+use super::given_entries::{GivenEntries, full_frame_indices};
 use super::problem::StateProblem;
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::nearest_solution::find_nearest;
@@ -16,7 +16,7 @@ use hamel_codegen::model::closest::Constraints;
 use hamel_codegen::model::initial_conditions::InitialConditions;
 use hamel_codegen::model::loop_closure::{LoopClosure, Open, normalise};
 use hamel_codegen::model::pfaffian::Kind;
-use hamel_codegen::model::twists::Moving;
+use hamel_codegen::model::twists::KinematicExpressions;
 
 /// Values of |φ(x)| up to this are not corrected.
 const EXACT_RESIDUAL: f64 = 1e-12;
@@ -51,7 +51,9 @@ impl State {
         };
         let xi = completion.velocities(opening.clone(), &x, from)?;
         self.x = x;
-        let stay = places(generated).into_iter().map(|place| xi[place]);
+        let stay = full_frame_indices(generated)
+            .into_iter()
+            .map(|place| xi[place]);
         let (moving, behind) = self.xi.split_at_mut(generated.active.n());
         let z = &from.xi[moving.len()..];
         moving
@@ -80,7 +82,7 @@ fn opening(
         opening.x.clone_from(&from.x);
     }
     if from.xi[..active.n()] != active.start_xi {
-        for (place, value) in places(generated).into_iter().zip(&from.xi) {
+        for (place, value) in full_frame_indices(generated).into_iter().zip(&from.xi) {
             opening.xi[place] = *value;
         }
     }
@@ -330,7 +332,7 @@ impl Completion<'_> {
     fn mass(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let full = &self.generated.model;
         let first = 1 + self.state.params.len();
-        let moving = Moving {
+        let moving = KinematicExpressions {
             graph: &full.graph,
             a: &full.a,
             first,

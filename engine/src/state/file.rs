@@ -1,7 +1,7 @@
 //! Reads the file of a state, in either of its forms: by coordinates, or by joints.
 
 use super::State;
-use super::joint_state::{JointState, is_sample};
+use super::joint_state::{JointState, is_by_joints};
 use super::json;
 use super::last_sample;
 use super::plain_names::with_plain_names;
@@ -57,7 +57,7 @@ impl StateFile {
 
     /// Returns whether the state is given by joints.
     pub fn is_by_joints(&self) -> bool {
-        is_sample(&self.json)
+        is_by_joints(&self.json)
     }
 
     /// Reads the state, in either form; a force, or a list of states, is refused.

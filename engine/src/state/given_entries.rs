@@ -28,7 +28,7 @@ impl GivenEntries {
 }
 
 /// Returns for each velocity of a state its index in ξ of the full frame.
-pub fn places(generated: &Generated) -> Vec<usize> {
+pub fn full_frame_indices(generated: &Generated) -> Vec<usize> {
     let full = &generated.model;
     let solved = |place: &usize| generated.solved.iter().any(|(solved, _)| solved == place);
     let time = |place: usize| {
@@ -43,7 +43,7 @@ pub fn places(generated: &Generated) -> Vec<usize> {
 /// except the rate of time, and the entries that constraints leave of them.
 pub fn velocities(generated: &Generated) -> Vec<Group> {
     let (full, active) = (&generated.model, &generated.active);
-    let places = places(generated);
+    let places = full_frame_indices(generated);
     let clock = full.clock.map(|clock| clock.xi);
     let own = full.velocities.iter();
     let mut all: Vec<Group> = own

@@ -34,7 +34,7 @@ pub struct JointState {
 }
 
 /// Returns whether a JSON text gives a state by joints, rather than by coordinates.
-pub fn is_sample(json: &Value) -> bool {
+pub fn is_by_joints(json: &Value) -> bool {
     let Value::Object(parts) = json else {
         return false;
     };

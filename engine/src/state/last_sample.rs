@@ -1,7 +1,7 @@
 //! Reads the last of the samples that `hamel simulate --out` writes as JSON, as a state.
 
 use super::State;
-use super::given_entries::places;
+use super::given_entries::full_frame_indices;
 use super::problem::StateProblem;
 use super::read::{Reader, kind};
 use crate::names;
@@ -51,7 +51,7 @@ pub fn read_last_sample(
             reader.put_x(&mut state.x, place, &[value]);
         }
     }
-    let places = places(generated);
+    let places = full_frame_indices(generated);
     for (place, value) in xi.into_iter().enumerate() {
         match (value, places.get(place)) {
             (Some(value), Some(&full)) if place < model.n() => reader.put_xi(full, &[value]),

@@ -233,7 +233,7 @@ fn function(
     report: &mut Report,
 ) {
     let text = name.name.as_str();
-    let known = FunctionId::named(text).filter(|id| id.row().named);
+    let known = FunctionId::from_name(text).filter(|id| id.row().named);
     if text == ALL {
         asked.everything = true;
         return;

@@ -5,7 +5,7 @@ use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
 use crate::model::states::states;
-use crate::model::twists::{Moving, Placed, apply, back, cross, dot};
+use crate::model::twists::{KinematicExpressions, Placed, apply, back, cross, dot};
 use crate::model::{Model, Wrench};
 use crate::syntax::ast::{self, Axes, Ident, ItemKind, Span, System};
 
@@ -83,7 +83,7 @@ struct Seen<'a> {
 
 impl<'a> Seen<'a> {
     fn new(model: &'a Model) -> Self {
-        let moving = Moving {
+        let moving = KinematicExpressions {
             graph: &model.graph,
             a: &model.a,
             first: model.points.first,

@@ -33,7 +33,7 @@ pub struct Dynamics {
 
 /// Returns whether a name is that of a generated function, which outputs and invariants cannot have.
 pub fn is_taken(name: &str) -> bool {
-    name == ALL || FunctionId::named(name).is_some()
+    name == ALL || FunctionId::from_name(name).is_some()
 }
 
 /// Reads single statements.

@@ -27,7 +27,7 @@ pub struct Placed {
 
 /// Graph, A and places of x and ξ, from which twists of frames are evaluated in numbers.
 #[derive(Clone, Copy)]
-pub struct Moving<'a> {
+pub struct KinematicExpressions<'a> {
     /// Graph of all expressions.
     pub graph: &'a Graph,
     /// Rows of A.
@@ -40,7 +40,7 @@ pub struct Moving<'a> {
     pub n: usize,
 }
 
-impl Moving<'_> {
+impl KinematicExpressions<'_> {
     /// Evaluates the columns of A as directions in the space of all symbols.
     pub fn directions(&self, numbers: &[f64]) -> Vec<Vec<f64>> {
         let a = evaluate(self.graph, &self.a.concat(), numbers);

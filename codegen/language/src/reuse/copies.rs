@@ -1,6 +1,6 @@
 //! First pass of the expansion: copies statements for every round and part, and records what they declare.
 
-use super::names::{Context, Kind, World};
+use super::names::{Context, Expansion, Kind};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::visit::{Visit, places, visit};
 use crate::syntax::ast::{Counter, Expr, Ident, Item, ItemKind, Repeat, Span, Target};
@@ -17,7 +17,7 @@ const MOST_ROUNDS: i64 = 1_000;
 /// Copying stops after more errors than this.
 const MOST_ERRORS: usize = 200;
 
-impl<'a> World<'a> {
+impl<'a> Expansion<'a> {
     /// Copies the statements of a list, expands parts and repetitions in it, and records its constants.
     pub fn statements(&mut self, items: &'a [Item], context: &Context) {
         for item in items {
@@ -221,7 +221,7 @@ pub fn moved(expr: &mut Expr, by: usize) {
 
 /// Visitor that registers what a statement declares.
 struct Declare<'w, 'a> {
-    world: &'w mut World<'a>,
+    world: &'w mut Expansion<'a>,
     context: &'w Context,
     /// Whether all names could be declared.
     sound: bool,

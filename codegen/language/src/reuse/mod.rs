@@ -18,7 +18,7 @@ mod replace;
 
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Item, ItemKind, Remarks, System};
-use names::{Context, World};
+use names::{Context, Expansion};
 use std::collections::BTreeSet;
 
 /// A description in which components, parts and repetition have been written out.
@@ -38,7 +38,7 @@ pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
         // Errors caused by the missing statements would be spurious, so these are reported alone.
         return Err(unread);
     }
-    let mut world = World::new(system);
+    let mut world = Expansion::new(system);
     for item in &system.items {
         if let ItemKind::Component(component) = &item.kind {
             world.component(component, item.span);

@@ -83,7 +83,7 @@ pub struct Scope<'a> {
 }
 
 /// State of the expansion of a description.
-pub struct World<'a> {
+pub struct Expansion<'a> {
     /// All scopes. The first one is that of the description.
     pub scopes: Vec<Scope<'a>>,
     /// Components, each with the span of its statement and whether any part uses it.
@@ -116,10 +116,10 @@ pub enum Found<'w, 'a> {
     Thing(&'w Thing, usize),
 }
 
-impl<'a> World<'a> {
+impl<'a> Expansion<'a> {
     /// Creates a state in which no names are known.
     pub fn new(system: &'a System) -> Self {
-        World {
+        Expansion {
             scopes: vec![Scope::default()],
             components: BTreeMap::new(),
             origins: system.origins.clone(),

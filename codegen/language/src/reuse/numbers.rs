@@ -1,6 +1,6 @@
 //! Evaluation of whole numbers that must be known during expansion: ranges and indices.
 
-use super::names::{Context, Found, World};
+use super::names::{Context, Expansion, Found};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Span};
 use crate::syntax::path::Step;
@@ -16,7 +16,7 @@ const MOST_BITS: u64 = 4096;
 /// Largest magnitude of an exponent.
 const MOST_EXPONENT: i32 = 1000;
 
-impl World<'_> {
+impl Expansion<'_> {
     /// Evaluates the indices of a name, which must be whole numbers from 0.
     pub fn indices(&self, list: &[Expr], context: &Context) -> Result<Vec<i64>, Diagnostic> {
         let one = |index: &Expr| {

@@ -1,7 +1,7 @@
 //! Components and their parts.
 
 use super::copies::moved;
-use super::names::{Binding, Context, Kind, Scope, Thing, World, shown};
+use super::names::{Binding, Context, Expansion, Kind, Scope, Thing, shown};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Argument, Component, Declaration, Ident, Item, ItemKind, Part, Shape, Span,
@@ -14,7 +14,7 @@ use std::rc::Rc;
 /// Largest nesting depth of parts.
 const MOST_NESTED: usize = 32;
 
-impl<'a> World<'a> {
+impl<'a> Expansion<'a> {
     /// Registers a component.
     pub fn component(&mut self, component: &'a Component, span: Span) {
         let Ident { name, span: place } = &component.name;

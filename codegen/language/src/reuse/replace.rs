@@ -2,7 +2,7 @@
 //! components by their arguments.
 
 use super::copies::moved;
-use super::names::{Binding, Context, Found, Kind, World};
+use super::names::{Binding, Context, Expansion, Found, Kind};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::visit::{Visit, parts, visit};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, ItemKind, Span, Target};
@@ -20,7 +20,7 @@ const MOST_WRITTEN: usize = 250_000;
 const MOST_ERRORS: usize = 200;
 
 /// Replaces the names in all statements by their final names.
-pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> Vec<Item> {
+pub fn replace(world: &mut Expansion<'_>, pending: Vec<(Item, Context)>) -> Vec<Item> {
     let mut report = Report::new();
     let mut known = Known::default();
     check_arguments(world, &mut known, &mut report);
@@ -76,7 +76,7 @@ struct Known {
 }
 
 /// Replaces names in every argument once, even if its parameter is not used, to find errors.
-fn check_arguments(world: &World<'_>, known: &mut Known, report: &mut Report) {
+fn check_arguments(world: &Expansion<'_>, known: &mut Known, report: &mut Report) {
     for scope in 0..world.scopes.len() {
         for (name, binding) in &world.scopes[scope].bindings {
             let mut replacing = Replacing {
@@ -93,7 +93,7 @@ fn check_arguments(world: &World<'_>, known: &mut Known, report: &mut Report) {
 }
 
 struct Replacing<'w, 'a> {
-    world: &'w World<'a>,
+    world: &'w Expansion<'a>,
     context: &'w Context,
     report: &'w mut Report,
     known: &'w mut Known,

@@ -134,7 +134,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
 pub fn function(name: &str, arguments: &[Argument], shape: Shape, outputs: Vec<Edge>) -> Function {
     let docs = format!("The {name} of a sample.");
     Function {
-        id: hamel_codegen::program::FunctionId::named(name),
+        id: hamel_codegen::program::FunctionId::from_name(name),
         ..Function::described(name, docs, arguments, shape, outputs)
     }
 }

@@ -11,7 +11,7 @@ use crate::lower::time;
 use crate::model::Frame;
 use crate::model::closest::Constraints;
 use crate::model::layout::{Block, constraint};
-use crate::model::twists::Moving;
+use crate::model::twists::KinematicExpressions;
 use crate::syntax::ast::{ExprKind, ItemKind, Span, System, Target};
 use crate::syntax::written::target as written;
 
@@ -143,7 +143,7 @@ pub fn mass(
     x: &[f64],
 ) -> Vec<Vec<f64>> {
     let first = 1 + declared.params.iter().map(|group| group.len).sum::<usize>();
-    let moving = Moving {
+    let moving = KinematicExpressions {
         graph,
         a: &kinematics.a,
         first,
