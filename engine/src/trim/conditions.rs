@@ -8,7 +8,7 @@ use crate::mechanism::function;
 use crate::names;
 use crate::source::added_outputs;
 use crate::state::State;
-use crate::state::given_entries::places;
+use crate::state::given_entries::full_frame_indices;
 use hamel_codegen::algebra::dense::{apply, dot, largest, product};
 use hamel_codegen::functions::SLOPES;
 use hamel_codegen::generate::Generated;
@@ -199,7 +199,7 @@ impl<'a> Conditions<'a> {
         closure.lead_back(&mut x, &[]);
         let none = vec![false; x.len()];
         closure.close_loops(&mut x, &none).ok()?;
-        let places = places(self.generated);
+        let places = full_frame_indices(self.generated);
         let mut full = vec![0.0; model.n()];
         let mut given = vec![false; model.n()];
         for (i, &place) in places.iter().enumerate() {
