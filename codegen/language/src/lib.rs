@@ -17,6 +17,8 @@
 //! | [`model`] | a mechanical system as expressions of a graph |
 //! | [`functions`] | the functions that can be generated |
 //! | [`inertia`] | the error for systems that lack the inertia they need |
+//! | `dimensions` | the dimensions of all expressions, if any unit is written, and every error about dimensions |
+//! | [`units`] | units with their exact factors, and dimensions |
 //! | [`vocabulary`] | the words of the language, for references and editors |
 //! | [`diagnostics`] | errors with their places |
 //!
@@ -33,6 +35,7 @@
 pub use hamel_algebra as algebra;
 
 pub mod diagnostics;
+pub mod dimensions;
 pub mod expression;
 pub mod functions;
 pub mod inertia;
@@ -42,4 +45,5 @@ pub mod reuse;
 mod shapes;
 mod symbols;
 pub mod syntax;
+pub mod units;
 pub mod vocabulary;

@@ -172,7 +172,7 @@ impl SceneBuilder {
 
     /// Adds a configuration coordinate.
     pub fn coordinate(&mut self, name: &str, kind: CoordKind) -> Expr {
-        self.add(ItemKind::Coord(vec![(ident(name), kind)]));
+        self.add(ItemKind::Coord(vec![(ident(name), kind, None)]));
         Expr::name(name)
     }
 
@@ -408,6 +408,7 @@ impl SceneBuilder {
     pub fn output(&mut self, name: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Output {
             name: ident(name),
+            unit: None,
             value: value.into(),
         });
     }
@@ -467,6 +468,7 @@ fn declared(name: &str, shape: ShapeKind, value: Option<Expr>) -> Declaration {
             kind: shape,
             span: Span::NOWHERE,
         },
+        unit: None,
         value,
     }
 }

@@ -4,6 +4,7 @@
 mod axes;
 mod chart_difference;
 mod charts;
+mod dimensions;
 mod functions;
 mod nearest;
 mod number;

@@ -35,6 +35,7 @@ fn spelled(expr: &Expr) -> String {
     let list = |entries: &[Expr]| entries.iter().map(spelled).collect::<Vec<_>>().join(", ");
     match &expr.kind {
         ExprKind::Number(number) => number.value.to_string(),
+        ExprKind::Quantity(quantity) => spelled(&quantity.value),
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(of, field) => format!("{}.{}", spelled(of), field.name),
         ExprKind::Index(of, indices) => format!("{}[{}]", spelled(of), list(indices)),
@@ -157,7 +158,7 @@ fn told(kind: &ItemKind) -> String {
         Input(all) => format!("input {}", declared(all)),
         State(all) => format!("state {}", declared(all)),
         Coord(all) => {
-            let one = |(name, kind): &(hamel_language::syntax::ast::Ident, _)| {
+            let one = |(name, kind, _): &(hamel_language::syntax::ast::Ident, _, _)| {
                 format!("{}: {kind:?}", name.name)
             };
             format!(
@@ -204,7 +205,7 @@ fn told(kind: &ItemKind) -> String {
         Generalized { target, value } => {
             format!("generalized force {} = {}", aimed(target), spelled(value))
         }
-        Output { name, value } => format!("output {} = {}", name.name, spelled(value)),
+        Output { name, value, .. } => format!("output {} = {}", name.name, spelled(value)),
         Frame { name, on, pose } => {
             format!(
                 "frame {} on {:?} = {}",

@@ -163,7 +163,7 @@ impl Outputs {
         let system = parse_text(text).ok();
         let items = system.into_iter().flat_map(|system| system.items);
         let outputs = items.filter_map(|item| {
-            let ItemKind::Output { name, value } = item.kind else {
+            let ItemKind::Output { name, value, .. } = item.kind else {
                 return None;
             };
             let expression = format!("({})", text.get(value.span.range()?)?);

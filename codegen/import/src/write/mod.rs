@@ -231,6 +231,7 @@ fn declared(name: &str, kind: ShapeKind, value: Option<Expr>) -> Declaration {
     Declaration {
         name: ident(name),
         shape: Shape { kind, span },
+        unit: None,
         value,
     }
 }

@@ -18,7 +18,7 @@ use crate::model::samples;
 use crate::model::statements::Statements;
 use crate::reuse;
 use crate::syntax::ast::{ItemKind, Origins, System};
-use crate::{shapes, symbols};
+use crate::{dimensions, shapes, symbols};
 use std::collections::BTreeSet;
 
 /// Number of times that points are chosen anew because a square root has no value.
@@ -65,6 +65,10 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
     let system = &time::expand(system, &mut first);
     let names = symbols::resolve(system, &mut first);
     shapes::check(system, &names, &mut first);
+    let dimensions = match first.is_empty() {
+        true => dimensions::check(system, &names, &mut first),
+        false => None,
+    };
     let mut manifold = ConfigurationManifold::of(system, &names, own, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;
@@ -103,6 +107,7 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
             Ok(model) if doubts < DOUBTS && is_doubtful(&manifold, &model) => doubts += 1,
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
+                model.dimensions = dimensions;
                 let implausible = plausibility::warnings(described, &model);
                 let jumps = speed_jumps::warnings(described, &model);
                 let idle = std::mem::take(&mut model.warnings);
@@ -344,6 +349,7 @@ fn read_at(
         invariants,
         lets: names.lets,
         externals,
+        dimensions: None,
         start_x: start.x,
         start_xi: start.xi,
         start_z: states.start,

@@ -10,7 +10,8 @@ use crate::model::layout::{blocks, entry_names};
 use crate::model::value::Value;
 use crate::model::{Clock, Coordinate, Group, class, samples};
 use crate::symbols::Kind;
-use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, Span, System};
+use crate::syntax::ast::{CoordKind, Declaration, Ident, ItemKind, ShapeKind, Span, System};
+use crate::units::Unit;
 
 /// Function that returns the value of the next symbol: drawn at random for free points, read from the point for those
 /// on X.
@@ -173,12 +174,8 @@ impl Declarer<'_, '_, '_> {
         complete
     }
 
-    fn coordinates(
-        &mut self,
-        list: &[(crate::syntax::ast::Ident, CoordKind)],
-        declared: &mut Declared,
-    ) {
-        for (name, kind) in list {
+    fn coordinates(&mut self, list: &[(Ident, CoordKind, Option<Unit>)], declared: &mut Declared) {
+        for (name, kind, _) in list {
             if !self.scope.claim(name, Kind::Coord(*kind)) {
                 declared.faulty = true;
                 continue;

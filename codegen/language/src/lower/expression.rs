@@ -96,6 +96,7 @@ impl<'a> Evaluator<'a> {
                 let edge = self.graph.rational(&number.value);
                 self.bounded(Value::Scalar(edge), expr.span)
             }
+            ExprKind::Quantity(quantity) => self.value(&quantity.value),
             ExprKind::Name(name) => self.name(name),
             ExprKind::Field(base, field) => self.field(base, field),
             ExprKind::Index(base, indices) => self.index(base, indices),

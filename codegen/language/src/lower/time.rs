@@ -76,10 +76,11 @@ fn written(time: &Ident) -> [ItemKind; 4] {
     let expr = |kind: ExprKind| Expr { kind, span };
     let kind = ShapeKind::Scalar;
     [
-        ItemKind::Coord(vec![(time.clone(), CoordKind::Real)]),
+        ItemKind::Coord(vec![(time.clone(), CoordKind::Real, None)]),
         ItemKind::Velocity(vec![Declaration {
             name: velocity.clone(),
             shape: Shape { kind, span },
+            unit: None,
             value: None,
         }]),
         ItemKind::Rate {

@@ -142,7 +142,7 @@ fields!(Model {
     kinetic, gyroscopic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, full_frame;
     name, public, docs, graph, points, has_inertia, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, augmented, starts_anywhere, clock,
-    joints, start_x, start_xi, start_z, initial_conditions, asked, span, statements, origins, warnings, independent, externals
+    joints, start_x, start_xi, start_z, initial_conditions, asked, dimensions, span, statements, origins, warnings, independent, externals
 });
 
 impl Edges for Along {

@@ -29,6 +29,7 @@ pub mod value;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::diagnostics::Diagnostic;
+use crate::dimensions::Dimensions;
 use crate::functions::Asked;
 use crate::syntax::ast::{CoordKind, Origins, ShapeKind, Span};
 use completion::Completion;
@@ -275,6 +276,8 @@ pub struct Model {
     pub initial_conditions: InitialConditions,
     /// The functions to generate.
     pub asked: Asked,
+    /// What is known of the dimensions, if the description has units.
+    pub dimensions: Option<Dimensions>,
     /// Span for errors about the start that are found later.
     pub span: Span,
     /// Places of the statements that define frames, bodies, loads and named expressions.

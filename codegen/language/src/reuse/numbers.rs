@@ -4,6 +4,7 @@ use super::names::{Context, Expansion, Found};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Span};
 use crate::syntax::path::Step;
+use crate::units::Unit;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
 
@@ -122,9 +123,16 @@ impl Expansion<'_> {
 
 fn not_known(span: Span, what: &str) -> Diagnostic {
     let message = format!("{what} is not a number that is known when the description is read");
-    Diagnostic::new(span, message).help(
-        "ranges and indices are made of numbers, counters and constants: write `const n = 8;`",
-    )
+    let unit = what.trim_matches('`');
+    Diagnostic::new(span, message).help(match Unit::named(unit) {
+        Some(_) => {
+            format!("an index is a whole number; a unit stands after a colon: `q: [{unit}]`")
+        }
+        None => {
+            "ranges and indices are made of numbers, counters and constants: write `const n = 8;`"
+                .into()
+        }
+    })
 }
 
 fn computed(op: BinaryOp, left: BigRational, right: BigRational) -> Option<BigRational> {

@@ -187,6 +187,7 @@ impl<'a> Expansion<'a> {
                     span: shape.span.later(by),
                     ..shape
                 },
+                unit: None,
                 value: Some(value),
             };
             let kind = ItemKind::Let(vec![declaration]);

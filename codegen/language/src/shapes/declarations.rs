@@ -30,7 +30,7 @@ impl<'a> Inference<'a> {
                 ItemKind::Input(list) => self.symbols_of(list, Kind::Input),
                 ItemKind::State(list) => self.symbols_of(list, Kind::State),
                 ItemKind::Coord(list) => {
-                    for (name, kind) in list {
+                    for (name, kind, _) in list {
                         let shape = Shaped::of(Shape::of_coordinate(*kind));
                         self.define(name, Kind::Coord(*kind), Some(shape));
                     }

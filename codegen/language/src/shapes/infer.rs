@@ -101,6 +101,7 @@ impl<'a> Inference<'a> {
     fn inferred(&mut self, expr: &'a Expr) -> Option<Shaped> {
         match &expr.kind {
             ExprKind::Number(number) => Some(Shaped::number(number.value.clone())),
+            ExprKind::Quantity(quantity) => self.of(&quantity.value),
             ExprKind::Name(name) => self.name(name),
             ExprKind::Field(base, field) => self.field(base, field),
             ExprKind::Index(base, indices) => self.index(base, indices, expr.span),

@@ -22,12 +22,11 @@ mod targets;
 use crate::diagnostics::Report;
 use crate::symbols::Resolved;
 use crate::syntax::ast::System;
-use infer::Inference;
 
 pub use arithmetic::LARGEST_PRODUCT;
-pub use infer::MOST_LEVELS;
+pub use infer::{Inference, MOST_LEVELS};
 pub use rates::{rate_help, velocity_for};
-pub use shape::MOST_ENTRIES;
+pub use shape::{MOST_ENTRIES, Shape, Shaped};
 
 /// Checks the shapes in a description whose names are resolved, and reports all errors about them.
 pub fn check(system: &System, names: &Resolved, report: &mut Report) {

@@ -19,7 +19,7 @@ pub fn declare<'a>(system: &'a System, report: &mut Report) -> Symbols<'a> {
             ItemKind::Input(list) => (list, Kind::Input),
             ItemKind::State(list) => (list, Kind::State),
             ItemKind::Coord(list) => {
-                for (name, kind) in list {
+                for (name, kind, _) in list {
                     claim(&mut symbols, name, Kind::Coord(*kind), report);
                 }
                 continue;

@@ -3,6 +3,7 @@
 mod expression;
 mod joint;
 mod origins;
+mod quantity;
 mod remarks;
 mod reuse;
 mod span;
@@ -14,12 +15,15 @@ mod wanted;
 pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind, Literal};
 pub use joint::{Joint, JointField, JointKind};
 pub use origins::{Included, Origins, Texts};
+pub use quantity::Quantity;
 pub use remarks::{Remark, Remarks};
 pub use reuse::{Argument, Component, Counter, Parameter, Part, Repeat};
 pub use span::Span;
 pub use table::{Between, Beyond, Source, Table};
 pub use target::Target;
 pub use wanted::Wanted;
+
+use crate::units::Unit;
 
 /// A name with its source position.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,13 +116,15 @@ pub enum CoordKind {
     SE3,
 }
 
-/// `param name: shape = default` or `input name: shape`, `velocity name: shape`.
+/// `param name: shape [unit] = default` or `input name: shape`, `velocity name: shape`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Declaration {
     /// The declared name.
     pub name: Ident,
     /// Its shape.
     pub shape: Shape,
+    /// Its unit, if one was written.
+    pub unit: Option<Unit>,
     /// Value, if the statement has one.
     pub value: Option<Expr>,
 }
@@ -311,8 +317,8 @@ pub enum ItemKind {
     External(External),
     /// `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;` a function given by its values.
     Table(Table),
-    /// `coord r: R3, R: SO3, q;`
-    Coord(Vec<(Ident, CoordKind)>),
+    /// `coord r: R3 [m], R: SO3, q: [rad];`
+    Coord(Vec<(Ident, CoordKind, Option<Unit>)>),
     /// `velocity v: vec3, w: vec3, u;`, or with the rows of Y that define it: `velocity v: vec3 = R.T * rate(r);`
     Velocity(Vec<Declaration>),
     /// `constraint a = b;`
@@ -476,6 +482,8 @@ pub enum ItemKind {
     Output {
         /// The name of the function.
         name: Ident,
+        /// Its unit, if one was written.
+        unit: Option<Unit>,
         /// Value that the function returns.
         value: Expr,
     },

@@ -110,6 +110,11 @@ impl<'a> Cursor<'a> {
         matches!(self.ahead(1).kind, Kind::Open(Delimiter::Bracket, _))
     }
 
+    /// Returns the two tokens after the next one.
+    pub fn inside(&self) -> (&'a Token, &'a Token) {
+        (self.ahead(1), self.ahead(2))
+    }
+
     /// Returns whether a name with a counter in brackets is next: `leg[i in`.
     pub fn starts_array(&self) -> bool {
         let [counter, word] = [self.ahead(2), self.ahead(3)];

@@ -5,7 +5,9 @@ use super::cursor::{Cursor, Parsed, shown};
 use super::expression::expression;
 use super::path;
 use super::tokens::Kind;
+use super::unit;
 use crate::diagnostics::Diagnostic;
+use crate::units::Unit;
 use proc_macro2::Delimiter;
 
 /// Largest size of a vector, matrix or Euclidean coordinate.
@@ -14,25 +16,34 @@ const MAX_SIZE: usize = 64;
 /// `m = 1.3, s: vec3 = [0, 0, 1]`
 pub(super) fn values(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Vec<Declaration>> {
     separated(cursor, |cursor| {
-        let (name, shape) = head(cursor, of)?;
+        let any = matches!(of, "a parameter" | "a constant");
+        let (name, shape, unit) = head(cursor, of, any)?;
         cursor.assign()?;
-        Ok(Declaration {
+        let mut declaration = Declaration {
             name,
             shape,
+            unit,
             value: Some(expression(cursor)?),
-        })
+        };
+        unit::converted(&mut declaration)?;
+        Ok(declaration)
     })
 }
 
 /// `v: vec3, u`, each with a row of Y if rates define the velocity: `w = q.c * rate(q.s)`
 pub(super) fn velocities(cursor: &mut Cursor<'_>) -> Parsed<Vec<Declaration>> {
     separated(cursor, |cursor| {
-        let (name, shape) = head(cursor, "a velocity")?;
+        let (name, shape, unit) = head(cursor, "a velocity", false)?;
         let value = match cursor.eat_punct('=') {
             true => Some(expression(cursor)?),
             false => None,
         };
-        Ok(Declaration { name, shape, value })
+        Ok(Declaration {
+            name,
+            shape,
+            unit,
+            value,
+        })
     })
 }
 
@@ -43,7 +54,7 @@ pub(super) fn inputs(cursor: &mut Cursor<'_>) -> Parsed<Vec<Declaration>> {
 }
 
 fn without_value(cursor: &mut Cursor<'_>, of: &str, help: &str) -> Parsed<Declaration> {
-    let (name, shape) = head(cursor, of)?;
+    let (name, shape, unit) = head(cursor, of, false)?;
     if cursor.is_punct('=') {
         return Err(
             Diagnostic::new(cursor.here(), format!("{of} is declared without a value")).help(help),
@@ -52,18 +63,25 @@ fn without_value(cursor: &mut Cursor<'_>, of: &str, help: &str) -> Parsed<Declar
     Ok(Declaration {
         name,
         shape,
+        unit,
         value: None,
     })
 }
 
 /// `r: R3, R: SO3, q`
-pub(super) fn coordinates(cursor: &mut Cursor<'_>) -> Parsed<Vec<(Ident, CoordKind)>> {
+pub(super) fn coordinates(
+    cursor: &mut Cursor<'_>,
+) -> Parsed<Vec<(Ident, CoordKind, Option<Unit>)>> {
     separated(cursor, |cursor| {
         let name = path::declared(cursor, "a coordinate")?;
-        let kind = if cursor.eat_punct(':') {
-            coordinate_kind(cursor)?
-        } else {
-            CoordKind::Real
+        let annotated = cursor.eat_punct(':');
+        let kind = match annotated && !cursor.is_open(Delimiter::Bracket) {
+            true => coordinate_kind(cursor)?,
+            false => CoordKind::Real,
+        };
+        let unit = match annotated && cursor.is_open(Delimiter::Bracket) {
+            true => Some(unit::kept(cursor, &name)?),
+            false => None,
         };
         if cursor.is_punct('=') {
             return Err(
@@ -71,7 +89,7 @@ pub(super) fn coordinates(cursor: &mut Cursor<'_>) -> Parsed<Vec<(Ident, CoordKi
                     .help("an initial value is written `start r = [0, 0, 1];`"),
             );
         }
-        Ok((name, kind))
+        Ok((name, kind, unit))
     })
 }
 
@@ -154,11 +172,19 @@ fn separated<T>(
     Ok(all)
 }
 
-/// Parses a name and its shape, which is a scalar if none is written.
-fn head(cursor: &mut Cursor<'_>, of: &str) -> Parsed<(Ident, Shape)> {
+/// Parses a name with its shape, which is a scalar if none is written, and its unit, if one is written. `any` says
+/// whether the unit may be one from which values are converted to SI.
+fn head(cursor: &mut Cursor<'_>, of: &str, any: bool) -> Parsed<(Ident, Shape, Option<Unit>)> {
     let name = path::declared(cursor, of)?;
+    let scalar = cursor.is_punct(':') && cursor.is_indexed() && cursor.eat_punct(':');
     let shape = after(cursor, &name)?;
-    Ok((name, shape))
+    let annotated = scalar || shape.kind != ShapeKind::Scalar;
+    let unit = match annotated && cursor.is_open(Delimiter::Bracket) {
+        true if any => Some(unit::unit(cursor)?),
+        true => Some(unit::kept(cursor, &name)?),
+        false => None,
+    };
+    Ok((name, shape, unit))
 }
 
 /// Parses the shape after a name, which is a scalar if none is written.

@@ -6,7 +6,7 @@
 //! sign     = "-"* power
 //! power    = postfix ("^" "-"* postfix)*              to the right: a^b^c = a^(b^c), and -a^b = -(a^b)
 //! postfix  = primary ("." name | "[" sum ("," sum)* "]")*
-//! primary  = number | name | name "(" list ")" ["in" name] | "(" sum ")" | "[" list "]" | choice
+//! primary  = number [unit] | name | name "(" list ")" ["in" name] | "(" sum ")" | "[" list "]" | choice
 //! choice   = "if" sum ("<" | "<=" | ">" | ">=") sum "{" sum "}" "else" (choice | "{" sum "}")
 //! ```
 //!
@@ -17,11 +17,12 @@ mod choice;
 
 use proc_macro2::Delimiter;
 
-use super::ast::{BinaryOp, Expr, ExprKind, Ident, Span};
+use super::ast::{BinaryOp, Expr, ExprKind, Ident, Quantity, Span};
 use super::cursor::{Cursor, Parsed, check_name, shown};
 use super::number;
 use super::path;
 use super::tokens::Kind;
+use super::unit;
 use crate::diagnostics::Diagnostic;
 
 /// Largest number of operands in a chain of operators of one precedence.
@@ -29,6 +30,9 @@ const MAX_OPERANDS: usize = 500;
 
 /// Largest depth of an expression tree: a longest chain, plus the depth of its operands.
 pub const MAX_DEPTH: usize = 600;
+
+/// Depth of a quantity in SI: a number times a power of π.
+const QUANTITY: usize = 3;
 
 /// An expression and the depth of its tree.
 struct Node {
@@ -214,7 +218,13 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             let number = number::value(&token.text, &shown(&token.text))
                 .map_err(|refusal| Diagnostic::new(span, refusal.message).help(refusal.help))?;
             cursor.bump();
-            node(ExprKind::Number(number.into()), span, 0)
+            let number = node(ExprKind::Number(number.into()), span, 0)?;
+            if !unit::is_next(cursor) {
+                return Ok(number);
+            }
+            let quantity = Quantity::of(number.expr, unit::unit(cursor)?);
+            let kind = ExprKind::Quantity(Box::new(quantity));
+            node(kind, span.to(cursor.before()), QUANTITY)
         }
         Kind::Word if token.text == "if" => choice::choice(cursor),
         Kind::Word if cursor.is_call() && !cursor.is_connective() => {

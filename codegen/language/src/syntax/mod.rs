@@ -16,7 +16,7 @@
 //! | `statement`, `declaration`, `table`, `body`, `joint`, `load` | the statements |
 //! | `reuse`, `path` | components, parts and loops, and names with indices and parts |
 //! | `files` | included texts, and tables in files |
-//! | `expression`, `number` | values |
+//! | `expression`, `number`, `unit` | values |
 //! | `written`, `print` | the text of expressions and of descriptions |
 //! | `words` | the words of the language |
 //! | `suggest` | "did you mean" suggestions |
@@ -46,6 +46,7 @@ mod statement;
 pub mod suggest;
 mod table;
 mod tokens;
+mod unit;
 mod words;
 pub mod written;
 

@@ -4,11 +4,12 @@
 
 use super::ast::{
     About, Acting, Body, Component, Components, Conserved, CoordKind, Counter, Declaration, End,
-    Expr, Ident, Item, ItemKind, Joint, JointField, JointKind, Load, Part, Remark, Remarks, Repeat,
-    Source, System, Table, Target, Wanted,
+    Expr, ExprKind, Ident, Item, ItemKind, Joint, JointField, JointKind, Load, Part, Remark,
+    Remarks, Repeat, Source, System, Table, Target, Wanted,
 };
 use super::written::{conditions, equation, list, written};
 use super::{joint_field, joint_kind};
+use crate::units::Unit;
 
 /// Largest width of a line, without its indentation, where a list or the fields of a body can be broken.
 const MAX_WIDTH: usize = 110;
@@ -233,7 +234,10 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Guess { target, value } => {
             format!("start {} ~ {}", part(target), written(value))
         }
-        ItemKind::Output { name, value } => format!("output {} = {}", name.name, written(value)),
+        ItemKind::Output { name, unit, value } => {
+            let unit = annotation("", unit.as_ref());
+            format!("output {}{unit} = {}", name.name, written(value))
+        }
         ItemKind::Invariant {
             name,
             conserved,
@@ -337,11 +341,20 @@ fn declarations(word: &str, list: &[Declaration]) -> String {
     let mut text = String::new();
     let mut line = word.to_string();
     for (index, one) in list.iter().enumerate() {
-        let value = one.value.as_ref();
+        // The value of a declaration with another unit than that of SI was converted.
+        let value = one.value.as_ref().map(|value| match &value.kind {
+            ExprKind::Quantity(found) if one.unit.as_ref().is_some_and(|unit| !unit.is_si()) => {
+                &found.number
+            }
+            _ => value,
+        });
         let value = value.map(|value| format!(" = {}", written(value)));
         let value = value.unwrap_or_default();
         let end = if index + 1 < list.len() { "," } else { ";" };
-        let (name, shape) = (&one.name.name, one.shape.kind.annotation());
+        let (name, shape) = (
+            &one.name.name,
+            annotation(&one.shape.kind.annotation(), one.unit.as_ref()),
+        );
         let piece = format!(" {name}{shape}{value}{end}");
         if index > 0 && line.len() + piece.len() > MAX_WIDTH {
             text += &(line + "\n");
@@ -352,8 +365,17 @@ fn declarations(word: &str, list: &[Declaration]) -> String {
     text + &line
 }
 
-fn coordinate((name, of): &(Ident, CoordKind)) -> String {
-    format!("{}{}", name.name, kind(*of))
+fn coordinate((name, of, unit): &(Ident, CoordKind, Option<Unit>)) -> String {
+    format!("{}{}", name.name, annotation(&kind(*of), unit.as_ref()))
+}
+
+/// Returns what follows a name: `: vec3 [m]`, `: [m]`, or less if it has no shape or no unit.
+fn annotation(shape: &str, unit: Option<&Unit>) -> String {
+    match unit {
+        Some(unit) if shape.is_empty() => format!(": [{}]", unit.text),
+        Some(unit) => format!("{shape} [{}]", unit.text),
+        None => shape.to_owned(),
+    }
 }
 
 fn part(target: &Target) -> String {

@@ -7,7 +7,7 @@ use super::expression::expression;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::statements;
-use super::{body, declaration, element, invariant, joint, load, path, reuse, table};
+use super::{body, declaration, element, invariant, joint, load, path, reuse, table, unit};
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -222,9 +222,14 @@ fn generalized(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 /// `speed = norm(v)`
 fn output(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     let name = path::declared(cursor, "an output")?;
+    let unit = match cursor.eat_punct(':') {
+        true => Some(unit::kept(cursor, &name)?),
+        false => None,
+    };
     cursor.assign()?;
     Ok(ItemKind::Output {
         name,
+        unit,
         value: expression(cursor)?,
     })
 }

@@ -17,6 +17,10 @@ pub fn written(expr: &Expr) -> String {
             Some(spelling) => spelling.to_string(),
             None => decimal(&number.value),
         },
+        ExprKind::Quantity(quantity) => {
+            let number = written(&quantity.number);
+            format!("{number} [{}]", quantity.unit.text)
+        }
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(base, field) => format!("{}.{}", tight(base, 5), field.name),
         ExprKind::Index(base, indices) => format!("{}[{}]", tight(base, 5), list(indices)),

@@ -46,7 +46,7 @@ impl Writer<'_> {
     /// Writes a coordinate with its velocity.
     fn moves(&mut self, ending: &str, kind: CoordKind, shape: ShapeKind) {
         let name = self.ident(ending);
-        self.push(ItemKind::Coord(vec![(name, kind)]));
+        self.push(ItemKind::Coord(vec![(name, kind, None)]));
         self.velocity(&format!("{ending}_dot"), shape);
     }
 
@@ -55,6 +55,7 @@ impl Writer<'_> {
         self.push(ItemKind::Velocity(vec![Declaration {
             name,
             shape: Shape { kind, span },
+            unit: None,
             value: None,
         }]));
     }
@@ -83,6 +84,7 @@ impl Writer<'_> {
                 self.push(ItemKind::Let(vec![Declaration {
                     name,
                     shape: Shape { kind, span },
+                    unit: None,
                     value: Some(value.clone()),
                 }]));
             }
@@ -184,7 +186,8 @@ impl Writer<'_> {
             }
             JointKind::Free => {
                 let (r, rotation) = (self.ident("_r"), self.ident("_R"));
-                self.push(ItemKind::Coord(vec![(r, Euclidean(3)), (rotation, SO3)]));
+                let pair = vec![(r, Euclidean(3), None), (rotation, SO3, None)];
+                self.push(ItemKind::Coord(pair));
                 self.velocity("_v", Vector(3));
                 self.velocity("_w", Vector(3));
                 self.rate("_r", self.times(self.name("_R"), self.name("_v")));

@@ -1,6 +1,6 @@
 //! Expressions of the syntax tree.
 
-use super::{Ident, Span};
+use super::{Ident, Quantity, Span};
 use num_rational::BigRational;
 
 /// An expression with its source position.
@@ -41,6 +41,8 @@ impl PartialEq for Literal {
 pub enum ExprKind {
     /// A decimal literal, exact.
     Number(Literal),
+    /// `250 [mm]`
+    Quantity(Box<Quantity>),
     /// A name.
     Name(String),
     /// `q.c`, `X.R`, `M.T`.
@@ -121,6 +123,7 @@ impl Expr {
     pub fn parts(&self) -> Vec<&Expr> {
         match &self.kind {
             ExprKind::Number(_) | ExprKind::Name(_) => Vec::new(),
+            ExprKind::Quantity(quantity) => vec![&quantity.value],
             ExprKind::Field(base, _) | ExprKind::Neg(base) => vec![base],
             ExprKind::Index(base, list) => [&**base].into_iter().chain(list).collect(),
             ExprKind::Call(_, list) | ExprKind::Array(list) => list.iter().collect(),

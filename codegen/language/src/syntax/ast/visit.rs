@@ -5,6 +5,8 @@ use super::{
     External, Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target, Wanted,
 };
 
+use crate::units::Unit;
+
 /// Operations on the parts of a statement.
 pub trait Visit {
     /// Visits a name that the statement declares. `frame` says whether it is the name of a frame.
@@ -79,7 +81,7 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
         }
         ItemKind::Coord(list) => list
             .iter_mut()
-            .for_each(|(name, _)| to.declares(name, false)),
+            .for_each(|(name, _, unit)| declared(name, unit, to)),
         ItemKind::Constraint { left, right } => [left, right].into_iter().for_each(|e| to.expr(e)),
         ItemKind::Rate { target, value }
         | ItemKind::Generalized { target, value }
@@ -187,8 +189,8 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
             to.expr(factor);
             acting(on, to);
         }
-        ItemKind::Output { name, value } => {
-            to.declares(name, false);
+        ItemKind::Output { name, unit, value } => {
+            declared(name, unit, to);
             to.expr(value);
         }
         ItemKind::Invariant {
@@ -222,9 +224,19 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
     }
 }
 
-fn declaration(declaration: &mut Declaration, to: &mut impl Visit) {
-    let Declaration { name, shape, value } = declaration;
+fn declared(name: &mut Ident, unit: &mut Option<Unit>, to: &mut impl Visit) {
     to.declares(name, false);
+    unit.iter_mut().for_each(|unit| to.place(&mut unit.span));
+}
+
+fn declaration(declaration: &mut Declaration, to: &mut impl Visit) {
+    let Declaration {
+        name,
+        shape,
+        unit,
+        value,
+    } = declaration;
+    declared(name, unit, to);
     to.place(&mut shape.span);
     value.iter_mut().for_each(|e| to.expr(e));
 }
@@ -298,6 +310,10 @@ pub fn places(expr: &mut Expr, to: &mut impl FnMut(&mut Span)) {
     to(&mut expr.span);
     match &mut expr.kind {
         ExprKind::Field(_, name) | ExprKind::Call(name, _) => to(&mut name.span),
+        ExprKind::Quantity(quantity) => {
+            to(&mut quantity.unit.span);
+            places(&mut quantity.number, to);
+        }
         _ => {}
     }
     for part in parts(expr) {
@@ -309,6 +325,7 @@ pub fn places(expr: &mut Expr, to: &mut impl FnMut(&mut Span)) {
 pub fn parts(expr: &mut Expr) -> Vec<&mut Expr> {
     match &mut expr.kind {
         ExprKind::Number(_) | ExprKind::Name(_) => Vec::new(),
+        ExprKind::Quantity(quantity) => vec![&mut quantity.value],
         ExprKind::Field(base, _) | ExprKind::Neg(base) => vec![base],
         ExprKind::Index(base, list) => [&mut **base].into_iter().chain(list).collect(),
         ExprKind::Call(_, list) | ExprKind::Array(list) => list.iter_mut().collect(),
