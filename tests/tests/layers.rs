@@ -183,7 +183,7 @@ fn shapes_are_inferred_without_a_graph() {
     );
     // Earlier stages do not use shapes; later ones read a model, whose values have shapes.
     for (path, text) in sources("codegen/language/src") {
-        let user = ["shapes", "lower"].iter().any(|folder| {
+        let user = ["shapes", "dimensions", "lower"].iter().any(|folder| {
             let folder = root().join("codegen/language/src").join(folder);
             path.starts_with(folder)
         });
@@ -191,6 +191,23 @@ fn shapes_are_inferred_without_a_graph() {
             code_of(&text).any(|line| line.contains("crate::shapes") || line.contains("{shapes,"));
         assert!(user || !uses, "{} must not know shapes", path.display());
     }
+}
+
+#[test]
+fn dimensions_are_inferred_without_a_graph() {
+    forbid(
+        "codegen/language/src/dimensions",
+        &["crate::lower", "crate::model", "crate::algebra"],
+    );
+    forbid(
+        "codegen/language/src/units",
+        &[
+            "crate::lower",
+            "crate::model",
+            "crate::algebra",
+            "crate::symbols",
+        ],
+    );
 }
 
 #[test]

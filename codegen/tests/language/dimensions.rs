@@ -122,7 +122,7 @@ fn with_units(name: &str, units: &str) -> String {
         let (name, text) = pair.split_once(' ').expect("a name and a unit");
         assert!(annotate(&mut system.items, name, &unit(text)), "{name}");
     }
-    print::text(&system)
+    print::print_description(&system)
 }
 
 fn built(text: &str) -> Result<Model, Vec<hamel_language::diagnostics::Diagnostic>> {
@@ -167,7 +167,7 @@ fn the_gallery_has_consistent_dimensions() {
             dimensions.declared, dimensions.inferred
         );
         let mut read = parse_text(&text).expect("right");
-        assert_eq!(print::text(&read), text, "{name}");
+        assert_eq!(print::print_description(&read), text, "{name}");
         read.items.iter_mut().for_each(strip);
         let plain = build(&read).expect("right without units");
         assert_eq!(plain.dimensions, None);

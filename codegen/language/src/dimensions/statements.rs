@@ -98,7 +98,27 @@ impl<'a> Walk<'a> {
                     self.fits(value, &b, &what, &a);
                 }
             }
-            _ => self.element(item),
+            ItemKind::Push { .. }
+            | ItemKind::Spring { .. }
+            | ItemKind::Cable { .. }
+            | ItemKind::Damper { .. }
+            | ItemKind::Inerter { .. }
+            | ItemKind::Joint(_) => self.element(item),
+            // These were checked with the declarations, have no expressions, or are expanded.
+            ItemKind::Const(_)
+            | ItemKind::Let(_)
+            | ItemKind::Function(_)
+            | ItemKind::External(_)
+            | ItemKind::Table(_)
+            | ItemKind::Coord(_)
+            | ItemKind::Input(_)
+            | ItemKind::Time(_)
+            | ItemKind::Frame { .. }
+            | ItemKind::Generate(_)
+            | ItemKind::Include(..)
+            | ItemKind::Component(_)
+            | ItemKind::Part(_)
+            | ItemKind::Repeat(_) => {}
         }
     }
 

@@ -18,7 +18,7 @@ const MOST_FACTORS: usize = 12;
 pub(super) fn is_next(cursor: &Cursor<'_>) -> bool {
     let (first, second) = cursor.inside();
     cursor.is_open(Delimiter::Bracket)
-        && (first.kind == Kind::Word || first.text == "1" && second.kind != Kind::Punct(','))
+        && (first.kind == Kind::Word || first.text == "1" && second.kind == Kind::Punct('/'))
 }
 
 /// Parses a unit with its brackets.
