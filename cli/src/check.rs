@@ -122,6 +122,7 @@ pub fn check_identities(generated: &Generated) -> Vec<CheckedIdentity> {
 /// Returns the text below the identities: rounding, merging, constraints, geometry, methods.
 pub fn remarks(generated: &Generated, text: &str) -> String {
     [
+        dimensions_report(generated),
         rounding_report(generated),
         merging_report(generated),
         constraints_report(generated, text),
@@ -129,6 +130,24 @@ pub fn remarks(generated: &Generated, text: &str) -> String {
         methods(generated),
     ]
     .concat()
+}
+
+/// Says how many names have a dimension, if the description has units.
+fn dimensions_report(generated: &Generated) -> String {
+    let Some(dimensions) = &generated.model.dimensions else {
+        return String::new();
+    };
+    let (declared, inferred) = (dimensions.declared, dimensions.inferred);
+    let open: Vec<String> = dimensions
+        .open
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let open = match open.is_empty() {
+        true => String::new(),
+        false => format!("; not known of {}", open.join(", ")),
+    };
+    format!("  dimensions     consistent: {declared} declared, {inferred} inferred{open}\n")
 }
 
 fn table(identities: &[Identity]) -> String {

@@ -95,11 +95,11 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
         &emitter.names.fields[index],
         &emitter.names.accessors[index],
     );
-    let (written, shape) = (&group.name, docs::shape_in_words(group.shape));
+    let (written, shape) = (group.quoted(), docs::shape_in_words(group.shape));
     let of = group_type(group.shape);
     let value = value_to_store(group, "value");
     let mut lines = vec![format!(
-        "Sets parameter `{written}`; on an error nothing changes."
+        "Sets parameter {written}; on an error nothing changes."
     )];
     lines.extend(setter_error_section(emitter.program));
     let body = match needs_update(emitter) {
@@ -110,8 +110,8 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
         false => format!("self.{field} = {value};\n"),
     };
     format!(
-        "/// Parameter `{written}`, {shape}.\n#[must_use]\npub fn {name}(&self) -> {of} {{\nself.{field}\n}}\n\n{}pub fn set_{name}(&mut self, value: {of}) -> {RESULT} {{\n{body}::core::result::Result::Ok(())\n}}\n\n",
-        docs::doc_comment(&lines)
+        "/// Parameter {written}, {shape}.\n#[must_use]\npub fn {name}(&self) -> {of} {{\nself.{field}\n}}\n\n{}pub fn set_{name}(&mut self, value: {of}) -> {RESULT} {{\n{body}::core::result::Result::Ok(())\n}}\n\n",
+        docs::comment(&lines)
     )
 }
 

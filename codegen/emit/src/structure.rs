@@ -50,8 +50,8 @@ pub fn print_struct(emitter: &Emitter) -> String {
     let mut fields = String::new();
     for (group, field) in program.params.iter().zip(&emitter.names.fields) {
         fields.push_str(&format!(
-            "/// Parameter `{}`.\n{field}: {},\n",
-            group.name,
+            "/// Parameter {}.\n{field}: {},\n",
+            group.quoted(),
             group_type(group.shape)
         ));
     }

@@ -68,8 +68,8 @@ fn groups(groups: &[Group], what: &str, array: &'static str) -> Vec<(String, Nam
         let field = NamedRange {
             name: String::new(),
             docs: format!(
-                "{what} `{}`, {}.",
-                group.name,
+                "{what} {}, {}.",
+                group.quoted(),
                 docs::shape_in_words(group.shape)
             ),
             shape: group.shape,

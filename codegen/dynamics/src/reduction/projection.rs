@@ -189,6 +189,7 @@ impl ModelProjection {
                 value: Value::Scalar(self.full.xi[i]),
                 offset: offset(i),
                 len: 1,
+                unit: group.unit.clone(),
             }));
         }
         groups

@@ -152,8 +152,8 @@ fn types(texts: &Texts) -> String {
     text.push_str(&format!("typedef struct {parameters} {{\n"));
     for (group, field) in program.params.iter().zip(&names.fields) {
         let what = format!(
-            "Parameter `{}`, {}.",
-            group.name,
+            "Parameter {}, {}.",
+            group.quoted(),
             docs::shape_in_words(group.shape)
         );
         let size = match group.shape {

@@ -107,7 +107,9 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
             Ok(model) if doubts < DOUBTS && is_doubtful(&manifold, &model) => doubts += 1,
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
-                model.dimensions = dimensions;
+                if let Some(dimensions) = dimensions {
+                    model.measure(dimensions);
+                }
                 let implausible = plausibility::warnings(described, &model);
                 let jumps = speed_jumps::warnings(described, &model);
                 let idle = std::mem::take(&mut model.warnings);

@@ -168,6 +168,7 @@ impl Declarer<'_, '_, '_> {
                 value,
                 offset,
                 len,
+                unit: None,
             });
             edges.extend(symbols);
         }

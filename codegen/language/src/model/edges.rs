@@ -120,7 +120,7 @@ macro_rules! fields {
     };
 }
 
-fields!(Group { value; name, shape, offset, len });
+fields!(Group { value; name, shape, offset, len, unit });
 fields!(Frame { rotation, position, relative; name, parent });
 fields!(Body { mass, com, inertia_com, inertia_origin; frame });
 fields!(Particle { mass, position; span });

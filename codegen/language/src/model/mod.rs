@@ -57,6 +57,18 @@ pub struct Group {
     pub offset: usize,
     /// Number of its symbols.
     pub len: usize,
+    /// Its unit in SI, if the description has units and its entries have one dimension.
+    pub unit: Option<String>,
+}
+
+impl Group {
+    /// Returns the name in code quotes, with the unit if it is known: "`m` [kg]".
+    pub fn quoted(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("`{}` [{unit}]", self.name),
+            None => format!("`{}`", self.name),
+        }
+    }
 }
 
 /// Returns the name of an entry of the groups, as the language writes it: `q_dot`, `w[2]`.
@@ -289,6 +301,20 @@ pub struct Model {
 }
 
 impl Model {
+    /// Records what is known of the dimensions.
+    pub(crate) fn measure(&mut self, dimensions: Dimensions) {
+        let groups = [
+            &mut self.params,
+            &mut self.velocities,
+            &mut self.inputs,
+            &mut self.states,
+        ];
+        for group in groups.into_iter().flatten() {
+            group.unit = dimensions.units.get(&group.name).cloned();
+        }
+        self.dimensions = Some(dimensions);
+    }
+
     /// Returns n, the number of velocities.
     pub fn n(&self) -> usize {
         self.xi.len()

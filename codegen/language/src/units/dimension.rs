@@ -9,7 +9,7 @@ pub const BASE: [&str; 5] = ["kg", "m", "s", "A", "K"];
 
 /// A dimension: the exponents of kg, m, s, A and K. An angle in rad has the dimension of a number.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Dimension(pub [BigRational; 5]);
+pub struct Dimension(pub Box<[BigRational; 5]>);
 
 /// Dimensions with their names in messages: exponents of kg, m, s, A and K, the name, and the unit.
 const NAMED: &[([i32; 5], &str, &str)] = &[
@@ -51,7 +51,8 @@ const NAMED: &[([i32; 5], &str, &str)] = &[
 impl Dimension {
     /// Creates a dimension from whole exponents of kg, m, s, A and K.
     pub fn of(exponents: [i32; 5]) -> Self {
-        Dimension(exponents.map(|exponent| BigRational::from_integer(exponent.into())))
+        let exponents = exponents.map(|exponent| BigRational::from_integer(exponent.into()));
+        Dimension(Box::new(exponents))
     }
 
     /// Returns the dimension of a number.
@@ -67,7 +68,7 @@ impl Dimension {
     /// Returns the dimension of a product of this with a power of another.
     pub fn times(&self, other: &Dimension, exponent: &BigRational) -> Self {
         let mut product = self.clone();
-        for (own, other) in product.0.iter_mut().zip(&other.0) {
+        for (own, other) in product.0.iter_mut().zip(other.0.iter()) {
             *own += other * exponent;
         }
         product
@@ -103,7 +104,7 @@ impl fmt::Display for Dimension {
         }
         let one = BigRational::one();
         let list = |positive: bool| {
-            let pairs = BASE.iter().zip(&self.0);
+            let pairs = BASE.iter().zip(self.0.iter());
             let some = pairs.filter(move |(_, exponent)| {
                 !exponent.is_zero() && exponent.is_positive() == positive
             });

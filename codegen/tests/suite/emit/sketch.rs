@@ -52,6 +52,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
                 value: Value::Vector(symbols.clone()),
                 offset,
                 len,
+                unit: None,
             });
             all.extend(symbols);
         }
