@@ -111,7 +111,7 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
     };
     format!(
         "/// Parameter {written}, {shape}.\n#[must_use]\npub fn {name}(&self) -> {of} {{\nself.{field}\n}}\n\n{}pub fn set_{name}(&mut self, value: {of}) -> {RESULT} {{\n{body}::core::result::Result::Ok(())\n}}\n\n",
-        docs::comment(&lines)
+        docs::doc_comment(&lines)
     )
 }
 
