@@ -28,7 +28,7 @@ use std::path::PathBuf;
 /// determine follow. A short run confirms it. Velocities have to be those of axes in which the motion looks steady.
 ///
 /// The search is Newton's, damped, with steps of least norm, and leads to a solution near the start; another start may
-/// lead to another one. Where there are many solutions, the directions that remain free are named; `--fix` chooses among
+/// lead to another one. If it leads to none, it begins again at a few neighbours of the start. Where there are many solutions, the directions that remain free are named; `--fix` chooses among
 /// them. The eigenvalues are those of the linearisation, apart from displacements along which the motion does not change,
 /// such as place and heading.
 #[derive(Args)]
@@ -107,13 +107,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn text(found: &Trim, generated: &Generated, steady: bool, from: &str) -> String {
+    let near = if found.neighbour > 0 {
+        "a neighbour of "
+    } else {
+        ""
+    };
     let what = if steady {
         "steady motion"
     } else {
         "equilibrium"
     };
     let mut text = format!(
-        "\x1b[1m{}\x1b[0m  {what} from {from}, in {} steps; largest residual {}\n\n",
+        "\x1b[1m{}\x1b[0m  {what} from {near}{from}, in {} steps; largest residual {}\n\n",
         generated.model.name,
         found.steps,
         error(found.residual)
@@ -182,6 +187,7 @@ fn json(found: Trim, state: Json, system: &str) -> Json {
         ("xi_dot", Json::vector(&found.xi_dot)),
         ("residual", Json::Number(found.residual)),
         ("steps", Json::Count(found.steps as u128)),
+        ("neighbour", Json::Count(found.neighbour as u128)),
         ("unknowns", Json::Count(found.unknowns as u128)),
         ("conditions", Json::Count(found.conditions as u128)),
         ("rank", Json::Count(found.rank as u128)),

@@ -479,6 +479,7 @@ impl Session {
         all.set_item("xi_dot", PyArray1::from_vec(py, trim.xi_dot))?;
         all.set_item("residual", trim.residual)?;
         all.set_item("steps", trim.steps)?;
+        all.set_item("neighbour", trim.neighbour)?;
         all.set_item("unknowns", trim.unknowns)?;
         all.set_item("conditions", trim.conditions)?;
         all.set_item("rank", trim.rank)?;

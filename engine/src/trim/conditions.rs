@@ -13,6 +13,7 @@ use hamel_codegen::algebra::dense::{apply, dot, largest, product};
 use hamel_codegen::functions::SLOPES;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::loop_closure::LoopClosure;
+use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 use hamel_codegen::program::Shape;
 use hamel_codegen::program::interpret::Interpreter;
 
@@ -30,6 +31,9 @@ pub struct Conditions<'a> {
     frame: Interpreter,
     accel: Interpreter,
     fixes: Vec<Fix>,
+    /// Whether all velocities vanish for all time, also those that constraints determine: their rates may be finite where
+    /// the independent ones do not determine them.
+    rests: bool,
     /// Required values of ξ̇ and ż.
     rates: Vec<f64>,
     /// Whether each entry of (h, δξ, δz, δu) may change.
@@ -143,8 +147,12 @@ impl<'a> Conditions<'a> {
             })
         });
         let displaced = frame.iter().map(|name| format!("h({name})"));
+        let is_driven = |row: &Pfaffian| matches!(row.kind, Kind::Drive { .. });
+        let held = !is_free[sizes[0]..sizes[0] + sizes[1]].contains(&true);
+        let driven = full.clock.is_some() || full.constraints.iter().any(is_driven);
         Ok(Conditions {
             generated,
+            rests: held && !driven && options.rates.is_empty() && full.accelerated.is_empty(),
             steady: options.steady,
             linearize: function(program, "linearize", params)?,
             frame: function(program, "displacement_frame", params)?,
@@ -292,10 +300,15 @@ impl<'a> Conditions<'a> {
             .collect();
         let of_free = |row: &[f64]| free.iter().map(|&k| row[k]).collect::<Vec<f64>>();
         let moving: Vec<usize> = kept.iter().filter(|&&k| k >= nh).map(|k| k - nh).collect();
-        let mut rows_at: Vec<usize> = moving.clone();
-        let mut residuals: Vec<f64> = moving.iter().map(|&i| xi_dot[i] - self.rates[i]).collect();
-        let first = count - moving.len();
-        let mut jacobian: Vec<Vec<f64>> = motion[first..].iter().map(|row| of_free(row)).collect();
+        let mut rows_at: Vec<usize> = if self.rests {
+            (0..na + nz).collect()
+        } else {
+            moving.clone()
+        };
+        let mut residuals: Vec<f64> = rows_at.iter().map(|&i| xi_dot[i] - self.rates[i]).collect();
+        let rates: Vec<Vec<f64>> = rows_at.iter().map(|&i| ab[nh + i].clone()).collect();
+        let rates = product(&rates, &lift);
+        let mut jacobian: Vec<Vec<f64>> = rates.iter().map(|row| of_free(row)).collect();
         if self.steady {
             let change = self.change(point, &xi_dot, &ab);
             residuals.extend(moving.iter().map(|&i| change[i]));

@@ -2,7 +2,7 @@
 
 use super::conditions::{Conditions, Local, Point};
 use super::problem::TrimProblem;
-use super::solve::{RANK_TOLERANCE, Scales, Solution};
+use super::solve::{POLISHED_RESIDUAL, RANK_TOLERANCE, Scales, Solution};
 use crate::linearize::eigenvalues::eigenvalues;
 use crate::names;
 use hamel_codegen::algebra::dense::{apply, dot, largest, product};
@@ -12,8 +12,6 @@ use nalgebra::{DMatrix, SVD};
 use std::fmt;
 use std::ops::Range;
 
-/// Displacement at which slopes are compared with those at the solution, relative to 1 or to the unknown.
-const PROBE: f64 = 0.1;
 /// Displacement along an undetermined direction from which the solution is sought again.
 const MOVE: f64 = 1e-2;
 /// Largest part of that displacement which a correction may take back where solutions form a family.
@@ -97,28 +95,16 @@ pub fn undetermined(
     conditions: &Conditions,
     solution: &Solution,
 ) -> Result<(usize, Vec<Direction>), TrimProblem> {
-    let Solution { point, local, .. } = solution;
-    let sizes: Vec<f64> = local
-        .columns
-        .iter()
-        .map(|&k| conditions.size(&point.state, k))
-        .collect();
+    let Solution {
+        point,
+        local,
+        probes,
+        ..
+    } = solution;
+    // Slopes that vanish at the solution alone are small beside those of its neighbours.
     let mut scales = Scales::new(conditions);
     scales.meet(local);
-    // Slopes that vanish at the solution alone are small beside those of its neighbours.
-    for turn in [1.0, 2.0] {
-        let step = sizes
-            .iter()
-            .enumerate()
-            .map(|(k, size)| PROBE * size * f64::sin(turn + k as f64));
-        let step: Vec<f64> = step.collect();
-        if let Some(probe) = local
-            .moved(conditions, point, &step)
-            .and_then(|p| conditions.at(&p))
-        {
-            scales.meet(&probe);
-        }
-    }
+    probes.iter().for_each(|probe| scales.meet(probe));
     let none = || TrimProblem::Singular {
         direction: "an unknown direction".into(),
         residual: largest(&local.residuals),
@@ -278,7 +264,7 @@ fn is_family(
         else {
             return false;
         };
-        if at.is_solved(conditions, &there) {
+        if at.is_solved(conditions, &there, POLISHED_RESIDUAL) {
             let squares = |list: &[f64]| list.iter().map(|entry| entry * entry).sum::<f64>();
             return dot(&back, &step).abs() <= MAX_CORRECTION * squares(&step);
         }

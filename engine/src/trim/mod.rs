@@ -23,7 +23,7 @@ use conditions::Conditions;
 use hamel_codegen::algebra::dense::largest;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::Generated;
-use solve::{Scales, Solution, solve};
+use solve::{Solution, search};
 
 /// Option that adds equations.
 const FIX: &str = "--fix";
@@ -45,6 +45,8 @@ pub struct Trim {
     pub residual: f64,
     /// Number of steps of the search.
     pub steps: usize,
+    /// Number of the neighbour of the start from which the search led to the state; 0 if it did from the start itself.
+    pub neighbour: usize,
     /// Numbers of unknowns and of conditions.
     pub unknowns: usize,
     /// Number of conditions.
@@ -122,13 +124,13 @@ pub fn trim(
         }
     }
     let point = conditions.start(&start).ok_or(TrimProblem::NoStart)?;
-    let mut scales = Scales::new(&conditions);
-    let solution = solve(&conditions, &mut scales, point)?;
+    let (solution, neighbour) = search(&conditions, &point)?;
     let (rank, undetermined) = directions::undetermined(&conditions, &solution)?;
     let Solution {
         point,
         local,
         steps,
+        ..
     } = solution;
     let spectrum = directions::spectrum(&conditions, &local);
     if options.steady {
@@ -164,6 +166,7 @@ pub fn trim(
     Ok(Trim {
         residual: largest(&local.residuals),
         steps,
+        neighbour,
         unknowns: local.columns.len(),
         conditions: local.rows.len(),
         rank,

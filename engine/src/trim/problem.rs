@@ -74,6 +74,11 @@ pub enum TrimProblem {
         /// Largest residual.
         residual: f64,
     },
+    /// The search ends at a singular configuration of loops, where slopes are not finite.
+    SingularConfiguration {
+        /// Largest residual.
+        residual: f64,
+    },
     /// Conditions hold at the instant, but not along the motion.
     NotSteady(Unmet),
 }
@@ -152,6 +157,11 @@ impl fmt::Display for TrimProblem {
                 "the conditions are met to {residual:.0e}, but they are singular there: along {direction} they \
                  change to higher order only, as at a bifurcation, so that the solution is not determined to \
                  full precision; change a parameter, or --fix this direction"
+            ),
+            TrimProblem::SingularConfiguration { residual } => write!(
+                f,
+                "the search ends near a singular configuration, where the slopes of accelerations are not finite, with \
+                 a residual of {residual:.0e}; start elsewhere by --at"
             ),
             TrimProblem::NotSteady(unmet) => write!(
                 f,

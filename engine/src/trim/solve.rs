@@ -7,12 +7,16 @@
 use super::conditions::{Conditions, Local, Point};
 use super::problem::{TrimProblem, Unmet};
 use hamel_codegen::algebra::dense::largest;
+use hamel_codegen::algebra::residue_pair::Random;
 use nalgebra::{DMatrix, DVector, SVD};
 
 /// Largest number of steps.
 const MAX_STEPS: usize = 200;
-/// Largest residual of a solution, relative to the slopes of its row times the sizes of the unknowns.
-const RELATIVE_TOLERANCE: f64 = 1e-9;
+/// Largest residual from which steps go on until rounding errors stop them, relative to the slopes of its row times the
+/// sizes of the unknowns.
+pub const POLISHED_RESIDUAL: f64 = 1e-9;
+/// Largest residual of a solution, likewise.
+const RESIDUAL_TOLERANCE: f64 = 1e-11;
 /// Residual that is always small enough.
 const ABSOLUTE_TOLERANCE: f64 = 1e-12;
 /// Singular values below this, relative to the largest, are those of a matrix of lower rank.
@@ -23,6 +27,16 @@ const FIRST_DAMPING: f64 = 1e-4;
 const MAX_DAMPING: f64 = 1e12;
 /// Damping that is replaced by 0.
 const MIN_DAMPING: f64 = 1e-13;
+/// Displacement to neighbours of a solution, relative to 1 or to the unknown.
+const PROBE: f64 = 0.1;
+/// Largest residual of a solution beside those of its neighbours.
+const PROBED_PART: f64 = 1e-7;
+/// Residual that is not compared with those of neighbours.
+const LEAST_PROBED: f64 = 1e-10;
+/// Largest number of neighbours of a start that are tried.
+const MAX_NEIGHBOURS: usize = 12;
+/// Largest change of each unknown from the start to a neighbour, relative to 1 or to the unknown.
+const MAX_DISTANCE: f64 = 1.5;
 /// Largest displacement of a step (rad, m), relative to 1 + the largest coordinate.
 const MAX_DISPLACEMENT: f64 = 0.3;
 /// Rows below this, relative to others of their kind, are not scaled up.
@@ -34,6 +48,8 @@ const MECHANICAL_PART: f64 = 0.1;
 const POLISHING_DAMPING: f64 = 1e-8;
 /// Longest step from a solution, relative to 1 or to the unknown.
 const MAX_LAST_STEP: f64 = 1e-3;
+/// Scaled residual that is not worth a step.
+const LEAST_RESIDUAL: f64 = 1e-30;
 /// Largest number of steps after a solution is found.
 const MAX_POLISHING_STEPS: usize = 30;
 /// Ratio of the residuals after and before a step at which only rounding errors are left.
@@ -67,6 +83,8 @@ pub struct Solution {
     pub point: Point,
     pub local: Local,
     pub steps: usize,
+    /// The conditions at neighbours of the point.
+    pub probes: Vec<Local>,
 }
 
 impl Scales {
@@ -178,8 +196,8 @@ impl Factored {
 }
 
 impl Local {
-    /// Returns whether all residuals are small.
-    pub fn is_solved(&self, conditions: &Conditions, point: &Point) -> bool {
+    /// Returns whether all residuals are small, relative to slopes times sizes of unknowns.
+    pub fn is_solved(&self, conditions: &Conditions, point: &Point, relative: f64) -> bool {
         let sizes: Vec<f64> = self
             .columns
             .iter()
@@ -193,8 +211,24 @@ impl Local {
                     .iter()
                     .zip(&sizes)
                     .map(|(slope, size)| (slope * size).abs());
-                residual.abs() <= ABSOLUTE_TOLERANCE + RELATIVE_TOLERANCE * terms.sum::<f64>()
+                residual.abs() <= ABSOLUTE_TOLERANCE + relative * terms.sum::<f64>()
             })
+    }
+
+    /// Evaluates the conditions at two neighbours of a point, unless they have no value there.
+    fn probes(&self, conditions: &Conditions, point: &Point) -> Vec<Local> {
+        let sizes = self
+            .columns
+            .iter()
+            .map(|&k| conditions.size(&point.state, k));
+        let sizes: Vec<f64> = sizes.collect();
+        let probes = [1.0, 2.0].into_iter().filter_map(|turn| {
+            let steps = sizes.iter().zip(1_u32..);
+            let step = steps.map(|(size, k)| PROBE * size * f64::sin(turn * f64::from(k)));
+            let there = self.moved(conditions, point, &step.collect::<Vec<_>>())?;
+            conditions.at(&there)
+        });
+        probes.collect()
     }
 
     /// Moves a point by a step in the unknowns.
@@ -208,12 +242,34 @@ impl Local {
     }
 }
 
+/// Finds the solution to which damped steps lead from a start or, failing that, from one of its neighbours; their
+/// number is the second result, and errors are those of the start.
+pub fn search(conditions: &Conditions, start: &Point) -> Result<(Solution, usize), TrimProblem> {
+    let failure = match solve(conditions, start.clone()) {
+        Ok(solution) => return Ok((solution, 0)),
+        Err(failure) => failure,
+    };
+    let local = conditions.at(start).ok_or(TrimProblem::NoStart)?;
+    let mut random = Random::new(0x7472_696d);
+    let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+    for neighbour in 1..=MAX_NEIGHBOURS {
+        let distance = MAX_DISTANCE * neighbour as f64 / MAX_NEIGHBOURS as f64;
+        let sizes = local
+            .columns
+            .iter()
+            .map(|&k| conditions.size(&start.state, k));
+        let step: Vec<f64> = sizes.map(|size| distance * size * number()).collect();
+        let there = local.moved(conditions, start, &step);
+        if let Some(solution) = there.and_then(|there| solve(conditions, there).ok()) {
+            return Ok((solution, neighbour));
+        }
+    }
+    Err(failure)
+}
+
 /// Finds the solution to which damped steps lead from a point.
-pub fn solve(
-    conditions: &Conditions,
-    scales: &mut Scales,
-    start: Point,
-) -> Result<Solution, TrimProblem> {
+fn solve(conditions: &Conditions, start: Point) -> Result<Solution, TrimProblem> {
+    let mut scales = Scales::new(conditions);
     let mut point = start;
     let mut local = conditions.at(&point).ok_or(TrimProblem::NoStart)?;
     let (mut damping, mut slow, mut leaves) = (FIRST_DAMPING, 0, false);
@@ -228,8 +284,9 @@ pub fn solve(
         let whole = factored.step(0.0);
         let lengths = local.columns.iter().zip(&whole);
         let mut lengths = lengths.map(|(&k, h)| h.abs() / conditions.size(&point.state, k));
-        found = local.is_solved(conditions, &point) && lengths.all(|h| h <= MAX_LAST_STEP);
-        if found && (before == 0.0 || polished == MAX_POLISHING_STEPS) {
+        found = local.is_solved(conditions, &point, POLISHED_RESIDUAL)
+            && lengths.all(|h| h <= MAX_LAST_STEP);
+        if found && (before <= LEAST_RESIDUAL || polished == MAX_POLISHING_STEPS) {
             break;
         }
         let mut step = if found {
@@ -275,11 +332,20 @@ pub fn solve(
             _ => damping = (damping * 10.0).max(FIRST_DAMPING),
         }
     }
-    if found {
+    if found && local.is_solved(conditions, &point, RESIDUAL_TOLERANCE) {
+        let probes = local.probes(conditions, &point);
+        let beside = probes.iter().map(|probe| largest(&probe.residuals));
+        let beside = beside.fold(0.0, f64::max);
+        let residual = largest(&local.residuals);
+        // Where slopes are infinite, residuals are small beside them only.
+        if !probes.is_empty() && residual > f64::max(LEAST_PROBED, PROBED_PART * beside) {
+            return Err(TrimProblem::SingularConfiguration { residual });
+        }
         return Ok(Solution {
             point,
             local,
             steps,
+            probes,
         });
     }
     if leaves {

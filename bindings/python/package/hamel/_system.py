@@ -235,6 +235,8 @@ class Trim:
     #: Largest absolute residual of all conditions.
     residual: float
     steps: int
+    #: Number of the neighbour of the start from which the search led to the state; 0 if it did from the start itself.
+    neighbour: int
     unknowns: int
     conditions: int
     #: Rank of the conditions at the state.
