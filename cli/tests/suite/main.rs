@@ -41,6 +41,7 @@ mod shaken;
 mod shards;
 mod shown;
 mod states;
+mod steady;
 mod sweep;
 #[cfg(target_os = "linux")]
 mod sweep_folder;

@@ -1,18 +1,18 @@
-//! `hamel trim` as users run it: equilibria and steady motions with closed forms, balances by hand, and failures.
+//! `hamel trim` as users run it: equilibria with closed forms, failures, wrong requests, and random mechanisms.
 
 use crate::common::{hamel, text};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-type Vector = [f64; 3];
+pub type Vector = [f64; 3];
 
-fn model(name: &str) -> String {
+pub fn model(name: &str) -> String {
     format!("{}/../{name}.eom", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// Runs `hamel trim FILE` with these options, and returns its JSON.
-fn trimmed(file: &str, input: &str, options: &[&str]) -> Value {
+pub fn trimmed(file: &str, input: &str, options: &[&str]) -> Value {
     let arguments = [&["trim", file, "--format", "json"], options].concat();
     let output = hamel(&arguments, input);
     assert!(output.status.success(), "{input}: {}", text(&output.stderr));
@@ -28,25 +28,25 @@ fn refused(input: &str, options: &[&str], status: i32) -> String {
     message
 }
 
-fn number(value: &Value) -> f64 {
+pub fn number(value: &Value) -> f64 {
     value
         .as_f64()
         .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+pub fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(list) => list.iter().flat_map(numbers).collect(),
         other => vec![number(other)],
     }
 }
 
-fn vector(value: &Value) -> Vector {
+pub fn vector(value: &Value) -> Vector {
     numbers(value).try_into().expect("three numbers")
 }
 
 /// Names of the undetermined directions with a single entry.
-fn undetermined(found: &Value) -> Vec<String> {
+pub fn undetermined(found: &Value) -> Vec<String> {
     let all = found["undetermined"].as_array().expect("a list").iter();
     let named = all.map(|one| {
         one.as_object()
@@ -61,7 +61,7 @@ fn undetermined(found: &Value) -> Vec<String> {
     named
 }
 
-fn assert_near(found: f64, expected: f64, tolerance: f64) {
+pub fn assert_near(found: f64, expected: f64, tolerance: f64) {
     assert!(
         (found - expected).abs() <= tolerance,
         "{found} instead of {expected}"
@@ -76,7 +76,7 @@ fn written(name: &str, state: &str) -> PathBuf {
 }
 
 /// Asserts that a motion from the state of a result keeps these velocities for some seconds.
-fn assert_stays(file: &str, input: &str, found: &Value, (until, names): (&str, &[&str])) {
+pub fn assert_stays(file: &str, input: &str, found: &Value, (until, names): (&str, &[&str])) {
     let at = written(
         &format!("stays-{}", names.join("")),
         &found["state"].to_string(),
@@ -250,313 +250,6 @@ fn a_four_bar_rests_where_its_energy_is_least() {
     );
 }
 
-fn dot(a: Vector, b: Vector) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
-}
-
-fn sum(a: Vector, b: Vector, factor: f64) -> Vector {
-    std::array::from_fn(|i| a[i] + factor * b[i])
-}
-
-type Matrix = [Vector; 3];
-
-fn times(a: Matrix, b: Matrix) -> Matrix {
-    a.map(|row| std::array::from_fn(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
-}
-
-fn apply(a: Matrix, v: Vector) -> Vector {
-    a.map(|row| dot(row, v))
-}
-
-fn transpose(a: Matrix) -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
-}
-
-/// Rotation by an angle about a coordinate axis.
-fn turn(axis: usize, angle: f64) -> Matrix {
-    let (s, c) = angle.sin_cos();
-    let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-    let mut r = [[0.0; 3]; 3];
-    r[axis][axis] = 1.0;
-    (r[a][a], r[b][b], r[a][b], r[b][a]) = (c, c, -s, s);
-    r
-}
-
-/// The Navion in a level turn at 176 ft/s without sideslip: forces and moments balance in stability axes with the
-/// coefficients of the book, and the horizontal force is m V Ω.
-#[test]
-fn an_aircraft_turns_coordinated() {
-    let file = model("tests/models/navion");
-    for bank in [0.2, 0.6, 1.0] {
-        let bank_given = format!("phi = {bank}");
-        let options = ["--steady", "--free", "elevator,throttle,aileron,rudder"];
-        let fixed = [
-            "speed = 176",
-            &bank_given,
-            "v[2] = 0",
-            "velocity(hull)[3] = 0",
-        ];
-        let fixed = fixed.iter().flat_map(|equation| ["--fix", equation]);
-        let options: Vec<&str> = options.into_iter().chain(fixed).collect();
-        let found = trimmed(&file, "", &options);
-        let (coord, velocity, input) = (
-            &found["state"]["coord"],
-            &found["state"]["velocity"],
-            &found["state"]["input"],
-        );
-        let (v, w) = (vector(&velocity["v"]), vector(&velocity["w"]));
-        let [phi, theta, psi] = ["phi", "theta", "psi"].map(|name| number(&coord[name]));
-        assert_eq!(phi, bank);
-        let hull = times(times(turn(2, psi), turn(1, theta)), turn(0, phi));
-        let r = times(hull, turn(1, -0.05));
-        // A turn about the vertical, at one height.
-        let down = transpose(r).map(|row| row[2]);
-        let rate = dot(w, down);
-        (0..3).for_each(|i| assert_near(w[i], rate * down[i], 1e-12));
-        assert_near(dot(v, down), 0.0, 1e-10);
-        let (m, g, s, c, b, speed) = (85.4, 32.2, 184.0, 5.7, 33.4, 176.0);
-        let [elevator, throttle, aileron, rudder] =
-            ["elevator", "throttle", "aileron", "rudder"].map(|name| number(&input[name]));
-        let alpha = v[2].atan2(v[0]);
-        let pressure = 0.002378 * speed * speed / 2.0 * s;
-        let lift = 0.41 + 4.44 * alpha + 0.355 * elevator;
-        let drag = 0.05 + 0.33 * alpha;
-        let force = [
-            throttle + pressure * (lift * alpha.sin() - drag * alpha.cos()),
-            pressure * 0.157 * rudder,
-            -pressure * (lift * alpha.cos() + drag * alpha.sin()),
-        ];
-        let required = sum(cross(w, v), down, -g);
-        (0..3).for_each(|i| assert_near(force[i], m * required[i], 1e-8));
-        let [p, q, yaw] = [b * w[0], c * w[1], b * w[2]].map(|rate| rate / (2.0 * speed));
-        let moment = [
-            pressure * b * (-0.410 * p + 0.107 * yaw - 0.134 * aileron + 0.0107 * rudder),
-            pressure * c * (-0.683 * alpha - 9.96 * q - 0.923 * elevator),
-            pressure * b * (-0.0575 * p - 0.125 * yaw - 0.0035 * aileron - 0.072 * rudder),
-        ];
-        let momentum = [1048.0 * w[0], 3000.0 * w[1], 3530.0 * w[2]];
-        let required = cross(w, momentum);
-        (0..3).for_each(|i| assert_near(moment[i], required[i], 1e-8));
-        // In world axes: what carries the aircraft, and what turns it.
-        let world = apply(r, force);
-        assert_near(world[2], -m * g, 1e-8);
-        assert_near(world[0].hypot(world[1]), m * speed * rate.abs(), 1e-8);
-        assert_eq!(undetermined(&found), ["psi", "r[1]", "r[2]", "r[3]"]);
-        assert_stays(
-            &file,
-            "",
-            &found,
-            ("5", &["v[1]", "v[3]", "w[1]", "w[2]", "w[3]"]),
-        );
-    }
-}
-
-/// A thin disk on a plane, in axes that do not spin with it: on its circle
-/// (I₃ + m a²) ω₃ Ω sin α − I₁ Ω² sin α cos α + m g a cos α = 0.
-#[test]
-fn a_disk_rolls_in_circles() {
-    let disk = "system Disk { param m = 2, a = 0.5, g = 9.81, I1 = 0.125, I3 = 0.25;
-        coord r: R3, psi, al, s; velocity v: vec3, wp, wa, ws;
-        rate psi = wp; rate al = wa; rate s = ws;
-        let H = rotz(psi) * rotx(al);
-        rate r = H * v;
-        frame head = pose(H, r); frame disk on head = pose(rotz(s), [0, 0, 0]);
-        body on disk { mass m; inertia diag(I1, I1, I3) about com; } gravity [0, 0, -g];
-        nonholonomic v + cross([wa, wp * sin(al), wp * cos(al) + ws], [0, -a, 0]) = 0;
-        start al = 1.3, ws = -5, wp = 0.5; }";
-    for (tilt, spin) in [(1.3, -5.0), (0.9, -8.0), (1.5, -4.0)] {
-        let (tilt_given, spin_given) = (format!("al = {tilt}"), format!("ws = {spin}"));
-        let found = trimmed(
-            "-",
-            disk,
-            &["--steady", "--fix", &tilt_given, "--fix", &spin_given],
-        );
-        let velocity = &found["state"]["velocity"];
-        let turning = number(&velocity["wp"]);
-        let (m, a, i1, i3): (f64, f64, f64, f64) = (2.0, 0.5, 0.125, 0.25);
-        let axial = turning * f64::cos(tilt) + spin;
-        let (sin, cos) = f64::sin_cos(tilt);
-        let left = (i3 + m * a * a) * axial * turning * sin - i1 * turning * turning * sin * cos
-            + m * 9.81 * a * cos;
-        assert_near(left, 0.0, 1e-10);
-        assert_near(vector(&velocity["v"])[0], -a * axial, 1e-10);
-        assert_near(number(&velocity["wa"]), 0.0, 1e-12);
-        assert_eq!(undetermined(&found), ["psi", "r[1]", "r[2]", "r[3]", "s"]);
-        assert_stays("-", disk, &found, ("1", &["wp", "ws", "wa"]));
-    }
-    // Without equations, tilt and spin may be chosen, too.
-    let found = trimmed("-", disk, &["--steady"]);
-    assert_eq!(
-        (found["rank"].as_u64(), undetermined(&found).len()),
-        (Some(2), 7)
-    );
-}
-
-/// The bicycle on a circle: both wheels on the ground, moments about the line of contact balance, with
-/// d/dt H = Ω × H of all bodies.
-#[test]
-fn a_bicycle_rides_in_a_circle() {
-    let file = model("examples/control/bicycle");
-    let heights = [
-        "(r + R * cr)[3] = 0",
-        "(r + R * (head + G * (hub + cf)))[3] = 0",
-        "delta = 0.05",
-        "wr = -16",
-    ];
-    let fixed = heights.iter().flat_map(|equation| ["--fix", equation]);
-    let options: Vec<&str> = ["--steady", "--free", "steer"]
-        .into_iter()
-        .chain(fixed)
-        .collect();
-    let found = trimmed(&file, "", &options);
-    let (coord, velocity) = (&found["state"]["coord"], &found["state"]["velocity"]);
-    let rows = numbers(&coord["R"]);
-    let rear: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| rows[3 * i + j]));
-    let place = vector(&coord["r"]);
-    let [v, o] = ["v", "o"].map(|name| apply(rear, vector(&velocity[name])));
-    let [wd, wr, wf] = ["wd", "wr", "wf"].map(|name| number(&velocity[name]));
-    assert_near(wd, 0.0, 1e-12);
-    let lambda = PI / 10.0;
-    let tilted = times(
-        times(turn(1, lambda), turn(2, number(&coord["delta"]))),
-        turn(1, -lambda),
-    );
-    let fork = times(rear, tilted);
-    // Ω is vertical.
-    let rate = o[2];
-    assert!(rate.abs() > 0.1 && o[0].hypot(o[1]) < 1e-10, "{o:?}");
-    let steer = sum(place, apply(rear, [1.1, 0.0, 0.3]), 1.0);
-    let hub = sum(steer, apply(fork, [-0.08, 0.0, -0.35]), 1.0);
-    let about = |axes: Matrix, spin: f64| sum(o, axes.map(|row| row[1]), spin);
-    let bodies = [
-        (
-            2.0,
-            place,
-            about(rear, wr),
-            rear,
-            [[0.0603, 0.0, 0.0], [0.0, 0.12, 0.0], [0.0, 0.0, 0.0603]],
-        ),
-        (
-            85.0,
-            sum(place, apply(rear, [0.3, 0.0, -0.6]), 1.0),
-            o,
-            rear,
-            [[9.2, 0.0, 2.4], [0.0, 11.0, 0.0], [2.4, 0.0, 2.8]],
-        ),
-        (
-            4.0,
-            sum(steer, apply(fork, [0.9 - 1.1, 0.0, -0.7]), 1.0),
-            o,
-            fork,
-            [
-                [0.05892, 0.0, -0.00756],
-                [0.0, 0.06, 0.0],
-                [-0.00756, 0.0, 0.00708],
-            ],
-        ),
-        (
-            3.0,
-            hub,
-            about(fork, wf),
-            fork,
-            [[0.1405, 0.0, 0.0], [0.0, 0.28, 0.0], [0.0, 0.0, 0.1405]],
-        ),
-    ];
-    // The lowest points of the wheels, z down.
-    let lowest = |centre: Vector, axes: Matrix, radius: f64| {
-        let axle = axes.map(|row| row[1]);
-        let down = sum([0.0, 0.0, 1.0], axle, -axle[2]);
-        sum(centre, down, radius / dot(down, down).sqrt())
-    };
-    let contacts = [lowest(place, rear, 0.3), lowest(hub, fork, 0.35)];
-    contacts
-        .iter()
-        .for_each(|contact| assert_near(contact[2], 0.0, 1e-12));
-    let line = sum(contacts[1], contacts[0], -1.0);
-    let mut balance = 0.0;
-    for (m, centre, w, axes, inertia) in bodies {
-        let arm = sum(centre, contacts[0], -1.0);
-        let speed = sum(v, cross(o, sum(centre, place, -1.0)), 1.0);
-        let turning = [0.0, 0.0, rate];
-        let inertia = times(times(axes, inertia), transpose(axes));
-        let accelerated = sum(cross(turning, speed), [0.0, 0.0, 9.81], -1.0);
-        balance +=
-            m * dot(line, cross(arm, accelerated)) + dot(line, cross(turning, apply(inertia, w)));
-    }
-    assert_near(balance, 0.0, 1e-9);
-    assert_stays(
-        &file,
-        "",
-        &found,
-        ("10", &["wr", "o[1]", "o[2]", "o[3]", "wd"]),
-    );
-}
-
-/// A quadrotor that hovers in wind W leans so that thrust balances weight and drag: T² = (m g)² + (d W)².
-#[test]
-fn a_quadrotor_leans_against_the_wind() {
-    let drone = "system Drone { param m = 1.1, g = 9.81, a = 0.2, k = 0.02, d = 0.15, W = 6;
-        coord r: R3, R: SO3; velocity v: vec3, w: vec3; rate r = R * v; rate R = R * hat(w);
-        frame hull = pose(R, r);
-        body on hull { mass m; inertia diag(0.012, 0.014, 0.021) about com; } gravity [0, 0, -g];
-        input f: vec4;
-        force [0, 0, f[1]] at [a, 0, 0] on hull in body; force [0, 0, f[2]] at [0, a, 0] on hull in body;
-        force [0, 0, f[3]] at [-a, 0, 0] on hull in body; force [0, 0, f[4]] at [0, -a, 0] on hull in body;
-        torque [0, 0, k * (f[1] - f[2] + f[3] - f[4])] on hull in hull;
-        force d * ([W, 0, 0] - R * v) at [0, 0, 0] on hull in world; }";
-    let found = trimmed("-", drone, &["--free", "f"]);
-    let (weight, drag): (f64, f64) = (1.1 * 9.81, 0.15 * 6.0);
-    for force in numbers(&found["state"]["input"]["f"]) {
-        assert_near(force, weight.hypot(drag) / 4.0, 1e-10);
-    }
-    let rows = numbers(&found["state"]["coord"]["R"]);
-    let axis = [rows[2], rows[5], rows[8]].map(|entry| entry * weight.hypot(drag));
-    [-drag, 0.0, weight]
-        .iter()
-        .zip(axis)
-        .for_each(|(expected, found)| assert_near(found, *expected, 1e-10));
-    // Place and heading: the turn about the thrust.
-    assert_eq!(
-        (found["rank"].as_u64(), undetermined(&found).len()),
-        (Some(6), 4)
-    );
-    // In still air at a given speed over ground, with another centre of mass.
-    let file = model("tests/models/drone");
-    let found = trimmed(
-        &file,
-        "",
-        &[
-            "--steady",
-            "--free",
-            "f",
-            "--fix",
-            "speed = [6, 0, 0]",
-            "--fix",
-            "w = [0, 0, 0]",
-        ],
-    );
-    let forces = numbers(&found["state"]["input"]["f"]);
-    assert_near(forces.iter().sum(), weight.hypot(drag), 1e-9);
-    // Moments about the centre of mass at (0.01, 0, -0.03).
-    assert_near(
-        (0.2 - 0.01) * forces[0] - 0.01 * (forces[1] + forces[3]) - 0.21 * forces[2],
-        0.0,
-        1e-10,
-    );
-    assert_near(forces[1] - forces[3], 0.0, 1e-10);
-    assert_near(forces[0] - forces[1] + forces[2] - forces[3], 0.0, 1e-10);
-    assert_stays(
-        &file,
-        "",
-        &found,
-        ("3", &["v[1]", "v[2]", "v[3]", "w[1]", "w[2]", "w[3]"]),
-    );
-}
-
 const SLIDER: &str = "system Slider { param F = 3; input u; coord q; velocity v; rate q = v; particle mass 2 at [q, 0, 0];
     generalized force v = F + u - 0.5 * v; output speed = v; }";
 
@@ -691,4 +384,128 @@ fn the_state_that_is_written_reads_back() {
     let output = hamel(&["trim", &file, "--at", path, "-o", path], "");
     assert_eq!(output.status.code(), Some(2));
     std::fs::remove_file(out).expect("removed");
+}
+
+/// Random numbers between −1 and 1.
+fn random(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
+    }
+}
+
+/// A random tree of bodies on springy joints, with springs to the world, and with a loop if `looped`.
+fn springy(seed: u64, looped: bool) -> String {
+    let mut number = random(seed);
+    let mut vector = |size: f64| -> String {
+        let entries: Vec<String> = (0..3).map(|_| format!("{:.3}", size * number())).collect();
+        format!("[{}]", entries.join(", "))
+    };
+    let mut other = random(seed ^ 0x5555);
+    let count = 2 + (seed % 4) as usize;
+    let mut text = String::from("system Springy { gravity [0, 0, -9.81];");
+    for i in 1..=count {
+        let below = ((other() + 1.0) / 2.0 * i as f64) as usize;
+        let on = if below == 0 {
+            String::new()
+        } else {
+            format!("on b{below} ")
+        };
+        let kind = other();
+        let (stiffness, rest) = (3.0 + 2.0 * other(), 0.5 * other());
+        let joint = match kind {
+            _ if kind < 0.4 => format!(
+                "revolute {} {on}at {} moves b{i} {{ stiffness {stiffness:.3}; rest {rest:.3}; }}",
+                vector(1.0),
+                vector(0.4)
+            ),
+            _ if kind < 0.8 => format!(
+                "prismatic {} {on}at {} moves b{i} {{ stiffness {:.3}; rest {rest:.3}; }}",
+                vector(1.0),
+                vector(0.4),
+                20.0 * stiffness
+            ),
+            _ => format!("spherical {on}at {} moves b{i}", vector(0.4)),
+        };
+        let end = if joint.ends_with('}') { "" } else { ";" };
+        text += &format!("joint j{i}: {joint}{end}\n");
+        text += &format!(
+            "body on b{i} {{ mass {:.3}; com {}; inertia diag(0.03, 0.04, 0.05) about com; }}
+            spring stiffness {:.3} length 0.3 from {} on b{i} to {} on world;\n",
+            0.6 + 0.4 * other(),
+            vector(0.3),
+            30.0 + 20.0 * other(),
+            vector(0.5),
+            vector(1.0),
+        );
+    }
+    if looped {
+        text += &format!(
+            "loop dot(position(b{count}, {}) - position(b1, {}), {}) = 0.02;",
+            vector(0.3),
+            vector(0.3),
+            vector(1.0)
+        );
+    }
+    text + "}"
+}
+
+/// At every equilibrium of a random mechanism accelerations vanish by another evaluation, and the search from there
+/// stays. `HAMEL_ATTACK` adds mechanisms.
+#[test]
+fn random_mechanisms_come_to_rest() {
+    let count = match std::env::var("HAMEL_ATTACK").as_deref() {
+        Ok("full") => 300,
+        Ok(_) => 60,
+        Err(_) => 5,
+    };
+    let (mut found, mut stable) = (0, 0);
+    for seed in 0..count {
+        let text = springy(seed, seed % 3 == 2);
+        let reporter = std::sync::Arc::new(hamel_engine::Quiet);
+        let session =
+            hamel_engine::Session::read(text.clone(), "random", &Default::default(), reporter);
+        let session = session.unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let options = hamel_engine::TrimOptions::default();
+        let trim = match session.trim(&session.start(), &options) {
+            Ok(trim) => trim,
+            Err(error) => {
+                println!("{seed}: {error}");
+                continue;
+            }
+        };
+        found += 1;
+        stable += usize::from(
+            trim.spectrum
+                .as_ref()
+                .is_some_and(|found| found.stability == hamel_engine::trim::Stability::Neutral),
+        );
+        let values = session.evaluate(&trim.state).expect("values");
+        let rates = values.accel.expect("accelerations");
+        let size = trim
+            .spectrum
+            .as_ref()
+            .map_or(1.0, |found| found.size.max(1.0));
+        rates
+            .iter()
+            .for_each(|rate| assert_near(*rate, 0.0, 1e-12 * size));
+        let written = trim
+            .state
+            .to_json(session.generated(), &trim.full)
+            .to_string();
+        let read = session
+            .state(&trim.state.params, &written, "written")
+            .expect("a state");
+        let again = session.trim(&read, &options).expect("the same");
+        let moved = again.state.x.iter().zip(&trim.state.x);
+        moved.for_each(|(a, b)| assert_near(*a, *b, 1e-9));
+        assert!(
+            again.steps <= 2 && trim.undetermined.is_empty(),
+            "{seed}: {trim:?}\n{text}"
+        );
+    }
+    println!("{found} of {count} found, {stable} of them stable");
+    assert!(found * 10 >= count * 9, "{found} of {count}");
 }
