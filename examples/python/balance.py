@@ -11,7 +11,6 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_continuous_are
 
 import hamel
 
@@ -39,9 +38,7 @@ def main(folder: Path) -> None:
     print("eigenvalues without control:", np.round(upright.eigenvalues, 3))
 
     # The feedback F = -K (p, th, v, w) that minimises the weighted squares of states and force (LQR).
-    weight, cost = np.diag([10.0, 10.0, 1.0, 1.0]), np.array([[1.0]])
-    riccati = solve_continuous_are(upright.A, upright.B, weight, cost)
-    gain = np.linalg.solve(cost, upright.B.T @ riccati)
+    gain = upright.lqr([10.0, 10.0, 1.0, 1.0], [1.0]).K
 
     def law(t: float, x: NDArray[np.float64], xi: NDArray[np.float64]) -> NDArray[np.float64]:
         force: NDArray[np.float64] = -gain @ np.concatenate([x, xi])

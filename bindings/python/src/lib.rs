@@ -5,12 +5,14 @@
 //! | `session` | a description, and all requests to it |
 //! | `run` | runs, with their options and results |
 //! | `function`, `states`, `rows` | generated functions over arrays: calls, evaluation, arrays of states |
+//! | `linear` | linear systems: steps, modes, zeros, regulators |
 //! | `law` | functions in Python that give inputs, or are watched for events |
 //! | `failure`, `warnings` | exceptions, and warnings |
 
 mod failure;
 mod function;
 mod law;
+mod linear;
 mod rows;
 mod run;
 mod session;
@@ -26,6 +28,8 @@ mod _hamel {
     use super::failure::{HamelError, SingularError};
     #[pymodule_export]
     use super::function::Function;
+    #[pymodule_export]
+    use super::linear::Linear;
     #[pymodule_export]
     use super::session::{Session, asked, command, decoded};
 

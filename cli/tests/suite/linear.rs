@@ -465,3 +465,10 @@ fn formats_agree() {
         assert!(text.contains("'h(v)', 'd(v)'"), "{text}");
     }
 }
+
+/// A stable system without weights is left alone.
+#[test]
+fn nothing_is_done_where_nothing_costs() {
+    let found = json(&["lqr", "-", "--q", "h = 0"], MASS);
+    assert_eq!(matrix(&found["K"]), [[0.0, 0.0]]);
+}

@@ -31,8 +31,13 @@ pub enum LinearError {
 impl fmt::Display for LinearError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |modes: &[Mode]| {
-            let all: Vec<String> = modes.iter().map(ToString::to_string).collect();
-            all.join("; ")
+            let groups = modes
+                .chunk_by(|a, b| a == b)
+                .map(|equal| match equal.len() {
+                    1 => equal[0].to_string(),
+                    count => format!("{}, {count} times", equal[0]),
+                });
+            groups.collect::<Vec<_>>().join("; ")
         };
         match self {
             LinearError::NoEigenvalues => f.write_str("the eigenvalues were not found: the QR algorithm does not converge"),

@@ -95,7 +95,8 @@ impl Riccati {
         let size = parts.iter().map(|part| part.norm()).sum::<f64>();
         let [first, second, third, fourth] = parts;
         let residual = symmetric(first + second + third + fourth);
-        (size > 0.0 && size.is_finite()).then_some((residual, size))
+        size.is_finite()
+            .then_some((residual, size.max(f64::MIN_POSITIVE)))
     }
 
     /// Solves the equation with these matrices and G = B R⁻¹ Bᵀ by doubling (Chu, Fan and Lin 2005); with G = 0 it is

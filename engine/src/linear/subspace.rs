@@ -116,10 +116,13 @@ impl Quadruple {
     /// Returns an orthonormal basis N of the unreachable directions: the largest subspace with Nᵀ B = 0 that Aᵀ maps
     /// into itself, so that Nᵀ x moves by itself, with the matrix Nᵀ A N. The system has to be balanced.
     pub fn unreachable(&self) -> Matrix {
-        let tolerance = self.tolerance();
-        let (_, mut basis) = split(&self.b.transpose(), tolerance);
+        let n = self.a.nrows();
+        // A multiple of I changes no such subspace; without it, short steps do not hide what couples states.
+        let shifted = &self.a - Matrix::identity(n, n) * (self.a.trace() / n.max(1) as f64);
+        let tolerance = RANK_TOLERANCE * shifted.amax();
+        let (_, mut basis) = split(&self.b.transpose(), RANK_TOLERANCE * self.b.amax());
         loop {
-            let moved = self.a.tr_mul(&basis);
+            let moved = shifted.tr_mul(&basis);
             let leaving = &moved - &basis * basis.tr_mul(&moved);
             let (lost, kept) = split(&leaving, tolerance);
             if lost.ncols() == 0 {

@@ -13,12 +13,12 @@ velocities followed by the first-order states, u the inputs. `System.coordinates
 """
 
 from ._hamel import Function, HamelError, SingularError, __version__
+from ._linear import Linearization, Mode, Regulator
 from ._system import (
     BaseParameters,
     Event,
     EventOccurrences,
     Happened,
-    Linearization,
     Names,
     Run,
     RunError,
@@ -38,7 +38,9 @@ __all__ = [
     "HamelError",
     "Happened",
     "Linearization",
+    "Mode",
     "Names",
+    "Regulator",
     "Run",
     "RunError",
     "SingularError",

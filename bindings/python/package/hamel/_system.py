@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._hamel import Function, HamelError, Session, decoded
+from ._linear import Linearization
 
 Array = NDArray[np.float64]
 Inputs = Union[
@@ -202,27 +203,6 @@ class Run:
             there = [*self.coordinates.groups, *self.velocities.groups, *self.outputs]
             raise KeyError(f"no `{name}` in this run: there are {', '.join(there)}")
         return part[:, 0] if part.shape[1] == 1 else part
-
-
-@dataclass(frozen=True)
-class Linearization:
-    """Linear model d/dt (h, δξ) = A (h, δξ) + B δu, δy = C (h, δξ) + D δu of the motion near a state.
-
-    h are displacements along the columns of A(x), δξ changes of the velocities. With n `states`, m `inputs` and p
-    `outputs`, A is (n, n), B (n, m), C (p, n), D (p, m), and `eigenvalues` (n,).
-    """
-
-    A: Array
-    B: Array
-    C: Array
-    D: Array
-    states: list[str]
-    inputs: list[str]
-    outputs: list[str]
-    #: Eigenvalues of A (1/s), the fastest growing first.
-    eigenvalues: NDArray[np.complex128]
-    #: Accelerations at the state. If they are not zero, the matrices hold for this instant only.
-    xi_dot: Array
 
 
 @dataclass(frozen=True)
