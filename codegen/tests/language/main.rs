@@ -8,6 +8,7 @@ mod dimensions;
 mod functions;
 mod nearest;
 mod number;
+mod random_dimensions;
 mod shapes;
 mod suggest;
 mod syntax;
