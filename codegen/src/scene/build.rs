@@ -16,7 +16,7 @@ use hamel_language::expression::ident;
 /// is [generated](Scene::generate), by the same checks as for texts. Errors show the statement that they are about.
 #[derive(Clone, Debug)]
 pub struct SceneBuilder {
-    system: System,
+    pub(super) system: System,
 }
 
 impl SceneBuilder {

@@ -39,6 +39,7 @@ mod check;
 mod claim;
 mod parts;
 mod reuse;
+mod units;
 
 use crate::diagnostics::Diagnostic;
 use crate::emit;

@@ -1,9 +1,10 @@
 //! Dimensions: descriptions of the gallery with units, wrong ones made from them, conversions, and random expressions.
 
+use hamel_language::algebra::residue_pair::Random;
 use hamel_language::lower::build;
 use hamel_language::model::Model;
 use hamel_language::syntax::ast::{Item, ItemKind, System};
-use hamel_language::syntax::{parse_text, print};
+use hamel_language::syntax::{parse_text, parse_tokens, print};
 use hamel_language::units::Unit;
 use std::path::Path;
 
@@ -202,6 +203,61 @@ fn strip(item: &mut Item) {
         ItemKind::Repeat(repeat) => repeat.items.iter_mut().for_each(strip),
         _ => {}
     }
+}
+
+#[test]
+fn tokens_and_texts_say_the_same() {
+    for (name, _) in GALLERY {
+        let text = consistent(name);
+        let tokens = text.parse().expect("tokens");
+        let (_, read) = parse_tokens(tokens);
+        assert_eq!(
+            read.expect("right"),
+            parse_text(&text).expect("right"),
+            "{name}"
+        );
+    }
+}
+
+/// Units of random tokens, in all places of units, are read or refused, and print as they read.
+#[test]
+fn no_unit_panics() {
+    const TOKENS: [&str; 22] = [
+        "kg", "m", "s", "deg", "rpm", "in", "x", "1", "2", "99", "-", "*", "/", "^", "(", ")", ",",
+        "[m]", "0", ";", "fs", "_",
+    ];
+    let mut random = Random::new(11);
+    let mut below = |n: usize| random.bits() as usize % n;
+    let mut right = 0;
+    for _ in 0..20_000 {
+        let mut unit: Vec<&str> = (0..1 + below(7))
+            .map(|_| TOKENS[below(TOKENS.len())])
+            .collect();
+        if below(2) == 0 {
+            unit = (0..1 + below(3))
+                .flat_map(|_| [TOKENS[below(6)], ["*", "/", "^2 /", "^-1 *"][below(4)]])
+                .collect();
+            unit.push("m^(2/3)");
+        }
+        let unit = unit.join(" ");
+        let statement = match below(6) {
+            0 => format!("param a: [{unit}] = -2 * pi;"),
+            1 => format!("coord a: R3 [{unit}];"),
+            2 => format!("output a: [{unit}] = 3;"),
+            3 => format!("let a = 3 [{unit}] + 2;"),
+            4 => format!("const a: vec2 [{unit}] = [1, 2];"),
+            _ => format!("velocity a: [{unit}] = rate(q);"),
+        };
+        let text = format!("system S {{ coord q; {statement} }}");
+        if let Ok(system) = parse_text(&text) {
+            right += 1;
+            let printed = print::print_description(&system);
+            let read =
+                parse_text(&printed).unwrap_or_else(|errors| panic!("{errors:?}\n{printed}"));
+            assert_eq!(read, system, "{printed}");
+        }
+    }
+    assert!(right > 1000, "{right}");
 }
 
 /// Small changes of the gallery's mechanisms that make their dimensions wrong.

@@ -53,10 +53,16 @@ const EVERYTHING: &str = "
 system Everything {
     param m = 1.3e-7, k: vec2 = [1, -2], J: sym2 = [[1, 0], [0, 2]], N: mat2 = [[1, 0], [0, 2]];
     const c = 3 / 2;
+    param mass: [kg] = 2, arm: vec3 [mm] = [250, 0, -3e-2], turn = -30 [deg], spin: [rpm] = 30;
     let e: vec3 = [0, 0, 0.000000000000000001];
     fn drag(a: vec3, b) = -b * norm(a) * a;
     table lift = [(-0.5, -1), (0, c), (2e-3, 1 - (2 - 3))] pchip extrapolate error;
     table polar from \"polar.csv\" linear extrapolate linear;
+    coord q_1: [rad], r_1: R3 [m];
+    velocity v_1: vec3 [m/s];
+    input F_1: [N], F_2: vec3 [N];
+    state z_1: [A] = 0;
+    output work: [J] = 2.5 [kN*mm] + 3 [m^(1/2)/s^-1];
     coord q, r: R3, a: S1, b: S3, R: SO3, X: SE3;
     velocity u, v: vec3, w = a.c * rate(a.s) - a.s * rate(a.c);
     input F: vec3, t;
@@ -136,6 +142,46 @@ fn every_statement_reads_back() {
 }
 
 #[test]
+fn units_are_those_of_the_text() {
+    let mut built = Scene::builder("Units");
+    built.param("m", 1.3);
+    built.param("l", -250);
+    built.constant("a", 30);
+    built.coordinate("r", CoordKind::Euclidean(3));
+    built.output("y", 2);
+    for (name, unit) in [
+        ("m", "kg"),
+        ("l", "mm"),
+        ("a", "deg"),
+        ("r", "m"),
+        ("y", "N*m"),
+    ] {
+        built.unit(name, unit).expect("a unit");
+    }
+    let text = "pub system Units {
+    param m: [kg] = 1.3;
+    param l: [mm] = -250;
+    const a: [deg] = 30;
+    coord r: R3 [m];
+    output y: [N*m] = 2;
+}
+";
+    let scene = built.build().expect("a description");
+    assert_eq!(scene.to_string(), text);
+    assert_eq!(scene, Scene::parse(text).expect("a description"));
+    for (name, unit, message) in [
+        ("n", "kg", "`n` is not declared"),
+        ("m", "kgs", "unknown unit `kgs`"),
+        ("r", "mm", "`r` is computed in SI, not in `mm`"),
+        ("m", "kg] = 1, n: [m", "expected"),
+    ] {
+        let error = built.unit(name, unit).expect_err(unit);
+        assert!(error.to_string().contains(message), "{error}");
+    }
+    assert_eq!(built.build().expect("unchanged"), scene);
+}
+
+#[test]
 fn scenes_that_say_something_else_are_not_equal() {
     let scene = Scene::parse(EVERYTHING).expect("a description");
     for (from, to) in [
@@ -146,6 +192,8 @@ fn scenes_that_say_something_else_are_not_equal() {
         ("stabilized 20", ""),
         ("    body on f { }\n", ""),
         ("/// All statements.", "///"),
+        ("[rpm]", "[rad/s]"),
+        ("F_1: [N]", "F_1"),
     ] {
         let changed = EVERYTHING.replacen(from, to, 1);
         assert_ne!(changed, EVERYTHING);

@@ -189,4 +189,10 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "the included texts are too long",
         "what is included amounts to many megabytes",
     ),
+    (
+        "scene/units.rs",
+        "`{name}` is not declared",
+        "`…` is not declared",
+        "a program sets the unit of a name before it adds the declaration: set it afterwards",
+    ),
 ];
