@@ -33,8 +33,16 @@ pub fn panels(run: &Run, on_sphere: bool) -> Vec<Panel> {
     panels
 }
 
+/// The values of an entry over time, and its name with its unit, if the description has units.
 fn tracked(run: &Run, name: &str, of: impl Fn(&Sample) -> f64) -> Line {
-    (name.to_string(), run.track.iter().map(of).collect())
+    let group = name.split(['[', '.']).next().unwrap_or(name);
+    let dimensions = run.generated.model.dimensions.as_ref();
+    let unit = dimensions.and_then(|found| found.units.get(group));
+    let name = match unit.filter(|unit| *unit != "1") {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name.to_string(),
+    };
+    (name, run.track.iter().map(of).collect())
 }
 
 /// Coordinates: numbers directly, circles by their angles, attitudes by their angles from the axes of

@@ -1,6 +1,7 @@
 //! Scenes: printing and parsing are inverse, and a built scene equals the parsed one.
 
 use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::emit::rust_items;
 use hamel_codegen::scene::{
     Body, CoordKind, Element, Expr, Extrapolation, Interpolation, Joint, Load, Parameter, Point,
     Scene, SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, in_axes, pose, shifted, sin,
@@ -179,6 +180,48 @@ fn units_are_those_of_the_text() {
         assert!(error.to_string().contains(message), "{error}");
     }
     assert_eq!(built.build().expect("unchanged"), scene);
+}
+
+#[test]
+fn units_are_documented() {
+    let text = "pub system Cart {
+    param m: [g] = 250, k = 3;
+    coord x: [m], q;
+    velocity v, w;
+    input F: [N];
+    rate x = v, q = w;
+    kinetic m * v^2 / 2 + 1 [kg*m^2] * w^2 / 2;
+    spring stiffness k on x;
+    generalized force v = F;
+    generate accel;
+}";
+    let scene = Scene::parse(text).expect("a description");
+    let generated = scene.generate().expect("right");
+    let code = rust_items(&generated.program, &Default::default());
+    for line in [
+        "/// Parameter `m` in `kg`, a number.",
+        "/// Parameter `k` in `N/m`, a number.",
+        "/// Sets parameter `k` in `N/m`;",
+        "/// Velocity `v` in `m/s`, a number.",
+        "/// Velocity `w` in `rad/s`, a number.",
+        "/// Input `F` in `N`, a number.",
+    ] {
+        assert!(code.contains(line), "{line}\n{code}");
+    }
+    let plain = text
+        .replace(": [g] = 250", " = 0.25")
+        .replace(": [m]", "")
+        .replace(": [N]", "");
+    let plain = Scene::parse(&plain.replace("1 [kg*m^2]", "1")).expect("a description");
+    let plain = plain.generate().expect("right");
+    assert_eq!(plain.program.defaults, generated.program.defaults);
+    let plain = rust_items(&plain.program, &Default::default());
+    let without = ["kg", "N/m", "m/s", "rad/s", "N"]
+        .iter()
+        .fold(code, |code, unit| {
+            code.replace(&format!(" in `{unit}`"), "")
+        });
+    assert_eq!(without, plain);
 }
 
 #[test]

@@ -57,15 +57,15 @@ pub struct Group {
     pub offset: usize,
     /// Number of its symbols.
     pub len: usize,
-    /// Its unit in SI, if the description has units and its entries have one dimension.
+    /// Its unit in SI, if the description has units and its entries have one dimension; none for numbers and angles.
     pub unit: Option<String>,
 }
 
 impl Group {
-    /// Returns the name in code quotes, with the unit if it is known: "`m` [kg]".
+    /// Returns the name in code quotes, with the unit if it has one: "`m` in `kg`".
     pub fn quoted(&self) -> String {
         match &self.unit {
-            Some(unit) => format!("`{}` [{unit}]", self.name),
+            Some(unit) => format!("`{}` in `{unit}`", self.name),
             None => format!("`{}`", self.name),
         }
     }
@@ -310,7 +310,8 @@ impl Model {
             &mut self.states,
         ];
         for group in groups.into_iter().flatten() {
-            group.unit = dimensions.units.get(&group.name).cloned();
+            let unit = dimensions.units.get(&group.name);
+            group.unit = unit.filter(|unit| *unit != "1").cloned();
         }
         self.dimensions = Some(dimensions);
     }

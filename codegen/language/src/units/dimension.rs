@@ -82,8 +82,8 @@ impl Dimension {
     /// Describes a quantity of this dimension: "a length [m]".
     pub fn describe(&self) -> String {
         match self.named() {
-            Some((name, unit)) if self.is_one() => format!("{name} [{unit}]"),
-            Some((name, _)) => format!("{name} [{self}]"),
+            Some((name, _)) if self.is_one() => name.into(),
+            Some((name, unit)) => format!("{name} [{unit}]"),
             None => format!("a quantity in [{self}]"),
         }
     }
