@@ -6,8 +6,8 @@ use crate::failure::{self, Failure};
 #[cfg(feature = "sweep")]
 use crate::sweep;
 use crate::{
-    bode, check, compare, draw, emit, eval, import, linearize, lqr, ops, regressor, simulate, step,
-    tables, trim,
+    bode, check, compare, draw, emit, eval, import, linearize, lqr, ops, regressor, report,
+    simulate, step, tables, trim,
 };
 use clap::{Parser, Subcommand};
 use hamel_engine::CancellationToken;
@@ -18,6 +18,7 @@ Examples:
   hamel check heavy_top.eom                     prove the identities behind the equations
   hamel tables heavy_top.eom --of gamma,M       the symbols of the equations
   hamel regressor arm.urdf                      the inertial parameters that matter
+  hamel report heavy_top.eom -o top.html        the derivation as a document
   hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
   hamel lqr furuta.eom --at upright.json        a regulator; `hamel step`, `hamel bode`: responses
   hamel trim heavy_top.eom                      an equilibrium, or a steady motion
@@ -52,6 +53,7 @@ enum Command {
     Step(step::Arguments),
     Bode(bode::Arguments),
     Trim(trim::Arguments),
+    Report(report::Arguments),
     Simulate(simulate::Arguments),
     Draw(draw::Arguments),
     Sweep(sweep::Arguments),
@@ -104,6 +106,7 @@ impl Command {
             Command::Step(arguments) => step::run(arguments),
             Command::Bode(arguments) => bode::run(arguments),
             Command::Trim(arguments) => trim::run(arguments),
+            Command::Report(arguments) => report::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Draw(arguments) => draw::run(arguments),
             Command::Sweep(arguments) => sweep::run(arguments, None),

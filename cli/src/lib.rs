@@ -63,6 +63,8 @@ mod parse;
 mod progress;
 #[cfg(feature = "command")]
 mod regressor;
+#[cfg(feature = "command")]
+mod report;
 pub mod reports;
 mod robot;
 #[cfg(feature = "command")]

@@ -10,8 +10,9 @@ use crate::simulate::InputArguments;
 use crate::source;
 use clap::Args;
 use hamel_codegen::generate::Generated;
-use hamel_engine::{InputSource, Samples, Scene, Session, Simulation, State, Stepping};
+use hamel_engine::{InputSource, Samples, Scene, Session, Simulation, Source, State, Stepping};
 use hamel_files::number::short;
+use hamel_report::plot::Figure;
 use hamel_report::plot::space::{ISOMETRIC, Space, Vector, base, space};
 use shapes::Shapes;
 use std::path::PathBuf;
@@ -119,18 +120,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let scenes = moments.path.iter().map(|x| drawn.scene(x));
         scenes.map(|scene| scene.frames[frame].position).collect()
     };
-    let vertical = last.gravity.map(|entry| -entry);
-    let floor = vertical.iter().any(|entry| *entry != 0.0);
-    let shapes = Shapes::new(last);
     let picture = Space {
-        title: session.name().into(),
         subtitle: caption(arguments),
-        base: base(vertical),
         eye: arguments.view,
-        floor,
-        parts: shapes.of(last),
-        poses: before.iter().map(|scene| shapes.faint(scene)).collect(),
+        poses: before
+            .iter()
+            .map(|scene| Shapes::new(last).faint(scene))
+            .collect(),
         paths: traced_frames.into_iter().map(path).collect(),
+        ..still(session.name(), last)
     };
     let text = space(&picture).standalone();
     match &arguments.out {
@@ -139,6 +137,32 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             print(&format!("wrote {}\n", out.display()))
         }
         None => print(&text),
+    }
+}
+
+/// Draws the mechanism at the start; `None` if nothing of it has a place in space.
+pub fn at_start(source: Source) -> Result<Option<Figure>, Failure> {
+    let session = Session::for_drawing(source.showing_frames())?;
+    let state = session.read_state(None)?;
+    let scene = session
+        .drawing()?
+        .with_parameters(&state.params)
+        .scene(&state.x);
+    Ok((!scene.is_empty()).then(|| space(&still(session.name(), &scene))))
+}
+
+/// Returns the picture of a single pose, from the default direction.
+fn still(name: &str, scene: &Scene) -> Space {
+    let vertical = scene.gravity.map(|entry| -entry);
+    Space {
+        title: name.into(),
+        subtitle: "at the start".into(),
+        base: base(vertical),
+        eye: ISOMETRIC,
+        floor: vertical.iter().any(|entry| *entry != 0.0),
+        parts: Shapes::new(scene).of(scene),
+        poses: Vec::new(),
+        paths: Vec::new(),
     }
 }
 

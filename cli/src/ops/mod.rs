@@ -118,6 +118,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
+/// Returns the operations of one call of each function: add, mul, div, sqrt, sincos, other.
+pub fn calls(program: &Program) -> Vec<(String, Operations)> {
+    let schedule = Schedule::of(program);
+    let functions = program.functions.iter().zip(&schedule.bodies);
+    functions
+        .map(|(function, body)| {
+            let counted = operations(count_nodes(&program.graph, body));
+            (function.name.clone(), counted)
+        })
+        .collect()
+}
+
 fn rows(program: &Program, schedule: &Schedule) -> Vec<Row> {
     let functions = program.functions.iter().zip(&schedule.bodies);
     functions

@@ -34,6 +34,7 @@ mod misspelt;
 mod pinocchio;
 mod redundant;
 mod regressor;
+mod report;
 mod robots;
 mod sampling;
 mod shaken;

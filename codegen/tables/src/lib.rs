@@ -16,10 +16,12 @@
 //! | `geometry` | the report on integrable velocities, Lie algebras, symmetries |
 //! | `regressor` | base parameters, in all four formats |
 //! | `notation`, `print` | names and expressions as text or LaTeX |
+//! | `display` | matrices and equations for documents, in LaTeX or MathML |
 //! | `text`, `markdown`, `latex`, `json`, `typeset` | output of a whole set of tables |
 
 mod circles;
 mod collect;
+pub mod display;
 mod entries;
 mod error;
 pub mod expression;
@@ -32,7 +34,7 @@ mod markdown;
 mod naming;
 mod notation;
 mod polish;
-mod print;
+pub mod print;
 pub mod regressor;
 mod rows;
 mod simplify;

@@ -1,4 +1,4 @@
-//! LaTeX for the names of a description.
+//! Names of a description in LaTeX and MathML.
 
 #[cfg(test)]
 mod tests;
@@ -47,6 +47,53 @@ const GREEK: &[(&str, &str)] = &[
 /// Converts a name with its indices to LaTeX: `s[1]` is s_{1}, `Theta[1,2]` is \Theta_{12}, `q.c` is q_c, `T.p[1]` is
 /// T_{p,1}, `v_dot[1]` is \dot{v}_{1}, `q_dot_dot` is \ddot{q}, `m1` is m_{1}, `th1` is \mathrm{th1}.
 pub fn latex_name(name: &str) -> String {
+    let Parts { stem, dots, below } = parts(name);
+    let stem = latex_word(&stem);
+    let stem = match dots {
+        0 => stem,
+        1 => format!(r"\dot{{{stem}}}"),
+        _ => format!(r"\ddot{{{stem}}}"),
+    };
+    let below: Vec<String> = below.iter().map(|part| latex_word(part)).collect();
+    match below.as_slice() {
+        [] => stem,
+        [one] if one.chars().all(char::is_alphabetic) && one.len() == 1 => {
+            format!("{stem}_{one}")
+        }
+        _ => format!("{stem}_{{{}}}", below.join(",")),
+    }
+}
+
+/// Converts a name with its indices to MathML, by the rules of [`latex_name`].
+pub fn mathml_name(name: &str) -> String {
+    let Parts { stem, dots, below } = parts(name);
+    let stem = mathml_word(&stem);
+    let stem = match dots {
+        0 => stem,
+        1 => format!("<mover>{stem}<mo>˙</mo></mover>"),
+        _ => format!("<mover>{stem}<mo>¨</mo></mover>"),
+    };
+    let below: Vec<String> = below.iter().map(|part| mathml_word(part)).collect();
+    match below.as_slice() {
+        [] => stem,
+        _ => format!(
+            "<msub>{stem}<mrow>{}</mrow></msub>",
+            below.join("<mo>,</mo>")
+        ),
+    }
+}
+
+/// A name taken apart.
+struct Parts {
+    /// The letter or word that carries dots and subscripts.
+    stem: String,
+    /// Number of dots above it, 0 to 2.
+    dots: usize,
+    /// Subscripts.
+    below: Vec<String>,
+}
+
+fn parts(name: &str) -> Parts {
     let (path, index) = match name.split_once('[') {
         Some((path, rest)) => (path, rest.trim_end_matches(']')),
         None => (name, ""),
@@ -54,13 +101,8 @@ pub fn latex_name(name: &str) -> String {
     let mut parts = path.split('.');
     let head = parts.next().unwrap_or_default();
     let (head, dots) = undot(head);
-    let (letter, mut below) = split(head);
-    let letter = match dots {
-        0 => letter,
-        1 => format!(r"\dot{{{letter}}}"),
-        _ => format!(r"\ddot{{{letter}}}"),
-    };
-    below.extend(parts.map(word));
+    let (stem, mut below) = split(head);
+    below.extend(parts.map(str::to_string));
     let indices: Vec<&str> = index
         .split(',')
         .map(str::trim)
@@ -70,13 +112,7 @@ pub fn latex_name(name: &str) -> String {
         let single = indices.iter().all(|index| index.len() == 1);
         below.push(indices.join(if single { "" } else { "," }));
     }
-    match below.as_slice() {
-        [] => letter,
-        [one] if one.chars().all(char::is_alphabetic) && one.len() == 1 => {
-            format!("{letter}_{one}")
-        }
-        _ => format!("{letter}_{{{}}}", below.join(",")),
-    }
+    Parts { stem, dots, below }
 }
 
 /// Removes `_dot` from a name and counts how often (0 to 2): `q_dot_dot` is the rate of the velocity `q_dot`.
@@ -98,35 +134,48 @@ fn split(name: &str) -> (String, Vec<String>) {
         && !rest.is_empty()
     {
         let (letter, mut below) = split(head);
-        below.push(word(&rest.replace('_', "")));
+        below.push(rest.replace('_', ""));
         return (letter, below);
     }
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let digits = &name[stem.len()..];
-    match letter(stem) {
-        Some(letter) if !digits.is_empty() => (letter, vec![digits.to_string()]),
-        Some(letter) => (letter, Vec::new()),
-        None => (word(name), Vec::new()),
+    if is_letter(stem) {
+        let digits = (!digits.is_empty()).then(|| digits.to_string());
+        return (stem.to_string(), digits.into_iter().collect());
     }
+    (name.to_string(), Vec::new())
 }
 
-/// Returns a single letter, or the command of a Greek one.
-fn letter(text: &str) -> Option<String> {
-    if let Some((name, _)) = GREEK
+/// Whether a name is a single letter, or that of a Greek one.
+fn is_letter(text: &str) -> bool {
+    text.len() == 1 && text.chars().all(|c| c.is_ascii_alphabetic()) || greek(text).is_some()
+}
+
+/// Returns the name of the LaTeX command of a Greek letter, and the letter.
+fn greek(text: &str) -> Option<&'static (&'static str, &'static str)> {
+    GREEK
         .iter()
         .find(|(name, sign)| *name == text || *sign == text)
-    {
-        return Some(format!("\\{name}"));
-    }
-    let mut letters = text.chars();
-    let first = letters.next()?;
-    (letters.next().is_none() && first.is_ascii_alphabetic()).then(|| first.to_string())
 }
 
-/// Returns a letter, digits, or an upright word.
-fn word(text: &str) -> String {
-    if text.chars().all(|c| c.is_ascii_digit()) {
-        return text.to_string();
+/// Returns a letter, digits with commas between them, or an upright word.
+fn latex_word(text: &str) -> String {
+    match greek(text) {
+        Some((name, _)) => format!("\\{name}"),
+        None if is_letter(text) || is_number(text) => text.to_string(),
+        None => format!(r"\mathrm{{{}}}", text.replace('_', r"\_")),
     }
-    letter(text).unwrap_or_else(|| format!(r"\mathrm{{{}}}", text.replace('_', r"\_")))
+}
+
+/// Returns the element for a letter or word, or for digits.
+fn mathml_word(text: &str) -> String {
+    match greek(text) {
+        Some((_, sign)) => format!("<mi>{sign}</mi>"),
+        None if is_number(text) => format!("<mn>{text}</mn>"),
+        None => format!("<mi>{text}</mi>"),
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    text.chars().all(|c| c.is_ascii_digit() || c == ',')
 }

@@ -265,11 +265,11 @@ impl BaseParameters {
             }
             let name = match (*what, notation) {
                 (Shown::StandardParameter(k), Notation::Text) => self.standard[k].name(),
-                (Shown::StandardParameter(k), Notation::Latex) => symbol(&self.standard[k]),
+                (Shown::StandardParameter(k), _) => symbol(&self.standard[k]),
                 (Shown::Moment(k, axis), Notation::Text) => {
                     format!("{}.{}", self.standard[k].of, SECOND_MOMENT_NAMES[axis])
                 }
-                (Shown::Moment(k, axis), Notation::Latex) => {
+                (Shown::Moment(k, axis), _) => {
                     let of = self.standard[k].of.replace('_', r"\_");
                     let axes = ["xx", "yy", "zz"][axis];
                     format!(r"\Sigma_{{{axes}}}^{{\text{{{of}}}}}")
@@ -280,8 +280,8 @@ impl BaseParameters {
                 ("", _) => name,
                 (factor, Notation::Text) if is_sum => format!("({factor})*{name}"),
                 (factor, Notation::Text) => format!("{factor}*{name}"),
-                (factor, Notation::Latex) if is_sum => format!(r"({factor})\,{name}"),
-                (factor, Notation::Latex) => format!(r"{factor}\,{name}"),
+                (factor, _) if is_sum => format!(r"({factor})\,{name}"),
+                (factor, _) => format!(r"{factor}\,{name}"),
             });
         }
         text.trim_start().to_string()
