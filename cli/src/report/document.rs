@@ -7,7 +7,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::display::{Display, displays};
 use hamel_codegen::tables::geometry;
 use hamel_codegen::tables::print::Notation;
-use hamel_codegen::tables::{Table, Tables};
+use hamel_codegen::tables::{Table, TableError, Tables};
 use hamel_engine::state::constraint_lines;
 use hamel_files::number::short;
 
@@ -107,17 +107,15 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Returns a table of the system, or the sentence that says why there is none.
-    fn table(&self, table: Table) -> Result<Tables, String> {
-        let tables = self.generated.tables(&[table]);
-        tables.map_err(|why| format!("Not available: {why}."))
+    fn table(&self, table: Table) -> Result<Tables, TableError> {
+        self.generated.tables(&[table])
     }
 
     /// Returns the formulas of a table, or the given sentence if all its entries are zero.
     fn formulas(&self, table: Table, if_zero: &str) -> Vec<Block> {
         let tables = match self.table(table) {
             Ok(tables) => tables,
-            Err(why) => return vec![Block::Paragraph(why)],
+            Err(why) => return vec![Block::Paragraph(format!("Not available: {why}."))],
         };
         let listings = tables.listings.iter();
         let formulas = listings.flat_map(|listing| displays(listing, self.notation));

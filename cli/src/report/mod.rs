@@ -28,8 +28,8 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Output file.
-    #[arg(short, long, value_name = "F.html|F.tex")]
+    /// Output file, `.html` or `.tex`.
+    #[arg(short, long, value_name = "F.html")]
     out: PathBuf,
     #[command(flatten)]
     robot: RobotOptions,
