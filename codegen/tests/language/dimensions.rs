@@ -4,7 +4,7 @@ use hamel_language::algebra::residue_pair::Random;
 use hamel_language::lower::build;
 use hamel_language::model::Model;
 use hamel_language::syntax::ast::{Item, ItemKind, System};
-use hamel_language::syntax::{parse_text, parse_tokens, print};
+use hamel_language::syntax::{parse_text, parse_tokens, print, read_files};
 use hamel_language::units::Unit;
 use std::path::Path;
 
@@ -349,4 +349,147 @@ fn wrong_twins_are_refused_with_both_places() {
         });
         assert!(placed.count() > 0, "{name}: {from} → {to}: {errors:#?}");
     }
+}
+
+/// Descriptions without units, checked by themselves: what they say of masses, lengths and times is consistent, except
+/// where quantities are hidden in plain factors, as the angular frequency 2 in `sin(2 * t)`.
+#[test]
+fn most_descriptions_are_consistent_without_units() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut open = vec![root.join("tests/models"), root.join("examples")];
+    let (mut right, mut wrong) = (0, vec![]);
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            let entries = std::fs::read_dir(&path).expect("a folder");
+            open.extend(entries.map(|entry| entry.expect("readable").path()));
+        }
+        if path.extension().is_none_or(|ending| ending != "eom") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).expect("readable");
+        let Some(brace) = text
+            .find("system ")
+            .and_then(|at| Some(at + text[at..].find('{')?))
+        else {
+            continue;
+        };
+        let text = format!("{{ param _unit: [kg] = 1;{}", &text[brace + 1..]);
+        let mut system = parse_text(&format!("system S {text}")).expect("right");
+        let folder = path.parent().expect("a folder").to_owned();
+        let mut open = |name: &str| std::fs::read_to_string(folder.join(name));
+        if read_files(&mut system, &mut open).is_err() {
+            continue;
+        }
+        let errors = build(&system).err().unwrap_or_default();
+        match errors
+            .iter()
+            .any(|error| error.site.file().contains("dimensions"))
+        {
+            true => wrong.push(path),
+            false => right += 1,
+        }
+    }
+    assert!(
+        right > 100 && 6 * wrong.len() < right,
+        "{right} are right, not {wrong:#?}"
+    );
+}
+
+/// Every kind of statement, with the units of all names that have none in the text, found by hand.
+#[test]
+fn dimensions_follow_from_every_kind_of_statement() {
+    let text = "system All {
+    param m: [kg] = 2, gravity_on_site = 9.81, k = 3, d = 0.1, b = 0.2, k_angle = 5, d_angle = 0.3, J = 0.01;
+    param length = 0.4, F0 = 2, T0 = 0.3, E0 = 1, P0 = 0.2, decay = 2, chord = 0.3, Theta: sym3 = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    param s: vec3 = [0, 0, 0.1], reach = 0.2, gain = 4, R0 = 3, L0 = 0.2, km = 0.5, Omega = 3, a0 = 0.1, c_air = 0.02;
+    const side = 0.3;
+    time t;
+    fn drag(c, v) = -c * norm(v) * v;
+    fn half(a) = a / 2;
+    table torque = [(0, 0.4), (100, 0.3)] linear extrapolate hold;
+    extern fn lift(alpha, speed) -> 2 = [2 * alpha * speed^2 * chord, 0.1 * speed^2 * chord];
+    coord X: SE3, Q: S3, x, y, a: S1;
+    velocity v: vec3, w: vec3, o: vec3, x_dot, y_dot, turn;
+    rate X.p = X.R * v;
+    rate X.R = X.R * hat(w);
+    rate Q = qmul(Q, [0, o[1], o[2], o[3]]) / 2;
+    rate x = x_dot, y = y_dot, a = turn;
+    input u, tau;
+    state i = 2 [mA];
+    rate i = (5 [V] - R0 * i - km * turn) / L0;
+    frame hull = X;
+    frame wheel on hull = pose(rot(Q), [side, 0, 0.2]);
+    frame slider on hull at [x, y, 0];
+    component Rod(mount: frame, long = 250 [mm], heavy) {
+        joint turn: revolute [0, 1, 0] on mount at [long, 0, 0] moves rod { damping d_angle; stiffness k_angle; armature J; limit -90 [deg] to 1; }
+        particle mass heavy at [0, 0, -long] on rod;
+    }
+    part rod[n in 1..2] = Rod(slider, heavy = n * 0.1 [kg]);
+    joint slide: prismatic [0, 0, 1] on slider moves knob { damping d; max_force 3 [N]; max_speed 2 [m/s]; }
+    body on hull { mass m; com s; inertia Theta about com; }
+    body on wheel { mass m; inertia m * reach^2 * identity(3) / 2 + outer(s, s) * m about origin; }
+    particle mass m / 2 at position(slider);
+    particle mass half(m) at position(knob);
+    kinetic m * turn^2 * reach^2;
+    gravity [0, 0, -gravity_on_site];
+    potential E0 * cos(x / reach) + half(k) * y^2;
+    dissipation P0 * (turn * t)^2;
+    force drag(c_air, velocity(hull)) on hull in world;
+    force [lift(X.p[1] / length, velocity(hull)[1])[1], 0, F0] at [0, length, 0] on hull in body;
+    torque [0, tau, T0] on hull in body;
+    generalized force turn = torque(turn) + km * i, x_dot = gain * u;
+    spring stiffness k length length from hull to slider;
+    damper coefficient d from hull to [0, 0, 0.1] on slider;
+    inerter inertance b from hull to world;
+    output angular = vee(X.R.T * rate(X.R)), far = if x < length { x } else { reach };
+    output share: [N] = u, thrown = m * velocity(slider), drift = acceleration(slider)[1] - a0 * exp(-decay * t) * sin(Omega * t);
+    start X = pose(rotx(20 [deg]), [0, 0, 30 [cm]]), x = 10 [mm], turn = 30 [rpm];
+    prescribe rate(y_dot) = a0 * sin(Omega * t);
+    loop x = y stabilized decay;
+}";
+    let model = built(text);
+    let dimensions = match model {
+        Ok(model) => model.dimensions.expect("has units"),
+        Err(errors) => {
+            let errors: Vec<String> = errors
+                .iter()
+                .map(|error| {
+                    format!(
+                        "{} «{}»",
+                        error.message,
+                        &text[error.span.range().unwrap_or_default()]
+                    )
+                })
+                .collect();
+            panic!("{errors:#?}");
+        }
+    };
+    let of = |names: &str, unit: &str| {
+        for name in names.split(' ') {
+            assert_eq!(
+                dimensions.units.get(name).map(String::as_str),
+                Some(unit),
+                "{name}"
+            );
+        }
+    };
+    of("gravity_on_site a0 drift", "m/s^2");
+    of("k", "N/m");
+    of("d", "N*s/m");
+    of("b", "kg");
+    of("k_angle T0 E0 tau", "N*m");
+    of("d_angle", "kg*m^2/s");
+    of("J Theta", "kg*m^2");
+    of("length s reach side x y far", "m");
+    of("F0 u share", "N");
+    of("gain", "1");
+    of("decay Omega w o turn angular", "rad/s");
+    of("chord c_air", "kg/m");
+    of("v x_dot y_dot", "m/s");
+    of("R0", "ohm");
+    of("L0", "H");
+    of("km", "Wb");
+    of("i", "A");
+    of("thrown", "kg*m/s");
+    assert!(dimensions.open.is_empty(), "{:?}", dimensions.open);
 }

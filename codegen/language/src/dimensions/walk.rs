@@ -149,28 +149,41 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// Returns the dimensions of a vector, or of a matrix by rows. In a vector of 3, plain numbers have the dimension of
+    /// the other entries, if these have one, so that `[a, 0, 0.03]` with a length a is a point.
     fn array(&mut self, items: &'a [Expr], expr: &'a Expr) -> Value {
-        let rows: Vec<Value> = items.iter().map(|item| self.of(item)).collect();
+        let mut rows = Vec::new();
+        for item in items {
+            rows.push(match &item.kind {
+                ExprKind::Array(entries) => Value::of(
+                    Shape::Vector(entries.len()),
+                    entries
+                        .iter()
+                        .map(|entry| self.of(entry).at(0).clone())
+                        .collect(),
+                ),
+                _ => self.of(item),
+            });
+        }
         let all = |row: &Value| {
             (0..row.len())
                 .map(|place| row.at(place).clone())
                 .collect::<Vec<_>>()
         };
+        let mut entries: Vec<Term> = rows.iter().flat_map(all).collect();
         let shape = match rows.first().map(|row| row.shape) {
             Some(Shape::Vector(n)) => Shape::Matrix(rows.len(), n),
             Some(Shape::Scalar) => Shape::Vector(rows.len()),
             _ => return self.unknown(expr),
         };
-        let mut entries: Vec<Term> = rows.iter().flat_map(all).collect();
-        if let (Shape::Vector(_), Some(of_others)) = (shape, self.of_others(&entries)) {
+        if let (Shape::Vector(3), Some(of_others)) = (shape, self.of_others(&entries)) {
             let plain = entries.iter_mut().filter(|term| **term == Term::Plain);
             plain.for_each(|term| *term = of_others.clone());
         }
         Value::of(shape, entries)
     }
 
-    /// Returns the dimension that plain numbers in a vector have: that of the other entries, if these have one that is
-    /// known, so that `[a, 0, 0.03]` with a length a is a point.
+    /// Returns the dimension of the entries that are not plain numbers, if they have one and are no numbers.
     fn of_others(&self, entries: &[Term]) -> Option<Term> {
         let forms = entries.iter().filter_map(|term| match term {
             Term::Quantity(form) => Some(self.unknowns.reduced(form)),
@@ -178,9 +191,9 @@ impl<'a> Walk<'a> {
         });
         let forms: Vec<Form> = forms.collect();
         let first = forms.first()?;
-        let known = first.as_known()?;
-        let same = !known.is_one() && forms.iter().all(|form| form == first);
-        same.then(|| Term::of(known.clone()))
+        let numbers = first.as_known().is_some_and(Dimension::is_one);
+        let same = !numbers && forms.iter().all(|form| form == first);
+        same.then(|| Term::Quantity(first.clone()))
     }
 
     fn choice(&mut self, choice: &'a Choice) -> Value {

@@ -79,7 +79,7 @@ impl Dimension {
         Dimension::one().times(self, exponent)
     }
 
-    /// Describes a quantity of this dimension: "a length [m]".
+    /// Describes a quantity of this dimension: `a length [m]`.
     pub fn describe(&self) -> String {
         match self.named() {
             Some((name, _)) if self.is_one() => name.into(),
