@@ -137,7 +137,7 @@ fn measures() -> io::Result<Vec<Measure>> {
             "lines of published sources",
             sizes.iter().sum(),
             104_000,
-            134_400,
+            135_600,
         ),
         measure(
             "lines of the largest crate",

@@ -176,3 +176,17 @@ fn frames_are_evaluated_by_their_names() {
         "{said}"
     );
 }
+
+#[test]
+fn checks_count_dimensions_where_units_are_written() {
+    let sled = "system Sled { param m: [kg] = 2, k = 3; coord x: [m]; velocity v; rate x = v;
+        kinetic m * v^2 / 2; spring stiffness k on x; start x = 20 [cm]; }";
+    let said = |description: &str| text(&hamel(&["check", "-"], description).stdout);
+    let line = "  dimensions     consistent: 2 declared, 2 inferred\n";
+    assert!(said(sled).contains(line), "{}", said(sled));
+    let plain = sled
+        .replace(": [kg]", "")
+        .replace(": [m]", "")
+        .replace("20 [cm]", "0.2");
+    assert_eq!(said(sled).replace(line, ""), said(&plain));
+}
