@@ -6,9 +6,10 @@ use crate::parse::positive;
 use crate::robot::RobotOptions;
 use crate::{outputs, source};
 use clap::Args;
-use hamel_engine::State;
+use hamel_codegen::generate::Generated;
 use hamel_engine::linear::{Channel, LinearSystem, Matrix};
 use hamel_engine::linearize::{Linearization, linearize};
+use hamel_engine::{State, names};
 use hamel_files::number::{exact, short};
 use hamel_report::plot::{Figure, Panel, Picture, PlotError};
 use nalgebra::Complex;
@@ -37,6 +38,15 @@ pub struct LinearArguments {
 impl LinearArguments {
     /// Linearises at the state, with all displacements if `full`.
     pub fn open(&self, full: bool) -> Result<(Linearization, LinearSystem), Failure> {
+        let (linear, system, _) = self.open_with_law(full)?;
+        Ok((linear, system))
+    }
+
+    /// Returns also the operating point, for controllers in terms of coordinates and velocities.
+    pub fn open_with_law(
+        &self,
+        full: bool,
+    ) -> Result<(Linearization, LinearSystem, OperatingPoint), Failure> {
         let source = source::open(&self.file, &self.robot)?.for_evaluation();
         let generated = source.derive_linearized()?;
         let state = State::read(&source, &generated, self.at.as_deref())?;
@@ -44,7 +54,44 @@ impl LinearArguments {
         let system = LinearSystem::from(&linear);
         let stepped = self.step.map(|h| system.discretized(h)).transpose();
         let stepped = stepped.map_err(hamel_engine::Error::from)?;
-        Ok((linear, stepped.unwrap_or(system)))
+        let point = OperatingPoint::new(&generated, &state, &linear.states);
+        Ok((linear, stepped.unwrap_or(system), point))
+    }
+}
+
+/// Values about which a system is linear.
+pub struct OperatingPoint {
+    /// u₀.
+    pub inputs: Vec<f64>,
+    /// The states as expressions, as in `(q - 0.5)` or `v`; `None` if some displacement is not that of a coordinate.
+    pub states: Option<Vec<String>>,
+}
+
+impl OperatingPoint {
+    fn new(generated: &Generated, state: &State, states: &[String]) -> Self {
+        let away = |name: &str, value: f64| match value == 0.0 {
+            true => name.to_string(),
+            false if value < 0.0 => format!("({name} + {})", exact(-value)),
+            false => format!("({name} - {})", exact(value)),
+        };
+        let value = |names: Vec<String>, values: &[f64], name: &str| {
+            let place = names.iter().position(|known| known == name)?;
+            Some(away(name, *values.get(place)?))
+        };
+        let rates = names::rates(&generated.model);
+        let expression = |name: &String| {
+            let (kind, velocity) = name.strip_suffix(')')?.split_once('(')?;
+            if kind == "d" {
+                let known = names::velocities_and_states(&generated.active);
+                return value(known, &state.xi, velocity);
+            }
+            let (coordinate, _) = rates.iter().find(|(_, rate)| rate == velocity)?;
+            value(names::coordinates(&generated.model), &state.x, coordinate)
+        };
+        OperatingPoint {
+            inputs: state.u.clone(),
+            states: states.iter().map(expression).collect(),
+        }
     }
 }
 

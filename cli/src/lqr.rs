@@ -2,14 +2,14 @@
 
 use crate::failure::{Failure, print, write};
 use crate::json::Json;
-use crate::linear::{LinearArguments, pairs, rows, unsteady};
+use crate::linear::{LinearArguments, OperatingPoint, pairs, rows, unsteady};
 use crate::linearize::{matrix, spectrum};
 use crate::outputs;
 use clap::{Args, ValueEnum};
 use hamel_engine::LinearSystem;
 use hamel_engine::linear::{Matrix, Regulator};
 use hamel_engine::option_text::{Piece, invalid_option};
-use hamel_files::number::exact;
+use hamel_files::number::{exact, short};
 use std::path::{Path, PathBuf};
 
 /// Computes the regulator u = u₀ − K x with the least ∫ (xᵀ Q x + uᵀ R u) dt for the linearisation at a state.
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.linear.at.as_deref(),
         ],
     )?;
-    let (linear, system) = arguments.linear.open(false)?;
+    let (linear, system, point) = arguments.linear.open_with_law(false)?;
     let (q, r) = (
         state_weights(&system, &arguments.q)?,
         input_weights(&system, &arguments.r)?,
@@ -91,7 +91,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .pretty()
     };
     let mut text = match arguments.format {
-        Format::Text => shown(&linear.system, &system, &found) + &unsteady(&linear),
+        Format::Text => {
+            shown(&linear.system, &system, &found)
+                + &law(&system, &found, &point)
+                + &unsteady(&linear)
+        }
         Format::Json => json(),
     };
     if let Some(path) = out {
@@ -121,6 +125,30 @@ fn shown(name: &str, system: &LinearSystem, found: &Regulator) -> String {
         + "\n\x1b[1mpoles of the closed loop\x1b[0m\n"
         + &spectrum(&found.poles, size)
         + &matrix("X", states, states, &rows(&found.cost))
+}
+
+/// The regulator as inputs of `hamel simulate`, in continuous time and if all states are those of coordinates.
+fn law(system: &LinearSystem, found: &Regulator, point: &OperatingPoint) -> String {
+    let (Some(states), None) = (&point.states, system.step) else {
+        return String::new();
+    };
+    let mut text = "\n\x1b[1mfor `hamel simulate`\x1b[0m\n".to_string();
+    for ((name, row), value) in system
+        .inputs
+        .iter()
+        .zip(rows(&found.gain))
+        .zip(&point.inputs)
+    {
+        let terms = row.iter().zip(states).filter(|(gain, _)| **gain != 0.0);
+        let terms = terms.map(|(gain, state)| {
+            let sign = if *gain < 0.0 { '+' } else { '-' };
+            format!(" {sign} {} * {state}", short(gain.abs()))
+        });
+        let sum = format!("{}{}", short(*value), terms.collect::<String>());
+        let sum = sum.strip_prefix("0 + ").unwrap_or(&sum);
+        text += &format!("  --input \"{name} = {sum}\"\n");
+    }
+    text
 }
 
 /// K as Rust.

@@ -282,6 +282,12 @@ fn a_frequency_response_has_its_closed_form() {
         "{said}"
     );
     refused(
+        &["bode", "-", "--to", "turned"],
+        CART,
+        1,
+        &["nothing passes"],
+    );
+    refused(
         &["bode", "-", "--to", "place", "--range", "3,2"],
         MASS,
         2,
@@ -471,4 +477,47 @@ fn formats_agree() {
 fn nothing_is_done_where_nothing_costs() {
     let found = json(&["lqr", "-", "--q", "h = 0"], MASS);
     assert_eq!(matrix(&found["K"]), [[0.0, 0.0]]);
+}
+
+/// Poles of a free body are zero to rounding: they set no length of a response.
+#[test]
+fn a_response_has_a_length_of_its_own() {
+    let said = run(&["step", "-", "--to", "place", "--at", &free()], MASS);
+    assert!(said.contains("unit step, 10 s"), "{said}");
+}
+
+/// The printed law holds a pole upright that falls without it, on a cart that returns.
+#[test]
+fn a_printed_law_can_be_simulated() {
+    let cart = CART.replace(
+        "joint table: revolute [0, 0, 1] at [0, 3, 0] moves plate;",
+        "",
+    );
+    let cart = cart.replace(
+        "body on plate { mass 1; inertia diag(1, 1, 1) about com; }",
+        "",
+    );
+    let cart = cart.replace("output turned = table;", "start rail = 0.5;");
+    let said = run(&["lqr", "-"], &cart);
+    assert!(said.contains("* (rail - 0.5)"), "{said}");
+    let law = said
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("--input "));
+    let law = law.expect("a law").trim_matches('"');
+    let leaning = cart.replace("start rail = 0.5;", "start hinge = 0.2;");
+    let out = file("held.csv").display().to_string();
+    let words = [
+        "simulate", "-", "--until", "20", "--input", law, "--out", &out,
+    ];
+    run(&words, &leaning);
+    let written = std::fs::read_to_string(&out).expect("a file");
+    let last = written.lines().last().expect("a row").split(',');
+    let last: Vec<f64> = last.map(|cell| cell.parse().expect("a number")).collect();
+    assert!(
+        (last[1] - 0.5).abs() < 1e-3 && last[2].abs() < 1e-3,
+        "{last:?}"
+    );
+    // In steps, and where displacements are not those of coordinates, nothing is printed.
+    let stepped = run(&["lqr", "-", "--step", "0.01"], &cart);
+    assert!(!stepped.contains("--input"), "{stepped}");
 }

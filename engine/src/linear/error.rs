@@ -22,6 +22,8 @@ pub enum LinearError {
     NoConvergence,
     /// A response has no value in the range of frequencies.
     NoResponse,
+    /// Nothing passes from the input to the output.
+    Unconnected,
     /// No input has this name; the known ones.
     UnknownInput(String, Vec<String>),
     /// No output or state has this name; the known ones.
@@ -48,6 +50,9 @@ impl fmt::Display for LinearError {
             LinearError::NegativeCost => f.write_str("the weights of the states must not be negative"),
             LinearError::NoConvergence => f.write_str("Riccati's equation was not solved: some mode that does not decay is hardly reached by the inputs, or the weights differ by too many powers of ten"),
             LinearError::NoResponse => f.write_str("the response has no value in this range of frequencies"),
+            LinearError::Unconnected => {
+                f.write_str("nothing passes from the input to the output: the response is zero")
+            }
             LinearError::UnknownInput(name, known) if known.is_empty() => write!(f, "there is no input `{name}`: the description has none"),
             LinearError::UnknownInput(name, known) => write!(f, "there is no input `{name}`; there are {}", known.join(", ")),
             LinearError::UnknownOutput(name, known) => write!(f, "there is no output or state `{name}`; there are {}", known.join(", ")),

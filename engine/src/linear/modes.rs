@@ -10,7 +10,7 @@ use std::fmt;
 
 /// Eigenvalues below this, relative to the largest entry of A, count as zero, since a rounding error ε moves a double
 /// zero by √ε; so do the distances of eigenvalues of steps from 1.
-const ZERO_TOLERANCE: f64 = 1e-7;
+pub(super) const ZERO_TOLERANCE: f64 = 1e-7;
 /// Real parts below this, relative to the largest entry of A, are rounding errors of zero.
 const REAL_TOLERANCE: f64 = 1e-13;
 /// Modes with less damping, as a ratio, do not decay.

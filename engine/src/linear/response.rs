@@ -1,6 +1,6 @@
 //! Responses of one output of a linear system to one input: to a step, and by frequency with margins.
 
-use super::modes::spectrum;
+use super::modes::{ZERO_TOLERANCE, spectrum};
 use super::{LinearError, LinearSystem, Matrix, Quadruple};
 use nalgebra::{Complex, ComplexField};
 use std::f64::consts::{PI, TAU};
@@ -199,15 +199,20 @@ impl Channel {
         })
     }
 
-    /// Rates of change ln(z)/h of poles, or the poles themselves in continuous time.
+    /// Rates of change ln(z)/h of poles, or the poles themselves in continuous time, without those that are zero to
+    /// rounding.
     fn rates(&self, of: &[Complex<f64>]) -> Vec<Complex<f64>> {
+        let size = match self.system.step {
+            Some(h) => 1.0 / h,
+            None => self.system.matrices.a.amax(),
+        };
         let rate = |&value: &Complex<f64>| match self.system.step {
             Some(h) => value.ln() / h,
             None => value,
         };
         of.iter()
             .map(rate)
-            .filter(|rate| rate.modulus().is_finite())
+            .filter(|rate| rate.modulus().is_finite() && rate.modulus() > ZERO_TOLERANCE * size)
             .collect()
     }
 
@@ -320,7 +325,11 @@ impl Channel {
             .filter_map(|&at| self.at(at).map(|(size, phase)| (at, size, phase)));
         let values: Vec<(f64, f64, f64)> = values.collect();
         if values.len() < 2 {
-            return Err(LinearError::NoResponse);
+            let Quadruple { a, d, .. } = &self.system.matrices;
+            return Err(match a.is_empty() && d[(0, 0)] == 0.0 {
+                true => LinearError::Unconnected,
+                false => LinearError::NoResponse,
+            });
         }
         let turns = |phase: f64| ((phase + 180.0) / 360.0).round();
         let above = |phase: f64| phase + 180.0 - 360.0 * turns(phase);

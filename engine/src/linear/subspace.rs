@@ -139,10 +139,17 @@ impl Quadruple {
             let (balanced, factors) = found.balanced();
             let (_, basis) = split(&balanced.unreachable().transpose(), 0.5);
             let scaled = found.scaled(&factors);
+            let mut c = &scaled.c * &basis;
+            for (mut row, whole) in c.row_iter_mut().zip(scaled.c.row_iter()) {
+                // What is left of a row that vanishes on the part is rounding.
+                if row.norm() <= RANK_TOLERANCE * whole.norm() {
+                    row.fill(0.0);
+                }
+            }
             found = Quadruple {
                 a: basis.tr_mul(&(&scaled.a * &basis)),
                 b: basis.tr_mul(&scaled.b),
-                c: &scaled.c * &basis,
+                c,
                 d: scaled.d,
             }
             .dual();
