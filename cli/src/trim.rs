@@ -49,7 +49,8 @@ pub struct Arguments {
     /// Inputs, and without --steady velocities, that are unknown: names or entries, separated by commas.
     #[arg(long, value_name = "NAMES")]
     free: Vec<String>,
-    /// Demand an equation in coordinates, velocities, inputs, parameters, outputs; once for each.
+    /// Demand an equation in coordinates, velocities, inputs, parameters, outputs; once for each. An input or a velocity
+    /// alone on the left is free.
     #[arg(long, value_name = "EXPR = EXPR")]
     fix: Vec<String>,
     /// Give the rate of a velocity or of a state of first order a value instead of 0; once for each entry.
@@ -65,6 +66,8 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
+/// Largest acceleration that counts as a rounding error of zero.
+const REST_TOLERANCE: f64 = 1e-8;
 /// Numbers below this are printed as 0.
 const ROUNDING: f64 = 1e-14;
 
@@ -147,6 +150,16 @@ fn text(found: &Trim, generated: &Generated, steady: bool, from: &str) -> String
     ));
     for direction in &found.undetermined {
         text.push_str(&format!("  undetermined: {direction}\n"));
+    }
+    let change = found
+        .xi_dot
+        .iter()
+        .fold(0.0, |most: f64, rate| most.max(rate.abs()));
+    if change > found.residual.max(REST_TOLERANCE) {
+        text.push_str(&format!(
+            "  velocities that are given, or that constraints determine, change here: max |xi_dot| = {}\n",
+            short(change)
+        ));
     }
     text.push_str("\n\x1b[1mstability\x1b[0m\n");
     let Some(Spectrum {

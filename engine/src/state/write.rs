@@ -1,7 +1,6 @@
 //! Writes a state as the JSON that commands read, with all digits.
 
 use super::State;
-use super::given_entries::velocities;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Group;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
@@ -30,9 +29,15 @@ impl State {
             };
             (coordinate.name.clone(), value)
         });
+        let clock = generated.model.clock.map(|clock| clock.xi);
+        let moving = generated.model.velocities.iter();
+        let moving: Vec<Group> = moving
+            .filter(|group| Some(group.offset) != clock)
+            .cloned()
+            .collect();
         let all = [
             ("coord", coordinates.collect()),
-            ("velocity", groups(&velocities(generated), full)),
+            ("velocity", groups(&moving, full)),
             ("state", groups(&model.states_behind(), &self.xi)),
             ("input", groups(&model.inputs, &self.u)),
             ("param", groups(&model.params, &self.params)),

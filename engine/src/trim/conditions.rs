@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::linearize::minimal::{Tangent, tangent};
 use crate::mechanism::function;
 use crate::names;
+use crate::option_text::Piece;
 use crate::source::added_outputs;
 use crate::state::State;
 use crate::state::given_entries::full_frame_indices;
@@ -112,19 +113,31 @@ impl<'a> Conditions<'a> {
                 .map(|group| (group, sizes.iter().sum())),
         );
         let groups: Vec<_> = groups.collect();
+        let find = |name: &str| -> Option<Vec<usize>> {
+            if let Some((group, first)) = groups.iter().find(|(group, _)| group.name == name) {
+                return Some((first + group.offset..).take(group.len).collect());
+            }
+            let place = known.iter().position(|entry| entry == name)?;
+            let behind = if place < moving.len() { 0 } else { sizes[2] };
+            Some(vec![sizes[0] + behind + place])
+        };
         for name in &options.free {
-            let places: Vec<usize> = match groups.iter().find(|(group, _)| group.name == *name) {
-                Some((group, first)) => (first + group.offset..).take(group.len).collect(),
-                None => match known.iter().position(|entry| entry == name) {
-                    Some(place) if place < moving.len() => vec![sizes[0] + place],
-                    Some(place) => vec![sizes[0] + sizes[2] + place],
-                    None => {
-                        let groups = groups.iter().map(|(group, _)| group.name.as_str());
-                        return Err(TrimProblem::unknown("--free", name, groups, &known).into());
-                    }
-                },
+            let Some(places) = find(name) else {
+                let groups = groups.iter().map(|(group, _)| group.name.as_str());
+                return Err(TrimProblem::unknown("--free", name, groups, &known).into());
             };
             places.into_iter().for_each(|place| is_free[place] = true);
+        }
+        // An equation for an input or a velocity determines it.
+        for text in &options.fix {
+            let places = Piece { text, start: 0 }
+                .sides()
+                .first()
+                .and_then(|side| find(side.text));
+            places
+                .into_iter()
+                .flatten()
+                .for_each(|place| is_free[place] = true);
         }
         let mut rates = vec![0.0; velocities.len()];
         for (name, value) in &options.rates {

@@ -13,7 +13,6 @@ pub use directions::{Direction, Spectrum, Stability};
 pub use problem::{TrimOptions, TrimProblem, Unmet};
 
 use crate::error::Error;
-use crate::names;
 use crate::option_text::Piece;
 use crate::session::SingleStepper;
 use crate::source::Source;
@@ -106,24 +105,7 @@ pub fn trim(
     shown: &str,
 ) -> Result<Trim, Error> {
     let conditions = Conditions::new(generated, options, &start.params)?;
-    let mut start = start.clone();
-    let inputs: Vec<String> = generated
-        .active
-        .inputs
-        .iter()
-        .flat_map(names::group)
-        .collect();
-    for text in &options.fix {
-        // The value of an input that is not free.
-        let sides = Piece { text, start: 0 }.sides();
-        if let [name, value] = sides[..]
-            && let Some(input) = inputs.iter().position(|input| input == name.text)
-            && let Ok(value) = value.text.parse()
-        {
-            start.u[input] = value;
-        }
-    }
-    let point = conditions.start(&start).ok_or(TrimProblem::NoStart)?;
+    let point = conditions.start(start).ok_or(TrimProblem::NoStart)?;
     let (solution, neighbour) = search(&conditions, &point)?;
     let (rank, undetermined) = directions::undetermined(&conditions, &solution)?;
     let Solution {

@@ -34,9 +34,11 @@ const PROBED_PART: f64 = 1e-7;
 /// Residual that is not compared with those of neighbours.
 const LEAST_PROBED: f64 = 1e-10;
 /// Largest number of neighbours of a start that are tried.
-const MAX_NEIGHBOURS: usize = 12;
+const MAX_NEIGHBOURS: usize = 24;
+/// Largest number of neighbours times unknowns.
+const NEIGHBOUR_BUDGET: usize = 240;
 /// Largest change of each unknown from the start to a neighbour, relative to 1 or to the unknown.
-const MAX_DISTANCE: f64 = 1.5;
+const MAX_DISTANCE: f64 = 2.5;
 /// Largest displacement of a step (rad, m), relative to 1 + the largest coordinate.
 const MAX_DISPLACEMENT: f64 = 0.3;
 /// Rows below this, relative to others of their kind, are not scaled up.
@@ -252,8 +254,9 @@ pub fn search(conditions: &Conditions, start: &Point) -> Result<(Solution, usize
     let local = conditions.at(start).ok_or(TrimProblem::NoStart)?;
     let mut random = Random::new(0x7472_696d);
     let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-    for neighbour in 1..=MAX_NEIGHBOURS {
-        let distance = MAX_DISTANCE * neighbour as f64 / MAX_NEIGHBOURS as f64;
+    let count = MAX_NEIGHBOURS.min(NEIGHBOUR_BUDGET / local.columns.len().max(1));
+    for neighbour in 1..=count {
+        let distance = MAX_DISTANCE * neighbour as f64 / count as f64;
         let sizes = local
             .columns
             .iter()
