@@ -4,7 +4,7 @@
 use super::problem::{TrimOptions, TrimProblem};
 use crate::error::Error;
 use crate::linearize::minimal::{Tangent, tangent};
-use crate::mechanism::function;
+use crate::mechanism::{FunctionIndex, Functions, compile_functions, find_function};
 use crate::names;
 use crate::option_text::Piece;
 use crate::source::added_outputs;
@@ -16,7 +16,6 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::model::loop_closure::LoopClosure;
 use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 use hamel_codegen::program::Shape;
-use hamel_codegen::program::interpret::Interpreter;
 
 /// Displacement of the central differences of d/dt ξ̇, relative to 1 or to the unknown if that is larger.
 const DIFFERENCE: f64 = 1e-5;
@@ -24,13 +23,17 @@ const DIFFERENCE: f64 = 1e-5;
 /// Differences of d/dt ξ̇ below this, relative to its terms, are rounding errors.
 const DIFFERENCE_NOISE: f64 = 1e-13;
 
+/// The functions that all conditions need.
+const FUNCTIONS: [&str; 3] = ["linearize", "displacement_frame", "accel"];
+
 /// The conditions for a state, which is complete at every point: loops are closed, constraints hold.
 pub struct Conditions<'a> {
     pub generated: &'a Generated,
     pub steady: bool,
-    linearize: Interpreter,
-    frame: Interpreter,
-    accel: Interpreter,
+    functions: Functions,
+    linearize: FunctionIndex,
+    frame: FunctionIndex,
+    accel: FunctionIndex,
     fixes: Vec<Fix>,
     /// Whether all velocities vanish for all time, also those that constraints determine: their rates may be finite where
     /// the independent ones do not determine them.
@@ -48,8 +51,8 @@ pub struct Conditions<'a> {
 /// An expression that has to be zero.
 struct Fix {
     text: String,
-    value: Interpreter,
-    slopes: Interpreter,
+    value: FunctionIndex,
+    slopes: FunctionIndex,
     entries: Vec<String>,
 }
 
@@ -113,7 +116,7 @@ impl<'a> Conditions<'a> {
                 .map(|group| (group, sizes.iter().sum())),
         );
         let groups: Vec<_> = groups.collect();
-        let find = |name: &str| -> Option<Vec<usize>> {
+        let places_of = |name: &str| -> Option<Vec<usize>> {
             if let Some((group, first)) = groups.iter().find(|(group, _)| group.name == name) {
                 return Some((first + group.offset..).take(group.len).collect());
             }
@@ -122,7 +125,7 @@ impl<'a> Conditions<'a> {
             Some(vec![sizes[0] + behind + place])
         };
         for name in &options.free {
-            let Some(places) = find(name) else {
+            let Some(places) = places_of(name) else {
                 let groups = groups.iter().map(|(group, _)| group.name.as_str());
                 return Err(TrimProblem::unknown("--free", name, groups, &known).into());
             };
@@ -133,7 +136,7 @@ impl<'a> Conditions<'a> {
             let places = Piece { text, start: 0 }
                 .sides()
                 .first()
-                .and_then(|side| find(side.text));
+                .and_then(|side| places_of(side.text));
             places
                 .into_iter()
                 .flatten()
@@ -149,13 +152,28 @@ impl<'a> Conditions<'a> {
                 }
             }
         }
+        let added = (0..options.fix.len()).map(added_outputs::name);
+        let added = added.flat_map(|name| [format!("{name}{SLOPES}"), name]);
+        let all: Vec<String> = FUNCTIONS
+            .iter()
+            .map(ToString::to_string)
+            .chain(added)
+            .collect();
+        let all: Vec<&str> = all.iter().map(String::as_str).collect();
+        let compiled = compile_functions(program, &all)?;
+        let find = |name: &str| {
+            find_function(&compiled, name).ok_or_else(|| Error::MissingFunction {
+                system: program.name.clone(),
+                name: name.into(),
+            })
+        };
         let fixes = options.fix.iter().enumerate().map(|(item, text)| {
             let name = added_outputs::name(item);
             let shape = program.function(&name).map_or(Shape::Scalar, |f| f.shape);
             Ok(Fix {
                 text: text.clone(),
-                value: function(program, &name, params)?,
-                slopes: function(program, &format!("{name}{SLOPES}"), params)?,
+                value: find(&name)?,
+                slopes: find(&format!("{name}{SLOPES}"))?,
                 entries: names::entries("", shape),
             })
         });
@@ -167,9 +185,10 @@ impl<'a> Conditions<'a> {
             generated,
             rests: held && !driven && options.rates.is_empty() && full.accelerated.is_empty(),
             steady: options.steady,
-            linearize: function(program, "linearize", params)?,
-            frame: function(program, "displacement_frame", params)?,
-            accel: function(program, "accel", params)?,
+            functions: Functions::new(&compiled, params),
+            linearize: find("linearize")?,
+            frame: find("displacement_frame")?,
+            accel: find("accel")?,
             fixes: fixes.collect::<Result<_, Error>>()?,
             rates,
             is_free,
@@ -242,9 +261,15 @@ impl<'a> Conditions<'a> {
         Some(Point { state, full })
     }
 
+    /// Evaluates a function for x, ξ, u and ξ̇; `None` if it has no value.
+    fn call(&self, function: FunctionIndex, [x, xi, u, xi_dot]: [&[f64]; 4]) -> Option<Vec<f64>> {
+        let value = self.functions.call(function, [x, xi, u, xi_dot, &[]]);
+        Some(value.ok()?.to_vec())
+    }
+
     /// A(x), by rows, along the displacements.
     fn frame(&self, x: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let flat = self.frame.call(x, &[], &[], &[]).ok()?;
+        let flat = self.call(self.frame, [x, &[], &[], &[]])?;
         Some(rows(&flat, flat.len() / x.len().max(1)))
     }
 
@@ -263,8 +288,8 @@ impl<'a> Conditions<'a> {
     /// Returns ξ̇ with ż, and [A B] by rows.
     fn motion(&self, state: &State) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
         let State { x, xi, u, .. } = state;
-        let xi_dot = self.accel.call(x, xi, u, &[]).ok()?;
-        let flat = self.linearize.call(x, xi, u, &[]).ok()?;
+        let xi_dot = self.call(self.accel, [x, xi, u, &[]])?;
+        let flat = self.call(self.linearize, [x, xi, u, &[]])?;
         let finite = xi_dot.iter().chain(&flat).all(|value| value.is_finite());
         finite.then(|| (xi_dot, rows(&flat, self.names.len())))
     }
@@ -356,8 +381,8 @@ impl<'a> Conditions<'a> {
         let mut number = 2 * (na + nz);
         for fix in &self.fixes {
             let State { x, xi, u, .. } = state;
-            residuals.extend(fix.value.call(x, xi, u, &xi_dot).ok()?);
-            let slopes = rows(&fix.slopes.call(x, xi, u, &[]).ok()?, self.names.len());
+            residuals.extend(self.call(fix.value, [x, xi, u, &xi_dot])?);
+            let slopes = rows(&self.call(fix.slopes, [x, xi, u, &[]])?, self.names.len());
             jacobian.extend(product(&slopes, &lift).iter().map(|row| of_free(row)));
             rows_at.extend(number..number + fix.entries.len());
             number += fix.entries.len();

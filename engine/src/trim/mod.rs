@@ -106,7 +106,15 @@ pub fn trim(
 ) -> Result<Trim, Error> {
     let conditions = Conditions::new(generated, options, &start.params)?;
     let point = conditions.start(start).ok_or(TrimProblem::NoStart)?;
-    let (solution, neighbour) = search(&conditions, &point)?;
+    let stepper = match options.steady {
+        true => Some(SingleStepper::of(generated, start, shown)?),
+        false => None,
+    };
+    let confirm = |solution: &Solution| match &stepper {
+        Some(stepper) => confirm_steady(&conditions, solution, stepper),
+        None => Ok(()),
+    };
+    let (solution, neighbour) = search(&conditions, &point, &confirm)?;
     let (rank, undetermined) = directions::undetermined(&conditions, &solution)?;
     let Solution {
         point,
@@ -115,36 +123,6 @@ pub fn trim(
         ..
     } = solution;
     let spectrum = directions::spectrum(&conditions, &local);
-    if options.steady {
-        let fastest = spectrum.iter().flat_map(|spectrum| &spectrum.values);
-        let fastest = fastest.map(|(re, im)| re.hypot(*im));
-        let step = CONFIRMING_STEP / fastest.fold(largest(&point.full).max(1.0), f64::max);
-        let stepper = SingleStepper::of(generated, &point.state, shown)?;
-        let State {
-            mut x, mut xi, u, ..
-        } = point.state.clone();
-        for _ in 0..CONFIRMING_STEPS {
-            stepper.step(&mut x, &mut xi, &u, step)?;
-        }
-        let time = f64::from(CONFIRMING_STEPS) * step;
-        let most = largest(&point.state.xi).max(1.0);
-        let moving = local
-            .kept
-            .iter()
-            .filter_map(|k| k.checked_sub(conditions.sizes[0]));
-        let changes = moving.map(|i| (i, xi[i] - point.state.xi[i] - time * local.xi_dot[i]));
-        for (i, change) in changes {
-            if change.is_nan() || change.abs() > STEADY_TOLERANCE * most {
-                let condition = conditions.name(i);
-                let residual = change / time;
-                return Err(TrimProblem::NotSteady(Unmet {
-                    condition,
-                    residual,
-                })
-                .into());
-            }
-        }
-    }
     Ok(Trim {
         residual: largest(&local.residuals),
         steps,
@@ -158,4 +136,41 @@ pub fn trim(
         state: point.state,
         full: point.full,
     })
+}
+
+/// Confirms by a short run that velocities stay constant, or change as they should.
+fn confirm_steady(
+    conditions: &Conditions,
+    Solution { point, local, .. }: &Solution,
+    stepper: &SingleStepper,
+) -> Result<(), TrimProblem> {
+    let spectrum = directions::spectrum(conditions, local);
+    let fastest = spectrum.iter().flat_map(|spectrum| &spectrum.values);
+    let fastest = fastest.map(|(re, im)| re.hypot(*im));
+    let step = CONFIRMING_STEP / fastest.fold(largest(&point.full).max(1.0), f64::max);
+    let State {
+        mut x, mut xi, u, ..
+    } = point.state.clone();
+    for _ in 0..CONFIRMING_STEPS {
+        let stepped = stepper.step(&mut x, &mut xi, &u, step);
+        stepped.map_err(|_| TrimProblem::LeavesDomain { steps: 0 })?;
+    }
+    let time = f64::from(CONFIRMING_STEPS) * step;
+    let most = largest(&point.state.xi).max(1.0);
+    let moving = local
+        .kept
+        .iter()
+        .filter_map(|k| k.checked_sub(conditions.sizes[0]));
+    let changes = moving.map(|i| (i, xi[i] - point.state.xi[i] - time * local.xi_dot[i]));
+    for (i, change) in changes {
+        if change.is_nan() || change.abs() > STEADY_TOLERANCE * most {
+            let condition = conditions.name(i);
+            let residual = change / time;
+            return Err(TrimProblem::NotSteady(Unmet {
+                condition,
+                residual,
+            }));
+        }
+    }
+    Ok(())
 }

@@ -245,9 +245,14 @@ impl Local {
 }
 
 /// Finds the solution to which damped steps lead from a start or, failing that, from one of its neighbours; their
-/// number is the second result, and errors are those of the start.
-pub fn search(conditions: &Conditions, start: &Point) -> Result<(Solution, usize), TrimProblem> {
-    let failure = match solve(conditions, start.clone()) {
+/// number is the second result, and errors are those of the start. Solutions have to be confirmed.
+pub fn search(
+    conditions: &Conditions,
+    start: &Point,
+    confirm: &dyn Fn(&Solution) -> Result<(), TrimProblem>,
+) -> Result<(Solution, usize), TrimProblem> {
+    let confirmed = |solution: Solution| confirm(&solution).map(|()| solution);
+    let failure = match solve(conditions, start.clone()).and_then(confirmed) {
         Ok(solution) => return Ok((solution, 0)),
         Err(failure) => failure,
     };
@@ -263,7 +268,9 @@ pub fn search(conditions: &Conditions, start: &Point) -> Result<(Solution, usize
             .map(|&k| conditions.size(&start.state, k));
         let step: Vec<f64> = sizes.map(|size| distance * size * number()).collect();
         let there = local.moved(conditions, start, &step);
-        if let Some(solution) = there.and_then(|there| solve(conditions, there).ok()) {
+        if let Some(solution) =
+            there.and_then(|there| solve(conditions, there).and_then(confirmed).ok())
+        {
             return Ok((solution, neighbour));
         }
     }

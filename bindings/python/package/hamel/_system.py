@@ -813,7 +813,7 @@ class System:
             Inputs, and velocities if not `steady`, that are unknown: names such as ``"f"`` or entries such as ``"f[2]"``.
         fix : sequence of str, or dict
             Equations that have to hold: ``["speed = 30"]`` or ``{"speed": 30.0}``, with expressions in coordinates,
-            velocities, inputs, parameters and outputs.
+            velocities, inputs, parameters and outputs. An input or a velocity alone on the left is free.
         rates : dict
             Entries of the velocities and first-order states, with rates that they have instead of zero.
 
