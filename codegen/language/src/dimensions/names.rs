@@ -10,7 +10,7 @@ use crate::syntax::ast::{CoordKind, Declaration, Expr, Ident, Item, ItemKind, So
 use crate::units::{Dimension, Unit};
 
 /// Largest number of entries of a vector or matrix without a unit whose dimensions can differ.
-const MOST_ENTRIES: usize = 36;
+const MOST_ENTRIES: usize = 64;
 
 impl<'a> Walk<'a> {
     /// Declares the arguments and results of tables and of functions in Rust.

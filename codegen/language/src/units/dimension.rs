@@ -74,11 +74,6 @@ impl Dimension {
         product
     }
 
-    /// Returns the dimension of a power.
-    pub fn power(&self, exponent: &BigRational) -> Self {
-        Dimension::one().times(self, exponent)
-    }
-
     /// Describes a quantity of this dimension: `a length [m]`.
     pub fn describe(&self) -> String {
         match self.named() {
