@@ -80,7 +80,7 @@ const FOR_ROBOTS: [&str; 2] = [
 ];
 
 /// Required arguments of commands in addition to a file.
-const NEEDED: [(&str, &str); 8] = [
+const NEEDED: [(&str, &str); 9] = [
     ("simulate", "--until 0.01"),
     ("compare", "--until 0.01 --steps 4 --methods rkmk4"),
     (
@@ -89,6 +89,7 @@ const NEEDED: [(&str, &str); 8] = [
     ),
     ("draw", "--out OUT/robot.svg"),
     ("emit", "--out OUT/robot.rs"),
+    ("report", "--out OUT/robot.html"),
     ("trim", "--free FREE"),
     ("step", "CHANNEL"),
     ("bode", "CHANNEL"),
