@@ -29,6 +29,15 @@ pub fn type_with_arguments(emitter: &Emitter) -> String {
     }
 }
 
+/// Returns the generated type as its declaration has it: `Name<S = f64>`, or `Name<S, F>`, where only the last argument
+/// could have a default.
+pub fn declared_type(emitter: &Emitter) -> String {
+    match has_externals(emitter) {
+        true => type_with_arguments(emitter),
+        false => format!("{}<S = f64>", emitter.names.type_name),
+    }
+}
+
 /// Whether the description declares external functions, `extern fn`.
 pub fn has_externals(emitter: &Emitter) -> bool {
     !emitter.names.externals.methods.is_empty()

@@ -66,7 +66,7 @@ pub fn print_struct(emitter: &Emitter) -> String {
     format!(
         "{}{TYPE_LINTS}#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
         docs::doc_comment(&lines),
-        externals::type_with_arguments(emitter)
+        externals::declared_type(emitter)
     )
 }
 

@@ -169,7 +169,7 @@ impl View<'_> {
         });
         let values: Vec<String> = values.collect();
         format!(
-            "{docs}{TYPE_LINTS}#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
+            "{docs}{TYPE_LINTS}#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S = f64> {{\n{list}}}\n\n\
              {TRAIT_LINTS}impl<S: ::hamel::Scalar> ::core::default::Default for {name}<S> {{\n/// {default}\nfn default() -> Self {{\nSelf {{ {} }}\n}}\n}}\n\n",
             values.join(", ")
         )
