@@ -26,9 +26,10 @@ enum Requirement {
     Free,
 }
 
-/// The role of a method in comparisons.
+/// Whether a method is recommended for use, or is a simple or known one, such as `euler`, that comparisons list to show
+/// what the others gain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum MethodCategory {
     /// One to be used.
     Method,
     /// One that shows what others gain.
@@ -38,7 +39,7 @@ pub enum Role {
 /// A row of the table of methods.
 struct MethodEntry {
     name: &'static str,
-    role: Role,
+    role: MethodCategory,
     about: &'static str,
     needs: Requirement,
     make: fn(&Instance) -> Stepper,
@@ -46,7 +47,7 @@ struct MethodEntry {
 
 macro_rules! entries {
     ($($name:literal $role:ident $needs:ident $make:expr, $about:literal;)*) => {
-        &[$(MethodEntry { name: $name, role: Role::$role, about: $about, needs: Requirement::$needs, make: $make }),*]
+        &[$(MethodEntry { name: $name, role: MethodCategory::$role, about: $about, needs: Requirement::$needs, make: $make }),*]
     };
 }
 
@@ -164,7 +165,7 @@ pub struct NamedMethod {
     /// Name.
     pub name: &'static str,
     /// Its role in a comparison.
-    pub role: Role,
+    pub role: MethodCategory,
     /// The method.
     pub stepper: Stepper,
 }

@@ -19,7 +19,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::structure::Structure;
 use hamel_engine::State;
 use hamel_engine::mechanism::{Instance, Numbers};
-use hamel_engine::method::{self, NamedMethod, Role, Stepper, UnsuitableMethod};
+use hamel_engine::method::{self, MethodCategory, NamedMethod, Stepper, UnsuitableMethod};
 use hamel_report::auto;
 use hamel_report::data::{Case, Choice, Kind, Machine, Missing, Report};
 use hamel_report::entry::Entry;
@@ -311,10 +311,10 @@ pub fn case(
     Ok(case)
 }
 
-fn kind(role: Role) -> Kind {
+fn kind(role: MethodCategory) -> Kind {
     match role {
-        Role::Method => Kind::Method,
-        Role::Baseline => Kind::Baseline,
+        MethodCategory::Method => Kind::Method,
+        MethodCategory::Baseline => Kind::Baseline,
     }
 }
 
@@ -334,7 +334,7 @@ pub fn one(case: &Case) -> Result<String, Failure> {
 fn best(methods: &[NamedMethod]) -> &NamedMethod {
     let rank = |named: &NamedMethod| {
         let order = Method::<Instance>::order(&named.stepper);
-        (named.role == Role::Method, order)
+        (named.role == MethodCategory::Method, order)
     };
     let better = |best, named| {
         if rank(named) > rank(best) {

@@ -37,7 +37,7 @@ pub fn gram(a: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Computes the Cholesky factor L with L Lᵀ = M; `None` if M is not positive definite.
+/// Computes the Cholesky factor L of a matrix of numbers (`f64`), L Lᵀ = M; `None` if M is not positive definite.
 pub fn cholesky(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     cholesky_with(m, &|_, pivot| pivot)
 }

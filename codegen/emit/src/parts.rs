@@ -44,7 +44,7 @@ impl PreparedFunction<'_> {
                     let (array, _, place) = self.spec.result_place(index);
                     printer
                         .used
-                        .record_access(array, place, ArrayAccess::Written);
+                        .record_shared_access(array, place, ArrayAccess::Written);
                     let value = printer.signed_value(self.body.outputs[index]);
                     format!("{} = {value};\n", target(self.spec, index, true))
                 });

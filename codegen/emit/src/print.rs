@@ -32,8 +32,9 @@ impl UsedNames {
         self.access.get(&array).copied().unwrap_or_default()
     }
 
-    /// Records that an entry of an array is read or written.
-    pub fn record_access(&mut self, array: SharedArray, place: usize, access: ArrayAccess) {
+    /// Records that the text reads or writes an entry of an array that parts of a function share (slots, results, slopes),
+    /// which decides how the array is passed.
+    pub fn record_shared_access(&mut self, array: SharedArray, place: usize, access: ArrayAccess) {
         self.entries.push((array, place));
         let known = self.access.entry(array).or_default();
         *known = access.max(*known);
@@ -128,7 +129,8 @@ impl Printer<'_> {
 
     /// Returns the slot of a value, and records the access.
     fn slot(&mut self, slot: usize, access: ArrayAccess) -> String {
-        self.used.record_access(SharedArray::Slots, slot, access);
+        self.used
+            .record_shared_access(SharedArray::Slots, slot, access);
         let shape = Shape::Vector(self.slots.len());
         self.language.entry(SharedArray::Slots, shape, slot)
     }
@@ -148,7 +150,8 @@ impl Printer<'_> {
         {
             Some(written) => {
                 let (array, shape, place) = written.place;
-                self.used.record_access(array, place, ArrayAccess::Read);
+                self.used
+                    .record_shared_access(array, place, ArrayAccess::Read);
                 Operand {
                     value: self.language.entry(array, shape, place),
                     negative: negative != written.negative,

@@ -168,7 +168,8 @@ impl SteppingPlan {
         matches!(self.spacing, Spacing::Every(_))
     }
 
-    /// Plans a run with about a thousand samples, or as many as requested. Equal steps are shortened so that samples
+    /// Plans a run of length `until` in steps of `step`, or by `tolerance`, with samples at the interval `every`; without
+    /// it, about a thousand samples. Equal steps are shortened so that samples
     /// fall on their ends: for multiples of a time, a whole number of steps leads from one to the next.
     pub fn new(
         method: ChosenMethod,

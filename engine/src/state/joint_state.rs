@@ -3,7 +3,7 @@
 use super::State;
 use super::joints::{Joint, JointCoordinates, joints};
 use super::problem::StateProblem;
-use super::read::{Reader, kind, put};
+use super::read::{StateReader, kind, put};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use serde_json::{Map, Value};
@@ -59,7 +59,7 @@ impl JointState {
             joints: joints(model, names),
             force: None,
         };
-        let mut reader = Reader::new(generated, text);
+        let mut reader = StateReader::new(generated, text);
         match json {
             Value::Object(parts) => {
                 let all = joints(&generated.model, names);
@@ -79,7 +79,7 @@ impl JointState {
     }
 }
 
-impl Reader {
+impl StateReader {
     fn sample(
         &mut self,
         (parts, order): (&Map<String, Value>, Option<&Value>),

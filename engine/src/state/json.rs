@@ -52,13 +52,13 @@ struct Strict(Value);
 
 impl<'de> Deserialize<'de> for Strict {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Reader).map(Strict)
+        deserializer.deserialize_any(StateReader).map(Strict)
     }
 }
 
-struct Reader;
+struct StateReader;
 
-impl<'de> Visitor<'de> for Reader {
+impl<'de> Visitor<'de> for StateReader {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {

@@ -3,7 +3,7 @@
 use super::State;
 use super::given_entries::full_frame_indices;
 use super::problem::StateProblem;
-use super::read::{Reader, kind};
+use super::read::{StateReader, kind};
 use crate::names;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::syntax::path::plain;
@@ -18,7 +18,7 @@ pub fn read_last_sample(
 ) -> Result<State, Vec<StateProblem>> {
     let model = &generated.active;
     let mut state = start.clone();
-    let mut reader = Reader::new(generated, text);
+    let mut reader = StateReader::new(generated, text);
     let place = format!("[{}]", list.len().saturating_sub(1));
     let sample = match list.last() {
         Some(Value::Object(sample)) => sample,

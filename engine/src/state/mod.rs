@@ -37,7 +37,7 @@ use hamel_codegen::algebra::residual_scale::relative_residuals;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::model::layout::Block;
-use read::Reader;
+use read::StateReader;
 use serde_json::Value;
 use std::path::Path;
 
@@ -91,7 +91,7 @@ impl State {
         json: &Value,
     ) -> Result<Self, Vec<StateProblem>> {
         let mut state = self.clone();
-        let mut reader = Reader::new(generated, text);
+        let mut reader = StateReader::new(generated, text);
         reader.state(json, generated, names, &mut state);
         reader.finish(generated, &mut state, &self)?;
         Ok(state)

@@ -16,7 +16,7 @@ const SYMMETRY_TOLERANCE: f64 = 1e-12;
 
 /// Reader of a state in JSON: the entries given so far, and the errors found so far.
 #[derive(Debug)]
-pub struct Reader {
+pub struct StateReader {
     /// Each with its path.
     errors: Vec<StateProblem>,
     /// Given entries.
@@ -27,10 +27,10 @@ pub struct Reader {
     rates: Vec<(String, String)>,
 }
 
-impl Reader {
+impl StateReader {
     /// Prepares to read; `text` is that of the description.
     pub fn new(generated: &Generated, text: &str) -> Self {
-        Reader {
+        StateReader {
             errors: Vec::new(),
             given: GivenEntries::none(generated),
             solved: dependent_velocities(generated, text),
@@ -73,7 +73,9 @@ impl Reader {
         self.given.z[place] = true;
     }
 
-    /// Reads a whole file; `names` are those of joints in the robot's file, with those in the description.
+    /// Sets the parameters, coordinates, velocities, states and inputs that a JSON object gives; [`finish`](Self::finish)
+    /// computes the others and returns errors. `names` are pairs of a joint's names in the robot's file and in the
+    /// description.
     pub fn state(
         &mut self,
         json: &Value,

@@ -170,7 +170,8 @@ pub enum Report<'r, Sys: System + ?Sized, const D: usize> {
 }
 
 impl<const M: usize, const D: usize> Adaptive<M, D> {
-    /// Creates a method from a pair, with default settings.
+    /// Creates a method from an embedded Runge-Kutta pair and a tolerance; steps are not limited, and the first one follows
+    /// Hairer's rule.
     pub const fn new(pair: &'static Pair<M, D>, tolerance: Tolerance) -> Self {
         Self {
             pair,

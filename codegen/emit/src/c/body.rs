@@ -252,9 +252,11 @@ impl Printed {
             }
             for node in statement.defined() {
                 for &place in results.places.get(&node).into_iter().flatten() {
-                    printer
-                        .used
-                        .record_access(SharedArray::Out, place, ArrayAccess::Written);
+                    printer.used.record_shared_access(
+                        SharedArray::Out,
+                        place,
+                        ArrayAccess::Written,
+                    );
                     let value = printer.signed_value(drawing.body.outputs[place]);
                     let entry = language.entry(SharedArray::Out, drawing.spec.shape, place);
                     writes.push_str(&format!("{entry} = {value};\n"));

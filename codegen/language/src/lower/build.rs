@@ -110,14 +110,14 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
                 if let Some(dimensions) = dimensions {
                     model.measure(dimensions);
                 }
-                let implausible = plausibility::warnings(described, &model);
-                let jumps = speed_jumps::warnings(described, &model);
+                let implausible = plausibility::plausibility_warnings(described, &model);
+                let jumps = speed_jumps::speed_jump_warnings(described, &model);
                 let idle = std::mem::take(&mut model.warnings);
-                model.warnings = unused::warnings(described, &(&names.used | used));
+                model.warnings = unused::unused_warnings(described, &(&names.used | used));
                 model.warnings.extend(idle);
                 model.warnings.extend(implausible);
                 model.warnings.extend(jumps);
-                let negative = negative::warnings(system, &model);
+                let negative = negative::negative_value_warnings(system, &model);
                 model.warnings.extend(negative);
                 return Ok(model);
             }

@@ -6,8 +6,9 @@ use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::syntax::ast::{Expr, ItemKind, System};
 
-/// Returns warnings about a description whose joints are expanded, in the order of the text.
-pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
+/// Returns a warning for every particle of negative mass and every negative damping coefficient, in the order of the
+/// text; the joints of `system` have been expanded.
+pub fn negative_value_warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     let mut particles = model.particles.iter().map(|particle| particle.mass);
     let mut dampers = model.elements.dampers.iter().map(|it| it.coefficient);
     let numbers = model.numbers(

@@ -13,7 +13,7 @@ use crate::syntax::ast::{self, Axes, Ident, ItemKind, Span, System};
 const ROUNDING: f64 = 1e-9;
 
 /// Returns warnings about a description that is correct, in the order of the text.
-pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
+pub fn plausibility_warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     let wanted = |item: &ast::Item| matches!(item.kind, ItemKind::Body(_) | ItemKind::Load { .. });
     let mut warnings = limits(system, model);
     if !system.items.iter().any(wanted) || model.defaults.iter().any(|number| number.is_nan()) {

@@ -17,7 +17,7 @@ const LONGEST: usize = 40;
 
 /// Returns a warning for every coordinate and frame whose speed could not be shown to be continuous in time, in the
 /// order of the text.
-pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
+pub fn speed_jump_warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     let Some(clock) = model.clock else {
         return Vec::new();
     };

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Returns a warning for every declaration whose name occurs nowhere else, in the order of the text; `used` are the
 /// names that are used. A declaration that occurs in several copies is used if one copy is; included declarations
 /// need not be used.
-pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
+pub fn unused_warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
     let uses = Uses {
         names: used,
         origins: &system.origins,

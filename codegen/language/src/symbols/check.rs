@@ -1,6 +1,6 @@
 //! Lookup of names in expressions and of names of frames.
 
-use super::table::{Kind, Symbol, Symbols};
+use super::table::{DeclaredSymbol, Kind, Symbols};
 use super::words::{self, FUNCTIONS, reserved};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{Expr, ExprKind, Ident, ItemKind, Span, System};
@@ -77,7 +77,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Returns the symbol with a name, if it is known already.
-    pub fn known(&self, name: &str) -> Option<&Symbol> {
+    pub fn known(&self, name: &str) -> Option<&DeclaredSymbol> {
         let symbol = self.symbols.get(name)?;
         (!self.open.contains(name)).then_some(symbol)
     }
@@ -314,7 +314,7 @@ fn plain_rates(system: &System) -> BTreeMap<&str, &Expr> {
 }
 
 /// Returns the error for a name that is defined, but not yet known where it is used.
-fn early(span: Span, name: &str, symbol: &Symbol) -> Diagnostic {
+fn early(span: Span, name: &str, symbol: &DeclaredSymbol) -> Diagnostic {
     let error = match symbol.kind {
         Kind::Const | Kind::Let | Kind::Frame => {
             Diagnostic::new(span, format!("`{name}` is used before it is defined"))

@@ -59,9 +59,10 @@ impl SymbolId {
     }
 }
 
-/// A symbol.
+/// What a name of the description stands for: its kind, where it is first declared, and the number under which its value
+/// is kept. The name itself is the key in [`Symbols`].
 #[derive(Clone, Copy, Debug)]
-pub struct Symbol {
+pub struct DeclaredSymbol {
     /// Number.
     pub id: SymbolId,
     /// Kind.
@@ -75,7 +76,7 @@ pub struct Symbol {
 /// The symbols of a description.
 #[derive(Clone, Debug, Default)]
 pub struct Symbols<'a> {
-    names: BTreeMap<&'a str, Symbol>,
+    names: BTreeMap<&'a str, DeclaredSymbol>,
     /// Outputs. Expressions cannot use them, so they may share their names with other symbols.
     pub outputs: BTreeMap<&'a str, Span>,
     /// Functions of the description that can be called, without those in error.
@@ -84,7 +85,7 @@ pub struct Symbols<'a> {
 
 impl<'a> Symbols<'a> {
     /// Returns the symbol with a name.
-    pub fn get(&self, name: &str) -> Option<&Symbol> {
+    pub fn get(&self, name: &str) -> Option<&DeclaredSymbol> {
         self.names.get(name)
     }
 
@@ -104,14 +105,14 @@ impl<'a> Symbols<'a> {
     }
 
     /// Returns all symbols in alphabetical order.
-    pub fn iter(&self) -> impl Iterator<Item = (&'a str, &Symbol)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&'a str, &DeclaredSymbol)> {
         self.names.iter().map(|(name, symbol)| (*name, symbol))
     }
 
     /// Adds a symbol whose name is not yet in the table.
     pub(super) fn add(&mut self, name: &'a str, kind: Kind, span: Span, refused: bool) {
         let id = SymbolId(self.names.len());
-        let symbol = Symbol {
+        let symbol = DeclaredSymbol {
             id,
             kind,
             span,

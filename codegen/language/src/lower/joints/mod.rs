@@ -26,7 +26,7 @@ use crate::lower::scope::Scope;
 use crate::model::joints::Joint;
 use crate::syntax::ast::{self, Ident, ItemKind, JointField, System};
 use crate::syntax::joint_endings;
-use written::Writer;
+use written::JointExpansion;
 
 pub(super) use fields::armature;
 
@@ -95,19 +95,19 @@ pub fn expand(system: &System, report: &mut Report) -> System {
             items.push(item.clone());
             continue;
         };
-        let mut writer = Writer {
+        let mut expansion = JointExpansion {
             joint,
             span: item.span,
             items: Vec::new(),
         };
-        let poses = writer.motion();
+        let poses = expansion.motion();
         match moved.iter().find(|other| other.name == joint.moves.name) {
             Some(first) => report.push(twice(joint, first)),
-            None => writer.frames(poses),
+            None => expansion.frames(poses),
         }
-        writer.loads();
+        expansion.push_loads();
         moved.push(&joint.moves);
-        items.extend(writer.items);
+        items.extend(expansion.items);
         // The joint is kept for its name and its constants.
         items.push(item.clone());
     }

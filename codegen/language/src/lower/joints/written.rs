@@ -10,7 +10,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 
 /// Collects the statements of one joint.
-pub(super) struct Writer<'a> {
+pub(super) struct JointExpansion<'a> {
     /// The joint.
     pub joint: &'a Joint,
     /// Range of its statement.
@@ -19,7 +19,7 @@ pub(super) struct Writer<'a> {
     pub items: Vec<Item>,
 }
 
-impl Writer<'_> {
+impl JointExpansion<'_> {
     fn push(&mut self, kind: ItemKind) {
         let span = self.span;
         self.items.push(Item { kind, span });
@@ -256,8 +256,9 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes the loads of the joint: damping, spring and force.
-    pub fn loads(&mut self) {
+    /// Appends the statements equivalent to the loads of the joint: its dampers, spring and force, as items of the syntax
+    /// tree.
+    pub fn push_loads(&mut self) {
         let field = |wanted| {
             let of = |(field, span, values): &(JointField, Span, Vec<Expr>)| {
                 let value = values
