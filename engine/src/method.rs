@@ -1,6 +1,6 @@
 //! Methods by their names on the command line, and their requirements.
 
-use crate::baselines::{Baseline, Buss, Slide};
+use crate::baselines::{BaselineMethod, Buss, Slide};
 use crate::error::Error;
 use crate::mechanism::{Instance, Numbers};
 use hamel::flows::Flow;
@@ -71,11 +71,11 @@ const METHODS: &[MethodEntry] = entries! {
     "lgvi" Method Split |_| Stepper::Lgvi, "bodies in potentials; variational, order 2";
     "gauss4" Method Momenta |_| Stepper::Gauss4, "long runs where M depends on x; implicit, order 4, no drift";
     "gauss6" Method Momenta |_| Stepper::Gauss6, "the same; order 6";
-    "euler" Baseline Any |_| Stepper::Baseline(Baseline::ForwardEuler), "baseline; order 1";
+    "euler" Baseline Any |_| Stepper::Baseline(BaselineMethod::ForwardEuler), "baseline; order 1";
     "backward-euler" Baseline Any |_| Stepper::General(General::BackwardEuler), "stiff systems; implicit, order 1";
     "semi-implicit-euler" Baseline Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as in game engines";
     "rk4" Baseline Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, stabilized at the rate --lambda";
-    "rk4-projected" Baseline Any |_| Stepper::Baseline(Baseline::Rk4Projected), "baseline; the same, projected after each step";
+    "rk4-projected" Baseline Any |_| Stepper::Baseline(BaselineMethod::Rk4Projected), "baseline; the same, projected after each step";
     "slide" Baseline Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";
     "buss1" Baseline Split |_| Stepper::Buss(Buss::First), "baseline; order 1, keeps angular momentum";
     "buss2" Baseline Split |_| Stepper::Buss(Buss::Second), "baseline; the same, order 2";
@@ -252,7 +252,7 @@ pub enum Stepper {
     /// A method for any system.
     General(General),
     /// A baseline for any system.
-    Baseline(Baseline),
+    Baseline(BaselineMethod),
     /// Kicks between free motions.
     Splitting(Splitting),
     /// The free motion from the start, without accumulated errors.

@@ -22,10 +22,7 @@ fn right_descriptions_expand_to_systems() {
 
 #[test]
 fn the_scalar_is_f64_where_none_is_named() {
-    let heavier = ParticleParameters {
-        m: 4.0,
-        ..Default::default()
-    };
+    let heavier = ParticleParameters { m: 4.0 };
     let particle: Particle = Particle::new(heavier).expect("a positive mass");
     let inferred = Particle::default();
     let doubled = inferred.accel(&[1.0], &[3.0], &[2.0]);

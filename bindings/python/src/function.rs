@@ -63,7 +63,7 @@ impl Function {
     }
 
     fn singular(&self, cause: Cause, place: &[usize]) -> PyErr {
-        let why = self.session.explain_cause(cause);
+        let why = self.session.cause_message(cause);
         SingularError::new_err(match place {
             [] => why,
             place => format!("{why}, at the index {place:?}"),

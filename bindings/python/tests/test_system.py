@@ -196,6 +196,10 @@ def test_runs(pendulum):
     assert abs(pendulum.simulate(1.0, at=still)["q"][-1] - balanced) < 1e-12
     same = pendulum.simulate(1.0, at={"coord": {"q": 0.0}}, inputs={"tau": 1.0}, method="rkmk4")
     assert np.array_equal(same.x, pendulum.simulate(1.0, at=state, method="rkmk4").x)
+    mapped = pendulum.state({"coord": {"q": 0.0}}, input={"tau": 1.0})
+    assert np.array_equal(mapped.x, state.x) and np.array_equal(mapped.u, state.u)
+    with pytest.raises(hamel.HamelError, match="`coord` is given twice"):
+        pendulum.state({"coord": {"q": 0.0}}, coord={"q": 1.0})
 
 
 def test_what_cannot_be_run(pendulum):

@@ -170,7 +170,7 @@ fn compare(
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
     let source = source::open(file, &arguments.robot)?.for_evaluation();
-    let generated = source.derive_all()?;
+    let generated = source.derive_default_functions()?;
     let mut state = State::read(&source, &generated, arguments.at.as_deref())?;
     let fields = solution
         .map(|solution| Fields::of(solution, &generated.program))

@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     let source = source::open(&arguments.file, &arguments.robot)?.showing_frames();
     let session = match until > 0.0 {
-        true => Session::with_all_functions(source)?,
+        true => Session::with_default_functions(source)?,
         false => Session::for_drawing(source)?,
     };
     let state = session.read_state(at)?;

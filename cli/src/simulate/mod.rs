@@ -90,7 +90,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.inputs.inputs.as_deref(),
         ],
     )?;
-    let session = Session::with_all_functions(source::open(&arguments.file, &arguments.robot)?)?;
+    let session =
+        Session::with_default_functions(source::open(&arguments.file, &arguments.robot)?)?;
     let state = session.read_state(arguments.at.as_deref())?;
     let step_is_chosen = stepping.step.is_none();
     let run = session.simulate(&state, &arguments.simulation(stepping)?)?;

@@ -295,9 +295,9 @@ fn prepare(
         option,
         &keep::outputs_to_add(&kept),
         wrong,
-        Source::try_derive_all,
+        Source::try_derive_default_functions,
     )
-    .map_err(|error| match source.try_derive_all() {
+    .map_err(|error| match source.try_derive_default_functions() {
         Ok(generated) => both(error, &generated),
         Err(_) => error.into(),
     })?;

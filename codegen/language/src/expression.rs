@@ -131,32 +131,32 @@ pub fn choice(
     })))
 }
 
-/// Returns sin a, a in rad.
+/// Builds the expression `sin(a)`, a in rad.
 pub fn sin(angle: impl Into<Expr>) -> Expr {
     call("sin", [angle.into()])
 }
 
-/// Returns cos a, a in rad.
+/// Builds the expression `cos(a)`, a in rad.
 pub fn cos(angle: impl Into<Expr>) -> Expr {
     call("cos", [angle.into()])
 }
 
-/// Returns √a.
+/// Builds the expression `sqrt(a)`, √a.
 pub fn sqrt(value: impl Into<Expr>) -> Expr {
     call("sqrt", [value.into()])
 }
 
-/// Returns a pose from a rotation matrix, whose columns are the axes, and an origin (m).
+/// Builds a pose from a rotation matrix, whose columns are the axes, and an origin (m).
 pub fn pose(axes: impl Into<Expr>, origin: impl Into<Expr>) -> Expr {
     call("pose", [axes.into(), origin.into()])
 }
 
-/// Returns a pose without rotation at `origin` (m).
+/// Builds a pose without rotation at `origin` (m).
 pub fn shifted(origin: impl Into<Expr>) -> Expr {
     pose(call("identity", [3.into()]), origin)
 }
 
-/// Returns the diagonal matrix with these three entries.
+/// Builds the diagonal matrix with these three entries.
 pub fn diagonal(entries: [impl Into<Expr>; 3]) -> Expr {
     call("diag", entries.map(Into::into))
 }

@@ -27,7 +27,7 @@ use hamel::{Method, State, StepError, System};
 /// that project rotations, or add angular velocities in different axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Baseline {
+pub enum BaselineMethod {
     /// [`ForwardEuler`]
     ForwardEuler,
     /// [`Rk4Projected`]
@@ -36,12 +36,13 @@ pub enum Baseline {
     Rk4Added,
 }
 
-impl Baseline {
-    /// All baselines of this type.
+impl BaselineMethod {
+    /// All integration methods for any system that are kept only to show a defect, without [`Slide`] and [`Buss`], which
+    /// step rotations only.
     pub const ALL: &[Self] = &[Self::ForwardEuler, Self::Rk4Projected, Self::Rk4Added];
 }
 
-impl<Sys: System + ?Sized> Method<Sys> for Baseline {
+impl<Sys: System + ?Sized> Method<Sys> for BaselineMethod {
     fn order(&self) -> u32 {
         match self {
             Self::ForwardEuler => Method::<Sys>::order(&ForwardEuler),

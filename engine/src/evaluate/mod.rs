@@ -94,7 +94,8 @@ pub struct Multipliers {
     pub undetermined: Vec<String>,
 }
 
-/// Evaluates all quantities at a state, those of frames included, and γ and Γ if `with_tables`; `shown` is the text
+/// Evaluates all quantities at a state, with the kinematics of the frames in `frames` and, if `with_tables`, the Hamel
+/// coefficients γ and the connection coefficients Γ; `shown` is the text
 /// whose line numbers messages give.
 ///
 /// # Errors

@@ -15,7 +15,7 @@ pub(super) const ZERO_TOLERANCE: f64 = 1e-7;
 const REAL_TOLERANCE: f64 = 1e-13;
 /// Modes with less damping, as a ratio, do not decay.
 const DAMPING_TOLERANCE: f64 = 1e-9;
-/// Parts of a mode below this, relative to its largest part in balanced states, are not named.
+/// Parts of a mode below this, relative to its largest part in scaled states, are not named.
 const NAMED_PART: f64 = 0.3;
 /// Pivots that count as zero in the search for the vectors of a mode, tried in this order.
 const VECTOR_TOLERANCES: [f64; 4] = [1e-13, 1e-10, 1e-7, 1e-4];
@@ -69,15 +69,15 @@ impl LinearSystem {
     /// # Errors
     /// The QR algorithm does not converge.
     pub fn modes(&self) -> Result<Vec<Mode>, LinearError> {
-        let (balanced, _) = self.matrices.balanced();
-        let unreachable = balanced.unreachable();
+        let (scaled, _) = self.matrices.scale_for_rank_tests();
+        let unreachable = scaled.unreachable();
         let (_, reachable) = split(&unreachable.transpose(), 0.5);
-        let mut modes = self.modes_within(&balanced.a, &unreachable)?;
+        let mut modes = self.modes_within(&scaled.a, &unreachable)?;
         modes.iter_mut().for_each(|mode| mode.reachable = false);
-        modes.extend(self.modes_within(&balanced.a.transpose(), &reachable)?);
+        modes.extend(self.modes_within(&scaled.a.transpose(), &reachable)?);
         let key = |mode: &Mode| (mode.value.re, mode.value.im);
         modes.sort_by(|a, b| key(b).partial_cmp(&key(a)).unwrap_or(Ordering::Equal));
-        let size = balanced.a.amax();
+        let size = scaled.a.amax();
         for off in self.modes_off(&self.matrices.dual())? {
             // Among equal eigenvalues, the mode with the same states.
             let distance = |mode: &Mode| {
@@ -94,8 +94,8 @@ impl LinearSystem {
 
     /// Returns the modes that the inputs of a system with these states do not reach.
     pub(super) fn modes_off(&self, system: &Quadruple) -> Result<Vec<Mode>, LinearError> {
-        let (balanced, _) = system.balanced();
-        self.modes_within(&balanced.a, &balanced.unreachable())
+        let (scaled, _) = system.scale_for_rank_tests();
+        self.modes_within(&scaled.a, &scaled.unreachable())
     }
 
     /// Returns the modes of Aᵀ in a subspace that it maps into itself, with an orthonormal basis.

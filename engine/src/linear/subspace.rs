@@ -72,9 +72,10 @@ impl Quadruple {
         found
     }
 
-    /// Returns the system in balanced states, with columns of inputs and rows of outputs of the size of A, and the
-    /// factors of the states.
-    pub fn balanced(&self) -> (Self, Vec<f64>) {
+    /// Returns the system scaled for rank tests, with the factors t of its states, x = T z: states by powers of two
+    /// (Osborne's balancing, not by Gramians), then each column [B; D] and each row [C, D] so that its largest entry is
+    /// that of A, which changes the transfer function.
+    pub fn scale_for_rank_tests(&self) -> (Self, Vec<f64>) {
         let factors = balance(&self.a, &self.b, &self.c);
         let mut found = self.scaled(&factors);
         let size = Some(found.a.amax())
@@ -136,8 +137,8 @@ impl Quadruple {
     pub fn minimal(&self) -> Self {
         let mut found = self.clone();
         for _ in 0..2 {
-            let (balanced, factors) = found.balanced();
-            let (_, basis) = split(&balanced.unreachable().transpose(), 0.5);
+            let (scaled, factors) = found.scale_for_rank_tests();
+            let (_, basis) = split(&scaled.unreachable().transpose(), 0.5);
             let scaled = found.scaled(&factors);
             let mut c = &scaled.c * &basis;
             for (mut row, whole) in c.row_iter_mut().zip(scaled.c.row_iter()) {
@@ -160,9 +161,12 @@ impl Quadruple {
     /// Returns the matrix whose eigenvalues are the invariant zeros, where [A − s I, B; C, D] has less than its usual
     /// rank, by the reduction of Emami-Naeini and Van Dooren (1982).
     pub fn zero_dynamics(&self) -> Option<Matrix> {
-        let (balanced, _) = self.balanced();
-        let tolerance = balanced.tolerance();
-        let reduced = balanced.reduced(tolerance).dual().reduced(tolerance);
+        let (scaled, _) = self.scale_for_rank_tests();
+        let tolerance = scaled.tolerance();
+        let reduced = scale_for_rank_tests
+            .reduced(tolerance)
+            .dual()
+            .reduced(tolerance);
         if reduced.d.is_empty() {
             return Some(reduced.a);
         }

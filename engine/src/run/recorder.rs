@@ -223,7 +223,7 @@ mod tests {
             let path = Path::new("../tests/models").join(format!("{model}.eom"));
             let source = Source::open(&path, &OpenOptions::default(), Arc::new(Quiet));
             let source = source.expect("a description");
-            let generated = source.derive_all().expect("derived");
+            let generated = source.derive_default_functions().expect("derived");
             let mut start = Start::start(&generated.active);
             for (method, speed) in [
                 ("rkmk4", 1.0),

@@ -77,7 +77,7 @@ impl EventSystem {
             (EVENTS, said),
             &outputs,
             errors,
-            Source::try_derive_all,
+            Source::try_derive_default_functions,
         )?;
         let mut errors = Vec::new();
         for AddedOutput { name, whole, .. } in &outputs {

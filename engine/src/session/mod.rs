@@ -123,7 +123,7 @@ impl Session {
         Session::from_source(Source::new(name.into(), text, reporter).interpret(options)?)
     }
 
-    /// Derives all functions of a description that exist: those that contain M⁻¹ are left out, with a warning, if M is
+    /// Derives the default functions of a description that exist: those that contain M⁻¹ are left out, with a warning, if M is
     /// not positive definite.
     ///
     /// # Errors
@@ -134,13 +134,13 @@ impl Session {
         Ok(Session::derived(source, generated))
     }
 
-    /// Derives all functions of a description.
+    /// Derives the functions that a description without `generate` gets, whatever its `generate` says.
     ///
     /// # Errors
     /// The description has errors, or lacks a function.
-    pub fn with_all_functions(source: Source) -> Result<Self, Error> {
+    pub fn with_default_functions(source: Source) -> Result<Self, Error> {
         let source = source.for_evaluation();
-        let generated = source.derive_all()?;
+        let generated = source.derive_default_functions()?;
         Ok(Session::derived(source, generated))
     }
 
@@ -363,9 +363,9 @@ impl Session {
         self.source.derive_asked(&wanted)
     }
 
-    /// Explains why a function of the description has no value: which pivot of the mass matrix, of constraints or of
-    /// the kinematics is not positive.
-    pub fn explain_cause(&self, cause: Cause) -> String {
+    /// Composes the message for a cause that a failed call of a function returned, with the names and lines of the
+    /// description; evaluates nothing.
+    pub fn cause_message(&self, cause: Cause) -> String {
         let shown = self.source.shown();
         mechanism::cause_message(cause, self.active(), shown)
     }

@@ -83,7 +83,7 @@ pub fn derive(
         wrong.extend(own);
     }
     if wrong.is_empty() {
-        source.derive_all()?;
+        source.derive_default_functions()?;
         return Err(source.description_error(&errors));
     }
     wrong.sort_by_key(|error| error.span.range().map(|range| range.start));

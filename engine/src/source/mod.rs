@@ -210,7 +210,7 @@ impl Source {
 
     /// Converts the text from URDF into a description.
     pub fn robot(self, options: &OpenOptions) -> Result<Self, Error> {
-        let robot = Robot::read(self.text, &self.path, options, &*self.reporter)?;
+        let robot = Robot::from_urdf(self.text, &self.path, options, &*self.reporter)?;
         Ok(Source {
             text: robot.imported.text(),
             robot: Some(robot),
@@ -403,10 +403,10 @@ impl Source {
         Ok(derived)
     }
 
-    /// Like [`derive_all`](Self::derive_all), but returns the errors without showing them.
-    pub fn try_derive_all(&self) -> Result<Generated, Vec<Diagnostic>> {
+    /// Like [`derive_default_functions`](Self::derive_default_functions), but returns the errors without showing them.
+    pub fn try_derive_default_functions(&self) -> Result<Generated, Vec<Diagnostic>> {
         let (system, _) = self.parsed()?;
-        self.during(|| at_some_point(&system, with_all_functions))
+        self.during(|| at_some_point(&system, with_default_functions))
     }
 
     /// Like [`derive_linearized`](Self::derive_linearized), but returns the errors without showing them.
@@ -415,12 +415,13 @@ impl Source {
         self.during(|| at_some_point(&system, linearized))
     }
 
-    /// Derives all functions, regardless of the description's `generate`.
-    pub fn derive_all(&self) -> Result<Generated, Error> {
-        self.derived(with_all_functions)
+    /// Derives the functions that a description without `generate` gets, whatever its `generate` says: all except those
+    /// that must be requested by name, such as `linearize` and `regressor`.
+    pub fn derive_default_functions(&self) -> Result<Generated, Error> {
+        self.derived(with_default_functions)
     }
 
-    /// Derives all functions that exist, and the kinematics of frames: those that contain M⁻¹ are left out, with a
+    /// Derives those of these default functions that exist, and the kinematics of frames: those that contain M⁻¹ are left out, with a
     /// warning, if M is not positive definite, and all that need inertia if there is none.
     pub fn derive_available(&self, frames: &[Jacobian]) -> Result<Generated, Error> {
         self.available(Asked {
@@ -429,7 +430,7 @@ impl Source {
         })
     }
 
-    /// Derives all functions and the linearisation; for a robot without masses or without an inverse of M, those that
+    /// Derives the default functions and the linearisation; for a robot without masses or without an inverse of M, those that
     /// exist.
     pub fn derive_counted(&self) -> Result<Generated, Error> {
         let (generated, left_out) = self.derived(|mut model| {
@@ -449,7 +450,7 @@ impl Source {
         Ok(generated)
     }
 
-    /// Derives all functions, the linearisation and the derivatives of outputs, regardless of the description's
+    /// Derives the default functions, the linearisation and the derivatives of outputs, regardless of the description's
     /// `generate`.
     pub fn derive_linearized(&self) -> Result<Generated, Error> {
         let generated = self.derived(linearized)?;
@@ -499,7 +500,7 @@ pub fn decoded(name: &str, bytes: Vec<u8>) -> Result<String, Error> {
     })
 }
 
-fn with_all_functions(mut model: Model) -> Result<Generated, Vec<Diagnostic>> {
+fn with_default_functions(mut model: Model) -> Result<Generated, Vec<Diagnostic>> {
     model.asked = Asked::everything();
     Generated::of(model, 0)
 }

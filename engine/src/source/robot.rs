@@ -39,8 +39,9 @@ impl fmt::Display for UnknownLink {
 impl std::error::Error for UnknownLink {}
 
 impl Robot {
-    /// Reads a URDF text.
-    pub fn read(
+    /// Converts a URDF text into a description, which the robot holds with the text, and reports warnings; `path` is
+    /// for messages and for the options of the import.
+    pub fn from_urdf(
         urdf: String,
         path: &str,
         options: &OpenOptions,

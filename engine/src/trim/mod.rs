@@ -93,7 +93,7 @@ pub fn derive(source: &Source, options: &TrimOptions) -> Result<Generated, Error
     )
 }
 
-/// Finds the equilibrium or steady motion to which a search from a state leads; `generated` is the result of [`derive`]
+/// Finds the equilibrium or steady motion to which a search from a state leads; `generated` is the result of [`derive()`]
 /// with the same options, `shown` the text whose line numbers messages give.
 ///
 /// # Errors

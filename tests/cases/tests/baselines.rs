@@ -3,7 +3,7 @@
 use hamel::methods::Rkmk4;
 use hamel::{Method, State, StepError, System, so3};
 use hamel_cases::by_hand::{QuaternionTop, Reference, Spin, Top, distance, run, slopes};
-use hamel_engine::baselines::{Baseline, Buss, Rk4Added, Slide};
+use hamel_engine::baselines::{BaselineMethod, Buss, Rk4Added, Slide};
 use std::cell::Cell;
 
 const BUSS: [Buss; 4] = [
@@ -34,9 +34,9 @@ fn assert_order(what: &str, errors: &[f64], order: f64) {
 #[test]
 fn baselines_have_the_orders_that_they_are_kept_to_show() {
     for (method, order, coarsest) in [
-        (Baseline::ForwardEuler, 1.0, 40_000),
-        (Baseline::Rk4Added, 2.0, 2000),
-        (Baseline::Rk4Projected, 4.0, 2000),
+        (BaselineMethod::ForwardEuler, 1.0, 40_000),
+        (BaselineMethod::Rk4Added, 2.0, 2000),
+        (BaselineMethod::Rk4Projected, 4.0, 2000),
     ] {
         assert_eq!(f64::from(Method::<Top<f64>>::order(&method)), order);
         let errors = [1, 2, 4].map(|f| top_error("kovalevskaya-top", method, 20.0, f * coarsest));
@@ -44,7 +44,7 @@ fn baselines_have_the_orders_that_they_are_kept_to_show() {
     }
     let benchmark = |f: u32| {
         let case = "heavy-top-benchmark-150";
-        top_error(case, Baseline::Rk4Projected, 1.0, f * 4000)
+        top_error(case, BaselineMethod::Rk4Projected, 1.0, f * 4000)
     };
     assert_order("projected, benchmark", &[1, 2, 4].map(benchmark), 4.0);
 }
@@ -61,8 +61,8 @@ fn leaving_out_dexpinv_costs_two_orders_and_more_than_ninety_times_the_error() {
 #[test]
 fn quaternions_and_matrices_agree() {
     let reference = Reference::read("kovalevskaya-top");
-    for &method in Baseline::ALL {
-        if method == Baseline::Rk4Projected {
+    for &method in BaselineMethod::ALL {
+        if method == BaselineMethod::Rk4Projected {
             continue; // it integrates the entries: other errors
         }
         let unit = run(&QuaternionTop(reference.body()), method, 2.0, 200).expect("a run");
@@ -87,7 +87,7 @@ fn there_and_back(top: &Top<f64>, method: impl Method<Top<f64>>, h: f64, n: u32)
 #[test]
 fn a_step_of_zero_changes_nothing_and_a_step_back_is_no_inverse() {
     let top = kovalevskaya();
-    for &method in Baseline::ALL {
+    for &method in BaselineMethod::ALL {
         assert!(there_and_back(&top, method, 0.0, 1) < 2e-15, "{method:?}");
     }
     assert!(there_and_back(&top, Slide, 0.0, 1) < 2e-15);
@@ -98,7 +98,7 @@ fn a_step_of_zero_changes_nothing_and_a_step_back_is_no_inverse() {
 #[test]
 fn a_step_back_undoes_a_step_to_one_order_more_than_the_step() {
     let top = kovalevskaya();
-    for &method in Baseline::ALL {
+    for &method in BaselineMethod::ALL {
         let undone = |h: f64| there_and_back(&top, method, h, 1);
         let errors = [undone(0.1), undone(0.05), undone(0.025)];
         let slopes = slopes(&errors);
@@ -140,7 +140,7 @@ fn steps_far_too_long_end_in_a_state_or_a_typed_error() {
             body.inertia[0] *= stretch;
             let top = Top(body.clone());
             // All methods refuse infinite and NaN steps.
-            for &method in Baseline::ALL {
+            for &method in BaselineMethod::ALL {
                 assert!(overstep(&top, method) >= 2, "{method:?}");
             }
             for method in BUSS {
@@ -165,9 +165,9 @@ fn rotations_stay_orthonormal_at_six_radians_a_step() {
             assert!(top.constraint_norm(&state.x) <= 1e-14, "{name}");
         }
     }
-    for &method in Baseline::ALL {
+    for &method in BaselineMethod::ALL {
         // Within a step, this method leaves the manifold: it is useless for such steps.
-        if method != Baseline::Rk4Projected {
+        if method != BaselineMethod::Rk4Projected {
             stays(&top, &format!("{method:?}"), method);
         }
     }
@@ -194,7 +194,7 @@ fn bodies_at_rest_or_hardly_moving_stay() {
                 let said = format!("{name} {moments:?} {velocity:e}: {off:e}");
                 assert!(off < 110.0 * f64::EPSILON, "{said}");
             };
-            for &method in Baseline::ALL {
+            for &method in BaselineMethod::ALL {
                 stays(&format!("{method:?}"), run(&spin, method, 10.0, 10));
             }
             stays("slide", run(&spin, Slide, 10.0, 10));
@@ -210,7 +210,7 @@ fn a_state_of_nan_is_an_error() {
     let none = |_: f64, _: &_, _: &_| [];
     let refused = Err(StepError::NonFinite { time: 0.0 });
     let mut state = State::start(&top);
-    for method in Baseline::ALL {
+    for method in BaselineMethod::ALL {
         assert_eq!(
             hamel::step(&top, method, &mut state, 0.1, &none),
             refused,

@@ -567,8 +567,8 @@ class System:
         """Return the initial state, with zero inputs."""
         return self._start._copy()
 
-    def state(self, **parts: Mapping[str, Any]) -> State:
-        """Return a state with values given by name.
+    def state(self, given: Mapping[str, Mapping[str, Any]] | None = None, /, **parts: Mapping[str, Any]) -> State:
+        """Return a state with values given by name, as a mapping such as a file of `--at` contains, or by keywords.
 
         All other values are those of the start, adjusted where loops or other constraints require it.
 
@@ -578,14 +578,18 @@ class System:
 
             system.state(coord={"q": 0.3}, velocity={"q_dot": 1.0}, input={"F": 2.0}, param={"m": 1.5})
             robot.state(configuration={"elbow": 0.3}, velocity={"elbow": 1.0})
+            robot.state(json.loads(Path("state.json").read_text()))
         """
-        return State(*self._session.state(self._parameters, json.dumps(_plain(parts))))
+        given = {} if given is None else dict(given)
+        if twice := sorted(given.keys() & parts.keys()):
+            raise HamelError(f"`{twice[0]}` is given twice, by the mapping and as a keyword")
+        return State(*self._session.state(self._parameters, json.dumps(_plain({**given, **parts}))))
 
     def _at(self, at: State | Mapping[str, Any] | None) -> tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]:
         if at is None:
             at = self._start
         elif isinstance(at, Mapping):
-            at = self.state(**at)
+            at = self.state(at)
         elif not isinstance(at, State):
             raise HamelError(f"a state is a `hamel.State` or a dictionary of arguments of `System.state`, not {at!r}")
         return at._numbers()

@@ -36,8 +36,9 @@ pub struct Definitions {
     pub complete: bool,
 }
 
-/// Reads all definitions, in a copy of the graph that has symbols for ẋ.
-pub fn read(
+/// Reads the velocities that the description defines by rates, and returns for each ξⁱ its row of Y in ξ = Y(x) ẋ; the
+/// rows are linear in ẋ, or an error is reported.
+pub fn read_velocity_definitions(
     system: &System,
     graph: &mut Graph,
     scope: &Scope,

@@ -39,7 +39,8 @@ pub fn read(
         let evaluator = Evaluator::new(graph, scope, report);
         read_rate(target, value, item, evaluator, declared, &mut rates, system);
     }
-    let definitions = definitions::read(system, graph, scope, declared, report);
+    let definitions =
+        definitions::read_velocity_definitions(system, graph, scope, declared, report);
     let derivable = definitions.any || !manifold.user_rows().is_empty();
     let mut complete = definitions.complete;
     for coordinate in &declared.coordinates {

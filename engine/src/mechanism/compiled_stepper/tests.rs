@@ -31,7 +31,7 @@ fn instance(model: &str) -> Instance {
     let path = Path::new("../tests/models").join(model);
     let source = Source::open(&path, &OpenOptions::default(), Arc::new(Quiet));
     let source = source.expect("a description");
-    let generated = source.derive_all().expect("derived");
+    let generated = source.derive_default_functions().expect("derived");
     let mechanism = Mechanism::new(&generated, &source.text).expect("compiled");
     let start = Start::start(&generated.active);
     Instance::of(&Arc::new(mechanism), &start).expect("an instance")
