@@ -163,10 +163,7 @@ impl Quadruple {
     pub fn zero_dynamics(&self) -> Option<Matrix> {
         let (scaled, _) = self.scale_for_rank_tests();
         let tolerance = scaled.tolerance();
-        let reduced = scale_for_rank_tests
-            .reduced(tolerance)
-            .dual()
-            .reduced(tolerance);
+        let reduced = scaled.reduced(tolerance).dual().reduced(tolerance);
         if reduced.d.is_empty() {
             return Some(reduced.a);
         }
