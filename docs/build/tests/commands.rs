@@ -1,7 +1,8 @@
 //! The README and the book: the commands of each page run in order and unchanged, in a folder that contains only the
-//! files made by the page and the descriptions of the repository; links are valid; every chapter is in the table of
-//! contents.
+//! files made by the page and the descriptions of the repository; recipes print the numbers of their formulas; links are
+//! valid; every chapter is in the table of contents.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -91,6 +92,97 @@ fn run(page: &Path, text: &str) -> [usize; 2] {
         script.matches("hamel ").count(),
         usize::from(!crates.is_empty()),
     ]
+}
+
+/// The numbers for which the recipes give formulas are those that their commands print.
+#[test]
+fn recipes_print_what_their_formulas_say() {
+    let g = 9.81_f64;
+    let slope = 0.2_f64;
+    let path = (2.0 + (PI * 0.01).powi(2) / 12.0) / (0.3 * g);
+    let creep = 0.01 * (slope.tan() / 0.3).atanh();
+    let (beta, omega) = (30.0, 39_100_f64.sqrt());
+    let angle = (2.0 * beta * omega).atan2(omega * omega - beta * beta);
+    let restitution = (-beta / omega * (PI - angle)).exp();
+    let pull = 75.0 * g + ((75.0 * g).powi(2) + 2.0 * 90.0 * 75.0 * g * 15.0).sqrt();
+    let (fall, swing) = ((30.0 * g).sqrt(), (90.0 / 75.0_f64).sqrt());
+    let lowest = fall / g + (PI - (fall * swing / g).atan()) / swing;
+    let terminal = (2.0 * 0.145 * g / (1.2 * 0.4 * PI * 0.0365_f64.powi(2))).sqrt();
+    let falls = g * 3.0 / terminal;
+    let drop = terminal.powi(2) / g * falls.cosh().ln();
+    let current = 20.0 * g * 0.05 / (30.0 * 0.06);
+    let lift = 0.05 * (24.0 - 0.5 * current) / (30.0 * 0.06);
+    let rope = (3.0 / (2.0 * g)).atan();
+    let sway = g * 6.0 / (3.0 * rope.cos() * (4.0 + 2.0 * rope.sin().powi(2)));
+    let door = 2.0 / (2.0 * 6.75);
+    // The larger eigenvalue of the side motion of the car at a speed.
+    let car = |u: f64| {
+        let front = 0.9 * 1200.0 * g / 2.0 * 10.0 * 1.3;
+        let (sum, moment) = (1.8 * front / u, 1.3 * 0.2 * front / u);
+        let (side, yaw) = (-sum / 1200.0, -1.3 * 1.3 * sum / 1500.0);
+        let determinant = side * yaw - (u + moment / 1200.0) * moment / 1500.0;
+        let trace = side + yaw;
+        (trace + (trace * trace - 4.0 * determinant).sqrt()) / 2.0
+    };
+    // A part of the block, the word that its line contains, the place of the number in the line, the formula.
+    let claims = [
+        ("block.eom --until", "x", 1, path),
+        ("block.eom --at", "x_dot", 1, creep),
+        ("bristle.eom", "z", 1, 2.0 * g * slope.sin() / 1e5),
+        ("bristle.eom", "friction", 2, -2.0 * g * slope.sin()),
+        ("stop.eom", "x_dot", 1, -restitution),
+        ("backlash.eom", "w1", 1, -0.6),
+        ("backlash.eom", "w2", 1, 0.4),
+        ("bungee.eom", "z", 1, -15.0 - pull / 90.0),
+        ("bungee.eom", "pull", 2, pull),
+        ("bungee.eom", "t", 2, lowest),
+        ("ball.eom", "v", 3, -terminal * falls.tanh()),
+        ("ball.eom", "r", 3, -drop),
+        ("road.eom", "amplitude", 2, 0.02),
+        ("slow.json", "", 0, car(30.0)),
+        ("quick.json", "", 0, car(40.0)),
+        ("winch.eom", "i", 1, current),
+        ("winch.eom", "lift", 2, lift),
+        ("pid.eom --until", "z", 1, 1.0),
+        ("pid.eom --until", "integral", 1, 10.0 * g),
+        ("gyro.eom", "error", 2, -0.09),
+        ("gyro.eom", "felt", 1, 0.3),
+        ("gyro.eom", "radial", 2, -2.4),
+        ("cylinder.eom", "x_dot", 1, 0.1),
+        ("cylinder.eom", "pb", 1, 1.44e6),
+        ("cylinder.eom", "pa", 1, (20_000.0 + 1728.0 + 200.0) / 2e-3),
+        ("trim crane.eom", "rope", 1, -rope),
+        ("trim crane.eom", "±", 1, sway.sqrt()),
+        ("trim crane.eom", "F", 1, 1000_f64.sqrt()),
+        ("door.eom", "±", 0, -door),
+        ("door.eom", "±", 2, (4.0 / 6.75 - door * door).sqrt()),
+    ];
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("recipes");
+    let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
+    let mut printed = Vec::new();
+    for name in ["forces", "drives", "index"] {
+        let page = root().join(format!("docs/book/src/recipes/{name}.md"));
+        let text = fs::read_to_string(page).expect("a page");
+        let shell = Shell::new(&root(), &folder.join(name), program).expect("a folder");
+        for block in blocks(&text, "sh") {
+            printed.push((block.to_owned(), shell.run(&own(block)).expect("it runs")));
+        }
+    }
+    for (part, word, place, formula) in claims {
+        let block = printed.iter().find(|(block, _)| block.contains(part));
+        let (_, text) = block.unwrap_or_else(|| panic!("no block has {part}"));
+        let lines = text.lines().map(|line| line.split_whitespace().collect());
+        let has = |words: &Vec<&str>| word.is_empty() || words.contains(&word);
+        let numbers = lines
+            .filter(has)
+            .filter_map(|words| words.get(place)?.parse().ok());
+        // Six digits are printed.
+        let agrees = |number: f64| (number - formula).abs() <= 6e-6 * formula.abs();
+        assert!(
+            numbers.into_iter().any(agrees),
+            "{part} {word}: {formula}\n{text}"
+        );
+    }
 }
 
 /// Every block of a page is compiled or run by some test.
