@@ -1,6 +1,6 @@
 //! Tables as displayed mathematics in LaTeX or MathML, with matrices where a table is one.
 //!
-//! A matrix of more than [`MAX_MATRIX_SIZE`] rows or columns is listed by its nonzero entries. An entry whose text is
+//! A matrix of more than twelve rows or columns is listed by its nonzero entries. An entry whose text is
 //! longer than its limit stands in the matrix by its symbol, and is defined below it.
 
 use super::entries::{Definition, Entry};
