@@ -9,7 +9,12 @@ use std::path::Path;
 pub fn control() -> Vec<Value> {
     let root = match std::env::var_os("HAMEL_CONTROL_REFERENCE") {
         Some(folder) => folder.into(),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference/control"),
+        // This file is part of packages at different depths.
+        None => Path::new(env!("CARGO_MANIFEST_DIR"))
+            .ancestors()
+            .map(|folder| folder.join("tests/reference/control"))
+            .find(|folder| folder.is_dir())
+            .expect("the folder of references"),
     };
     let mut robots = Vec::new();
     for entry in std::fs::read_dir(root).expect("a folder") {
