@@ -100,7 +100,7 @@ fn names_do_not_collide() {
         }
     }
     let alone = code("system A { coord x; velocity v; rate x = v; particle mass 1 at [x, 0, 0]; }");
-    assert!(!alone.contains("trait ") && alone.contains("struct A<S>"));
+    assert!(!alone.contains("trait ") && alone.contains("struct A<S = f64>"));
 }
 
 /// With or without a shape, arguments are the same expressions.
