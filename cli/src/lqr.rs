@@ -69,10 +69,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ],
     )?;
     let (linear, system, point) = arguments.linear.open_with_law(false)?;
-    let (q, r) = (
-        state_weights(&system, &arguments.q)?,
-        input_weights(&system, &arguments.r)?,
+    let weights = (
+        state_weights(&system, &arguments.q),
+        input_weights(&system, &arguments.r),
     );
+    let (q, r) = match weights {
+        (Ok(q), Ok(r)) => (q, r),
+        (Err(of_states), Err(of_inputs)) => return Err(of_states.and(of_inputs)),
+        (Err(error), _) | (_, Err(error)) => return Err(error),
+    };
     let found = system
         .regulator(&q, &r)
         .map_err(hamel_engine::Error::from)?;

@@ -29,7 +29,7 @@ pub fn csv(system: &LinearSystem) -> String {
     text
 }
 
-/// How a language writes a linear system.
+/// Syntax of a linear system in another language.
 struct Dialect {
     /// Start of a comment.
     comment: &'static str,

@@ -68,6 +68,11 @@ struct Modes {
 
 /// Linearises and prints the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.modes && !matches!(arguments.format, Format::Text | Format::Json) {
+        return Err(Failure::usage(
+            "--modes: modes are written as text or JSON; leave out --format, or write --format json",
+        ));
+    }
     let (mut linear, system) = arguments.linear.open(arguments.full)?;
     if system.step.is_some() {
         (linear.a, linear.b) = (rows(&system.matrices.a), rows(&system.matrices.b));

@@ -18,7 +18,7 @@ use std::rc::Rc;
 /// Name of the argument to which slopes are written in addition to the result, `slopes`.
 pub const SLOPES_ARGUMENT: &str = SharedArray::Slopes.name();
 
-/// What a generated function has to compute, before it is lowered: name, arguments, outputs, guards.
+/// Description of a generated function before it is lowered: name, arguments, outputs, guards.
 pub struct FunctionSpec<'a> {
     /// Name.
     pub name: String,

@@ -40,11 +40,11 @@ pub struct Spectrum {
     pub values: Vec<(f64, f64)>,
     /// Largest entry of their matrix.
     pub size: f64,
-    /// What they say.
+    /// Stability of the motion, judged by these eigenvalues.
     pub stability: Stability,
 }
 
-/// How small deviations of the state develop, apart from displacements along which the motion does not change.
+/// Stability of a motion under small deviations of the state, apart from displacements along which it does not change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stability {
     /// All of them decay.

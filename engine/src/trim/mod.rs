@@ -76,7 +76,8 @@ pub fn derive(source: &Source, options: &TrimOptions) -> Result<Generated, Error
         }
         let sides = whole.sides();
         if sides.len() != 2 || sides.iter().any(|side| side.text.is_empty()) || text.contains(';') {
-            return Err(TrimProblem::NoEquation(text.clone()).into());
+            errors.push(whole.wrong("expected one equation, as in `speed = 30`"));
+            continue;
         }
         added.push(AddedOutput {
             name: added_outputs::name(item),

@@ -1,4 +1,4 @@
-//! What is asked of a trim, and why it may fail.
+//! Options of a trim, and the reasons for which it fails.
 
 use hamel_codegen::syntax::suggest::closest;
 use hamel_files::number::short;
@@ -7,7 +7,7 @@ use std::fmt;
 /// Largest number of conditions that a message names.
 const MAX_NAMED: usize = 6;
 
-/// What is asked of a trim; by default an equilibrium with the inputs of the start.
+/// Options of a trim. By default it finds an equilibrium with the inputs of the start.
 #[derive(Clone, Debug, Default)]
 pub struct TrimOptions {
     /// Whether velocities are free, and a steady motion is asked for.
@@ -23,7 +23,7 @@ pub struct TrimOptions {
 /// Condition that is not met.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unmet {
-    /// What it demands to vanish.
+    /// Quantity that has to vanish.
     pub condition: String,
     /// Its residual.
     pub residual: f64,
@@ -41,8 +41,6 @@ pub enum TrimProblem {
         /// The names that there are.
         known: Vec<String>,
     },
-    /// An equation does not consist of two expressions.
-    NoEquation(String),
     /// Steady motion is asked of a system that depends on time, which has this name.
     TimeDependent(String),
     /// The start has no accelerations, or its loops cannot be closed.
@@ -104,8 +102,8 @@ impl TrimProblem {
 
     /// Returns whether the request is wrong.
     pub fn is_misuse(&self) -> bool {
-        use TrimProblem::{NoEquation, TimeDependent, UnknownName};
-        matches!(self, UnknownName { .. } | NoEquation(_) | TimeDependent(_))
+        use TrimProblem::{TimeDependent, UnknownName};
+        matches!(self, UnknownName { .. } | TimeDependent(_))
     }
 }
 
@@ -123,9 +121,6 @@ impl fmt::Display for TrimProblem {
                     None if known.is_empty() => f.write_str("; the description has none"),
                     None => write!(f, "; there are {}", known.join(", ")),
                 }
-            }
-            TrimProblem::NoEquation(text) => {
-                write!(f, "--fix \"{text}\": expected one equation, as in \"speed = 30\"")
             }
             TrimProblem::TimeDependent(time) => write!(
                 f,

@@ -26,7 +26,7 @@ pub fn height(lines: usize) -> f64 {
     LABEL_SPACING * lines.saturating_sub(1) as f64
 }
 
-/// What panels share along their lower edges.
+/// Quantity on the lower axis, which all panels share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Across {
     /// The time.

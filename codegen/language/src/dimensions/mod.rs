@@ -32,7 +32,7 @@ use crate::syntax::ast::{Expr, ExprKind, Ident, Item, ItemKind, Span, System, Ta
 use std::collections::BTreeMap;
 use walk::Walk;
 
-/// What is known of the dimensions of a description with units.
+/// Dimensions of the names of a description with units.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dimensions {
     /// SI units of the declared names whose dimension is known, by name. Vectors with entries of several dimensions have

@@ -8,7 +8,7 @@ use num_traits::One;
 /// An unknown dimension.
 #[derive(Debug)]
 struct Unknown {
-    /// What has this dimension, for messages.
+    /// Description of the quantity that has this dimension, for messages.
     name: String,
     /// Its solution, which may contain unknowns that were solved later, and the place of the equation.
     solution: Option<(Form, Span)>,

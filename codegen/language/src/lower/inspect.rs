@@ -17,7 +17,7 @@ use num_rational::BigRational;
 
 pub use super::axes::CALLS;
 
-/// What can be said of one expression: its value, and on what it depends.
+/// Result of inspecting one expression: its shape, its value, and whether it has an error.
 #[derive(Debug)]
 pub struct Found {
     /// Inferred shape in words, with the values of the entries if they are known; `None` if something is wrong.

@@ -288,7 +288,7 @@ pub struct Model {
     pub initial_conditions: InitialConditions,
     /// The functions to generate.
     pub asked: Asked,
-    /// What is known of the dimensions, if the description has units.
+    /// Dimensions of the names, if the description has units.
     pub dimensions: Option<Dimensions>,
     /// Span for errors about the start that are found later.
     pub span: Span,

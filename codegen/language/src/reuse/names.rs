@@ -104,7 +104,7 @@ pub struct Expansion<'a> {
     ends: BTreeMap<String, (String, Span)>,
 }
 
-/// What a name stands for during the expansion of components.
+/// Meaning of a name during the expansion of components.
 pub enum Found<'w, 'a> {
     /// No declared item.
     Unknown,

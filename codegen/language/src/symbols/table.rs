@@ -59,8 +59,8 @@ impl SymbolId {
     }
 }
 
-/// What a name of the description stands for: its kind, where it is first declared, and the number under which its value
-/// is kept. The name itself is the key in [`Symbols`].
+/// Meaning of a name in the description: its kind, the place of its first declaration, and the number under which its
+/// value is kept. The name itself is the key in [`Symbols`].
 #[derive(Clone, Copy, Debug)]
 pub struct DeclaredSymbol {
     /// Number.
